@@ -1,0 +1,85 @@
+"""What EPG tells a user about their files: problems with position, caret and hint, as compilers do.
+
+>>> problems = Diagnostics()
+>>> problems.error("unknown-key", Span("a.tcf", 2, 1, 5), "unknown key 'nod'", hint="did you mean 'node'?")
+>>> problems.has_errors
+True
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+
+from epg.source import Span
+
+
+@dataclass(frozen=True)
+class Note:
+    """A second place that belongs to a problem: the other user of a pin, the file that extends this one."""
+
+    message: str
+    span: Span
+
+
+@dataclass(frozen=True)
+class Diagnostic:
+    """One problem. ``id`` is stable: documentation, tests and programs refer to it."""
+
+    id: str
+    severity: str  # "error" or "warning"
+    span: Span
+    message: str
+    hint: str = ""
+    notes: tuple[Note, ...] = ()
+
+
+@dataclass
+class Diagnostics:
+    """Collects the problems of one run, so that all are reported at once."""
+
+    items: list[Diagnostic] = field(default_factory=list)
+
+    def error(self, id: str, span: Span, message: str, *, hint: str = "", notes: Iterable[Note] = ()) -> None:
+        self._add(Diagnostic(id, "error", span, message, hint, tuple(notes)))
+
+    def warning(self, id: str, span: Span, message: str, *, hint: str = "", notes: Iterable[Note] = ()) -> None:
+        self._add(Diagnostic(id, "warning", span, message, hint, tuple(notes)))
+
+    def _add(self, diagnostic: Diagnostic) -> None:
+        if diagnostic not in self.items:
+            self.items.append(diagnostic)
+
+    @property
+    def has_errors(self) -> bool:
+        return any(item.severity == "error" for item in self.items)
+
+    def __iter__(self) -> Iterator[Diagnostic]:
+        return iter(self.items)
+
+    def stop_if_errors(self) -> None:
+        """Raise :class:`UserError` if there is any error: called between layers."""
+        if self.has_errors:
+            raise UserError(self)
+
+
+class UserError(Exception):
+    """A user's files hold mistakes, and all of them are in ``diagnostics``.  Any other exception is a bug in EPG."""
+
+    def __init__(self, diagnostics: Diagnostics) -> None:
+        super().__init__(f"{len(diagnostics.items)} problem(s)")
+        self.diagnostics = diagnostics
+
+
+def did_you_mean(word: str, choices: Iterable[str], otherwise: str = "") -> str:
+    """A hint that names the choice nearest to ``word``, or ``otherwise`` with all choices when none is near."""
+    known = sorted(choices)
+    folded = {choice.casefold(): choice for choice in known}
+    near = difflib.get_close_matches(word.casefold(), folded, n=1, cutoff=0.6)
+    if near:
+        return f"did you mean '{folded[near[0]]}'?"
+    if not known:
+        return ""
+    listed = ", ".join(known) if len(known) <= 24 else ", ".join(known[:24]) + ", ..."
+    return f"{otherwise or 'possible'}: {listed}"

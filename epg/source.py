@@ -1,0 +1,96 @@
+"""Positions in user files, and values that know theirs.
+
+>>> span = Span("jiwy.tcf", 3, 8, 12)
+>>> Node("JIWY_node", span).plain()
+'JIWY_node'
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any, Union
+
+Scalar = Union[None, bool, int, float, str]
+Path = tuple[Union[str, int], ...]
+"""A way from the root of a document to one of its values: ``("components", "encoder_pan", "pins", "a")``."""
+
+
+@dataclass(frozen=True)
+class Span:
+    """A stretch of one line of a file; ``line`` and ``column`` count from 1, ``end`` is one past the last column.
+
+    ``line`` 0 means the file as a whole (missing, unreadable, binary).  ``text`` replaces the line of the file in
+    messages about values that stand in no file, such as arguments of a CMake call.
+    """
+
+    file: str
+    line: int = 0
+    column: int = 0
+    end: int = 0
+    text: str | None = None
+
+
+@dataclass(frozen=True)
+class Node:
+    """One value of a YAML document with its position.
+
+    ``value`` is a scalar, a tuple of nodes or a mapping of names to nodes; ``keys`` says, for a mapping, where each
+    key is written.  ``origins`` lists the files (innermost first) whose ``extends`` led to the file the value stands
+    in, so that a message about an inherited value can say who inherits it.
+    """
+
+    value: Scalar | tuple["Node", ...] | Mapping[str, "Node"]
+    span: Span
+    keys: Mapping[str, Span] = field(default_factory=lambda: MappingProxyType({}))
+    origins: tuple[Span, ...] = ()
+
+    @property
+    def is_mapping(self) -> bool:
+        return isinstance(self.value, Mapping)
+
+    @property
+    def is_sequence(self) -> bool:
+        return isinstance(self.value, tuple)
+
+    def __contains__(self, key: object) -> bool:
+        return isinstance(self.value, Mapping) and key in self.value
+
+    def __getitem__(self, key: str | int) -> Node:
+        if isinstance(self.value, Mapping) and isinstance(key, str):
+            return self.value[key]
+        if isinstance(self.value, tuple) and isinstance(key, int):
+            return self.value[key]
+        raise KeyError(key)
+
+    def get(self, *path: str | int) -> Node | None:
+        """The value below this one at ``path``, or None when a step of it does not exist."""
+        node: Node = self
+        for key in path:
+            try:
+                node = node[key]
+            except (KeyError, IndexError):
+                return None
+        return node
+
+    def items(self) -> Iterator[tuple[str, Node]]:
+        """Keys and values of a mapping in the order they are written; nothing for any other value."""
+        if isinstance(self.value, Mapping):
+            yield from self.value.items()
+
+    def elements(self) -> tuple[Node, ...]:
+        """The elements of a sequence; nothing for any other value."""
+        return self.value if isinstance(self.value, tuple) else ()
+
+    def key_span(self, key: str) -> Span:
+        """Where ``key`` of this mapping is written."""
+        return self.keys.get(key, self.span)
+
+    def plain(self) -> Any:
+        """The value as dictionaries, lists and scalars, for libraries that know no positions."""
+        if isinstance(self.value, Mapping):
+            return {key: node.plain() for key, node in self.value.items()}
+        if isinstance(self.value, tuple):
+            return [node.plain() for node in self.value]
+        return self.value
