@@ -1,0 +1,159 @@
+/**
+ * @file
+ * The control cycle: read inputs, step the model, write outputs, count.
+ *
+ * The generator writes one constant `epg_application_t` per target; everything else is here.  Two contexts use a
+ * control object: the *control side* (a timer interrupt, a core of its own or a thread of highest priority) calls
+ * epg_control_cycle() at every tick; the *communication side* delivers setpoints, fetches monitoring values and
+ * requests enabling.  The two share nothing but the wait-free exchanges and a few atomic words.
+ *
+ * | event                                        | effect                                                        |
+ * |----------------------------------------------|---------------------------------------------------------------|
+ * | disabled                                     | actuators safe within one cycle; sensors, topics and model run on; encoder resets are withheld, so zero positions stay |
+ * | enabled                                      | the model is initialised again                                |
+ * | setpoint not finite                          | dropped and counted, the value before it stays                |
+ * | model input, state or output not finite      | disabled, latched: EPG_FAULT_NOT_FINITE                       |
+ * | model asks to stop (stopsimulation)          | disabled, latched: EPG_FAULT_MODEL_STOPPED                    |
+ * | `overrun_limit` overruns in a row            | disabled, latched: EPG_FAULT_OVERRUN                          |
+ * | setpoint older than its timeout              | hold, zero or disable (EPG_FAULT_SETPOINT_TIMEOUT)            |
+ * | fail-safe input inactive                     | disabled, latched: EPG_FAULT_FAIL_SAFE                        |
+ * | late cycle                                   | runs once; cycles that were missed are counted, not made up   |
+ *
+ * A latched fault is cleared only by an explicit request to enable.
+ */
+#ifndef EPG_CONTROL_H
+#define EPG_CONTROL_H
+
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "epg/exchange.h"
+#include "epg/fault.h"
+#include "epg/statistics.h"
+
+/** What happens when a setpoint is older than its timeout. */
+typedef enum epg_timeout_action { EPG_TIMEOUT_HOLD, EPG_TIMEOUT_ZERO, EPG_TIMEOUT_DISABLE } epg_timeout_action_t;
+
+/** One setpoint as the `.tcf` declares it. */
+typedef struct epg_setpoint {
+    double initial;                /**< value before the first one arrives */
+    double rate_limit;             /**< largest change per second of the value the model sees; 0: unlimited */
+    uint64_t timeout_ns;           /**< 0: never too old */
+    epg_timeout_action_t action;
+} epg_setpoint_t;
+
+/** One setpoint on its way from the communication side to the control side. */
+typedef struct epg_setpoint_sample {
+    double value;
+    uint64_t received_ns;
+    uint32_t count;                /**< samples received so far; 0: none yet */
+} epg_setpoint_sample_t;
+
+/** What the control side keeps for one setpoint. */
+typedef struct epg_setpoint_state {
+    double value;                  /**< as the model sees it: after timeout and rate limit */
+    double target;                 /**< as received last */
+    uint64_t received_ns;
+    uint32_t count;
+    bool timed_out;
+} epg_setpoint_state_t;
+
+/**
+ * A target as the generator describes it.  All functions run on the control side.  Arrays are the generator's, sized
+ * by the counts, so that nothing is allocated at run time.
+ */
+typedef struct epg_application {
+    const char *name;
+    uint64_t period_ns;
+    uint32_t step_divider;         /**< the model runs every n-th cycle */
+    uint32_t overrun_limit;        /**< overruns in a row that disable; 0: never */
+    bool enable_at_start;
+
+    void (*start)(void);           /**< configures all peripherals, outputs safe; before the first cycle */
+    void (*read)(void);            /**< samples all sensors, and fills the model's inputs; every cycle */
+    bool (*inputs_finite)(void);
+    void (*model_init)(void);      /**< (re-)initialises the model with the inputs read last */
+    void (*model_step)(void);
+    bool (*model_finite)(void);    /**< states and outputs */
+    bool (*model_stopped)(void);   /**< the model has asked to stop; NULL: it never does */
+    void (*write)(void);           /**< model outputs to actuators and resets */
+    void (*safe)(void);            /**< every actuator to its safe value */
+    void (*monitor)(double *values); /**< fills `monitor_count` values to publish */
+    bool (*fail_safe)(void);       /**< true: the target may be enabled; NULL: no such input */
+
+    size_t setpoint_count;
+    const epg_setpoint_t *setpoints;
+    epg_setpoint_sample_t *samples;        /**< `setpoint_count`: the control side's copy */
+    epg_setpoint_sample_t *received;       /**< `setpoint_count`: the communication side's copy */
+    epg_setpoint_state_t *setpoint_states; /**< `setpoint_count` */
+    epg_exchange_t *setpoint_exchange;     /**< of `setpoint_count` samples; NULL: no setpoints */
+
+    size_t monitor_count;
+    double *monitor_values;                /**< `monitor_count`: the control side's copy */
+    epg_exchange_t *monitor_exchange;      /**< of `monitor_count` doubles; NULL: nothing to publish */
+} epg_application_t;
+
+/** State and fault of a target at one moment. */
+typedef struct epg_status {
+    bool enabled;
+    epg_fault_t fault;             /**< why it is disabled; EPG_FAULT_NONE: by request */
+    uint64_t time_ns;              /**< tick of the cycle that wrote this */
+    epg_statistics_t statistics;
+} epg_status_t;
+
+typedef struct epg_control {
+    const epg_application_t *application;
+    epg_statistics_t statistics;
+    epg_fault_t fault;
+    bool enabled;
+    bool model_valid;              /**< false after a non-finite value: the model does not run until initialised */
+    uint32_t until_step;           /**< cycles until the model's next step */
+    uint32_t consecutive_overruns;
+    uint32_t request_seen;
+    atomic_uint request;           /**< written by the communication side: (sequence << 1) | enable */
+    atomic_uint dropped;           /**< setpoints the communication side refused */
+    atomic_uint reconnects;        /**< written by the communication side */
+    epg_exchange_t status_exchange;
+    epg_status_t status_slots[4];
+} epg_control_t;
+
+/* Control side ----------------------------------------------------------------------------------------------- */
+
+/** Starts peripherals (outputs safe) and initialises model and state.  Before the first cycle; may be called again. */
+void epg_control_start(epg_control_t *control, const epg_application_t *application);
+
+/**
+ * One control cycle for the tick that was due at `tick_ns` (epg_port_time_ns()'s time base); `missed` ticks before
+ * it ran no cycle.
+ */
+void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed);
+
+/** Counts a value that had to be limited.  Called by generated code and component drivers. */
+void epg_control_count_clamped(epg_control_t *control);
+
+/** Value of setpoint `index` in this cycle. */
+double epg_control_setpoint(const epg_control_t *control, size_t index);
+
+/* Communication side ----------------------------------------------------------------------------------------- */
+
+/**
+ * Delivers a received value to setpoint `index`.  Several values that arrived together can be handed over as one
+ * by `publish` false for all but the last.  Returns false if the value is not finite and was dropped.
+ */
+bool epg_control_receive(epg_control_t *control, size_t index, double value, uint64_t received_ns, bool publish);
+
+/** Copies the newest monitoring values; false before the first cycle. */
+bool epg_control_monitor(epg_control_t *control, double *values);
+
+/** Copies the newest status; false before the first cycle. */
+bool epg_control_status(epg_control_t *control, epg_status_t *status);
+
+/** Requests enabling (initialises the model, clears a latched fault) or disabling; acts in the next cycle. */
+void epg_control_request(epg_control_t *control, bool enable);
+
+/** Counts a reconnection of the communication. */
+void epg_control_count_reconnect(epg_control_t *control);
+
+#endif

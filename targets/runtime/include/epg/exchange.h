@@ -1,0 +1,39 @@
+/**
+ * @file
+ * Wait-free exchange of the newest value between one writer and one reader.
+ *
+ * A value is a block of any size, written and read as a whole: a reader never sees half of an update, never sees an
+ * older value after a newer one, and neither side ever waits or retries.  Needs only loads and stores of single
+ * words, so it works between the two cores of an RP2040, which has no exclusive-access instructions.
+ *
+ * Algorithm: H. Simpson, "Four-slot fully asynchronous communication mechanism", IEE Proceedings E 137(1), 1990.
+ * The control words are sequentially consistent C11 atomics, which the algorithm needs on out-of-order memory.
+ */
+#ifndef EPG_EXCHANGE_H
+#define EPG_EXCHANGE_H
+
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/** State of one exchange.  Zero-initialised memory plus `slots` and `size` is a valid, empty exchange. */
+typedef struct epg_exchange {
+    void *slots;              /**< 4 * `size` bytes */
+    size_t size;              /**< bytes of one value */
+    atomic_uint latest;       /**< pair written last: 0 or 1 */
+    atomic_uint reading;      /**< pair the reader works on: 0 or 1 */
+    atomic_uint slot[2];      /**< slot written last in each pair: 0 or 1 */
+    atomic_bool written;      /**< false until the first write has finished */
+} epg_exchange_t;
+
+/** Static initialiser; `storage` is an array of four values. */
+#define EPG_EXCHANGE(storage) {.slots = (storage), .size = sizeof((storage)[0])}
+
+/** Publishes `*value` (`size` bytes).  Only one context may write. */
+void epg_exchange_write(epg_exchange_t *exchange, const void *value);
+
+/** Copies the newest value to `*value`; false (and `*value` untouched) before the first write.  Only one context may read. */
+bool epg_exchange_read(epg_exchange_t *exchange, void *value);
+
+#endif
