@@ -1,0 +1,160 @@
+"""Quantities with units: ``1 ms``, ``20 kHz``, ``180 deg``, and units of model ports.
+
+>>> parse_quantity("33 ms", "time")
+Fraction(33, 1000)
+>>> conversion_factor("deg", "rad")
+0.017453292519943295
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from fractions import Fraction
+
+Factor = "Fraction | float"
+
+#: unit -> (dimension, factor to the dimension's base unit); factors are exact wherever they can be
+UNITS: dict[str, tuple[str, Fraction | float]] = {
+    "s": ("time", Fraction(1)),
+    "ms": ("time", Fraction(1, 1000)),
+    "us": ("time", Fraction(1, 1000_000)),
+    "ns": ("time", Fraction(1, 1000_000_000)),
+    "min": ("time", Fraction(60)),
+    "Hz": ("frequency", Fraction(1)),
+    "kHz": ("frequency", Fraction(1000)),
+    "MHz": ("frequency", Fraction(1000_000)),
+    "rad": ("angle", Fraction(1)),
+    "mrad": ("angle", Fraction(1, 1000)),
+    "deg": ("angle", math.pi / 180),
+    "rev": ("angle", 2 * math.pi),
+    "rad/s": ("angular velocity", Fraction(1)),
+    "mrad/s": ("angular velocity", Fraction(1, 1000)),
+    "deg/s": ("angular velocity", math.pi / 180),
+    "rev/s": ("angular velocity", 2 * math.pi),
+    "rpm": ("angular velocity", 2 * math.pi / 60),
+    "m": ("length", Fraction(1)),
+    "cm": ("length", Fraction(1, 100)),
+    "mm": ("length", Fraction(1, 1000)),
+    "m/s": ("velocity", Fraction(1)),
+    "mm/s": ("velocity", Fraction(1, 1000)),
+    "V": ("voltage", Fraction(1)),
+    "mV": ("voltage", Fraction(1, 1000)),
+    "A": ("current", Fraction(1)),
+    "mA": ("current", Fraction(1, 1000)),
+    "N.m": ("torque", Fraction(1)),
+    "%": ("ratio", Fraction(1, 100)),
+    "": ("ratio", Fraction(1)),
+}
+
+#: other spellings of units, as 20-sim and people write them
+SPELLINGS = {
+    "Nm": "N.m",
+    "N m": "N.m",
+    "µs": "us",
+    "μs": "us",
+    "sec": "s",
+    "degree": "deg",
+    "degrees": "deg",
+    "radian": "rad",
+    "none": "",
+    "-": "",
+    "1": "",
+}
+
+_NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?"
+_QUANTITY = re.compile(rf"({_NUMBER})\s*(\S.*?)?\s*")
+_RATIO = re.compile(rf"({_NUMBER})\s*/\s*({_NUMBER})")
+
+
+class QuantityError(ValueError):
+    """The text is no quantity of the wanted dimension; the message says what is wrong, ``hint`` what to write."""
+
+    def __init__(self, message: str, hint: str = "") -> None:
+        super().__init__(message)
+        self.hint = hint
+
+
+def units_of(dimension: str) -> list[str]:
+    """All units of a dimension, smallest first: ``["ns", "us", "ms", "s", "min"]``."""
+    return sorted((u for u, (d, _) in UNITS.items() if d == dimension and u), key=lambda u: float(UNITS[u][1]))
+
+
+def normal_unit(unit: str) -> str:
+    """The spelling EPG uses for ``unit``; an unknown unit is returned as it is."""
+    unit = unit.strip()
+    return SPELLINGS.get(unit, unit)
+
+
+def dimension_of(unit: str) -> str | None:
+    """Dimension of a unit, or None for a unit EPG does not know."""
+    entry = UNITS.get(normal_unit(unit))
+    return entry[0] if entry else None
+
+
+def conversion_factor(source: str, target: str) -> float:
+    """What a number in ``source`` is multiplied with to be in ``target``.  Raises ValueError if they do not go together."""
+    source_dimension, source_factor = UNITS[normal_unit(source)]
+    target_dimension, target_factor = UNITS[normal_unit(target)]
+    if source_dimension != target_dimension:
+        raise ValueError(f"{source} is a unit of {source_dimension}, {target} of {target_dimension}")
+    if isinstance(source_factor, Fraction) and isinstance(target_factor, Fraction):
+        return float(source_factor / target_factor)
+    return float(source_factor) / float(target_factor)
+
+
+def parse_ratio(value: object) -> Fraction:
+    """A ratio written as a number or as ``5625/361``, exact.  Raises :class:`QuantityError`."""
+    if isinstance(value, bool):
+        raise QuantityError("this is no ratio", "write a number or a ratio such as 5625/361")
+    if isinstance(value, int):
+        return Fraction(value)
+    if isinstance(value, float) and math.isfinite(value):
+        return Fraction(repr(value))
+    if isinstance(value, str):
+        match = _RATIO.fullmatch(value.strip())
+        if match and _is_small(match[1]) and _is_small(match[2]) and Fraction(match[2]) != 0:
+            return Fraction(match[1]) / Fraction(match[2])
+    raise QuantityError("this is no ratio", "write a number or a ratio such as 5625/361")
+
+
+def parse_quantity(value: object, dimension: str) -> Fraction | float:
+    """A quantity in the base unit of its dimension (s, Hz, rad, m, V, A, ...), exact unless the unit is not.
+
+    Raises :class:`QuantityError` for text that is no quantity, a unit of another dimension, or a bare number.
+    """
+    units = units_of(dimension)
+    example = f"write a number and a unit ({', '.join(units)})"
+    if dimension == "ratio" and isinstance(value, (int, float)) and not isinstance(value, bool):
+        return parse_ratio(value)
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        common = {"time": "ms", "frequency": "kHz"}.get(dimension, units[len(units) // 2])
+        raise QuantityError(f"{dimension} without a unit", f"write for example '{value} {common}'; units: {', '.join(units)}")
+    if not isinstance(value, str):
+        raise QuantityError(f"this is no {dimension}", example)
+    match = _QUANTITY.fullmatch(value.strip())
+    if not match or not _is_small(match[1]):
+        raise QuantityError(f"'{value}' is no {dimension}", example)
+    unit = normal_unit(match[2] or "")
+    if unit not in UNITS or (not unit and dimension != "ratio"):
+        if not unit:
+            raise QuantityError(f"{dimension} without a unit", example)
+        raise QuantityError(f"unknown unit '{unit}'", _unit_hint(unit, units))
+    found, factor = UNITS[unit]
+    if found != dimension:
+        raise QuantityError(f"'{unit}' is a unit of {found}, not of {dimension}", example)
+    number = Fraction(match[1])
+    return number * factor if isinstance(factor, Fraction) else float(number) * factor
+
+
+def _is_small(number: str) -> bool:
+    """Refuses exponents that would make an exact fraction of absurd size (``1e999999999``)."""
+    exponent = re.search(r"[eE][-+]?(\d+)$", number)
+    return len(number) <= 64 and (exponent is None or (len(exponent[1]) <= 3 and int(exponent[1]) <= 300))
+
+
+def _unit_hint(unit: str, units: list[str]) -> str:
+    for known in units:
+        if known.casefold() == unit.casefold():
+            return f"did you mean '{known}'?"
+    return f"units: {', '.join(units)}"
