@@ -1,0 +1,61 @@
+"""Text of user files, limited in size, with a diagnostic for everything that is no text."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from epg.diagnostics import Diagnostics
+from epg.source import Span
+
+MAX_BYTES = 1 << 20
+_NOT_PRINTABLE = re.compile("[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+
+def read_text(path: Path, diagnostics: Diagnostics, wanted_by: Span | None = None) -> str | None:
+    """The UTF-8 text of ``path``, or None after reporting why there is none.
+
+    ``wanted_by`` is where the name of the file is written; problems with the file as a whole are reported there.
+    """
+    whole = wanted_by or Span(str(path))
+    try:
+        with path.open("rb") as file:
+            data = file.read(MAX_BYTES + 1)
+    except FileNotFoundError:
+        diagnostics.error("file-not-found", whole, f"there is no file '{path.name}'", hint=_neighbours(path))
+        return None
+    except OSError as error:
+        diagnostics.error("file-unreadable", whole, f"cannot read '{path.name}': {error.strerror or error}")
+        return None
+    if len(data) > MAX_BYTES:
+        diagnostics.error("file-too-large", whole, f"'{path.name}' is larger than 1 MiB", hint="is this the right file?")
+        return None
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line, column = _position(data[: error.start].decode("utf-8-sig", "replace"))
+        diagnostics.error(
+            "not-utf-8", Span(str(path), line, column, column + 1), "this is not UTF-8 text", hint="save it as UTF-8"
+        )
+        return None
+    bad = _NOT_PRINTABLE.search(text)
+    if bad:
+        line, column = _position(text[: bad.start()])
+        span = Span(str(path), line, column, column + 1)
+        diagnostics.error("control-character", span, f"control character U+{ord(bad[0]):04X}", hint="remove it")
+        return None
+    return text
+
+
+def _position(before: str) -> tuple[int, int]:
+    lines = re.split("\r\n|\r|\n|\x85|\u2028|\u2029", before)
+    return len(lines), len(lines[-1]) + 1
+
+
+def _neighbours(path: Path) -> str:
+    """The files of the same kind beside a missing one."""
+    try:
+        names = sorted(entry.name for entry in path.parent.iterdir() if entry.suffix == path.suffix)
+    except OSError:
+        return f"there is no folder '{path.parent.name}' either"
+    return f"in that folder: {', '.join(names[:12])}" if names else ""

@@ -1,0 +1,184 @@
+"""YAML 1.2 files as trees of :class:`~epg.source.Node`, each value with its position.
+
+PyYAML's parser is used for its events only.  Building the tree here gives what its constructors do not: the scalar
+rules of YAML 1.2 (``on`` is a word, ``1e3`` a number), positions, duplicate keys as errors, a limit on depth that
+holds before anything recurses, and no anchors, aliases or tags.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import MappingProxyType
+
+import yaml
+
+from epg.diagnostics import Diagnostics, Note
+from epg.load.text_file import read_text
+from epg.source import Node, Scalar, Span
+
+MAX_DEPTH = 32
+_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+
+_NULL = {"", "~", "null", "Null", "NULL"}
+_BOOL = {"true": True, "True": True, "TRUE": True, "false": False, "False": False, "FALSE": False}
+_INT = re.compile(r"[-+]?[0-9]+")
+_OCTAL = re.compile(r"0o[0-7]+")
+_HEX = re.compile(r"0x[0-9a-fA-F]+")
+_FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
+_SPECIAL = re.compile(r"([-+]?)\.(inf|Inf|INF)|\.(nan|NaN|NAN)")
+_MAX_DIGITS = 64
+
+
+def load_yaml(path: Path, diagnostics: Diagnostics, wanted_by: Span | None = None) -> Node | None:
+    """The document in ``path``, or None after reporting what is wrong with the file."""
+    text = read_text(path, diagnostics, wanted_by)
+    return None if text is None else parse_yaml(text, str(path), diagnostics)
+
+
+def parse_yaml(text: str, file: str, diagnostics: Diagnostics) -> Node | None:
+    """The one document in ``text``; ``file`` is the name its positions carry."""
+    builder = _Builder(file, diagnostics)
+    try:
+        for event in yaml.parse(text, Loader=_LOADER):
+            if not builder.feed(event):
+                return None
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        line, column = (mark.line + 1, mark.column + 1) if mark else (1, 1)
+        problem = (error.problem or str(error)).replace("\n", " ")
+        hint = "indent with blanks" if "\\t" in problem or "'\t'" in problem else ""
+        notes = []
+        if error.context and error.context_mark and error.context_mark is not mark:
+            where = Span(file, error.context_mark.line + 1, error.context_mark.column + 1)
+            notes.append(Note(str(error.context), where))
+        diagnostics.error("yaml-syntax", Span(file, line, column), f"YAML: {problem}", hint=hint, notes=notes)
+        return None
+    except (yaml.YAMLError, ValueError, RecursionError) as error:
+        diagnostics.error("yaml-syntax", Span(file, 1, 1), f"YAML: {str(error).splitlines()[0]}")
+        return None
+    if builder.failed:
+        return None
+    return builder.root or Node(None, Span(file, 1, 1))
+
+
+@dataclass
+class _Collection:
+    """A mapping or sequence whose end has not been seen yet."""
+
+    span: Span
+    mapping: bool
+    children: list[Node] = field(default_factory=list)
+    entries: dict[str, Node] = field(default_factory=dict)
+    keys: dict[str, Span] = field(default_factory=dict)
+    key: str | None = None
+    skip: bool = False  # the value of a refused key
+
+
+class _Builder:
+    def __init__(self, file: str, diagnostics: Diagnostics) -> None:
+        self.file = file
+        self.diagnostics = diagnostics
+        self.stack: list[_Collection] = []
+        self.root: Node | None = None
+        self.documents = 0
+        self.failed = False
+
+    def feed(self, event: yaml.Event) -> bool:
+        """Takes one event; False when reading on makes no sense."""
+        if isinstance(event, yaml.DocumentStartEvent):
+            self.documents += 1
+            if self.documents > 1:
+                return self._refuse(event, "yaml-documents", "a second document in one file", "keep one; remove '---'")
+        if isinstance(event, yaml.AliasEvent) or getattr(event, "anchor", None):
+            return self._refuse(event, "yaml-alias", "anchors and aliases are not supported", "write the value out, or use 'extends'")
+        if getattr(event, "tag", None) not in (None, "!"):
+            return self._refuse(event, "yaml-tag", f"tags such as '{event.tag}' are not supported", "remove the tag")
+        if isinstance(event, (yaml.MappingStartEvent, yaml.SequenceStartEvent)):
+            if len(self.stack) >= MAX_DEPTH:
+                return self._refuse(event, "yaml-depth", f"nested deeper than {MAX_DEPTH} levels", "is this the right file?")
+            mapping = isinstance(event, yaml.MappingStartEvent)
+            if self.stack and self.stack[-1].mapping and self.stack[-1].key is None:
+                return self._refuse(event, "yaml-key", "a key must be a word, not a list or a map", "quote it if it is text")
+            self.stack.append(_Collection(self._span(event), mapping))
+        elif isinstance(event, (yaml.MappingEndEvent, yaml.SequenceEndEvent)):
+            done = self.stack.pop()
+            if done.mapping:
+                self._add(Node(MappingProxyType(done.entries), done.span, MappingProxyType(done.keys)))
+            else:
+                self._add(Node(tuple(done.children), done.span))
+        elif isinstance(event, yaml.ScalarEvent):
+            self._scalar(event)
+        return True
+
+    def _scalar(self, event: yaml.ScalarEvent) -> None:
+        span = self._span(event)
+        top = self.stack[-1] if self.stack else None
+        if top is not None and top.mapping and top.key is None:
+            top.key = event.value
+            if event.value in top.keys:
+                top.skip = self.failed = True
+                first = Note("first written here", top.keys[event.value])
+                hint = "remove one of the two"
+                self.diagnostics.error("duplicate-key", span, f"key '{event.value}' twice", hint=hint, notes=[first])
+            else:
+                top.keys[event.value] = span
+            return
+        value: Scalar = event.value
+        if event.implicit[0] and event.style is None:
+            value = self._plain_value(event.value, span)
+        self._add(Node(value, span))
+
+    def _plain_value(self, text: str, span: Span) -> Scalar:
+        if text in _NULL:
+            return None
+        if text in _BOOL:
+            return _BOOL[text]
+        if len(text) > _MAX_DIGITS:
+            return text
+        if _INT.fullmatch(text):
+            digits = text.lstrip("+-")
+            if len(digits) > 1 and digits[0] == "0":
+                octal = f", or 0o{digits.lstrip('0')}" if re.fullmatch("[0-7]+", digits) and digits.strip("0") else ""
+                self._trap(span, f"'{text}' is octal in YAML 1.1 and decimal in YAML 1.2", f"write {int(text)}{octal}")
+            return int(text)
+        if _OCTAL.fullmatch(text):
+            return int(text[2:], 8)
+        if _HEX.fullmatch(text):
+            return int(text[2:], 16)
+        if _FLOAT.fullmatch(text):
+            return float(text)
+        special = _SPECIAL.fullmatch(text)
+        if special:
+            return float("nan") if special[3] else float(f"{special[1]}inf")
+        return text
+
+    def _trap(self, span: Span, message: str, hint: str) -> None:
+        self.failed = True
+        self.diagnostics.error("yaml-1.1-trap", span, message, hint=hint)
+
+    def _add(self, node: Node) -> None:
+        if not self.stack:
+            self.root = node
+            return
+        top = self.stack[-1]
+        if not top.mapping:
+            top.children.append(node)
+            return
+        assert top.key is not None
+        if not top.skip:
+            top.entries[top.key] = node
+        top.key, top.skip = None, False
+
+    def _span(self, event: yaml.Event) -> Span:
+        start, end = event.start_mark, event.end_mark
+        last = end.column + 1 if end.line == start.line else start.column + 2
+        if isinstance(event, (yaml.MappingStartEvent, yaml.SequenceStartEvent)):
+            last = start.column + 2
+        return Span(self.file, start.line + 1, start.column + 1, max(last, start.column + 2))
+
+    def _refuse(self, event: yaml.Event, id: str, message: str, hint: str) -> bool:
+        self.diagnostics.error(id, self._span(event), message, hint=hint)
+        self.failed = True
+        return False
