@@ -126,7 +126,7 @@ class _Builder:
                 top.keys[event.value] = span
             return
         value: Scalar = event.value
-        if event.implicit[0] and event.style is None:
+        if event.implicit[0] and not event.style:
             value = self._plain_value(event.value, span)
         self._add(Node(value, span))
 

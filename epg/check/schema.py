@@ -1,0 +1,208 @@
+"""JSON Schema validation that speaks of files, lines and keys.
+
+:func:`validate` runs jsonschema on the plain form of a :class:`~epg.source.Node` tree and turns every violation into
+a diagnostic at the value, or key, that is wrong.  Two annotations of ours (ignored by other validators) steer it:
+
+``x-quantity``
+    The dimension of a string such as ``20 kHz``: problems are explained by :mod:`epg.quantity`.
+``x-message``
+    What to say when the value does not match, for patterns and alternatives.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from functools import cache
+from pathlib import Path as FilePath
+from typing import Any
+
+from epg.data import data_folder
+from epg.diagnostics import Diagnostics, Note, did_you_mean
+from epg.quantity import QuantityError, parse_quantity, parse_ratio
+from epg.source import Node, Path, Span
+
+_TYPE_NAMES = {
+    "object": "a map (key: value)",
+    "array": "a list",
+    "string": "text",
+    "number": "a number",
+    "integer": "a whole number",
+    "boolean": "true or false",
+    "null": "nothing",
+}
+
+
+@cache
+def load_schema(name: str) -> dict[str, Any]:
+    """The schema ``schemas/<name>.schema.json``."""
+    path: FilePath = data_folder("schemas") / f"{name}.schema.json"
+    schema: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    return schema
+
+
+def validate(node: Node, schema: Mapping[str, Any], diagnostics: Diagnostics, *, partial: bool = False) -> bool:
+    """Reports everything in ``node`` that ``schema`` does not allow; True when there is nothing.
+
+    ``partial``: the file extends another one, so missing keys are not reported.
+    """
+    from jsonschema import Draft202012Validator
+
+    good = True
+    errors = Draft202012Validator(schema).iter_errors(node.plain())
+    for error in sorted(errors, key=lambda e: ([str(step) for step in e.absolute_path], str(e.validator))):
+        if partial and error.validator in ("required", "dependentRequired"):
+            continue
+        good = False
+        _report(error, node, diagnostics)
+    return good
+
+
+def extended_from(node: Node) -> list[Note]:
+    """A note for each file whose ``extends`` leads to the file that ``node`` stands in."""
+    return [Note("extended from here", span) for span in node.origins]
+
+
+def _report(error: Any, root: Node, diagnostics: Diagnostics) -> None:
+    path: Path = tuple(error.absolute_path)
+    node = root.get(*path) or root
+    schema = error.schema if isinstance(error.schema, dict) else {}
+    notes = extended_from(node)
+    keyword = str(error.validator)
+    if keyword == "additionalProperties":
+        known = _known_keys(schema)
+        for key in (key for key, _ in node.items() if key not in schema.get("properties", {})):
+            message = f"unknown key '{key}'" + _where(path)
+            hint = did_you_mean(key, known, "known keys")
+            diagnostics.error("unknown-key", node.key_span(key), message, hint=hint, notes=notes)
+        return
+    if keyword in ("required", "dependentRequired"):
+        missing = [key for key in _required(error) if key not in node]
+        span = _owner_span(root, path)
+        for key in missing:
+            hint = _key_hint(key, schema)
+            diagnostics.error("missing-key", span, f"'{key}' is missing{_where(path)}", hint=hint, notes=notes)
+        return
+    if keyword == "propertyNames":
+        for key, _ in node.items():
+            if list(_violations(key, error.validator_value)):
+                message = error.validator_value.get("x-message", "is no valid name")
+                diagnostics.error("invalid-name", node.key_span(key), f"'{key}' {message}", notes=notes)
+        return
+    id, message, hint = _explain(keyword, error, node, schema)
+    diagnostics.error(id, node.span, message, hint=hint, notes=notes)
+
+
+def _violations(value: object, schema: Mapping[str, Any]) -> Iterable[object]:
+    from jsonschema import Draft202012Validator
+
+    return Draft202012Validator(schema).iter_errors(value)
+
+
+def _explain(keyword: str, error: Any, node: Node, schema: Mapping[str, Any]) -> tuple[str, str, str]:
+    """Id, message and hint for a value that is wrong in itself."""
+    value, limit = error.instance, error.validator_value
+    if "x-quantity" in schema and keyword in ("type", "pattern", "anyOf", "oneOf"):
+        try:
+            if schema["x-quantity"] == "ratio":
+                parse_ratio(value)
+            else:
+                parse_quantity(value, schema["x-quantity"])
+        except QuantityError as problem:
+            return "wrong-unit" if "unit" in str(problem) else "wrong-quantity", str(problem), problem.hint
+    if "x-message" in schema and keyword in ("pattern", "anyOf", "oneOf", "not"):
+        return "wrong-value", f"{_shown(value)} {schema['x-message']}", str(schema.get("x-hint", ""))
+    if keyword == "type":
+        wanted = [limit] if isinstance(limit, str) else list(limit)
+        names = " or ".join(_TYPE_NAMES.get(name, name) for name in wanted)
+        return "wrong-type", f"expected {names}, found {_shown(value)}", _type_hint(value, wanted)
+    if keyword == "enum":
+        return "wrong-value", f"{_shown(value)} is not possible here", did_you_mean(str(value), map(str, limit))
+    if keyword == "const":
+        return "wrong-value", f"expected {_shown(limit)}, found {_shown(value)}", ""
+    if keyword in ("minimum", "exclusiveMinimum", "maximum", "exclusiveMaximum"):
+        words = {
+            "minimum": "at least",
+            "exclusiveMinimum": "more than",
+            "maximum": "at most",
+            "exclusiveMaximum": "less than",
+        }
+        return "out-of-range", f"{_shown(value)} is out of range: must be {words[keyword]} {limit}", ""
+    if keyword in ("anyOf", "oneOf"):
+        kinds = [_TYPE_NAMES.get(str(option.get("type")), "") for option in limit if isinstance(option, dict)]
+        expected = " or ".join(dict.fromkeys(kind for kind in kinds if kind)) or "something else"
+        nearest = _nearest(error, value)
+        if nearest is not None:
+            return _explain(str(nearest.validator), nearest, node, nearest.schema)
+        return "wrong-type", f"expected {expected}, found {_shown(value)}", ""
+    if keyword in ("minProperties", "minItems", "minLength"):
+        return "wrong-value", "this is empty", ""
+    return "wrong-value", f"{_shown(value)} is not possible here ({keyword} {limit})", ""
+
+
+def _nearest(error: Any, value: object) -> Any | None:
+    """The violation to explain of a value that fits none of several alternatives: one of the alternative of its type."""
+    candidates = [sub for sub in error.context if sub.validator != "type" and not sub.path]
+    return candidates[0] if len(candidates) == 1 else None
+
+
+def _type_hint(value: object, wanted: list[str]) -> str:
+    if "boolean" in wanted and isinstance(value, str) and value.casefold() in ("on", "off", "yes", "no", "y", "n"):
+        return f"YAML 1.2 has only true and false: write {'true' if value.casefold() in ('on', 'yes', 'y') else 'false'}"
+    if isinstance(value, str) and {"number", "integer"} & set(wanted):
+        try:
+            float(value.replace("_", ""))
+        except ValueError:
+            return ""
+        return f"write {value.replace('_', '')} without quotes or underscores"
+    if "string" in wanted and isinstance(value, (int, float, bool)):
+        return "put it in quotes if it is meant as text"
+    return ""
+
+
+def _shown(value: object) -> str:
+    if isinstance(value, str):
+        return f"'{value if len(value) <= 60 else value[:57] + '...'}'"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if value is None:
+        return "nothing"
+    if isinstance(value, dict):
+        return "a map"
+    if isinstance(value, list):
+        return "a list"
+    return str(value)
+
+
+def _known_keys(schema: Mapping[str, Any]) -> list[str]:
+    return sorted(schema.get("properties", {}))
+
+
+def _required(error: Any) -> list[str]:
+    value = error.validator_value
+    if isinstance(value, list):
+        return [str(key) for key in value]
+    return [str(key) for keys in value.values() for key in keys]
+
+
+def _key_hint(key: str, schema: Mapping[str, Any]) -> str:
+    described = schema.get("properties", {}).get(key, {})
+    examples = described.get("examples")
+    if examples:
+        return f"for example: {key}: {examples[0] if isinstance(examples[0], str) else json.dumps(examples[0])}"
+    return str(described.get("description", ""))
+
+
+def _where(path: Path) -> str:
+    return f" in '{'.'.join(map(str, path))}'" if path else ""
+
+
+def _owner_span(root: Node, path: Path) -> Span:
+    """Where the map at ``path`` is named: its key in the map above it."""
+    if not path:
+        return root.span
+    above = root.get(*path[:-1])
+    if above is not None and isinstance(path[-1], str):
+        return above.key_span(path[-1])
+    node = root.get(*path)
+    return node.span if node else root.span
