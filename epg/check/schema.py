@@ -69,6 +69,12 @@ def _report(error: Any, root: Node, diagnostics: Diagnostics) -> None:
     schema = error.schema if isinstance(error.schema, dict) else {}
     notes = extended_from(node)
     keyword = str(error.validator)
+    if keyword in ("anyOf", "oneOf"):
+        fitting = _fitting_alternative(error)
+        for violation in fitting:
+            _report(violation, root, diagnostics)
+        if fitting:
+            return
     if keyword == "additionalProperties":
         known = _known_keys(schema)
         for key in (key for key, _ in node.items() if key not in schema.get("properties", {})):
@@ -131,19 +137,21 @@ def _explain(keyword: str, error: Any, node: Node, schema: Mapping[str, Any]) ->
     if keyword in ("anyOf", "oneOf"):
         kinds = [_TYPE_NAMES.get(str(option.get("type")), "") for option in limit if isinstance(option, dict)]
         expected = " or ".join(dict.fromkeys(kind for kind in kinds if kind)) or "something else"
-        nearest = _nearest(error, value)
-        if nearest is not None:
-            return _explain(str(nearest.validator), nearest, node, nearest.schema)
         return "wrong-type", f"expected {expected}, found {_shown(value)}", ""
     if keyword in ("minProperties", "minItems", "minLength"):
         return "wrong-value", "this is empty", ""
     return "wrong-value", f"{_shown(value)} is not possible here ({keyword} {limit})", ""
 
 
-def _nearest(error: Any, value: object) -> Any | None:
-    """The violation to explain of a value that fits none of several alternatives: one of the alternative of its type."""
-    candidates = [sub for sub in error.context if sub.validator != "type" and not sub.path]
-    return candidates[0] if len(candidates) == 1 else None
+def _fitting_alternative(error: Any) -> list[Any]:
+    """The violations of the alternative that is meant: the one whose type the value has."""
+    alternatives: dict[object, list[Any]] = {}
+    for violation in error.context:
+        alternatives.setdefault(violation.relative_schema_path[0], []).append(violation)
+    for violations in alternatives.values():
+        if not any(v.validator in ("type", "const", "enum") and not v.relative_path for v in violations):
+            return violations
+    return []
 
 
 def _type_hint(value: object, wanted: list[str]) -> str:

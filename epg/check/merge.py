@@ -1,0 +1,72 @@
+"""The merge of ``.tcf`` files that extend each other, as devicetree overlays do.
+
+Maps merge key by key, lists and scalars replace, ``null`` deletes.  Every value keeps the position of the file that
+wrote it, and learns which files lead there (:attr:`epg.source.Node.origins`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from types import MappingProxyType
+
+from epg.load.tcf import TcfFile
+from epg.source import Node, Span
+
+
+def merge_chain(chain: Sequence[TcfFile]) -> Node:
+    """The configuration a chain (innermost first) means; ``extends`` itself is gone."""
+    merged: Node | None = None
+    origins: list[Span] = [file.extended_by for file in chain if file.extended_by is not None]
+    for index in range(len(chain) - 1, -1, -1):
+        node = _with_origins(chain[index].node, tuple(reversed(origins[:index])))
+        node = _without(node, "extends")
+        merged = node if merged is None else merge(merged, node)
+    assert merged is not None
+    return without_nulls(merged)
+
+
+def merge(base: Node, overlay: Node) -> Node:
+    """``base`` with what ``overlay`` says instead; ``null`` values stay, see :func:`without_nulls`."""
+    if not (base.is_mapping and overlay.is_mapping):
+        return overlay
+    values = dict(base.items())
+    keys = dict(base.keys)
+    for key, node in overlay.items():
+        values[key] = merge(values[key], node) if key in values else node
+        keys[key] = overlay.key_span(key)
+    return replace(base, value=MappingProxyType(values), keys=MappingProxyType(keys), span=overlay.span)
+
+
+def apply_settings(root: Node, settings: Iterable[tuple[tuple[str, ...], Node]]) -> Node:
+    """``root`` with values set from outside; maps on the way are created."""
+    for path, node in settings:
+        for key in reversed(path):
+            node = Node(MappingProxyType({key: node}), node.span, MappingProxyType({key: node.span}))
+        root = replace(merge(root, node), span=root.span)
+    return without_nulls(root)
+
+
+def without_nulls(node: Node) -> Node:
+    """The tree without the keys whose value is ``null``."""
+    if not node.is_mapping:
+        return node
+    values = {key: without_nulls(child) for key, child in node.items() if child.value is not None}
+    keys = {key: node.key_span(key) for key in values}
+    return replace(node, value=MappingProxyType(values), keys=MappingProxyType(keys))
+
+
+def _without(node: Node, key: str) -> Node:
+    values = {k: child for k, child in node.items() if k != key}
+    return replace(node, value=MappingProxyType(values))
+
+
+def _with_origins(node: Node, origins: tuple[Span, ...]) -> Node:
+    if not origins:
+        return node
+    if node.is_mapping:
+        values = {key: _with_origins(child, origins) for key, child in node.items()}
+        return replace(node, value=MappingProxyType(values), origins=origins)
+    if node.is_sequence:
+        return replace(node, value=tuple(_with_origins(child, origins) for child in node.elements()), origins=origins)
+    return replace(node, origins=origins)

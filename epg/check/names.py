@@ -1,0 +1,78 @@
+"""Names: C identifiers and the names ROS 2 allows.
+
+Rules for ROS names: https://design.ros2.org/articles/topic_and_service_names.html
+"""
+
+from __future__ import annotations
+
+import re
+
+_C11 = """auto break case char const continue default do double else enum extern float for goto if inline int long
+register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while""".split()
+_CPP = """alignas alignof and and_eq asm bitand bitor bool catch char16_t char32_t char8_t class compl concept
+const_cast consteval constexpr constinit co_await co_return co_yield decltype delete dynamic_cast explicit export
+false friend mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected public
+reinterpret_cast requires static_assert static_cast template this thread_local throw true try typeid typename
+using virtual wchar_t xor xor_eq""".split()
+_C_LIBRARY = "main errno stdin stdout stderr NULL EOF assert bool true false inline unix linux".split()
+
+RESERVED = frozenset(_C11) | frozenset(_CPP) | frozenset(_C_LIBRARY)
+"""Words that are no identifiers in C11 or C++20, or macros of the C library and common compilers."""
+
+_IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,62}")
+_ROS_TOKEN = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+
+
+def identifier_problem(name: str) -> str | None:
+    """Why ``name`` cannot be a C identifier of a user, or None."""
+    if not _IDENTIFIER.fullmatch(name):
+        return "is no C identifier: use letters, digits and '_', at most 63, no digit first"
+    if name in RESERVED:
+        return "is a reserved word of C or C++"
+    if name.startswith("__") or re.match("_[A-Z]", name):
+        return "is reserved for the compiler: begin with a letter"
+    if name.casefold().startswith("epg_"):
+        return "begins with 'epg_', which EPG's own symbols do"
+    return None
+
+
+def node_name_problem(name: str) -> str | None:
+    """Why ``name`` cannot name a ROS 2 node, or None."""
+    if not _ROS_TOKEN.fullmatch(name):
+        return "is no name of a ROS 2 node: use letters, digits and '_', no digit first"
+    return "is too long for a ROS 2 node: at most 255 characters" if len(name) > 255 else None
+
+
+def namespace_problem(name: str) -> str | None:
+    """Why ``name`` cannot be a namespace, or None; a leading slash may be left out, empty means none."""
+    if name in ("", "/"):
+        return None
+    return _path_problem(name.removeprefix("/"), "namespace")
+
+
+def topic_problem(name: str) -> str | None:
+    """Why ``name`` cannot name a topic, or None."""
+    if name.startswith("~"):
+        return "begins with '~', which EPG does not resolve: write the name out"
+    return _path_problem(name.removeprefix("/"), "topic")
+
+
+def absolute_topic(topic: str, namespace: str) -> str:
+    """The full name of ``topic``: absolute names stay, others stand below the namespace."""
+    if topic.startswith("/"):
+        return topic
+    prefix = namespace.strip("/")
+    return f"/{prefix}/{topic}" if prefix else f"/{topic}"
+
+
+def _path_problem(path: str, what: str) -> str | None:
+    if not path:
+        return f"is no {what}: it is empty"
+    if "__" in path:
+        return f"is no {what}: '__' is not allowed"
+    for token in path.split("/"):
+        if not token:
+            return f"is no {what}: '//' or a trailing '/'"
+        if not _ROS_TOKEN.fullmatch(token):
+            return f"is no {what}: '{token}' must be letters, digits and '_', no digit first"
+    return f"is too long for a {what}" if len(path) > 240 else None
