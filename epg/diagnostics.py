@@ -52,8 +52,12 @@ class Diagnostics:
             self.items.append(diagnostic)
 
     @property
+    def error_count(self) -> int:
+        return sum(item.severity == "error" for item in self.items)
+
+    @property
     def has_errors(self) -> bool:
-        return any(item.severity == "error" for item in self.items)
+        return self.error_count > 0
 
     def __iter__(self) -> Iterator[Diagnostic]:
         return iter(self.items)

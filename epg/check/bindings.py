@@ -1,0 +1,154 @@
+"""Bindings as written: which model port belongs to which component port, checked in itself but not against a model."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from types import MappingProxyType
+
+from epg.check.schema import load_schema, validate
+from epg.diagnostics import Diagnostics
+from epg.load.yaml_file import load_yaml
+from epg.quantity import QuantityError, parse_ratio
+from epg.source import Node, Span
+
+UNCONNECTED = "unconnected"
+
+
+@dataclass(frozen=True)
+class Conversion:
+    """``value * scale + offset``, then limited; None where nothing is said.  ``unit`` is that of the model's side."""
+
+    scale: Fraction | None = None
+    offset: float | None = None
+    limits: tuple[float, float] | None = None
+    unit: str | None = None
+    span: Span | None = None
+
+
+@dataclass(frozen=True)
+class Binding:
+    """One end of a wire: ``component``, or ``component.port``, with a conversion."""
+
+    component: str
+    port: str | None
+    conversion: Conversion
+    span: Span
+
+
+@dataclass(frozen=True)
+class Bindings:
+    """A bindings file.  ``inputs`` and ``outputs`` map names of model ports to (where the name is written, bindings)."""
+
+    path: Path
+    model: str
+    model_span: Span
+    inputs: Mapping[str, tuple[Span, Binding]]
+    outputs: Mapping[str, tuple[Span, tuple[Binding, ...]]]  # empty tuple: unconnected on purpose
+    parameters: Mapping[str, tuple[Span, float, Span]]  # name -> (its span, value, value's span)
+    root: Node
+
+
+def load_bindings(path: Path, diagnostics: Diagnostics, wanted_by: Span | None = None) -> Bindings | None:
+    """The bindings in ``path``, or None after reporting what is wrong with them."""
+    node = load_yaml(path, diagnostics, wanted_by)
+    if node is None:
+        return None
+    if not node.is_mapping:
+        span = Span(str(path), 1, 1, 2)
+        diagnostics.error("wrong-type", span, "bindings are a map (key: value)", hint="'epg bind' writes such a file")
+        return None
+    if not validate(node, load_schema("bindings"), diagnostics):
+        return None
+    model = node["model"]
+    before = diagnostics.error_count
+    bindings = Bindings(
+        path=path,
+        model=str(model.value),
+        model_span=model.span,
+        inputs=MappingProxyType(dict(_inputs(node, diagnostics))),
+        outputs=MappingProxyType(dict(_outputs(node, diagnostics))),
+        parameters=MappingProxyType(dict(_parameters(node, diagnostics))),
+        root=node,
+    )
+    return bindings if diagnostics.error_count == before else None
+
+
+def conversion_of(node: Node, diagnostics: Diagnostics) -> Conversion:
+    """The conversion keys (``scale``, ``offset``, ``limits``, ``unit``) of a map; problems are reported."""
+    scale, offset, limits, unit = (node.get(key) for key in ("scale", "offset", "limits", "unit"))
+    factor: Fraction | None = None
+    if scale is not None:
+        try:
+            factor = parse_ratio(scale.value)
+        except QuantityError as problem:
+            diagnostics.error("wrong-value", scale.span, str(problem), hint=problem.hint)
+        if factor == 0:
+            diagnostics.error("wrong-value", scale.span, "a scale of 0 makes every value the same")
+    for number in (offset, *(limits.elements() if limits else ())):
+        if number is not None and isinstance(number.value, float) and not math.isfinite(number.value):
+            diagnostics.error("wrong-value", number.span, "this number is not finite")
+    pair: tuple[float, float] | None = None
+    if limits is not None:
+        low, high = (_float(element) for element in limits.elements())
+        if low >= high:
+            diagnostics.error("wrong-value", limits.span, f"limits [{low:g}, {high:g}] leave no range", hint="write [lowest, highest]")
+        pair = (low, high)
+    span = next((part.span for part in (scale, offset, limits, unit) if part is not None), None)
+    return Conversion(
+        scale=factor,
+        offset=_float(offset) if offset is not None else None,
+        limits=pair,
+        unit=str(unit.value) if unit is not None else None,
+        span=span,
+    )
+
+
+def _inputs(node: Node, diagnostics: Diagnostics) -> list[tuple[str, tuple[Span, Binding]]]:
+    section = node.get("inputs")
+    if section is None:
+        return []
+    return [
+        (name, (section.key_span(name), _binding(value, "from", diagnostics))) for name, value in section.items()
+    ]
+
+
+def _outputs(node: Node, diagnostics: Diagnostics) -> list[tuple[str, tuple[Span, tuple[Binding, ...]]]]:
+    section = node.get("outputs")
+    if section is None:
+        return []
+    result = []
+    for name, value in section.items():
+        ends = value.elements() if value.is_sequence else (value,)
+        wires = tuple(_binding(end, "to", diagnostics) for end in ends if end.value != UNCONNECTED)
+        result.append((name, (section.key_span(name), wires)))
+    return result
+
+
+def _binding(node: Node, key: str, diagnostics: Diagnostics) -> Binding:
+    reference = node[key] if node.is_mapping else node
+    component, _, port = str(reference.value).partition(".")
+    conversion = conversion_of(node, diagnostics) if node.is_mapping else Conversion()
+    return Binding(component, port or None, conversion, reference.span)
+
+
+def _parameters(node: Node, diagnostics: Diagnostics) -> list[tuple[str, tuple[Span, float, Span]]]:
+    section = node.get("parameters")
+    if section is None:
+        return []
+    for _, value in section.items():
+        if not math.isfinite(_float(value)):
+            diagnostics.error("wrong-value", value.span, "a parameter must be finite")
+    return [(name, (section.key_span(name), _float(value), value.span)) for name, value in section.items()]
+
+
+def _float(node: Node) -> float:
+    value = node.value
+    assert isinstance(value, (int, float))
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf

@@ -1,0 +1,257 @@
+"""A target configuration, complete and typed: the merged ``.tcf`` after every check that needs no model."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+
+from epg.check.bindings import Conversion, conversion_of
+from epg.check.compose import component_schema, typed_parameters
+from epg.check.merge import apply_settings, merge_chain
+from epg.check.names import absolute_topic, identifier_problem, namespace_problem, node_name_problem, topic_problem
+from epg.check.schema import extended_from, load_schema, validate
+from epg.diagnostics import Diagnostics, Note, did_you_mean
+from epg.load.catalog import Catalog, Kind, Target
+from epg.load.tcf import TcfFile
+from epg.quantity import QuantityError, parse_quantity
+from epg.source import Node, Span
+
+COMMON_PARAMETERS = ("kind", "scale", "offset", "unit", "limits")
+
+
+@dataclass(frozen=True)
+class Control:
+    """The control loop; ``period`` in seconds, None to follow the model's step."""
+
+    period: Fraction | None
+    period_span: Span
+    enable_at_start: bool
+    overrun_limit: int
+    enable_topic: str | None
+    enable_topic_span: Span
+    fail_safe: str | None
+    fail_safe_span: Span
+
+
+@dataclass(frozen=True)
+class Communication:
+    """How topics travel; ``period`` in seconds."""
+
+    middleware: str
+    transport: str | None
+    period: Fraction
+    span: Span
+
+
+@dataclass(frozen=True)
+class Component:
+    """A component with typed parameters (numbers in SI units) and the conversion that stands on it."""
+
+    name: str
+    kind: Kind
+    parameters: Mapping[str, object]
+    conversion: Conversion
+    node: Node
+    span: Span  # of its name
+
+
+@dataclass(frozen=True)
+class Configuration:
+    """All a ``.tcf`` says.  ``files`` are those it was read from, ``root`` the merged tree with positions."""
+
+    target: Target
+    node: str
+    namespace: str
+    control: Control
+    communication: Communication
+    components: Mapping[str, Component]
+    files: tuple[Path, ...]
+    root: Node
+
+
+def check_configuration(
+    chain: Sequence[TcfFile],
+    settings: Sequence[tuple[tuple[str, ...], Node]],
+    catalog: Catalog,
+    diagnostics: Diagnostics,
+) -> Configuration | None:
+    """The configuration that ``chain`` and the settings made on top of it mean, or None after reporting why not."""
+    errors = diagnostics.error_count
+    schema = load_schema("tcf")
+    for file in chain:
+        version_problem(file.node, diagnostics)
+    if diagnostics.error_count > errors:
+        return None
+    for file in chain[1:]:
+        validate(file.node, schema, diagnostics, partial=True)
+    if len(chain) > 1:
+        validate(chain[0].node, schema, diagnostics, partial=True)
+    if diagnostics.error_count > errors:
+        return None
+    root = apply_settings(merge_chain(chain), settings)
+    if not validate(root, schema, diagnostics):
+        return None
+    target_node = root["target"]
+    target = catalog.target(str(target_node.value), target_node.span, diagnostics)
+    components = _components(root, target, catalog, diagnostics)
+    control = _control(root["control"], components, diagnostics)
+    communication = _communication(root, target, diagnostics)
+    _names(root, components, control, diagnostics)
+    if target is None or diagnostics.error_count > errors:
+        return None
+    namespace = root.get("namespace")
+    return Configuration(
+        target=target,
+        node=str(root["node"].value),
+        namespace=str(namespace.value) if namespace else "",
+        control=control,
+        communication=communication,
+        components=components,
+        files=tuple(file.path for file in chain),
+        root=root,
+    )
+
+
+def version_problem(node: Node, diagnostics: Diagnostics) -> None:
+    """Reports a file format that is newer than this EPG."""
+    version = node.get("version")
+    if version is not None and isinstance(version.value, int) and not isinstance(version.value, bool) and version.value > 1:
+        diagnostics.error(
+            "newer-version",
+            version.span,
+            f"file format {version.value} is newer than this EPG, which reads up to 1",
+            hint="update EPG",
+        )
+
+
+def _components(
+    root: Node, target: Target | None, catalog: Catalog, diagnostics: Diagnostics
+) -> dict[str, Component]:
+    section = root["components"]
+    result: dict[str, Component] = {}
+    folded: dict[str, str] = {}
+    for name, node in section.items():
+        span = section.key_span(name)
+        problem = identifier_problem(name)
+        if problem:
+            diagnostics.error("invalid-name", span, f"'{name}' {problem}", notes=extended_from(node))
+        other = folded.setdefault(name.casefold(), name)
+        if other != name:
+            first = Note("the other one", section.key_span(other))
+            diagnostics.error(
+                "invalid-name", span, f"'{name}' and '{other}' differ in upper and lower case only", notes=[first]
+            )
+        kind_node = node.get("kind")
+        if kind_node is None:
+            hint = did_you_mean("", catalog.kind_names(), "kinds")
+            diagnostics.error("missing-key", span, f"'kind' is missing in 'components.{name}'", hint=hint)
+            continue
+        kind = catalog.kind(str(kind_node.value), kind_node.span, diagnostics)
+        if kind is None:
+            continue
+        with_pins = target is not None and target.has_pins
+        if not validate(node, component_schema(kind, with_pins=with_pins), diagnostics):
+            continue
+        parameters = typed_parameters(kind, node, diagnostics)
+        result[name] = Component(name, kind, parameters, conversion_of(node, diagnostics), node, span)
+    return result
+
+
+def _control(node: Node, components: Mapping[str, Component], diagnostics: Diagnostics) -> Control:
+    period = node.get("period")
+    seconds = _time(period, diagnostics)
+    if period is not None and seconds is not None and seconds <= 0:
+        diagnostics.error("out-of-range", period.span, "the control period must be more than 0")
+    topic, fail_safe = node.get("enable_topic"), node.get("fail_safe")
+    limit = node.get("overrun_limit")
+    if fail_safe is not None:
+        _fail_safe(fail_safe, components, diagnostics)
+    return Control(
+        period=seconds,
+        period_span=period.span if period else node.span,
+        enable_at_start=bool(node["enable_at_start"].value),
+        overrun_limit=limit.value if limit is not None and isinstance(limit.value, int) else 10,
+        enable_topic=str(topic.value) if topic else None,
+        enable_topic_span=topic.span if topic else node.span,
+        fail_safe=str(fail_safe.value) if fail_safe else None,
+        fail_safe_span=fail_safe.span if fail_safe else node.span,
+    )
+
+
+def _fail_safe(node: Node, components: Mapping[str, Component], diagnostics: Diagnostics) -> None:
+    """A fail-safe input is a component with a boolean source."""
+    name = str(node.value)
+    able = [c.name for c in components.values() if any(p.direction == "source" and p.type == "boolean" for p in c.kind.ports)]
+    if name not in components:
+        hint = did_you_mean(name, able, "digital inputs")
+        diagnostics.error("unknown-component", node.span, f"there is no component '{name}'", hint=hint)
+    elif name not in able:
+        message = f"'{name}' is a {components[name].kind.name}, which is not on or off"
+        diagnostics.error("wrong-port-type", node.span, message, hint="name a digital_input")
+
+
+def _communication(root: Node, target: Target | None, diagnostics: Diagnostics) -> Communication:
+    node = root.get("communication")
+    middleware = root.get("communication", "middleware")
+    transport = root.get("communication", "transport")
+    period = root.get("communication", "period")
+    offered = dict(target.platform.middlewares) if target else {}
+    name = str(middleware.value) if middleware else next(iter(offered), "none")
+    if target and name not in offered:
+        assert middleware is not None
+        message = f"{target.platform.name} has no middleware '{name}'"
+        hint = did_you_mean(name, offered, "it has")
+        diagnostics.error("unknown-middleware", middleware.span, message, hint=hint, notes=extended_from(middleware))
+    elif target and transport is not None and str(transport.value) not in offered[name]:
+        message = f"'{name}' on {target.platform.name} has no transport '{transport.value}'"
+        hint = did_you_mean(str(transport.value), offered[name], "it has")
+        if not offered[name]:
+            hint = "remove it: there is nothing to choose"
+        diagnostics.error("unknown-transport", transport.span, message, hint=hint, notes=extended_from(transport))
+    seconds = _time(period, diagnostics) if period is not None else Fraction(33, 1000)
+    if period is not None and seconds is not None and not Fraction(1, 1000) <= seconds <= 3600:
+        diagnostics.error("out-of-range", period.span, "must be from 1 ms to 3600 s")
+    span = node.span if node else root.span
+    chosen = str(transport.value) if transport else next(iter(offered.get(name, ())), None)
+    return Communication(name, chosen, seconds or Fraction(33, 1000), span)
+
+
+def _names(root: Node, components: Mapping[str, Component], control: Control, diagnostics: Diagnostics) -> None:
+    """Names of the node, its namespace and its topics; no topic twice."""
+    node, namespace = root["node"], root.get("namespace")
+    _name(node, node_name_problem(str(node.value)), diagnostics)
+    if namespace is not None:
+        _name(namespace, namespace_problem(str(namespace.value)), diagnostics)
+    prefix = str(namespace.value) if namespace else ""
+    users: dict[str, tuple[str, Span]] = {}
+    topics = [(c.name, c.node["topic"]) for c in components.values() if c.kind.communication]
+    if control.enable_topic is not None:
+        topics.append(("control.enable_topic", root["control"]["enable_topic"]))
+    for user, topic in topics:
+        problem = topic_problem(str(topic.value))
+        _name(topic, problem, diagnostics)
+        if problem:
+            continue
+        other = users.setdefault(absolute_topic(str(topic.value), prefix), (user, topic.span))
+        if other[0] != user:
+            message = f"topic '{topic.value}' is used by '{other[0]}' already"
+            notes = [Note("used here", other[1])]
+            hint = "give each its own topic; one component can feed several model ports"
+            diagnostics.error("duplicate-topic", topic.span, message, hint=hint, notes=notes)
+
+
+def _name(node: Node, problem: str | None, diagnostics: Diagnostics) -> None:
+    if problem:
+        diagnostics.error("invalid-name", node.span, f"'{node.value}' {problem}", notes=extended_from(node))
+
+
+def _time(node: Node | None, diagnostics: Diagnostics) -> Fraction | None:
+    if node is None:
+        return None
+    try:
+        return Fraction(parse_quantity(node.value, "time"))
+    except QuantityError as problem:
+        diagnostics.error("wrong-unit", node.span, str(problem), hint=problem.hint)
+        return None

@@ -1,0 +1,108 @@
+"""The application: what the three kinds of file mean together, with nothing left to choose."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from pathlib import Path
+
+from epg.check.configuration import Communication, Control
+from epg.load.catalog import Kind, KindPort, Target
+from epg.load.models.model import Model, Port
+from epg.resolve.allocation import Assignment
+from epg.source import Span
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step of a conversion: ``value * scale + offset``, then limited to ``limits``.
+
+    ``reason`` says where it comes from: ``components.encoder_pan``, ``inputs.position_pan`` or ``rad -> deg``.
+    """
+
+    scale: Fraction | float = Fraction(1)
+    offset: float = 0.0
+    limits: tuple[float, float] | None = None
+    reason: str = ""
+
+
+@dataclass(frozen=True)
+class ResolvedComponent:
+    """A component with its hardware.  ``slot`` is its place in the exchange (topics only), counted per direction."""
+
+    name: str
+    symbol: str
+    kind: Kind
+    parameters: Mapping[str, object]
+    claims: Mapping[str, Assignment]
+    slot: int | None
+    application: str
+    span: Span
+
+
+@dataclass(frozen=True)
+class Wire:
+    """A model port and the component port it is bound to; ``steps`` in the order the value takes."""
+
+    port: Port
+    component: ResolvedComponent
+    component_port: KindPort
+    steps: tuple[Step, ...]
+    span: Span
+
+
+@dataclass(frozen=True)
+class Setpoint:
+    """A subscription's fault handling; times in seconds, ``rate_limit`` in units per second (0: none)."""
+
+    initial: float
+    rate_limit: float
+    timeout: Fraction
+    on_timeout: str
+
+
+@dataclass(frozen=True)
+class Topic:
+    """One topic: subscriptions have a setpoint."""
+
+    component: ResolvedComponent
+    name: str
+    qos: str
+    setpoint: Setpoint | None = None
+
+
+@dataclass(frozen=True)
+class Plant:
+    """The simulated plant of a host target: its inputs come from actuators, its outputs drive sensors."""
+
+    model: Model
+    inputs: tuple[Wire, ...]
+    outputs: tuple[Wire, ...]
+    parameters: Mapping[str, float]
+    steps_per_period: int
+
+
+@dataclass(frozen=True)
+class Application:
+    """One target, ready to be emitted.  ``period`` in seconds; the model runs every ``step_divider``-th cycle."""
+
+    name: str
+    target: Target
+    node: str
+    namespace: str
+    control: Control
+    communication: Communication
+    components: tuple[ResolvedComponent, ...]
+    model: Model
+    inputs: tuple[Wire, ...]
+    outputs: tuple[Wire, ...]
+    parameters: Mapping[str, float]
+    subscriptions: tuple[Topic, ...]
+    publications: tuple[Topic, ...]
+    fail_safe: ResolvedComponent | None
+    tick: Assignment | None
+    plant: Plant | None
+    period: Fraction
+    step_divider: int
+    files: tuple[Path, ...] = field(default=())

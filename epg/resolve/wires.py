@@ -1,0 +1,248 @@
+"""Wires: bindings by name against the ports of a model and of the components, with directions, types and units."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
+
+from epg.check.bindings import Binding, Bindings, Conversion
+from epg.check.configuration import Component
+from epg.diagnostics import Diagnostics, Note, did_you_mean
+from epg.load.catalog import KindPort
+from epg.load.models.model import Model, Port
+from epg.quantity import conversion_factor, dimension_of, normal_unit
+from epg.resolve.application import ResolvedComponent, Step, Wire
+from epg.source import Span
+
+
+def input_wires(
+    bindings: Bindings,
+    model: Model,
+    components: Mapping[str, Component],
+    resolved: Mapping[str, ResolvedComponent],
+    diagnostics: Diagnostics,
+    *,
+    direction: str = "source",
+) -> tuple[Wire, ...]:
+    """The wires into ``model``: each input has exactly one.
+
+    ``direction`` is "source" for a controller, which reads sensors; a plant's inputs read actuators: "sink".
+    """
+    wires: list[Wire] = []
+    _unknown_ports(bindings.inputs, model.inputs, model.outputs, model, "input", diagnostics)
+    for port in model.inputs:
+        if port.name not in bindings.inputs:
+            free = sorted(_possible(components.values(), direction))
+            hint = did_you_mean(port.name, free, f"add 'inputs: {{{port.name}: ...}}' with one of")
+            span = bindings.root.key_span("inputs") if "inputs" in bindings.root else bindings.model_span
+            diagnostics.error("unbound-input", span, f"model input '{port.name}' is not bound", hint=hint)
+            continue
+        _, binding = bindings.inputs[port.name]
+        end = _end(binding, direction, components, diagnostics)
+        if end is None:
+            continue
+        component, component_port = end
+        steps = _input_steps(port, binding, component, component_port, diagnostics)
+        if component_port.type == "real" and port.type != "real":
+            message = f"'{component.name}.{component_port.name}' gives any number, '{port.name}' wants {port.type} values"
+            diagnostics.error("wrong-port-type", binding.span, message, hint="make the model's input real")
+        wires.append(Wire(port, resolved[component.name], component_port, steps, binding.span))
+    return tuple(wires)
+
+
+def output_wires(
+    bindings: Bindings,
+    model: Model,
+    components: Mapping[str, Component],
+    resolved: Mapping[str, ResolvedComponent],
+    diagnostics: Diagnostics,
+    *,
+    direction: str = "sink",
+) -> tuple[Wire, ...]:
+    """The wires out of ``model``; no component port is driven twice.  A plant's outputs drive sensors: "source"."""
+    wires: list[Wire] = []
+    drivers: dict[tuple[str, str], tuple[str, Span]] = {}
+    _unknown_ports(bindings.outputs, model.outputs, model.inputs, model, "output", diagnostics)
+    for port in model.outputs:
+        if port.name not in bindings.outputs:
+            span = bindings.root.key_span("outputs") if "outputs" in bindings.root else bindings.model_span
+            hint = f"bind it, or write '{port.name}: unconnected'"
+            diagnostics.warning("unbound-output", span, f"model output '{port.name}' is not bound", hint=hint)
+            continue
+        for binding in bindings.outputs[port.name][1]:
+            end = _end(binding, direction, components, diagnostics)
+            if end is None:
+                continue
+            component, component_port = end
+            first = drivers.setdefault((component.name, component_port.name), (port.name, binding.span))
+            if first[1] != binding.span:
+                message = f"'{component.name}.{component_port.name}' is driven by '{first[0]}' already"
+                notes = [Note("bound here", first[1])]
+                diagnostics.error("bound-twice", binding.span, message, hint="remove one of the two", notes=notes)
+            steps = _output_steps(port, binding, component, component_port, diagnostics)
+            wires.append(Wire(port, resolved[component.name], component_port, steps, binding.span))
+    return tuple(wires)
+
+
+def parameter_overrides(bindings: Bindings, model: Model, diagnostics: Diagnostics) -> dict[str, float]:
+    """The values that replace exported ones, by the model's own names; ``.`` may be written for ``\\``."""
+    names = {parameter.name: parameter.name for parameter in model.parameters}
+    for parameter in model.parameters:
+        names.setdefault(parameter.name.replace("\\", "."), parameter.name)
+    result: dict[str, float] = {}
+    for written, (span, value, _) in bindings.parameters.items():
+        if written not in names:
+            hint = did_you_mean(written, [p.name for p in model.parameters], f"parameters of {model.name}")
+            diagnostics.error("unknown-parameter", span, f"{model.name} has no parameter '{written}'", hint=hint)
+        elif names[written] in result:
+            diagnostics.error("bound-twice", span, f"parameter '{names[written]}' is set twice")
+        else:
+            result[names[written]] = value
+    return result
+
+
+def _unknown_ports(
+    bound: Iterable[str] | Mapping[str, tuple[Span, object]],
+    ports: tuple[Port, ...],
+    others: tuple[Port, ...],
+    model: Model,
+    what: str,
+    diagnostics: Diagnostics,
+) -> None:
+    assert isinstance(bound, Mapping)
+    names = [port.name for port in ports]
+    for name, (span, _) in bound.items():
+        if name in names:
+            continue
+        if name in (port.name for port in others):
+            wrong = "output" if what == "input" else "input"
+            diagnostics.error(
+                "wrong-direction", span, f"'{name}' is an {wrong} of {model.name}", hint=f"move it to '{wrong}s'"
+            )
+            continue
+        hint = did_you_mean(name, names, f"{what}s of {model.name}")
+        diagnostics.error("unknown-port", span, f"{model.name} has no {what} '{name}'", hint=hint)
+
+
+def _possible(components: Iterable[Component], direction: str) -> list[str]:
+    """References to all component ports of a direction, the short form for default ports."""
+    result = []
+    for component in components:
+        ports = [port for port in component.kind.ports if port.direction == direction]
+        default = _default(ports)
+        for port in ports:
+            result.append(component.name if port is default else f"{component.name}.{port.name}")
+    return result
+
+
+def _default(ports: list[KindPort]) -> KindPort | None:
+    marked = [port for port in ports if port.default]
+    return (marked or ports or [None])[0]
+
+
+def _end(
+    binding: Binding, direction: str, components: Mapping[str, Component], diagnostics: Diagnostics
+) -> tuple[Component, KindPort] | None:
+    """The component port a binding names, after checking that it exists and has the direction."""
+    possible = _possible(components.values(), direction)
+    component = components.get(binding.component)
+    if component is None:
+        hint = did_you_mean(binding.component, possible, "possible")
+        diagnostics.error("unknown-component", binding.span, f"there is no component '{binding.component}'", hint=hint)
+        return None
+    ports = {port.name: port for port in component.kind.ports}
+    if binding.port is None:
+        default = _default([port for port in ports.values() if port.direction == direction])
+        if default is None:
+            return _wrong_direction(component, component.name, direction, possible, binding, diagnostics)
+        return component, default
+    if binding.port not in ports:
+        message = f"a {component.kind.name} has no port '{binding.port}'"
+        hint = did_you_mean(binding.port, ports, "ports")
+        diagnostics.error("unknown-port", binding.span, message, hint=hint)
+        return None
+    if ports[binding.port].direction != direction:
+        return _wrong_direction(component, f"{component.name}.{binding.port}", direction, possible, binding, diagnostics)
+    return component, ports[binding.port]
+
+
+def _wrong_direction(
+    component: Component,
+    reference: str,
+    direction: str,
+    possible: list[str],
+    binding: Binding,
+    diagnostics: Diagnostics,
+) -> None:
+    verb = "gives no value" if direction == "source" else "takes no value"
+    message = f"'{reference}' ({component.kind.name}) {verb}"
+    hint = f"possible: {', '.join(sorted(possible))}" if possible else ""
+    diagnostics.error("wrong-direction", binding.span, message, hint=hint)
+
+
+def _component_step(component: Component, port: KindPort) -> tuple[list[Step], str]:
+    """The conversion on the component, and the unit on its model side (empty: unknown)."""
+    conversion = component.conversion
+    unit = normal_unit(port.unit)
+    steps: list[Step] = []
+    if not port.default and port.type == "boolean":
+        return steps, unit  # a conversion on a component is about its main value
+    given = normal_unit(conversion.unit) if conversion.unit is not None else ""
+    if conversion.scale is None and given and unit and given != unit and dimension_of(given) == dimension_of(unit):
+        steps.append(Step(scale=conversion_factor(unit, given), reason=f"{unit} -> {given}"))
+    if conversion.scale is not None or conversion.offset is not None or conversion.limits is not None:
+        steps.append(_step(conversion, f"components.{component.name}"))
+    return steps, given or ("" if conversion.scale is not None else unit)
+
+
+def _step(conversion: Conversion, reason: str) -> Step:
+    return Step(conversion.scale or Fraction(1), conversion.offset or 0.0, conversion.limits, reason)
+
+
+def _unit_step(source: str, target: str, binding: Binding, names: str, diagnostics: Diagnostics) -> list[Step]:
+    """The step between two units when the wire gives no scale of its own."""
+    if binding.conversion.scale is not None or not source or not target or source == target:
+        return []
+    if dimension_of(source) is None or dimension_of(target) is None or dimension_of(source) != dimension_of(target):
+        diagnostics.error(
+            "unit-mismatch",
+            binding.span,
+            f"{names}: {source} does not convert to {target}",
+            hint="give the wire a 'scale', or correct the unit",
+        )
+        return []
+    return [Step(scale=conversion_factor(source, target), reason=f"{source} -> {target}")]
+
+
+def _input_steps(
+    port: Port, binding: Binding, component: Component, component_port: KindPort, diagnostics: Diagnostics
+) -> tuple[Step, ...]:
+    steps, unit = _component_step(component, component_port)
+    wanted = normal_unit(binding.conversion.unit if binding.conversion.unit is not None else port.unit)
+    steps += _unit_step(unit, wanted, binding, f"{component.name} -> {port.name}", diagnostics)
+    steps += _wire_step(binding, f"inputs.{port.name}")
+    return tuple(steps)
+
+
+def _output_steps(
+    port: Port, binding: Binding, component: Component, component_port: KindPort, diagnostics: Diagnostics
+) -> tuple[Step, ...]:
+    own, unit = _component_step(component, component_port)
+    given = normal_unit(binding.conversion.unit if binding.conversion.unit is not None else port.unit)
+    between = _unit_step(given, unit, binding, f"{port.name} -> {component.name}", diagnostics)
+    # towards the hardware a unit conversion on the component runs the other way round
+    own = [Step(1 / step.scale, reason=_reversed(step.reason)) if " -> " in step.reason else step for step in own]
+    ordered = [step for step in own if " -> " not in step.reason] + [step for step in own if " -> " in step.reason]
+    return (*_wire_step(binding, f"outputs.{port.name}"), *between, *ordered)
+
+
+def _wire_step(binding: Binding, reason: str) -> list[Step]:
+    conversion = binding.conversion
+    if conversion.scale is None and conversion.offset is None and conversion.limits is None:
+        return []
+    return [_step(conversion, reason)]
+
+
+def _reversed(reason: str) -> str:
+    source, _, target = reason.partition(" -> ")
+    return f"{target} -> {source}"
