@@ -30,8 +30,7 @@
 #include <stdint.h>
 
 #include "epg/exchange.h"
-#include "epg/fault.h"
-#include "epg/statistics.h"
+#include "epg/status.h"
 
 /** What happens when a setpoint is older than its timeout. */
 typedef enum epg_timeout_action { EPG_TIMEOUT_HOLD, EPG_TIMEOUT_ZERO, EPG_TIMEOUT_DISABLE } epg_timeout_action_t;
@@ -94,14 +93,6 @@ typedef struct epg_application {
     double *monitor_values;                /**< `monitor_count`: the control side's copy */
     epg_exchange_t *monitor_exchange;      /**< of `monitor_count` doubles; NULL: nothing to publish */
 } epg_application_t;
-
-/** State and fault of a target at one moment. */
-typedef struct epg_status {
-    bool enabled;
-    epg_fault_t fault;             /**< why it is disabled; EPG_FAULT_NONE: by request */
-    uint64_t time_ns;              /**< tick of the cycle that wrote this */
-    epg_statistics_t statistics;
-} epg_status_t;
 
 typedef struct epg_control {
     const epg_application_t *application;

@@ -1,0 +1,230 @@
+"""An application as C: ``<name>.h``, ``<name>_app.c`` and what its platform adds.
+
+The layout of the files stands in ``templates/``; what each component contributes stands in the ``code.c.j2`` of its
+kind, one macro per place of the generation order (docs/architecture.md lists them).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+
+from epg.emit.text import Code, double, environment, identifier
+from epg.resolve.application import Application, ResolvedComponent, Step, Wire
+
+TEMPLATES = Path(__file__).resolve().parent / "templates"
+
+
+@dataclass(frozen=True)
+class ComponentView:
+    """A component as templates of its kind see it; names that are printed are code already."""
+
+    name: str
+    symbol: Code
+    parameters: Mapping[str, object]
+    claims: Mapping[str, Any]
+    slot: int | None
+    application: Code
+
+
+@dataclass(frozen=True)
+class Part:
+    """What one component contributes to the places of the generation order."""
+
+    component: ComponentView
+    globals: Code
+    start: Code
+    sample: Code
+    safe: Code
+
+
+@dataclass(frozen=True)
+class InputView:
+    """An assignment to a model input."""
+
+    name: str
+    source: str
+    member: Code
+    value: Code
+
+
+@dataclass(frozen=True)
+class OutputView:
+    """A statement that hands a model output on."""
+
+    name: str
+    sink: str
+    statement: Code
+
+
+class Emitter:
+    """Renders one application; ``roots`` are the ``targets`` folders, the user's first."""
+
+    def __init__(self, app: Application, roots: Sequence[Path]) -> None:
+        self.app = app
+        self.prefix = identifier(app.name)
+        self.env = environment([TEMPLATES, *roots])
+        self.env.filters["code"] = Code
+        self.env.filters["upper"] = lambda text: Code(text.upper()) if isinstance(text, Code) else str(text).upper()
+        self.views = {component.name: self._view(component) for component in app.components}
+        self.modules: dict[str, Any] = {}
+
+    def files(self) -> dict[str, str]:
+        """All generated C of the application by file name."""
+        context = self._context()
+        name = str(self.prefix)
+        result = {
+            f"{name}.h": self.env.get_template("app.h.j2").render(context),
+            f"{name}_app.c": self.env.get_template("app.c.j2").render(context),
+        }
+        platform = self.app.target.platform
+        for template in platform.templates:
+            file = template.removesuffix(".j2").replace("NAME", name)
+            result[file] = self.env.get_template(f"platforms/{platform.name}/{template}").render(context)
+        return {file: _tidy(text) for file, text in result.items()}
+
+    def _context(self) -> dict[str, Any]:
+        app = self.app
+        parts = [self._part(component) for component in app.components]
+        publishers = {topic.component.name for topic in app.publications}
+        headers = {str(header) for component in app.components for header in component.kind.headers}
+        context: dict[str, Any] = {
+            "app": app,
+            "prefix": self.prefix,
+            "headers": [Code(header) for header in sorted(headers)],
+            "parts": parts,
+            "inputs": [self._input(wire) for wire in app.inputs],
+            "outputs": [self._output(wire) for wire in app.outputs if wire.component.name not in publishers],
+            "monitor": [self._output(wire) for wire in app.outputs if wire.component.name in publishers],
+            "fail_safe": None,
+            "plant_inputs": [],
+            "plant_outputs": [],
+        }
+        if app.fail_safe is not None:
+            port = next(p for p in app.fail_safe.kind.ports if p.direction == "source" and p.type == "boolean")
+            context["fail_safe"] = self._expression(app.fail_safe, "read", port.name)
+        if app.plant is not None:
+            context["plant_inputs"] = [self._plant_input(wire) for wire in app.plant.inputs]
+            context["plant_outputs"] = [self._plant_output(wire) for wire in app.plant.outputs]
+        return context
+
+    def _view(self, component: ResolvedComponent) -> ComponentView:
+        return ComponentView(
+            name=component.name,
+            symbol=identifier(component.symbol),
+            parameters=component.parameters,
+            claims=component.claims,
+            slot=component.slot,
+            application=self.prefix,
+        )
+
+    def _module(self, component: ResolvedComponent) -> Any:
+        kind = component.kind.name
+        if kind not in self.modules:
+            self.modules[kind] = self.env.get_template(f"components/{kind}/code.c.j2").make_module({"pi": self.env.globals["pi"]})
+        return self.modules[kind]
+
+    def _macro(self, component: ResolvedComponent, macro: str, *arguments: object) -> Code:
+        function = getattr(self._module(component), macro, None)
+        if function is None:
+            return Code("")
+        return Code(str(function(self.views[component.name], *arguments)).strip("\n"))
+
+    def _expression(self, component: ResolvedComponent, macro: str, *arguments: object) -> Code:
+        code = Code(self._macro(component, macro, *arguments).strip())
+        if not code:
+            raise LookupError(f"kind '{component.kind.name}' has no macro '{macro}' for {arguments}")
+        return code
+
+    def _part(self, component: ResolvedComponent) -> Part:
+        return Part(
+            component=self.views[component.name],
+            globals=self._macro(component, "globals"),
+            start=_indented(self._macro(component, "start")),
+            sample=_indented(self._macro(component, "sample")),
+            safe=_indented(self._macro(component, "safe")),
+        )
+
+    def _input(self, wire: Wire) -> InputView:
+        value = self._expression(wire.component, "read", wire.component_port.name)
+        member = identifier(wire.port.identifier)
+        return InputView(wire.port.name, _reference(wire), member, self._converted(value, wire.steps))
+
+    def _output(self, wire: Wire) -> OutputView:
+        value = Code(f"{self.prefix}_outputs.{identifier(wire.port.identifier)}")
+        value = self._converted(value, wire.steps)
+        statement = self._expression(wire.component, "write", wire.component_port.name, value)
+        return OutputView(wire.port.name, _reference(wire), _indented(statement))
+
+    def _plant_input(self, wire: Wire) -> InputView:
+        value = self._expression(wire.component, "plant_read", wire.component_port.name)
+        member = identifier(wire.port.identifier)
+        return InputView(wire.port.name, _reference(wire), member, self._converted(value, wire.steps))
+
+    def _plant_output(self, wire: Wire) -> OutputView:
+        value = Code(f"outputs.{identifier(wire.port.identifier)}")
+        value = self._converted(value, wire.steps)
+        statement = self._expression(wire.component, "plant_write", wire.component_port.name, value)
+        return OutputView(wire.port.name, _reference(wire), _indented(statement))
+
+    def _converted(self, value: Code, steps: Sequence[Step]) -> Code:
+        """The C expression for ``value`` after all steps; steps without limits between them become one."""
+        for step in _folded(steps):
+            if step.scale != 1:
+                value = Code(f"{value} * {double(step.scale)}")
+            if step.offset != 0:
+                sign = "+" if step.offset > 0 else "-"
+                value = Code(f"{value} {sign} {double(abs(step.offset))}")
+            if step.limits is not None:
+                low, high = (double(limit) for limit in step.limits)
+                value = Code(f"epg_limit(&{self.prefix}_control, {value}, {low}, {high})")
+        return value
+
+
+def emit_application(app: Application, roots: Sequence[Path]) -> dict[str, str]:
+    """The generated C of ``app`` by file name."""
+    return Emitter(app, roots).files()
+
+
+def _folded(steps: Sequence[Step]) -> list[Step]:
+    result: list[Step] = []
+    for step in steps:
+        if result and result[-1].limits is None:
+            last = result.pop()
+            offset = float(last.offset * float(step.scale) + step.offset)
+            step = Step(_product(last.scale, step.scale), offset, step.limits, f"{last.reason}, {step.reason}")
+        result.append(step)
+    return result
+
+
+def _product(a: Fraction | float, b: Fraction | float) -> Fraction | float:
+    return a * b
+
+
+def _reference(wire: Wire) -> str:
+    text = f"{wire.component.name}.{wire.component_port.name}"
+    reasons = [step.reason for step in wire.steps if step.reason]
+    return f"{text} ({', '.join(reasons)})" if reasons else text
+
+
+def _indented(code: Code, blanks: str = "    ") -> Code:
+    """Statements of a macro at the depth of a function body, whatever depth they are written at."""
+    lines = [line.rstrip() for line in code.split("\n")]
+    filled = [line for line in lines if line]
+    depth = min((len(line) - len(line.lstrip()) for line in filled), default=0)
+    return Code("\n".join(blanks + line[depth:] for line in filled))
+
+
+def _tidy(text: str) -> str:
+    lines = [line.rstrip() for line in text.split("\n")]
+    result: list[str] = []
+    for line in lines:
+        if line or (result and result[-1]):
+            result.append(line)
+    return "\n".join(result).rstrip("\n") + "\n"
+
+

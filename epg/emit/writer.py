@@ -1,0 +1,50 @@
+"""Writes generated files: only what changed, each at once and whole, and nothing outside the output folder."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+
+
+def write_outputs(folder: Path, files: Mapping[str, str]) -> list[str]:
+    """Makes ``folder`` hold ``files`` (name -> text); returns the names that were written.
+
+    A file whose text is the same is not touched, so nothing that depends on it is rebuilt.  Files are complete before
+    they get their name: an interrupted run leaves old files or new ones, never halves.
+    """
+    written = []
+    for name, text in sorted(files.items()):
+        path = folder / name
+        if folder.resolve() not in path.resolve().parents:
+            raise ValueError(f"{name!r} is outside the output folder")
+        data = text.encode("utf-8")
+        try:
+            if path.read_bytes() == data:
+                continue
+        except OSError:
+            pass
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+        try:
+            with os.fdopen(handle, "wb") as file:
+                file.write(data)
+            os.chmod(temporary, 0o644)
+            os.replace(temporary, path)
+        except BaseException:
+            os.unlink(temporary)
+            raise
+        written.append(name)
+    return written
+
+
+def remove_stale(folder: Path, keep: Mapping[str, str], owned: list[str]) -> list[str]:
+    """Deletes those of ``owned`` (outputs of the run before) that are not in ``keep``; returns their names."""
+    removed = []
+    for name in owned:
+        path = folder / name
+        if name not in keep and folder.resolve() in path.resolve().parents and path.is_file():
+            path.unlink()
+            removed.append(name)
+    return removed
