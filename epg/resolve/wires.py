@@ -27,6 +27,7 @@ def input_wires(
     """The wires into ``model``: each input has exactly one.
 
     ``direction`` is "source" for a controller, which reads sensors; a plant's inputs read actuators: "sink".
+    Conversions on components stand between driver and controller, so a plant's wires do not see them.
     """
     wires: list[Wire] = []
     _unknown_ports(bindings.inputs, model.inputs, model.outputs, model, "input", diagnostics)
@@ -42,7 +43,7 @@ def input_wires(
         if end is None:
             continue
         component, component_port = end
-        steps = _input_steps(port, binding, component, component_port, diagnostics)
+        steps = _input_steps(port, binding, component, component_port, diagnostics, physical=direction == "sink")
         if component_port.type == "real" and port.type != "real":
             message = f"'{component.name}.{component_port.name}' gives any number, '{port.name}' wants {port.type} values"
             diagnostics.error("wrong-port-type", binding.span, message, hint="make the model's input real")
@@ -79,7 +80,7 @@ def output_wires(
                 message = f"'{component.name}.{component_port.name}' is driven by '{first[0]}' already"
                 notes = [Note("bound here", first[1])]
                 diagnostics.error("bound-twice", binding.span, message, hint="remove one of the two", notes=notes)
-            steps = _output_steps(port, binding, component, component_port, diagnostics)
+            steps = _output_steps(port, binding, component, component_port, diagnostics, physical=direction == "source")
             wires.append(Wire(port, resolved[component.name], component_port, steps, binding.span))
     return tuple(wires)
 
@@ -215,9 +216,15 @@ def _unit_step(source: str, target: str, binding: Binding, names: str, diagnosti
 
 
 def _input_steps(
-    port: Port, binding: Binding, component: Component, component_port: KindPort, diagnostics: Diagnostics
+    port: Port,
+    binding: Binding,
+    component: Component,
+    component_port: KindPort,
+    diagnostics: Diagnostics,
+    *,
+    physical: bool,
 ) -> tuple[Step, ...]:
-    steps, unit = _component_step(component, component_port)
+    steps, unit = ([], normal_unit(component_port.unit)) if physical else _component_step(component, component_port)
     wanted = normal_unit(binding.conversion.unit if binding.conversion.unit is not None else port.unit)
     steps += _unit_step(unit, wanted, binding, f"{component.name} -> {port.name}", diagnostics)
     steps += _wire_step(binding, f"inputs.{port.name}")
@@ -225,9 +232,15 @@ def _input_steps(
 
 
 def _output_steps(
-    port: Port, binding: Binding, component: Component, component_port: KindPort, diagnostics: Diagnostics
+    port: Port,
+    binding: Binding,
+    component: Component,
+    component_port: KindPort,
+    diagnostics: Diagnostics,
+    *,
+    physical: bool,
 ) -> tuple[Step, ...]:
-    own, unit = _component_step(component, component_port)
+    own, unit = ([], normal_unit(component_port.unit)) if physical else _component_step(component, component_port)
     given = normal_unit(binding.conversion.unit if binding.conversion.unit is not None else port.unit)
     between = _unit_step(given, unit, binding, f"{port.name} -> {component.name}", diagnostics)
     # towards the hardware a unit conversion on the component runs the other way round

@@ -1,0 +1,142 @@
+"""Makes EPG's Python packages importable in whatever Python was found.
+
+CMake selects a Python that may lack jinja2, PyYAML or jsonschema, and that may refuse ``pip install`` (Debian's
+externally managed one has no ensurepip either).  So packages are installed, once, with ``pip install --target`` into
+a folder of EPG's cache that is named after the interpreter and the lock file.  The lock files (``epg/lock/*.txt``)
+pin every file by hash.  The folder is prepared under a temporary name and renamed when it is complete, so an
+interrupted or concurrent installation never leaves half of it.
+
+Uses only the standard library.  To renew a lock file::
+
+    uv pip compile --universal --generate-hashes --python-version 3.10 --no-header --no-annotate X.in -o X.txt
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib
+import importlib.util
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+LOCKS = Path(__file__).resolve().parent / "lock"
+
+#: for each lock file: modules that must be there, and distributions with the oldest version that will do
+REQUIREMENTS = {
+    "generator": {"yaml": ("PyYAML", (5, 4)), "jinja2": ("Jinja2", (3, 0)), "jsonschema": ("jsonschema", (4, 10))},
+    "plot": {"matplotlib": ("matplotlib", (3, 5)), "numpy": ("numpy", (1, 23))},
+}
+
+
+class MissingPackages(Exception):
+    """Packages are missing and were not installed; the message says what to do."""
+
+
+def cache_folder() -> Path:
+    """``$EPG_CACHE``, else ``~/.cache/epg`` (``%LOCALAPPDATA%\\epg`` on Windows)."""
+    if os.environ.get("EPG_CACHE"):
+        return Path(os.environ["EPG_CACHE"])
+    if os.name == "nt" and os.environ.get("LOCALAPPDATA"):
+        return Path(os.environ["LOCALAPPDATA"]) / "epg"
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "epg"
+
+
+def ensure(group: str = "generator", *, install: bool | None = None) -> None:
+    """Makes the packages of ``group`` importable, installing them into EPG's cache if need be.
+
+    ``install`` None: allowed unless the environment variable ``EPG_NO_INSTALL`` is set.  Raises
+    :class:`MissingPackages`.
+    """
+    missing = _missing(group)
+    if not missing:
+        return
+    folder = _package_folder(group)
+    if not folder.is_dir():
+        allowed = not os.environ.get("EPG_NO_INSTALL") if install is None else install
+        if not allowed:
+            raise MissingPackages(_remedy(missing, "installing them is turned off"))
+        _install(group, folder, missing)
+    sys.path.insert(0, str(folder))
+    importlib.invalidate_caches()
+    still = _missing(group)
+    if still:
+        raise MissingPackages(_remedy(still, f"{folder} does not hold them; delete it to have it made again"))
+
+
+def _missing(group: str) -> list[str]:
+    """Distributions of ``group`` that cannot be imported or are too old."""
+    from importlib import metadata
+
+    result = []
+    for module, (distribution, oldest) in REQUIREMENTS[group].items():
+        if module in sys.modules:
+            continue
+        if importlib.util.find_spec(module) is None:
+            result.append(distribution)
+            continue
+        try:
+            version = metadata.version(distribution)
+        except metadata.PackageNotFoundError:
+            continue
+        if _numbers(version) < oldest:
+            result.append(distribution)
+    return sorted(result)
+
+
+def _numbers(version: str) -> tuple[int, ...]:
+    numbers = []
+    for part in version.split(".")[:3]:
+        digits = "".join(char for char in part if char.isdigit())
+        numbers.append(int(digits or 0))
+    return tuple(numbers)
+
+
+def _package_folder(group: str) -> Path:
+    lock = hashlib.sha256((LOCKS / f"{group}.txt").read_bytes()).hexdigest()[:12]
+    abi = f"{sys.implementation.cache_tag}-{sys.platform}-{'64' if sys.maxsize > 2**32 else '32'}"
+    return cache_folder() / f"python-{group}-{abi}-{lock}"
+
+
+def _install(group: str, folder: Path, missing: list[str]) -> None:
+    if importlib.util.find_spec("pip") is None:
+        raise MissingPackages(_remedy(missing, "this Python has no pip to install them with"))
+    sys.stderr.write(f"EPG: installing {', '.join(missing)} for {sys.executable} into {folder} (once)\n")
+    sys.stderr.flush()
+    try:
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        temporary = Path(tempfile.mkdtemp(dir=folder.parent, prefix=f".{folder.name}."))
+    except OSError as error:
+        raise MissingPackages(_remedy(missing, f"EPG's cache cannot be written: {error}")) from error
+    command = [sys.executable, "-m", "pip", "--disable-pip-version-check", "install", "--quiet", "--no-input"]
+    command += ["--require-hashes", "--only-binary", ":all:", "--target", str(temporary)]
+    command += ["--requirement", str(LOCKS / f"{group}.txt")]
+    environment = {key: value for key, value in os.environ.items() if not key.startswith("PYTHON")}
+    environment["PIP_ROOT_USER_ACTION"] = "ignore"
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, errors="replace", env=environment)
+        if done.returncode != 0:
+            tail = "\n".join(line for line in done.stderr.strip().splitlines()[-6:])
+            raise MissingPackages(_remedy(missing, f"pip could not install them:\n{tail}"))
+        try:
+            os.rename(temporary, folder)
+        except OSError:
+            if not folder.is_dir():  # somebody else may have been faster; then theirs will do
+                raise
+    finally:
+        shutil.rmtree(temporary, ignore_errors=True)
+
+
+def _remedy(missing: list[str], reason: str) -> str:
+    names = " ".join(missing)
+    debian = " ".join("python3-" + name.lower() for name in missing)
+    return (
+        f"EPG needs {', '.join(missing)} for {sys.executable}: {reason}\n"
+        f"hint: one of\n"
+        f"    {sys.executable} -m pip install {names}\n"
+        f"    apt install {debian}          (Debian, Ubuntu)\n"
+        f"    cmake -DPython3_EXECUTABLE=<a Python that has them> ..."
+    )

@@ -1,0 +1,240 @@
+"""From checked files to an :class:`~epg.resolve.application.Application`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+
+from epg.check.bindings import Bindings
+from epg.check.configuration import Component, Configuration
+from epg.diagnostics import Diagnostics, Note
+from epg.load.models.model import Model
+from epg.quantity import dimension_of
+from epg.resolve.allocation import Assignment, allocate
+from epg.resolve.application import Application, Plant, ResolvedComponent, Setpoint, Topic, Wire
+from epg.resolve.claims import TICK, component_claims, tick_claims
+from epg.resolve.wires import input_wires, output_wires, parameter_overrides
+
+_PUBLIC = frozenset(
+    "start stop enable status statistics target inputs outputs control host model plant".split()
+)
+"""What follows ``<name>_`` in names that every application has."""
+
+
+@dataclass(frozen=True)
+class PlantFiles:
+    """A plant model with its bindings to the components' physical side."""
+
+    model: Model
+    bindings: Bindings
+
+
+def resolve(
+    name: str,
+    configuration: Configuration,
+    model: Model,
+    bindings: Bindings,
+    plant: PlantFiles | None,
+    diagnostics: Diagnostics,
+) -> Application | None:
+    """The application ``name``, or None after reporting everything that keeps its parts from fitting together."""
+    errors = diagnostics.error_count
+    _same_model(bindings, model, diagnostics)
+    period, divider = _period(configuration, model, diagnostics)
+    assignments = _allocate(configuration, period, diagnostics)
+    components = _components(name, configuration, assignments or {})
+    inputs = input_wires(bindings, model, configuration.components, components, diagnostics)
+    outputs = output_wires(bindings, model, configuration.components, components, diagnostics)
+    parameters = parameter_overrides(bindings, model, diagnostics)
+    simulated = _plant(plant, configuration, components, period, diagnostics) if plant else None
+    fail_safe = configuration.control.fail_safe
+    used = {wire.component.name for wire in (*inputs, *outputs)} | {fail_safe}
+    for component in configuration.components.values():
+        if component.name not in used:
+            hint = "bind one of its ports, or remove it"
+            diagnostics.warning(
+                "unused-component", component.span, f"component '{component.name}' is bound to nothing", hint=hint
+            )
+    if diagnostics.error_count > errors or assignments is None:
+        return None
+    return Application(
+        name=name,
+        target=configuration.target,
+        node=configuration.node,
+        namespace=configuration.namespace,
+        control=configuration.control,
+        communication=configuration.communication,
+        components=tuple(components.values()),
+        model=model,
+        inputs=inputs,
+        outputs=outputs,
+        parameters=parameters,
+        subscriptions=_subscriptions(components, configuration, inputs),
+        publications=_publications(components),
+        fail_safe=components[fail_safe] if fail_safe else None,
+        tick=assignments.get(TICK),
+        plant=simulated,
+        period=period,
+        step_divider=divider,
+        files=_files(configuration, model, bindings, plant),
+    )
+
+
+def _same_model(bindings: Bindings, model: Model, diagnostics: Diagnostics) -> None:
+    if bindings.model != model.name:
+        message = f"these bindings are for '{bindings.model}', the model is '{model.name}'"
+        notes = [Note("the model", model.span)]
+        hint = f"write 'model: {model.name}', or give the other model"
+        diagnostics.error("wrong-model", bindings.model_span, message, hint=hint, notes=notes)
+
+
+def _period(configuration: Configuration, model: Model, diagnostics: Diagnostics) -> tuple[Fraction, int]:
+    """The control period in seconds, and every how many cycles the model runs."""
+    period = configuration.control.period or model.step
+    ratio = model.step / period
+    if ratio.denominator != 1:
+        message = f"the model's step of {_ms(model.step)} is no multiple of the control period of {_ms(period)}"
+        hint = f"set 'control: {{period: {_ms(model.step)}}}' or export the model with another step"
+        notes = [Note("the model", model.span)]
+        diagnostics.error("step-not-multiple", configuration.control.period_span, message, hint=hint, notes=notes)
+        return period, 1
+    if ratio.numerator > 0xFFFF:
+        message = f"the model would run every {ratio.numerator} control cycles only"
+        diagnostics.error("step-not-multiple", configuration.control.period_span, message, hint="lengthen the period")
+    return period, ratio.numerator
+
+
+def _allocate(
+    configuration: Configuration, period: Fraction, diagnostics: Diagnostics
+) -> Mapping[tuple[str, str], Assignment] | None:
+    claims = [
+        *component_claims(configuration),
+        *tick_claims(configuration.target, period, configuration.control.period_span),
+    ]
+    return allocate(claims, configuration.target, diagnostics)
+
+
+def _components(
+    name: str, configuration: Configuration, assignments: Mapping[tuple[str, str], Assignment]
+) -> dict[str, ResolvedComponent]:
+    result: dict[str, ResolvedComponent] = {}
+    slots = {"subscribe": 0, "publish": 0}
+    for component in configuration.components.values():
+        slot: int | None = None
+        direction = component.kind.communication
+        if direction:
+            slot = slots[direction]
+            slots[direction] += 1
+        claims = {claim: found for (owner, claim), found in assignments.items() if owner == component.name}
+        result[component.name] = ResolvedComponent(
+            name=component.name,
+            symbol=_symbol(name, component.name),
+            kind=component.kind,
+            parameters=component.parameters,
+            claims=claims,
+            slot=slot,
+            application=name,
+            span=component.span,
+        )
+    return result
+
+
+def _symbol(application: str, component: str) -> str:
+    """The C symbol of a component: prefixed, so that it meets neither the C library nor other targets' symbols."""
+    reserved = component in _PUBLIC or component.startswith(("model_", "plant_"))
+    return f"{application}_{component}_component" if reserved else f"{application}_{component}"
+
+
+def _subscriptions(
+    components: Mapping[str, ResolvedComponent], configuration: Configuration, inputs: Sequence[Wire]
+) -> tuple[Topic, ...]:
+    result = []
+    for component in components.values():
+        if component.kind.communication == "subscribe":
+            units = {wire.port.unit for wire in inputs if wire.component is component}
+            setpoint = _setpoint(configuration.components[component.name], units)
+            result.append(Topic(component, str(component.parameters["topic"]), str(component.parameters["qos"]), setpoint))
+    return tuple(result)
+
+
+def _publications(components: Mapping[str, ResolvedComponent]) -> tuple[Topic, ...]:
+    return tuple(
+        Topic(component, str(component.parameters["topic"]), str(component.parameters["qos"]))
+        for component in components.values()
+        if component.kind.communication == "publish"
+    )
+
+
+def _setpoint(component: Component, units: Iterable[str]) -> Setpoint:
+    """Fault handling of a subscription; velocities time out after 0.5 s unless told otherwise, positions never.
+
+    ``units`` are those of the model ports it feeds, for a component that states none.
+    """
+    parameters = component.parameters
+    timeout = parameters.get("timeout")
+    if timeout is None:
+        stated = [component.conversion.unit] if component.conversion.unit else list(units)
+        velocity = any((dimension_of(unit) or "").endswith("velocity") for unit in stated)
+        timeout = Fraction(1, 2) if velocity else Fraction(0)
+    assert isinstance(timeout, (int, Fraction))
+    return Setpoint(
+        initial=_number(parameters.get("initial") or 0),
+        rate_limit=_number(parameters.get("rate_limit") or 0),
+        timeout=Fraction(timeout),
+        on_timeout=str(parameters.get("on_timeout") or "hold"),
+    )
+
+
+def _number(value: object) -> float:
+    assert isinstance(value, (int, float, Fraction))
+    return float(value)
+
+
+def _plant(
+    plant: PlantFiles,
+    configuration: Configuration,
+    components: Mapping[str, ResolvedComponent],
+    period: Fraction,
+    diagnostics: Diagnostics,
+) -> Plant | None:
+    """The plant, whose inputs come from actuators and whose outputs drive sensors."""
+    model, bindings = plant.model, plant.bindings
+    platform = configuration.target.platform
+    if not platform.simulates_plant:
+        span = bindings.model_span
+        message = f"{platform.name} has a real plant"
+        diagnostics.error("plant-not-simulated", span, message, hint="leave PLANT out, or choose target 'host'")
+        return None
+    _same_model(bindings, model, diagnostics)
+    ratio = period / model.step
+    if ratio.denominator != 1:
+        message = f"the control period of {_ms(period)} is no multiple of the plant's step of {_ms(model.step)}"
+        hint = "export the plant with a step that divides the period"
+        diagnostics.error("step-not-multiple", bindings.model_span, message, hint=hint, notes=[Note("the plant", model.span)])
+    physical = {name: c for name, c in configuration.components.items() if not c.kind.communication}
+    inputs = input_wires(bindings, model, physical, components, diagnostics, direction="sink")
+    outputs = output_wires(bindings, model, physical, components, diagnostics, direction="source")
+    parameters = parameter_overrides(bindings, model, diagnostics)
+    return Plant(model, inputs, outputs, parameters, max(1, ratio.numerator // ratio.denominator))
+
+
+def _files(
+    configuration: Configuration, model: Model, bindings: Bindings, plant: PlantFiles | None
+) -> tuple[Path, ...]:
+    files = {*configuration.files, *model.files, bindings.path}
+    if plant:
+        files |= {*plant.model.files, plant.bindings.path}
+    return tuple(sorted(files))
+
+
+def _ms(seconds: Fraction) -> str:
+    """A time as people write it: ``1 ms``, ``33.3 ms``, ``100 us``."""
+    for unit, factor in (("s", 1), ("ms", 1000), ("us", 1000_000)):
+        value = seconds * factor
+        if value.denominator == 1:
+            return f"{value.numerator} {unit}"
+    return f"{float(seconds * 1000):g} ms"
+
+
