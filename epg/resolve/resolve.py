@@ -43,7 +43,7 @@ def resolve(
     errors = diagnostics.error_count
     _same_model(bindings, model, diagnostics)
     period, divider = _period(configuration, model, diagnostics)
-    assignments = _allocate(configuration, period, diagnostics)
+    assignments = allocate_hardware(configuration, period, diagnostics)
     components = _components(name, configuration, assignments or {})
     inputs = input_wires(bindings, model, configuration.components, components, diagnostics)
     outputs = output_wires(bindings, model, configuration.components, components, diagnostics)
@@ -106,13 +106,13 @@ def _period(configuration: Configuration, model: Model, diagnostics: Diagnostics
     return period, ratio.numerator
 
 
-def _allocate(
-    configuration: Configuration, period: Fraction, diagnostics: Diagnostics
+def allocate_hardware(
+    configuration: Configuration, period: Fraction | None, diagnostics: Diagnostics
 ) -> Mapping[tuple[str, str], Assignment] | None:
-    claims = [
-        *component_claims(configuration),
-        *tick_claims(configuration.target, period, configuration.control.period_span),
-    ]
+    """Peripherals for all components, and for the loop's timer when the ``period`` (seconds) is known."""
+    claims = list(component_claims(configuration))
+    if period is not None:
+        claims += tick_claims(configuration.target, period, configuration.control.period_span)
     return allocate(claims, configuration.target, diagnostics)
 
 

@@ -1,0 +1,84 @@
+"""Arguments that several subcommands share, and what they mean."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+from pathlib import Path
+
+from epg.project import Request
+from epg.source import Span
+
+
+def add_target_arguments(parser: argparse.ArgumentParser, *, required: bool) -> None:
+    """The files that make a target, and what is set on top of them."""
+    parser.add_argument("--tcf", required=required, metavar="FILE", help="target configuration: a file, or one of EPG's by name")
+    parser.add_argument("--model", required=required, type=Path, metavar="FOLDER", help="folder of the model")
+    parser.add_argument("--bindings", required=required, type=Path, metavar="FILE", help="bindings of the model's ports")
+    parser.add_argument("--plant", type=Path, metavar="FOLDER", help="model of the plant (host)")
+    parser.add_argument("--plant-bindings", type=Path, metavar="FILE", help="bindings of the plant's ports")
+    parser.add_argument("--set", action="append", default=[], dest="settings", metavar="KEY.KEY=VALUE", help="replaces a value of the .tcf")
+    parser.add_argument("--node", help="name of the ROS 2 node, instead of the .tcf's")
+    parser.add_argument("--namespace", help="namespace of the ROS 2 node, instead of the .tcf's")
+    parser.add_argument("--caller", metavar="CMAKELISTS", help=argparse.SUPPRESS)
+    parser.add_argument("--beside", type=Path, default=Path(), help=argparse.SUPPRESS)
+
+
+def user_roots() -> list[Path]:
+    """The folders of ``EPG_TARGETS_PATH``."""
+    return [Path(folder) for folder in os.environ.get("EPG_TARGETS_PATH", "").split(os.pathsep) if folder]
+
+
+def request_of(arguments: argparse.Namespace, name: str) -> Request:
+    """The request that the arguments of :func:`add_target_arguments` make."""
+    settings = list(arguments.settings)
+    if arguments.node is not None:
+        settings.append(f"node={arguments.node}")
+    if arguments.namespace is not None:
+        settings.append(f"namespace={arguments.namespace}")
+    caller = _caller_span(arguments.caller, name) if arguments.caller else None
+    return Request(
+        name=name,
+        tcf=arguments.tcf or "",
+        model=arguments.model or Path(),
+        bindings=arguments.bindings or Path(),
+        plant=arguments.plant,
+        plant_bindings=arguments.plant_bindings,
+        settings=[(text, _setting_span(arguments.caller, name, text)) for text in settings],
+        user_roots=user_roots(),
+        caller=caller,
+        beside=arguments.beside,
+    )
+
+
+def _caller_span(file: str, name: str) -> Span:
+    """Where a CMakeLists.txt asks for the target ``name``."""
+    return _find(file, rf"epg_add_(?:target|model)\s*\(\s*({re.escape(name)})\b") or Span(file)
+
+
+def _setting_span(file: str | None, name: str, setting: str) -> Span:
+    """Where a setting is written: its argument in the CMakeLists.txt, or the command line itself."""
+    if file is None:
+        return Span("command line", 1, 1, len(setting) + 1, text=setting)
+    key, _, value = setting.partition("=")
+    pattern = re.escape(setting)
+    if key in ("node", "namespace"):
+        pattern = rf'{key.upper()}\s+"?({re.escape(value)})'
+    call = rf"epg_add_target\s*\(\s*{re.escape(name)}\b[^)]*?"
+    return _find(file, rf"{call}({pattern})") or _find(file, rf"{call}\b()") or Span(file, text=setting)
+
+
+def _find(file: str, pattern: str) -> Span | None:
+    try:
+        text = Path(file).read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return None
+    match = re.search(pattern, text)
+    if not match:
+        return None
+    group = match.lastindex or 0
+    start = match.start(group)
+    line = text.count("\n", 0, start) + 1
+    column = start - (text.rfind("\n", 0, start) + 1) + 1
+    return Span(file, line, column, column + max(1, match.end(group) - start))

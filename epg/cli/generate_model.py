@@ -1,0 +1,37 @@
+"""``epg generate-model``: the library of one model into a build folder; CMake calls this while it configures."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from epg.diagnostics import Diagnostics
+from epg.source import Span
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("name", help="name of the library: prefix of its C symbols")
+    parser.add_argument("--model", required=True, type=Path, metavar="FOLDER", help="folder of the model")
+    parser.add_argument("--instances", type=int, default=1, metavar="N", help="instances of a C++ model")
+    parser.add_argument("--output", required=True, type=Path, metavar="FOLDER", help="where the files go")
+    parser.add_argument("--source-dir", type=Path, help=argparse.SUPPRESS)
+    parser.add_argument("--caller", help=argparse.SUPPRESS)
+
+
+def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
+    from epg.cli.output import update_folder
+    from epg.emit.cmake import PathNames
+    from epg.load.models import load_model
+    from epg.project import check_instances, check_name, model_outputs
+
+    caller = Span(options.caller or "command line")
+    check_name(options.name, caller, diagnostics)
+    model = load_model(options.model, diagnostics)
+    if model is not None:
+        check_instances(model, options.instances, caller, diagnostics)
+    diagnostics.stop_if_errors()
+    assert model is not None
+    files = model_outputs(model, options.name, options.instances, PathNames(options.source_dir))
+    update_folder(options.output, files, sys.stdout if options.json else None)
+    return 0

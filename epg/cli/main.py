@@ -1,0 +1,101 @@
+"""``epg``: parses the command line, runs a subcommand, prints what is wrong and says so in the exit status.
+
+Exit status: 0 success; 1 mistakes in the user's files; 2 wrong command line; 3 a bug in EPG; 4 something the
+computer lacks (Python packages, a compiler); other values are those of a program that was run (``simulate``).
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import os
+import sys
+import traceback
+from collections.abc import Sequence
+
+import epg
+from epg import bootstrap
+
+COMMANDS = {
+    "check": "check files without generating anything",
+    "generate": "write the sources of a target (CMake calls this)",
+    "generate-model": "write the library of one model (CMake calls this)",
+    "bind": "write bindings for the ports whose names match",
+    "ports": "list the ports and parameters of a model",
+    "targets": "list targets, component kinds and predefined .tcf files",
+    "explain": "show the way of a model port to its pin",
+    "simulate": "run a host executable through a scenario and judge the result",
+}
+
+EXIT_OK, EXIT_MISTAKES, EXIT_USAGE, EXIT_BUG, EXIT_MISSING = range(5)
+
+
+class MissingTool(Exception):
+    """Something the computer lacks; the message says how to get it."""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Runs ``epg``; returns the exit status."""
+    try:
+        bootstrap.ensure()
+    except bootstrap.MissingPackages as problem:
+        sys.stderr.write(f"{problem}\n")
+        return EXIT_MISSING
+    parser = _parser(sys.argv[1:] if arguments is None else arguments)
+    try:
+        options = parser.parse_args(arguments)
+    except SystemExit as stop:
+        return int(stop.code or 0)
+    if options.cmake_dir:
+        from epg.data import data_folder
+
+        print(data_folder("cmake").as_posix())
+        return EXIT_OK
+    if not options.command:
+        parser.print_help()
+        return EXIT_USAGE
+    return _run(options)
+
+
+def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
+    """The parser; only the module of the chosen subcommand is imported."""
+    parser = argparse.ArgumentParser(prog="epg", description="Turns a controller modelled in 20-sim into firmware.")
+    parser.add_argument("--version", action="version", version=f"epg {epg.__version__}")
+    parser.add_argument("--cmake-dir", action="store_true", help="print the folder of EPGConfig.cmake and exit")
+    subparsers = parser.add_subparsers(dest="command", metavar="COMMAND")
+    chosen = next((word for word in arguments if not word.startswith("-")), None)
+    for name, summary in COMMANDS.items():
+        sub = subparsers.add_parser(name, help=summary, description=summary[0].upper() + summary[1:] + ".")
+        if name == chosen:
+            sub.add_argument("--json", action="store_true", help="print data for programs")
+            importlib.import_module(f"epg.cli.{name.replace('-', '_')}").add_arguments(sub)
+    return parser
+
+
+def _run(options: argparse.Namespace) -> int:
+    from epg.cli.report import diagnostics_json, format_diagnostics, to_json
+    from epg.diagnostics import Diagnostics, UserError
+
+    diagnostics = Diagnostics()
+    status: int = EXIT_OK
+    try:
+        status = importlib.import_module(f"epg.cli.{options.command.replace('-', '_')}").run(options, diagnostics) or EXIT_OK
+    except UserError:
+        pass
+    except (MissingTool, bootstrap.MissingPackages) as problem:
+        sys.stderr.write(f"epg: {problem}\n")
+        return EXIT_MISSING
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return EXIT_OK
+    except KeyboardInterrupt:
+        return 130
+    except Exception:
+        sys.stderr.write(format_diagnostics(diagnostics))
+        traceback.print_exc()
+        sys.stderr.write(f"epg: this is a bug in EPG {epg.__version__}; please report it with the lines above\n")
+        return EXIT_BUG
+    if diagnostics.items and options.json and diagnostics.has_errors:
+        sys.stdout.write(to_json({"diagnostics": diagnostics_json(diagnostics)}))
+    sys.stderr.write(format_diagnostics(diagnostics))
+    return EXIT_MISTAKES if diagnostics.has_errors else status

@@ -1,0 +1,112 @@
+"""Diagnostics as text, as compilers print them, or as JSON.
+
+::
+
+    jiwy.tcf:7:22: error: unknown key 'perid' [unknown-key]
+        7 | control: {perid: 1 ms}
+          |           ^~~~~
+    hint: did you mean 'period'?
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from epg.diagnostics import Diagnostic, Diagnostics
+from epg.source import Span
+
+
+def format_diagnostics(diagnostics: Diagnostics) -> str:
+    """All diagnostics, in the order of files and lines, errors and warnings mixed as they stand."""
+    ordered = sorted(diagnostics, key=lambda d: (d.span.file, d.span.line, d.span.column, d.id, d.message))
+    return "".join(_format(diagnostic) for diagnostic in ordered)
+
+
+def diagnostics_json(diagnostics: Iterable[Diagnostic]) -> list[dict[str, Any]]:
+    """Diagnostics as plain data for programs."""
+    return [
+        {
+            "id": d.id,
+            "severity": d.severity,
+            **_position(d.span),
+            "message": d.message,
+            "hint": d.hint,
+            "notes": [{"message": note.message, **_position(note.span)} for note in d.notes],
+        }
+        for d in diagnostics
+    ]
+
+
+def to_json(data: object) -> str:
+    return json.dumps(data, indent=2, sort_keys=False, ensure_ascii=False) + "\n"
+
+
+def shown_path(file: str) -> str:
+    """A path relative to the current folder where that is shorter, for people; absolute paths stay clickable."""
+    path = Path(file)
+    if path.is_absolute() and not os.environ.get("EPG_ABSOLUTE_PATHS"):
+        try:
+            return str(path.relative_to(Path.cwd()))
+        except (ValueError, OSError):
+            return file
+    return file
+
+
+def _position(span: Span) -> dict[str, Any]:
+    return {"file": span.file, "line": span.line, "column": span.column}
+
+
+def _format(d: Diagnostic) -> str:
+    lines = [f"{_place(d.span)}: {d.severity}: {d.message} [{d.id}]", *_excerpt(d.span)]
+    for note in d.notes:
+        lines += [f"{_place(note.span)}: note: {note.message}", *_excerpt(note.span)]
+    if d.hint:
+        lines.append(f"hint: {d.hint}")
+    return "\n".join(lines) + "\n"
+
+
+def _place(span: Span) -> str:
+    file = shown_path(span.file)
+    if not span.line:
+        return file
+    return f"{file}:{span.line}:{span.column}" if span.column else f"{file}:{span.line}"
+
+
+def _excerpt(span: Span) -> list[str]:
+    """The line a span stands on, with a caret below it."""
+    text = span.text if span.text is not None else _line(span.file, span.line)
+    if not span.line or not span.column or text is None:
+        return []
+    text = text.rstrip("\r\n")
+    start, end = span.column - 1, max(span.end - 1, span.column)
+    if start > len(text):
+        return []
+    first = 0
+    if len(text) > 160:  # show the part around the caret
+        first = max(0, start - 60)
+        text = text[first : first + 160]
+    margin = f"{span.line:5d} | "
+    blank = " " * 5 + " | "
+    before = "".join("\t" if char == "\t" else " " for char in text[: start - first])
+    length = max(1, min(end - start, len(text) - (start - first)))
+    return [margin + text, blank + before + "^" + "~" * (length - 1)]
+
+
+def _line(file: str, number: int) -> str | None:
+    lines = _lines(file)
+    return lines[number - 1] if 0 < number <= len(lines) else None
+
+
+@lru_cache(maxsize=64)
+def _lines(file: str) -> tuple[str, ...]:
+    try:
+        text = Path(file).read_bytes().decode("utf-8-sig", "replace")
+    except OSError:
+        return ()
+    lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    return tuple("".join(char if char.isprintable() or char == "\t" else "?" for char in line) for line in lines)

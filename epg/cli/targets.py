@@ -1,0 +1,71 @@
+"""``epg targets``: what EPG can generate for, with the user's own folders."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+from epg.cli.arguments import user_roots
+from epg.cli.report import to_json
+from epg.cli.table import table
+from epg.diagnostics import Diagnostics
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--kinds", action="store_true", help="list component kinds with their ports and parameters")
+
+
+def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
+    from epg.data import targets_roots
+    from epg.load.tcf import predefined_tcf_names
+    from epg.project import make_catalog
+
+    roots = targets_roots(user_roots())
+    catalog = make_catalog(roots, diagnostics)
+    targets = [target for name in catalog.target_names() if (target := catalog.find_target(name)) is not None]
+    kinds = [kind for name in catalog.kind_names() if (kind := catalog.find_kind(name)) is not None]
+    files = predefined_tcf_names(roots)
+    if options.json:
+        sys.stdout.write(
+            to_json(
+                {
+                    "targets": [
+                        {
+                            "name": t.name,
+                            "board": t.board.name,
+                            "platform": t.platform.name,
+                            "builds": t.platform.builds,
+                            "middlewares": {name: list(transports) for name, transports in t.platform.middlewares.items()},
+                        }
+                        for t in targets
+                    ],
+                    "kinds": [
+                        {
+                            "name": k.name,
+                            "summary": k.summary,
+                            "ports": [
+                                {"name": p.name, "direction": p.direction, "unit": p.unit, "type": p.type} for p in k.ports
+                            ],
+                        }
+                        for k in kinds
+                    ],
+                    "tcf": files,
+                }
+            )
+        )
+        return 0
+    if options.kinds:
+        rows = [
+            (k.name, ", ".join(f"{p.name} ({p.direction}{', ' + p.unit if p.unit else ''})" for p in k.ports), k.summary)
+            for k in kinds
+        ]
+        print(table(("kind", "ports", "what it is"), rows))
+        return 0
+    rows = [
+        (t.name, t.board.summary, t.platform.summary, ", ".join(t.platform.middlewares), "yes" if t.platform.builds else "check only")
+        for t in targets
+    ]
+    print(table(("target", "board", "platform", "middlewares", "builds"), rows))
+    print("\ncomponent kinds: " + ", ".join(k.name for k in kinds) + "   (epg targets --kinds)")
+    print("predefined .tcf: " + ", ".join(files))
+    return 0

@@ -1,0 +1,107 @@
+"""``<name>.json``: an application for programs and for ``epg explain``.
+
+The only generated file with line numbers: an edit that only moves lines changes nothing that is compiled.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from epg.emit.cmake import PathNames
+from epg.load.models.model import Model
+from epg.resolve.application import Application, ResolvedComponent, Step, Wire
+from epg.source import Span
+
+
+def describe(app: Application, names: PathNames) -> str:
+    """The description of ``app`` as JSON text."""
+    data: dict[str, Any] = {
+        "name": app.name,
+        "target": {"name": app.target.name, "board": app.target.board.name, "platform": app.target.platform.name},
+        "node": app.node,
+        "namespace": app.namespace,
+        "control": {
+            "period": float(app.period),
+            "step_divider": app.step_divider,
+            "enable_at_start": app.control.enable_at_start,
+            "overrun_limit": app.control.overrun_limit,
+            "enable_topic": app.control.enable_topic,
+            "fail_safe": app.control.fail_safe,
+            "timer": app.tick.resource if app.tick else None,
+        },
+        "communication": {
+            "middleware": app.communication.middleware,
+            "transport": app.communication.transport,
+            "period": float(app.communication.period),
+        },
+        "model": _model(app.model, names),
+        "parameters": dict(sorted(app.parameters.items())),
+        "components": {component.name: _component(component, names) for component in app.components},
+        "inputs": [_wire(wire, "inputs", app, names) for wire in app.inputs],
+        "outputs": [_wire(wire, "outputs", app, names) for wire in app.outputs],
+        "unconnected": sorted({p.name for p in app.model.outputs} - {wire.port.name for wire in app.outputs}),
+        "subscriptions": [topic.name for topic in app.subscriptions],
+        "publications": [topic.name for topic in app.publications],
+    }
+    if app.plant is not None:
+        data["plant"] = {
+            "model": _model(app.plant.model, names),
+            "steps_per_period": app.plant.steps_per_period,
+            "inputs": [_wire(wire, "inputs", app, names) for wire in app.plant.inputs],
+            "outputs": [_wire(wire, "outputs", app, names) for wire in app.plant.outputs],
+        }
+    return json.dumps(data, indent=2, ensure_ascii=False) + "\n"
+
+
+def _model(model: Model, names: PathNames) -> dict[str, Any]:
+    return {
+        "name": model.name,
+        "origin": model.origin,
+        "version": model.version,
+        "method": model.method,
+        "step": float(model.step),
+        "folder": names.shown(model.directory),
+    }
+
+
+def _component(component: ResolvedComponent, names: PathNames) -> dict[str, Any]:
+    return {
+        "kind": component.kind.name,
+        "symbol": component.symbol,
+        "written": _span(component.span, names),
+        "resources": {claim: found.resource for claim, found in component.claims.items()},
+        "pins": {
+            signal: pin
+            for found in component.claims.values()
+            for signal, pin in sorted(found.pins.items())
+            if found.pins_are_real
+        },
+    }
+
+
+def _wire(wire: Wire, section: str, app: Application, names: PathNames) -> dict[str, Any]:
+    return {
+        "port": wire.port.name,
+        "unit": wire.port.unit,
+        "index": wire.port.index,
+        "type": wire.port.type,
+        "symbol": f"{app.name}_{section}.{wire.port.identifier}",
+        "component": wire.component.name,
+        "component_port": wire.component_port.name,
+        "component_unit": wire.component_port.unit,
+        "steps": [_step(step) for step in wire.steps],
+        "written": _span(wire.span, names),
+        "model_file": _span(wire.port.span, names),
+    }
+
+
+def _step(step: Step) -> dict[str, Any]:
+    limits = list(step.limits) if step.limits else None
+    return {"reason": step.reason, "scale": float(step.scale), "offset": step.offset, "limits": limits}
+
+
+def _span(span: Span, names: PathNames) -> str:
+    from pathlib import Path
+
+    return f"{names.shown(Path(span.file))}:{span.line}:{span.column}"

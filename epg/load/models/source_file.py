@@ -1,0 +1,101 @@
+"""Source files of a model as text, with positions.
+
+Generated code is ASCII, but comments carry user and company names, units and port names, and editors save in many
+encodings: text is read as UTF-8 and, where that fails, as Latin-1, which maps every byte.
+"""
+
+from __future__ import annotations
+
+import bisect
+import re
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from epg.diagnostics import Diagnostics
+from epg.source import Span
+
+MAX_BYTES = 16 << 20
+
+_BLANKED = re.compile(
+    r"""//(?:\\\r?\n|[^\n])*|/\*.*?(?:\*/|\Z)|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'""",
+    re.DOTALL,
+)
+_DIRECTIVE = re.compile(r"^[ \t]*#(?:\\\r?\n|[^\n])*", re.MULTILINE)
+_NOT_NEWLINE = re.compile(r"[^\n]")
+
+
+@dataclass(frozen=True)
+class SourceFile:
+    """One file of C or C++."""
+
+    path: Path
+    text: str
+
+    @cached_property
+    def without_comments(self) -> str:
+        """The text with comments and the contents of strings replaced by blanks: offsets stay."""
+        return _BLANKED.sub(_blank, self.text)
+
+    @cached_property
+    def code(self) -> str:
+        """As :attr:`without_comments`, and with preprocessor directives blanked."""
+        return _DIRECTIVE.sub(_blank, self.without_comments)
+
+    @cached_property
+    def _line_starts(self) -> list[int]:
+        return [0, *(match.end() for match in re.finditer("\n", self.text))]
+
+    def span(self, start: int, end: int | None = None) -> Span:
+        """The position of the text from offset ``start`` to ``end`` (on one line)."""
+        line = bisect.bisect_right(self._line_starts, start)
+        column = start - self._line_starts[line - 1] + 1
+        length = max(1, (end if end is not None else start + 1) - start)
+        return Span(str(self.path), line, column, column + length)
+
+
+def read_source(path: Path, diagnostics: Diagnostics, wanted_by: Span | None = None) -> SourceFile | None:
+    """The file at ``path``, or None after reporting why it cannot be read."""
+    text = read_any_text(path, diagnostics, wanted_by)
+    return None if text is None else SourceFile(path, text)
+
+
+def read_any_text(path: Path, diagnostics: Diagnostics, wanted_by: Span | None = None) -> str | None:
+    """The text of ``path`` in whatever encoding, or None after reporting why there is none."""
+    whole = wanted_by or Span(str(path))
+    try:
+        with path.open("rb") as file:
+            data = file.read(MAX_BYTES + 1)
+    except OSError as error:
+        message = f"cannot read '{path.name}': {error.strerror or error}"
+        diagnostics.error("model-unreadable", whole, message, hint="check the file's permissions")
+        return None
+    if len(data) > MAX_BYTES:
+        limit = MAX_BYTES >> 20
+        message = f"'{path.name}' is larger than {limit} MiB"
+        diagnostics.error("model-unreadable", whole, message, hint="is this the right file?")
+        return None
+    if b"\0" in data and not data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        message = f"'{path.name}' is no text"
+        diagnostics.error("model-unreadable", whole, message, hint="export the model again")
+        return None
+    return decode(data)
+
+
+def decode(data: bytes) -> str:
+    """Text of a file; line ends become ``\\n``."""
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        text = data.decode("utf-16", "replace")
+    else:
+        try:
+            text = data.decode("utf-8-sig")
+        except UnicodeDecodeError:
+            text = data.decode("latin-1")
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def _blank(match: re.Match[str]) -> str:
+    matched = match[0]
+    if matched[0] in "\"'" and len(matched) >= 2:
+        return matched[0] + " " * (len(matched) - 2) + matched[-1]
+    return _NOT_NEWLINE.sub(" ", matched)
