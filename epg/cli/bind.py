@@ -1,0 +1,83 @@
+"""``epg bind``: bindings for the ports whose names match, and what a re-export changed."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+
+from epg.cli.arguments import user_roots
+from epg.cli.report import to_json
+from epg.diagnostics import Diagnostics
+from epg.source import Span
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("model", type=Path, metavar="MODEL", help="folder of the model")
+    parser.add_argument("tcf", metavar="TCF", help="target configuration: a file, or one of EPG's by name")
+    parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="bindings to write; default: standard output")
+    parser.add_argument("--update", action="store_true", help="keep what FILE says; add new ports, comment removed ones out")
+
+
+def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
+    from epg.emit.bindings import new_bindings, updated_bindings
+    from epg.load.models import load_model
+    from epg.load.text_file import read_text
+    from epg.project import Request, load_configuration, make_catalog
+    from epg.resolve.matching import match_ports
+
+    request = Request("bind", options.tcf, options.model, Path(), user_roots=user_roots())
+    catalog = make_catalog(request.roots, diagnostics)
+    configuration = load_configuration(request, catalog, diagnostics)
+    model = load_model(options.model, diagnostics)
+    diagnostics.stop_if_errors()
+    assert configuration is not None and model is not None
+    matches = match_ports(model, configuration.components)
+    if options.update:
+        if options.output is None:
+            sys.stderr.write("epg bind: --update needs the file: -o FILE\n")
+            return 2
+        text = read_text(options.output, diagnostics)
+        diagnostics.stop_if_errors()
+        assert text is not None
+        change = updated_bindings(text, str(options.output), model, matches, diagnostics)
+        diagnostics.stop_if_errors()
+        assert change is not None
+        if change.text != text:
+            options.output.write_text(change.text, encoding="utf-8", newline="")
+        if options.json:
+            sys.stdout.write(to_json({"added": list(change.added), "removed": list(change.removed), "open": list(change.open)}))
+        else:
+            _print_changes(change.added, change.removed, change.open)
+        return 0
+    text = new_bindings(model, matches)
+    if options.output is None:
+        sys.stdout.write(text)
+        return 0
+    if options.output.exists():
+        span = Span(str(options.output))
+        diagnostics.error("file-exists", span, "this file exists", hint="use --update to keep it and add what is new")
+        return 1
+    options.output.write_text(text, encoding="utf-8")
+    open_ports = [port for port, match in matches.items() if match.reference is None]
+    if options.json:
+        sys.stdout.write(to_json({"written": str(options.output), "open": open_ports}))
+    else:
+        print(f"wrote {options.output}: {len(matches) - len(open_ports)} ports bound by name")
+        _print_changes((), (), open_ports)
+    return 0
+
+
+def _print_changes(added: Iterable[str], removed: Iterable[str], left: Iterable[str]) -> None:
+    added, removed, left = list(added), list(removed), list(left)
+    for name in added:
+        print(f"added:   {name}")
+    for name in removed:
+        print(f"removed: {name}")
+    for name in left:
+        print(f"to bind: {name}")
+    if not (added or removed or left):
+        print("all ports of the model are bound")
+
+

@@ -1,0 +1,122 @@
+"""``epg explain``: the whole way of a port: model, conversion, component, pin or peripheral, C symbol."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+from epg.cli.arguments import add_target_arguments, request_of
+from epg.cli.report import to_json
+from epg.diagnostics import Diagnostics, did_you_mean
+from epg.source import Span
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("port", help="port of the model, or a component")
+    parser.add_argument("--build", type=Path, metavar="PATH", help="a <name>.json, or a folder to look for one; default: here")
+    parser.add_argument("--name", default="target", help="name of the target, with --tcf")
+    add_target_arguments(parser, required=False)
+
+
+def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
+    if options.tcf and options.model and options.bindings:
+        descriptions = [_from_files(options, diagnostics)]
+    else:
+        descriptions = _from_build(options.build or Path(), diagnostics)
+    found = [(d, wire) for d in descriptions for wire in _wires(d, options.port)]
+    if not found:
+        names = {w["port"] for d in descriptions for w in _all(d)} | {c for d in descriptions for c in d["components"]}
+        for description in descriptions:
+            if options.port in description["unconnected"]:
+                print(f"{options.port}: output of {description['model']['name']}, unconnected")
+                return 0
+        span = Span("command line", 1, 1, len(options.port) + 1, text=options.port)
+        hint = did_you_mean(options.port, names, "ports and components")
+        diagnostics.error("unknown-port", span, f"there is no port or component '{options.port}'", hint=hint)
+        return 1
+    if options.json:
+        sys.stdout.write(to_json([{"target": d["name"], **wire, "resources": _hardware(d, wire)} for d, wire in found]))
+        return 0
+    print("\n\n".join(_text(description, wire) for description, wire in found))
+    return 0
+
+
+def _from_files(options: argparse.Namespace, diagnostics: Diagnostics) -> dict[str, Any]:
+    from epg.emit.cmake import PathNames
+    from epg.emit.description import describe
+    from epg.project import load_application
+
+    app = load_application(request_of(options, options.name), diagnostics)
+    diagnostics.stop_if_errors()
+    assert app is not None
+    data: dict[str, Any] = json.loads(describe(app, PathNames(Path.cwd())))
+    return data
+
+
+def _from_build(path: Path, diagnostics: Diagnostics) -> list[dict[str, Any]]:
+    """The descriptions of the generated targets below ``path``."""
+    files = [path] if path.is_file() else sorted({*path.glob("epg/*/*.json"), *path.glob("*/epg/*/*.json"), *path.glob("*/*/epg/*/*.json")})
+    result = []
+    for file in files:
+        try:
+            data = json.loads(file.read_text(encoding="utf-8"))
+        except (OSError, ValueError):
+            continue
+        if isinstance(data, dict) and "components" in data and "inputs" in data:
+            result.append(data)
+    if not result:
+        span = Span(str(path))
+        hint = "configure a build first, name its folder with --build, or give --tcf, --model and --bindings"
+        diagnostics.error("no-description", span, "there is no generated target here", hint=hint)
+        diagnostics.stop_if_errors()
+    return result
+
+
+def _all(description: dict[str, Any]) -> list[dict[str, Any]]:
+    wires = [{**wire, "direction": "input"} for wire in description["inputs"]]
+    wires += [{**wire, "direction": "output"} for wire in description["outputs"]]
+    return wires
+
+
+def _wires(description: dict[str, Any], name: str) -> list[dict[str, Any]]:
+    return [wire for wire in _all(description) if name in (wire["port"], wire["component"])]
+
+
+def _hardware(description: dict[str, Any], wire: dict[str, Any]) -> dict[str, Any]:
+    component = description["components"][wire["component"]]
+    return {"resources": component["resources"], "pins": component["pins"]}
+
+
+def _text(description: dict[str, Any], wire: dict[str, Any]) -> str:
+    model, component = description["model"], description["components"][wire["component"]]
+    unit = f" [{wire['unit']}]" if wire["unit"] else ""
+    component_unit = f" [{wire['component_unit']}]" if wire["component_unit"] else ""
+    array = "u" if wire["direction"] == "input" else "y"
+    rows = [
+        (f"model {wire['direction']}", f"{wire['port']}{unit}, {wire['type']}", f"{model['name']}: {array}[{wire['index']}]"),
+        ("C symbol", wire["symbol"], wire["model_file"]),
+        ("bound", f"{wire['component']}.{wire['component_port']}", wire["written"]),
+    ]
+    rows += [("conversion", _step_text(step), step["reason"]) for step in wire["steps"]]
+    rows.append(("component", f"{wire['component']}.{wire['component_port']}{component_unit}", f"{component['kind']}, {component['written']}"))
+    rows.append(("C symbol", component["symbol"], ""))
+    rows += [("hardware", resource, claim) for claim, resource in component["resources"].items()]
+    rows += [("pin", f"GPIO {pin}", signal) for signal, pin in component["pins"].items()]
+    width = max(len(row[0]) for row in rows)
+    second = max(len(row[1]) for row in rows)
+    lines = [f"{a.ljust(width)}  {b.ljust(second)}  {c}".rstrip() for a, b, c in rows]
+    return f"{description['name']} ({description['target']['name']})\n  " + "\n  ".join(lines)
+
+
+def _step_text(step: dict[str, Any]) -> str:
+    text = "value"
+    if step["scale"] != 1:
+        text += f" * {step['scale']!r}"
+    if step["offset"]:
+        text += f" + {step['offset']!r}"
+    if step["limits"]:
+        text += f", limited to {step['limits']}"
+    return text

@@ -1,0 +1,64 @@
+"""Which component a model port is probably meant for, by the words of their names.
+
+``encoder_reset_pan`` and ``encoder_pan.reset`` have the same words; ``position_pan`` has only words of
+``encoder_pan.position``.  A match must be the only one of its quality; everything else is left to the user.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from epg.check.configuration import Component
+from epg.load.models.model import Model, Port
+
+
+@dataclass(frozen=True)
+class Match:
+    """``reference`` as bindings write it, None when no name matches; ``candidates`` are all of the right direction."""
+
+    port: Port
+    reference: str | None
+    candidates: tuple[str, ...]
+
+
+def match_ports(model: Model, components: Mapping[str, Component]) -> dict[str, Match]:
+    """The match of every port of ``model``, in its order; no component port is given to two outputs."""
+    result: dict[str, Match] = {}
+    taken: set[str] = set()
+    for port in (*model.inputs, *model.outputs):
+        direction = "source" if port.direction == "input" else "sink"
+        ends = _ends(components, direction)
+        free = {reference: words for reference, words in ends.items() if direction == "source" or reference not in taken}
+        reference = _best(_words(port.name), free)
+        if reference and direction == "sink":
+            taken.add(reference)
+        result[port.name] = Match(port, reference, tuple(sorted(ends)))
+    return result
+
+
+def _ends(components: Mapping[str, Component], direction: str) -> dict[str, tuple[frozenset[str], frozenset[str]]]:
+    """References of a direction -> (words of the reference, the same with the words of its port and kind)."""
+    result = {}
+    for component in components.values():
+        ports = [port for port in component.kind.ports if port.direction == direction]
+        default = next((port for port in ports if port.default), ports[0] if ports else None)
+        for port in ports:
+            reference = component.name if port is default else f"{component.name}.{port.name}"
+            more = _words(component.name) | _words(port.name) | _words(component.kind.name)
+            result[reference] = (_words(reference), more)
+    return result
+
+
+def _best(words: frozenset[str], ends: Mapping[str, tuple[frozenset[str], frozenset[str]]]) -> str | None:
+    same = [reference for reference, (own, _) in ends.items() if own == words]
+    if same:
+        return same[0] if len(same) == 1 else None
+    within = [reference for reference, (_, more) in ends.items() if words <= more]
+    return within[0] if len(within) == 1 else None
+
+
+def _words(name: str) -> frozenset[str]:
+    spaced = re.sub(r"([a-z0-9])([A-Z])", r"\1 \2", name)
+    return frozenset(word.casefold() for word in re.split(r"[^A-Za-z0-9]+", spaced) if word)
