@@ -1,0 +1,21 @@
+# The CMake package EPG: a controller modelled in 20-sim as ordinary build targets.
+#
+#   epg_add_target(<name> TCF <file> MODEL <folder> BINDINGS <file> ...)   library EPG::<name>: model, tables, runtime
+#   epg_add_executable(<executable> EPG::<name>)                           firmware with EPG's own main()
+#   epg_add_model(<name> MODEL <folder> [INSTANCES <n>])                   library EPG::<name>: a model alone
+#
+# The package defines functions only (and, when they are first needed, libraries guarded by if(NOT TARGET)), so that it
+# may be found again in every directory of a project.  docs/cmake.md describes the functions.
+
+if(CMAKE_VERSION VERSION_LESS 3.22)
+  set(EPG_FOUND FALSE)
+  set(EPG_NOT_FOUND_MESSAGE "EPG needs CMake 3.22 or newer; this is ${CMAKE_VERSION}")
+  return()
+endif()
+
+cmake_policy(PUSH)
+cmake_policy(VERSION 3.22...3.31)
+include("${CMAKE_CURRENT_LIST_DIR}/EPGPython.cmake")
+include("${CMAKE_CURRENT_LIST_DIR}/EPGModel.cmake")
+include("${CMAKE_CURRENT_LIST_DIR}/EPGTarget.cmake")
+cmake_policy(POP)

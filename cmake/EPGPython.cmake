@@ -1,0 +1,113 @@
+# How CMake calls EPG's Python backend.
+
+# Finds the interpreter once per build tree: Python3_EXECUTABLE or Python_EXECUTABLE if set, else what FindPython3 finds.
+function(_epg_find_python result)
+  if(NOT EPG_PYTHON OR NOT EXISTS "${EPG_PYTHON}")
+    if(Python3_EXECUTABLE)
+      set(found "${Python3_EXECUTABLE}")
+    elseif(Python_EXECUTABLE)
+      set(found "${Python_EXECUTABLE}")
+    else()
+      # An activated virtual environment wins over newer interpreters of the system, as its user expects.
+      set(Python3_FIND_VIRTUALENV FIRST)
+      set(Python3_FIND_STRATEGY LOCATION)
+      find_package(Python3 3.10 QUIET COMPONENTS Interpreter)
+      set(found "${Python3_EXECUTABLE}")
+    endif()
+    if(NOT found)
+      message(FATAL_ERROR "EPG needs Python 3.10 or newer and found none.\n"
+        "Install it, or name it: cmake -DPython3_EXECUTABLE=<path> ...")
+    endif()
+    set(EPG_PYTHON "${found}" CACHE INTERNAL "Python interpreter that runs EPG")
+  endif()
+  set(${result} "${EPG_PYTHON}" PARENT_SCOPE)
+endfunction()
+
+# Runs `epg <arguments>`; its messages go to the terminal as they are (CMake would wrap their lines).
+# Sets <result> to TRUE or FALSE.
+function(_epg_run result)
+  option(EPG_INSTALL_PYTHON_PACKAGES "Let EPG install Python packages it lacks into its own cache" ON)
+  _epg_find_python(python)
+  set(environment "EPG_ABSOLUTE_PATHS=1")
+  if(NOT EPG_INSTALL_PYTHON_PACKAGES)
+    list(APPEND environment "EPG_NO_INSTALL=1")
+  endif()
+  if(EPG_TARGETS_PATH)
+    string(REPLACE ";" "$<SEMICOLON>" folders "${EPG_TARGETS_PATH}")
+    if(CMAKE_HOST_WIN32)
+      list(JOIN EPG_TARGETS_PATH "\\;" folders)
+    else()
+      list(JOIN EPG_TARGETS_PATH ":" folders)
+    endif()
+    list(APPEND environment "EPG_TARGETS_PATH=${folders}")
+  endif()
+  _epg_python_folder(folder)
+  execute_process(
+    COMMAND "${CMAKE_COMMAND}" -E env ${environment} "${python}" "${folder}/__main__.py" ${ARGN}
+    WORKING_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}"
+    RESULT_VARIABLE status)
+  # The generator itself is an input: a new version of EPG generates anew.
+  file(GLOB_RECURSE own LIST_DIRECTORIES false "${folder}/*.py" "${folder}/*.j2")
+  _epg_data_folder(data)
+  file(GLOB_RECURSE schemas LIST_DIRECTORIES false "${data}/schemas/*.json")
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${own} ${schemas})
+  if(status STREQUAL "0")
+    set(${result} TRUE PARENT_SCOPE)
+  else()
+    set(${result} FALSE PARENT_SCOPE)
+  endif()
+endfunction()
+
+# The folder of the Python package `epg`: beside cmake/ in a checkout, around _data/cmake/ in a wheel.
+function(_epg_python_folder result)
+  get_filename_component(above "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/.." ABSOLUTE)
+  if(EXISTS "${above}/epg/__main__.py")
+    set(${result} "${above}/epg" PARENT_SCOPE)
+  else()
+    get_filename_component(package "${above}/.." ABSOLUTE)
+    set(${result} "${package}" PARENT_SCOPE)
+  endif()
+endfunction()
+
+# The folder that holds targets/ and schemas/.
+function(_epg_data_folder result)
+  get_filename_component(above "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/.." ABSOLUTE)
+  set(${result} "${above}" PARENT_SCOPE)
+endfunction()
+
+# Stops with a message that names the caller's arguments unless all of <required> are given.
+function(_epg_require function name unparsed missing)
+  if(unparsed)
+    list(JOIN unparsed " " words)
+    message(FATAL_ERROR "${function}(${name}): unknown argument: ${words}")
+  endif()
+  if(missing)
+    list(JOIN missing ", " words)
+    message(FATAL_ERROR "${function}(${name}): a keyword without a value: ${words}")
+  endif()
+  foreach(keyword IN LISTS ARGN)
+    if(NOT DEFINED arg_${keyword})
+      message(FATAL_ERROR "${function}(${name}): ${keyword} is missing")
+    endif()
+  endforeach()
+  if(TARGET "${name}")
+    message(FATAL_ERROR "${function}(${name}): a target of this name exists; choose another one")
+  endif()
+endfunction()
+
+# Stops unless the project has enabled <language>.
+function(_epg_require_language language reason)
+  get_property(languages GLOBAL PROPERTY ENABLED_LANGUAGES)
+  if(NOT language IN_LIST languages)
+    message(FATAL_ERROR "EPG: ${reason} needs ${language}: write project(${PROJECT_NAME} LANGUAGES ${languages} ${language})")
+  endif()
+endfunction()
+
+# The options with which + - x / give the same bits on every target.
+function(_epg_exact_arithmetic target)
+  target_compile_options(${target} PRIVATE
+    $<$<OR:$<C_COMPILER_ID:GNU,Clang,AppleClang,ARMClang>,$<CXX_COMPILER_ID:GNU,Clang,AppleClang,ARMClang>>:-ffp-contract=off>)
+  set_target_properties(${target} PROPERTIES
+    C_STANDARD 11 C_STANDARD_REQUIRED ON C_EXTENSIONS OFF
+    CXX_STANDARD 17 CXX_STANDARD_REQUIRED ON CXX_EXTENSIONS OFF)
+endfunction()

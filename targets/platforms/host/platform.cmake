@@ -1,0 +1,30 @@
+# The host platform for CMake: its port layer as the library EPG::host, and executables with EPG's main().
+
+function(_epg_host_library)
+  if(TARGET epg_host)
+    return()
+  endif()
+  find_package(Threads REQUIRED)
+  set(folder "${CMAKE_CURRENT_FUNCTION_LIST_DIR}")
+  file(GLOB sources CONFIGURE_DEPENDS "${folder}/src/*.c")
+  list(FILTER sources EXCLUDE REGEX "/main\\.c$")
+  # A library of its own rather than sources of the user's executable: the host needs no SDK settings.
+  add_library(epg_host STATIC EXCLUDE_FROM_ALL ${sources})
+  target_include_directories(epg_host PUBLIC "${folder}/include")
+  target_link_libraries(epg_host PUBLIC epg_runtime Threads::Threads $<$<NOT:$<BOOL:${WIN32}>>:m>)
+  set_target_properties(epg_host PROPERTIES C_STANDARD 11 C_STANDARD_REQUIRED ON C_EXTENSIONS OFF)
+  target_compile_definitions(epg_host PRIVATE _POSIX_C_SOURCE=200809L)
+  add_library(EPG::host ALIAS epg_host)
+endfunction()
+
+function(_epg_host_target name)
+  _epg_host_library()
+  target_link_libraries(${name} PUBLIC epg_host)
+endfunction()
+
+function(_epg_host_executable executable name)
+  add_executable(${executable} "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/src/main.c")
+  target_compile_definitions(${executable} PRIVATE EPG_HOST_TARGET=${name}_host)
+  target_link_libraries(${executable} PRIVATE ${name})
+  set_target_properties(${executable} PROPERTIES C_STANDARD 11 C_STANDARD_REQUIRED ON)
+endfunction()
