@@ -7,18 +7,21 @@
  * epg_control_cycle() at every tick; the *communication side* delivers setpoints, fetches monitoring values and
  * requests enabling.  The two share nothing but the wait-free exchanges and a few atomic words.
  *
- * | event                                        | effect                                                        |
- * |----------------------------------------------|---------------------------------------------------------------|
- * | disabled                                     | actuators safe within one cycle; sensors, topics and model run on; encoder resets are withheld, so zero positions stay |
- * | enabled                                      | the model is initialised again                                |
- * | setpoint not finite                          | dropped and counted, the value before it stays                |
- * | model input, state or output not finite      | disabled, latched: EPG_FAULT_NOT_FINITE                       |
- * | model asks to stop (stopsimulation)          | disabled, latched: EPG_FAULT_MODEL_STOPPED                    |
- * | `overrun_limit` overruns in a row            | disabled, latched: EPG_FAULT_OVERRUN                          |
- * | setpoint older than its timeout              | hold, zero or disable (EPG_FAULT_SETPOINT_TIMEOUT)            |
- * | fail-safe input inactive                     | disabled, latched: EPG_FAULT_FAIL_SAFE                        |
- * | late cycle                                   | runs once; cycles that were missed are counted, not made up   |
+ * | event                                   | effect                                                             |
+ * |-----------------------------------------|--------------------------------------------------------------------|
+ * | disabled                                | actuators safe within one cycle; sensors, topics and model run on; |
+ * |                                         | encoder resets are withheld, so zero positions stay                |
+ * | enabled                                 | the model is initialised again, timeouts start again               |
+ * | setpoint not finite                     | dropped and counted, the value before it stays                     |
+ * | model input, state or output not finite | disabled, latched: EPG_FAULT_NOT_FINITE; the model rests           |
+ * | model asks to stop (stopsimulation)     | disabled, latched: EPG_FAULT_MODEL_STOPPED; the model rests        |
+ * | `overrun_limit` overruns in a row       | disabled, latched: EPG_FAULT_OVERRUN                               |
+ * | setpoint older than its timeout         | hold, zero or disable (latched: EPG_FAULT_SETPOINT_TIMEOUT)        |
+ * | fail-safe input inactive                | disabled, latched: EPG_FAULT_FAIL_SAFE                             |
+ * | late cycle                              | runs once; cycles that were missed are counted, not made up        |
  *
+ * A model that rests is not run until the target is enabled again; what it published last stays.  Of several faults
+ * the first is kept.  An old setpoint is no fault while the target is disabled: nobody need send any then.
  * A latched fault is cleared only by an explicit request to enable.
  */
 #ifndef EPG_CONTROL_H
@@ -37,9 +40,9 @@ typedef enum epg_timeout_action { EPG_TIMEOUT_HOLD, EPG_TIMEOUT_ZERO, EPG_TIMEOU
 
 /** One setpoint as the `.tcf` declares it. */
 typedef struct epg_setpoint {
-    double initial;                /**< value before the first one arrives */
-    double rate_limit;             /**< largest change per second of the value the model sees; 0: unlimited */
-    uint64_t timeout_ns;           /**< 0: never too old */
+    double initial;      /**< value before the first one arrives, and after a timeout that disabled */
+    double rate_limit;   /**< largest change per second of the value the model sees; 0: unlimited */
+    uint64_t timeout_ns; /**< largest age, counted from the first sample and from enabling; 0: never too old */
     epg_timeout_action_t action;
 } epg_setpoint_t;
 
@@ -47,16 +50,16 @@ typedef struct epg_setpoint {
 typedef struct epg_setpoint_sample {
     double value;
     uint64_t received_ns;
-    uint32_t count;                /**< samples received so far; 0: none yet */
+    uint32_t count; /**< samples received so far; 0: none yet */
 } epg_setpoint_sample_t;
 
 /** What the control side keeps for one setpoint. */
 typedef struct epg_setpoint_state {
-    double value;                  /**< as the model sees it: after timeout and rate limit */
-    double target;                 /**< as received last */
-    uint64_t received_ns;
-    uint32_t count;
-    bool timed_out;
+    double value;      /**< as the model sees it: after timeout and rate limit */
+    double target;     /**< as received last, or what its timeout made of it */
+    uint64_t fresh_ns; /**< when its age began to count: received, or enabled after that */
+    uint32_t count;    /**< of the sample taken last; 0: none yet */
+    bool timed_out;    /**< until the next sample */
 } epg_setpoint_state_t;
 
 /**
@@ -66,21 +69,21 @@ typedef struct epg_setpoint_state {
 typedef struct epg_application {
     const char *name;
     uint64_t period_ns;
-    uint32_t step_divider;         /**< the model runs every n-th cycle */
-    uint32_t overrun_limit;        /**< overruns in a row that disable; 0: never */
+    uint32_t step_divider;  /**< the model runs every n-th cycle; at least 1 */
+    uint32_t overrun_limit; /**< overruns in a row that disable; 0: never */
     bool enable_at_start;
 
-    void (*start)(void);           /**< configures all peripherals, outputs safe; before the first cycle */
-    void (*read)(void);            /**< samples all sensors, and fills the model's inputs; every cycle */
+    void (*start)(void); /**< configures all peripherals, outputs safe; before the first cycle */
+    void (*read)(void);  /**< samples all sensors, and fills the model's inputs; every cycle */
     bool (*inputs_finite)(void);
-    void (*model_init)(void);      /**< (re-)initialises the model with the inputs read last */
+    void (*model_init)(void); /**< (re-)initialises the model with the inputs read last */
     void (*model_step)(void);
-    bool (*model_finite)(void);    /**< states and outputs */
-    bool (*model_stopped)(void);   /**< the model has asked to stop; NULL: it never does */
-    void (*write)(void);           /**< model outputs to actuators and resets */
-    void (*safe)(void);            /**< every actuator to its safe value */
-    void (*monitor)(double *values); /**< fills `monitor_count` values to publish */
-    bool (*fail_safe)(void);       /**< true: the target may be enabled; NULL: no such input */
+    bool (*model_finite)(void);      /**< states and outputs */
+    bool (*model_stopped)(void);     /**< the model has asked to stop; NULL: it never does */
+    void (*write)(void);             /**< model outputs to actuators and resets; after each step */
+    void (*safe)(void);              /**< every actuator to its safe value; every cycle while disabled */
+    void (*monitor)(double *values); /**< fills `monitor_count` values to publish; NULL: none */
+    bool (*fail_safe)(void);         /**< true: the target may be enabled; before read(); NULL: no such input */
 
     size_t setpoint_count;
     const epg_setpoint_t *setpoints;
@@ -90,8 +93,8 @@ typedef struct epg_application {
     epg_exchange_t *setpoint_exchange;     /**< of `setpoint_count` samples; NULL: no setpoints */
 
     size_t monitor_count;
-    double *monitor_values;                /**< `monitor_count`: the control side's copy */
-    epg_exchange_t *monitor_exchange;      /**< of `monitor_count` doubles; NULL: nothing to publish */
+    double *monitor_values;           /**< `monitor_count`: the control side's copy */
+    epg_exchange_t *monitor_exchange; /**< of `monitor_count` doubles; NULL: nothing to publish */
 } epg_application_t;
 
 typedef struct epg_control {
@@ -99,20 +102,29 @@ typedef struct epg_control {
     epg_statistics_t statistics;
     epg_fault_t fault;
     bool enabled;
-    bool model_valid;              /**< false after a non-finite value: the model does not run until initialised */
-    uint32_t until_step;           /**< cycles until the model's next step */
+    bool initialise;     /**< the model is to be initialised in this or the next cycle */
+    bool model_valid;    /**< false: not initialised, or it rests after a fault */
+    uint32_t until_step; /**< cycles until the model's next step */
     uint32_t consecutive_overruns;
     uint32_t request_seen;
-    atomic_uint request;           /**< written by the communication side: (sequence << 1) | enable */
-    atomic_uint dropped;           /**< setpoints the communication side refused */
-    atomic_uint reconnects;        /**< written by the communication side */
+    atomic_uint request;    /**< written by the communication side: (sequence << 1) | enable */
+    atomic_uint dropped;    /**< setpoints the communication side refused */
+    atomic_uint reconnects; /**< written by the communication side */
     epg_exchange_t status_exchange;
     epg_status_t status_slots[4];
 } epg_control_t;
 
+/*
+ * One context is the control side, one other the communication side; two contexts may be the communication side if
+ * they take turns.  epg_control_request() alone may be called from anywhere: of two calls at the same time one acts.
+ */
+
 /* Control side ----------------------------------------------------------------------------------------------- */
 
-/** Starts peripherals (outputs safe) and initialises model and state.  Before the first cycle; may be called again. */
+/**
+ * Starts peripherals (outputs safe) and clears all state; the model is initialised in the first cycle, with that
+ * cycle's inputs.  Before the first cycle; may be called again while neither side is active.
+ */
 void epg_control_start(epg_control_t *control, const epg_application_t *application);
 
 /**
@@ -121,7 +133,7 @@ void epg_control_start(epg_control_t *control, const epg_application_t *applicat
  */
 void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed);
 
-/** Counts a value that had to be limited.  Called by generated code and component drivers. */
+/** Counts a value that had to be limited.  Called by generated code. */
 void epg_control_count_clamped(epg_control_t *control);
 
 /** Value of setpoint `index` in this cycle. */
@@ -131,11 +143,16 @@ double epg_control_setpoint(const epg_control_t *control, size_t index);
 
 /**
  * Delivers a received value to setpoint `index`.  Several values that arrived together can be handed over as one
- * by `publish` false for all but the last.  Returns false if the value is not finite and was dropped.
+ * by `publish` false for all but the last: the model sees them in the same cycle.  Returns false if the value is not
+ * finite (then it is dropped and counted, and those handed over before it are published all the same) or if there is
+ * no such setpoint.  `received_ns` is in epg_port_time_ns()'s time base.
  */
 bool epg_control_receive(epg_control_t *control, size_t index, double value, uint64_t received_ns, bool publish);
 
-/** Copies the newest monitoring values; false before the first cycle. */
+/**
+ * Copies the newest monitoring values (`monitor_count`, all of one cycle and finite); false before the model's first
+ * step, or when there are none.
+ */
 bool epg_control_monitor(epg_control_t *control, double *values);
 
 /** Copies the newest status; false before the first cycle. */

@@ -7,7 +7,8 @@
  * words, so it works between the two cores of an RP2040, which has no exclusive-access instructions.
  *
  * Algorithm: H. Simpson, "Four-slot fully asynchronous communication mechanism", IEE Proceedings E 137(1), 1990.
- * The control words are sequentially consistent C11 atomics, which the algorithm needs on out-of-order memory.
+ * The control words are sequentially consistent C11 atomics, which the algorithm needs on out-of-order memory and
+ * against reordering by the compiler.  Reading and writing take a constant time: one copy each.
  */
 #ifndef EPG_EXCHANGE_H
 #define EPG_EXCHANGE_H
@@ -19,16 +20,21 @@
 
 /** State of one exchange.  Zero-initialised memory plus `slots` and `size` is a valid, empty exchange. */
 typedef struct epg_exchange {
-    void *slots;              /**< 4 * `size` bytes */
-    size_t size;              /**< bytes of one value */
-    atomic_uint latest;       /**< pair written last: 0 or 1 */
-    atomic_uint reading;      /**< pair the reader works on: 0 or 1 */
-    atomic_uint slot[2];      /**< slot written last in each pair: 0 or 1 */
-    atomic_bool written;      /**< false until the first write has finished */
+    void *slots;         /**< 4 * `size` bytes */
+    size_t size;         /**< bytes of one value */
+    atomic_uint latest;  /**< pair written last: 0 or 1 */
+    atomic_uint reading; /**< pair the reader works on: 0 or 1 */
+    atomic_uint slot[2]; /**< slot written last in each pair: 0 or 1 */
+    atomic_bool written; /**< false until the first write has finished */
 } epg_exchange_t;
 
 /** Static initialiser; `storage` is an array of four values. */
+/* clang-format off */
 #define EPG_EXCHANGE(storage) {.slots = (storage), .size = sizeof((storage)[0])}
+/* clang-format on */
+
+/** Makes it empty again.  Only while neither side uses it. */
+void epg_exchange_clear(epg_exchange_t *exchange);
 
 /** Publishes `*value` (`size` bytes).  Only one context may write. */
 void epg_exchange_write(epg_exchange_t *exchange, const void *value);

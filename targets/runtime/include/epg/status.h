@@ -18,8 +18,8 @@ extern "C" {
 /** State and fault of a target at one moment. */
 typedef struct epg_status {
     bool enabled;
-    epg_fault_t fault;             /**< why it is disabled; EPG_FAULT_NONE: by request */
-    uint64_t time_ns;              /**< tick of the cycle that wrote this */
+    epg_fault_t fault; /**< why it is disabled; EPG_FAULT_NONE: by request */
+    uint64_t time_ns;  /**< tick of the cycle that wrote this */
     epg_statistics_t statistics;
 } epg_status_t;
 

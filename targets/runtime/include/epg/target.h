@@ -14,18 +14,18 @@ typedef enum epg_qos { EPG_QOS_RELIABLE, EPG_QOS_BEST_EFFORT } epg_qos_t;
 
 /** One topic of type `std_msgs/msg/Float64`. */
 typedef struct epg_topic {
-    const char *name;              /**< as written: relative to the namespace, or absolute with a leading slash */
+    const char *name; /**< as written: relative to the namespace, or absolute with a leading slash */
     epg_qos_t qos;
-    size_t index;                  /**< of the setpoint (subscription) or monitoring value (publication) */
+    size_t index; /**< of the setpoint (subscription) or monitoring value (publication) */
 } epg_topic_t;
 
 typedef struct epg_target {
     epg_control_t *control;
     const epg_application_t *application;
     const char *node;
-    const char *name_space;        /**< "" or "/robot1" */
+    const char *name_space;           /**< "" or "/robot1" */
     uint64_t communication_period_ns; /**< between two publications */
-    const char *enable_topic;      /**< of type `std_msgs/msg/Bool`; NULL: none */
+    const char *enable_topic;         /**< of type `std_msgs/msg/Bool`; NULL: none */
     size_t subscription_count;
     const epg_topic_t *subscriptions;
     size_t publication_count;

@@ -1,0 +1,214 @@
+/**
+ * @file
+ * The control cycle.
+ */
+#include "epg/control.h"
+
+#include "epg/port.h"
+#include "setpoint.h"
+
+void epg_control_start(epg_control_t *control, const epg_application_t *application)
+{
+    *control = (epg_control_t){
+        .application = application,
+        .enabled = application->enable_at_start,
+        .initialise = true,
+        .status_exchange = {.slots = control->status_slots, .size = sizeof control->status_slots[0]},
+    };
+    epg_setpoints_start(application);
+    for (size_t i = 0; i < application->monitor_count; i++) {
+        application->monitor_values[i] = 0.0;
+    }
+    if (application->monitor_exchange != NULL) {
+        epg_exchange_clear(application->monitor_exchange);
+    }
+    application->start();
+    application->safe(); /* whatever the peripherals start with */
+}
+
+/** Disables and latches; the fault that came first stays, it is the cause of what follows. */
+static void latch(epg_control_t *control, epg_fault_t fault)
+{
+    if (control->fault == EPG_FAULT_NONE) {
+        control->fault = fault;
+        control->statistics.faults++;
+    }
+    control->enabled = false;
+}
+
+/** Acts on a new request; `permitted` is what the fail-safe input says. */
+static void handle_request(epg_control_t *control, bool permitted, uint64_t now_ns)
+{
+    const unsigned int request = atomic_load(&control->request);
+    if (request == control->request_seen) {
+        return;
+    }
+    control->request_seen = request;
+    if ((request & 1U) == 0U) {
+        control->enabled = false;
+        return;
+    }
+    if (control->enabled) {
+        return;
+    }
+    control->fault = EPG_FAULT_NONE;
+    if (permitted) {
+        control->enabled = true;
+        control->initialise = true;
+        control->consecutive_overruns = 0;
+        epg_setpoints_enable(control->application, now_ns);
+    }
+}
+
+/** Everything that may enable or disable before a sensor is read, and the setpoints the model will see. */
+static void command(epg_control_t *control, uint64_t now_ns)
+{
+    const epg_application_t *application = control->application;
+    epg_setpoints_take(application);
+    const bool permitted = application->fail_safe == NULL || application->fail_safe();
+    handle_request(control, permitted, now_ns);
+    if (!permitted) {
+        latch(control, EPG_FAULT_FAIL_SAFE);
+    }
+    if (!epg_setpoints_update(application, now_ns, &control->statistics) && control->enabled) {
+        latch(control, EPG_FAULT_SETPOINT_TIMEOUT);
+    }
+}
+
+/** Runs the model if it is its turn; true if it ran and all its values are finite. */
+static bool run_model(epg_control_t *control)
+{
+    const epg_application_t *application = control->application;
+    if (!application->inputs_finite()) {
+        control->initialise = false;
+        control->model_valid = false;
+        latch(control, EPG_FAULT_NOT_FINITE);
+        return false;
+    }
+    if (control->initialise) {
+        application->model_init();
+        control->initialise = false;
+        control->model_valid = true;
+        control->until_step = 0;
+    }
+    if (!control->model_valid) {
+        return false;
+    }
+    if (control->until_step > 0) {
+        control->until_step--;
+        return false;
+    }
+    control->until_step = application->step_divider - 1U;
+    application->model_step();
+    if (!application->model_finite()) {
+        control->model_valid = false;
+        latch(control, EPG_FAULT_NOT_FINITE);
+        return false;
+    }
+    if (application->model_stopped != NULL && application->model_stopped()) {
+        control->model_valid = false;
+        latch(control, EPG_FAULT_MODEL_STOPPED);
+    }
+    return true;
+}
+
+static uint32_t saturated(uint64_t value)
+{
+    return value < UINT32_MAX ? (uint32_t)value : UINT32_MAX;
+}
+
+/** Counts a cycle that ran from `begin_ns` to `end_ns`; true if it was an overrun. */
+static bool count_cycle(epg_control_t *control, uint64_t tick_ns, uint64_t begin_ns, uint64_t end_ns, uint32_t missed)
+{
+    epg_statistics_t *statistics = &control->statistics;
+    const uint32_t lateness = begin_ns > tick_ns ? saturated(begin_ns - tick_ns) : 0U;
+    const uint32_t computation = saturated(end_ns - begin_ns);
+    const bool overrun = end_ns > tick_ns + control->application->period_ns || missed > 0;
+
+    statistics->cycles++;
+    statistics->missed += missed;
+    if (lateness > statistics->lateness_max) {
+        statistics->lateness_max = lateness;
+    }
+    if (computation < statistics->computation_min || statistics->cycles == 1) {
+        statistics->computation_min = computation;
+    }
+    if (computation > statistics->computation_max) {
+        statistics->computation_max = computation;
+    }
+    statistics->computation_total += computation;
+    if (overrun) {
+        statistics->overruns++;
+    }
+    return overrun;
+}
+
+static void publish_status(epg_control_t *control, uint64_t tick_ns)
+{
+    control->statistics.setpoints_dropped = atomic_load(&control->dropped);
+    control->statistics.reconnects = atomic_load(&control->reconnects);
+    const epg_status_t status = {
+        .enabled = control->enabled,
+        .fault = control->fault,
+        .time_ns = tick_ns,
+        .statistics = control->statistics,
+    };
+    epg_exchange_write(&control->status_exchange, &status);
+}
+
+void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed)
+{
+    const epg_application_t *application = control->application;
+    const uint64_t begin_ns = epg_port_time_ns();
+
+    command(control, begin_ns);
+    application->read();
+    const bool stepped = run_model(control);
+    if (!control->enabled) {
+        application->safe();
+    } else if (stepped) {
+        application->write();
+    }
+    if (stepped && application->monitor != NULL) {
+        application->monitor(application->monitor_values);
+        epg_exchange_write(application->monitor_exchange, application->monitor_values);
+    }
+
+    const bool overrun = count_cycle(control, tick_ns, begin_ns, epg_port_time_ns(), missed);
+    control->consecutive_overruns = overrun ? control->consecutive_overruns + 1U : 0U;
+    if (application->overrun_limit > 0 && control->consecutive_overruns >= application->overrun_limit) {
+        latch(control, EPG_FAULT_OVERRUN);
+        application->safe();
+    }
+    publish_status(control, tick_ns);
+}
+
+void epg_control_count_clamped(epg_control_t *control)
+{
+    control->statistics.clamped++;
+}
+
+/* Communication side ------------------------------------------------------------------------------------------- */
+
+bool epg_control_monitor(epg_control_t *control, double *values)
+{
+    const epg_application_t *application = control->application;
+    return application != NULL && application->monitor_exchange != NULL &&
+           epg_exchange_read(application->monitor_exchange, values);
+}
+
+bool epg_control_status(epg_control_t *control, epg_status_t *status)
+{
+    return epg_exchange_read(&control->status_exchange, status);
+}
+
+void epg_control_request(epg_control_t *control, bool enable)
+{
+    const unsigned int sequence = (atomic_load(&control->request) | 1U) + 1U;
+    atomic_store(&control->request, sequence | (enable ? 1U : 0U));
+}
+
+void epg_control_count_reconnect(epg_control_t *control)
+{
+    atomic_store(&control->reconnects, atomic_load(&control->reconnects) + 1U);
+}

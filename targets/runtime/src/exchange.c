@@ -1,0 +1,47 @@
+/**
+ * @file
+ * Simpson's four-slot mechanism.
+ *
+ * Slots form two pairs of two.  The writer avoids the pair the reader works on, and within a pair the slot written
+ * last; the reader announces the pair before it asks which of its slots is the newest.  tests/runtime/exchange.pml
+ * is the same algorithm, statement by statement, for the model checker.
+ */
+#include "epg/exchange.h"
+
+#include <string.h>
+
+static void *slot(const epg_exchange_t *exchange, unsigned int pair, unsigned int index)
+{
+    return (unsigned char *)exchange->slots + (size_t)(2U * pair + index) * exchange->size;
+}
+
+void epg_exchange_clear(epg_exchange_t *exchange)
+{
+    atomic_store(&exchange->written, false);
+    atomic_store(&exchange->latest, 0U);
+    atomic_store(&exchange->reading, 0U);
+    atomic_store(&exchange->slot[0], 0U);
+    atomic_store(&exchange->slot[1], 0U);
+}
+
+void epg_exchange_write(epg_exchange_t *exchange, const void *value)
+{
+    const unsigned int pair = 1U - atomic_load(&exchange->reading);
+    const unsigned int index = 1U - atomic_load(&exchange->slot[pair]);
+    memcpy(slot(exchange, pair, index), value, exchange->size);
+    atomic_store(&exchange->slot[pair], index);
+    atomic_store(&exchange->latest, pair);
+    atomic_store(&exchange->written, true);
+}
+
+bool epg_exchange_read(epg_exchange_t *exchange, void *value)
+{
+    if (!atomic_load(&exchange->written)) {
+        return false;
+    }
+    const unsigned int pair = atomic_load(&exchange->latest);
+    atomic_store(&exchange->reading, pair);
+    const unsigned int index = atomic_load(&exchange->slot[pair]);
+    memcpy(value, slot(exchange, pair, index), exchange->size);
+    return true;
+}

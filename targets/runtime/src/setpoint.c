@@ -1,0 +1,123 @@
+/**
+ * @file
+ * Setpoints on the control side.
+ */
+#include "setpoint.h"
+
+#include "epg/finite.h"
+
+void epg_setpoints_start(const epg_application_t *application)
+{
+    for (size_t i = 0; i < application->setpoint_count; i++) {
+        const double initial = application->setpoints[i].initial;
+        application->samples[i] = (epg_setpoint_sample_t){0};
+        application->received[i] = (epg_setpoint_sample_t){0};
+        application->setpoint_states[i] = (epg_setpoint_state_t){.value = initial, .target = initial};
+    }
+    if (application->setpoint_exchange != NULL) {
+        epg_exchange_clear(application->setpoint_exchange);
+    }
+}
+
+void epg_setpoints_take(const epg_application_t *application)
+{
+    if (application->setpoint_exchange == NULL ||
+        !epg_exchange_read(application->setpoint_exchange, application->samples)) {
+        return;
+    }
+    for (size_t i = 0; i < application->setpoint_count; i++) {
+        const epg_setpoint_sample_t *sample = &application->samples[i];
+        epg_setpoint_state_t *state = &application->setpoint_states[i];
+        if (sample->count != state->count) {
+            state->target = sample->value;
+            state->fresh_ns = sample->received_ns;
+            state->count = sample->count;
+            state->timed_out = false;
+        }
+    }
+}
+
+void epg_setpoints_enable(const epg_application_t *application, uint64_t now_ns)
+{
+    for (size_t i = 0; i < application->setpoint_count; i++) {
+        epg_setpoint_state_t *state = &application->setpoint_states[i];
+        /* Enabling must not revive a command whose sender has gone. */
+        if (state->timed_out && application->setpoints[i].action == EPG_TIMEOUT_DISABLE) {
+            state->target = application->setpoints[i].initial;
+        }
+        state->fresh_ns = now_ns;
+        state->timed_out = false;
+    }
+}
+
+/** False before the first sample: `initial` has no age. */
+static bool too_old(const epg_setpoint_t *setpoint, const epg_setpoint_state_t *state, uint64_t now_ns)
+{
+    /* A sample received while this cycle was starting is younger than the cycle. */
+    return setpoint->timeout_ns > 0 && state->count > 0 && now_ns > state->fresh_ns &&
+           now_ns - state->fresh_ns > setpoint->timeout_ns;
+}
+
+static double limited(double value, double target, double largest)
+{
+    const double change = target - value;
+    if (change > largest) {
+        return value + largest;
+    }
+    if (change < -largest) {
+        return value - largest;
+    }
+    return target;
+}
+
+bool epg_setpoints_update(const epg_application_t *application, uint64_t now_ns, epg_statistics_t *statistics)
+{
+    const double period = (double)application->period_ns * 1e-9;
+    bool valid = true;
+    for (size_t i = 0; i < application->setpoint_count; i++) {
+        const epg_setpoint_t *setpoint = &application->setpoints[i];
+        epg_setpoint_state_t *state = &application->setpoint_states[i];
+        if (!state->timed_out && too_old(setpoint, state, now_ns)) {
+            state->timed_out = true;
+            statistics->setpoint_timeouts++;
+            if (setpoint->action == EPG_TIMEOUT_ZERO) {
+                state->target = 0.0;
+            }
+        }
+        if (state->timed_out && setpoint->action == EPG_TIMEOUT_DISABLE) {
+            valid = false;
+        }
+        state->value = setpoint->rate_limit > 0.0 ? limited(state->value, state->target, setpoint->rate_limit * period)
+                                                  : state->target;
+    }
+    return valid;
+}
+
+double epg_control_setpoint(const epg_control_t *control, size_t index)
+{
+    return control->application->setpoint_states[index].value;
+}
+
+/* Communication side ------------------------------------------------------------------------------------------- */
+
+bool epg_control_receive(epg_control_t *control, size_t index, double value, uint64_t received_ns, bool publish)
+{
+    const epg_application_t *application = control->application;
+    if (application == NULL || index >= application->setpoint_count) {
+        return false;
+    }
+    const bool finite = epg_is_finite(value);
+    if (finite) {
+        epg_setpoint_sample_t *sample = &application->received[index];
+        sample->value = value;
+        sample->received_ns = received_ns;
+        sample->count = sample->count == UINT32_MAX ? 1U : sample->count + 1U; /* 0 means none yet */
+    } else {
+        /* Not a read-modify-write, which the Cortex-M0+ lacks: only the communication side writes this word. */
+        atomic_store(&control->dropped, atomic_load(&control->dropped) + 1U);
+    }
+    if (publish) {
+        epg_exchange_write(application->setpoint_exchange, application->received);
+    }
+    return finite;
+}

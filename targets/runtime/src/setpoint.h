@@ -1,0 +1,25 @@
+/**
+ * @file
+ * Setpoints on the control side: newest sample, age, rate limit.  Internal to the control cycle.
+ */
+#ifndef EPG_SETPOINT_H
+#define EPG_SETPOINT_H
+
+#include "epg/control.h"
+
+/** All setpoints to their initial values, all samples forgotten. */
+void epg_setpoints_start(const epg_application_t *application);
+
+/** Takes over the newest samples. */
+void epg_setpoints_take(const epg_application_t *application);
+
+/** Their ages count from `now_ns` on: the target is being enabled. */
+void epg_setpoints_enable(const epg_application_t *application, uint64_t now_ns);
+
+/**
+ * Applies timeouts and rate limits: one control period's worth, however late the cycle is.  Returns false if a
+ * setpoint is too old whose action is to disable.
+ */
+bool epg_setpoints_update(const epg_application_t *application, uint64_t now_ns, epg_statistics_t *statistics);
+
+#endif
