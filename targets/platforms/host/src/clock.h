@@ -1,0 +1,19 @@
+/**
+ * @file
+ * The host's two clocks: the monotonic one, and the simulated one that replaces it in simulated time.
+ */
+#ifndef EPG_HOST_CLOCK_H
+#define EPG_HOST_CLOCK_H
+
+#include <stdint.h>
+
+/** Monotonic time in nanoseconds, whatever epg_port_time_ns() returns.  Callable from every thread. */
+uint64_t epg_host_monotonic_ns(void);
+
+/** From now on epg_port_time_ns() returns `time_ns`.  Single-threaded use only. */
+void epg_host_clock_simulate(uint64_t time_ns);
+
+/** From now on epg_port_time_ns() returns monotonic time.  The state at program start. */
+void epg_host_clock_real(void);
+
+#endif

@@ -1,0 +1,120 @@
+/**
+ * @file
+ * The communication side of the host.
+ */
+#include "communication.h"
+
+#include <stdlib.h>
+
+#include "epg/host.h"
+#include "number.h"
+
+bool epg_host_communication_start(epg_host_communication_t *communication, const epg_target_t *target,
+                                  const epg_host_events_t *events, uint64_t end_ns, FILE *topics)
+{
+    const size_t count = target->application->monitor_count;
+    *communication = (epg_host_communication_t){
+        .target = target,
+        .events = events,
+        .end_ns = end_ns,
+        .topics = topics,
+        .values = calloc(count > 0 ? count : 1, sizeof(double)),
+        .next_publication_ns = target->publication_count > 0 && target->communication_period_ns > 0 ? 0 : UINT64_MAX};
+    if (communication->values == NULL) {
+        fputs("error: not enough memory for the publications\n", stderr);
+        return false;
+    }
+    if (topics != NULL) {
+        fputs("time,topic,value\n", topics);
+    }
+    return true;
+}
+
+static uint64_t next_event_ns(const epg_host_communication_t *communication)
+{
+    const epg_host_events_t *events = communication->events;
+    return communication->next_event < events->count ? events->events[communication->next_event].time_ns : UINT64_MAX;
+}
+
+uint64_t epg_host_communication_next(const epg_host_communication_t *communication)
+{
+    const uint64_t event_ns = next_event_ns(communication);
+    const uint64_t publication_ns = communication->next_publication_ns;
+    const uint64_t next_ns = event_ns < publication_ns ? event_ns : publication_ns;
+    return next_ns < communication->end_ns ? next_ns : UINT64_MAX;
+}
+
+/** The next event takes effect at `time_ns`. */
+static void deliver(epg_host_communication_t *communication, uint64_t time_ns)
+{
+    const epg_host_event_t *event = &communication->events->events[communication->next_event];
+    communication->next_event++;
+    switch (event->kind) {
+    case EPG_HOST_SETPOINT:
+        epg_control_receive(communication->target->control, event->index, event->value,
+                            communication->start_ns + time_ns, event->publish);
+        break;
+    case EPG_HOST_ENABLE:
+        epg_control_request(communication->target->control, event->value > 0.5);
+        break;
+    case EPG_HOST_PIN:
+        epg_host_input_set((uint8_t)event->index, event->value > 0.5);
+        break;
+    case EPG_HOST_STALL:
+    default:
+        communication->stall_ns += (uint64_t)(event->value * 1e9 + 0.5);
+        break;
+    }
+}
+
+/** Publishes the newest values, as at `time_ns`.  Before the first cycle there are none. */
+static void publish(epg_host_communication_t *communication, uint64_t time_ns)
+{
+    const epg_target_t *target = communication->target;
+    if (!epg_control_monitor(target->control, communication->values) || communication->topics == NULL) {
+        return;
+    }
+    for (size_t i = 0; i < target->publication_count; i++) {
+        epg_host_write_number(communication->topics, epg_host_seconds(time_ns));
+        fprintf(communication->topics, ",%s,", target->publications[i].name);
+        epg_host_write_number(communication->topics, communication->values[target->publications[i].index]);
+        fputc('\n', communication->topics);
+    }
+}
+
+void epg_host_communicate_simulated(epg_host_communication_t *communication, uint64_t time_ns)
+{
+    for (;;) {
+        const uint64_t next_ns = epg_host_communication_next(communication);
+        const bool event = next_ns == next_event_ns(communication);
+        if (next_ns == UINT64_MAX || next_ns > time_ns || (next_ns == time_ns && !event)) {
+            return;
+        }
+        if (event) {
+            deliver(communication, next_ns);
+        } else {
+            publish(communication, next_ns);
+            communication->next_publication_ns += communication->target->communication_period_ns;
+        }
+    }
+}
+
+void epg_host_communicate_realtime(epg_host_communication_t *communication, uint64_t time_ns)
+{
+    while (next_event_ns(communication) <= time_ns && next_event_ns(communication) < communication->end_ns) {
+        deliver(communication, time_ns);
+    }
+    if (communication->next_publication_ns <= time_ns && communication->next_publication_ns < communication->end_ns) {
+        publish(communication, time_ns);
+        /* On its own schedule: a late publication moves none of the next, and none is made up. */
+        const uint64_t period_ns = communication->target->communication_period_ns;
+        communication->next_publication_ns +=
+            ((time_ns - communication->next_publication_ns) / period_ns + 1) * period_ns;
+    }
+}
+
+void epg_host_communication_end(epg_host_communication_t *communication)
+{
+    free(communication->values);
+    communication->values = NULL;
+}

@@ -1,0 +1,128 @@
+/**
+ * @file
+ * Body of main() of a host executable.
+ */
+#include "epg/host.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "options.h"
+#include "report.h"
+#include "run.h"
+#include "setpoints.h"
+
+enum { DONE = 0, FAILED = 1, WRONG_INPUT = 2, INTERRUPTED = 130 };
+
+/** The files a run writes; NULL where not wanted. */
+typedef struct outputs {
+    FILE *topics;
+    FILE *trace;
+    FILE *statistics;
+} outputs_t;
+
+static void on_interrupt(int number)
+{
+    (void)number;
+    epg_host_interrupted = 1;
+}
+
+/** Opens `path` for writing into `*file`; nothing to do, and true, when it is NULL. */
+static bool open_output(const char *path, FILE **file)
+{
+    if (path == NULL) {
+        return true;
+    }
+    *file = fopen(path, "wb"); /* binary: the same bytes on each system */
+    if (*file == NULL) {
+        fprintf(stderr, "%s: error: cannot write this file: %s\n", path, strerror(errno));
+    }
+    return *file != NULL;
+}
+
+static bool close_output(const char *path, FILE *file)
+{
+    if (file == NULL) {
+        return true;
+    }
+    const bool failed = ferror(file) != 0;
+    if (fclose(file) != 0 || failed) {
+        fprintf(stderr, "%s: error: cannot write this file: %s\n", path, errno != 0 ? strerror(errno) : "failed");
+        return false;
+    }
+    return true;
+}
+
+/** With all files open and the events read: runs, and fills the files. */
+static int run_target(const epg_host_target_t *host, const epg_host_options_t *options, const epg_host_events_t *events,
+                      const outputs_t *outputs)
+{
+    static epg_host_run_t run; /* too large for a small stack */
+    const epg_target_t *target = host->target;
+    const uint64_t cycles = (options->duration_ns - 1) / target->application->period_ns + 1;
+    run = (epg_host_run_t){.host = host, .end_ns = options->duration_ns};
+    if (!epg_host_communication_start(&run.communication, target, events, run.end_ns, outputs->topics)) {
+        return FAILED;
+    }
+    if (!epg_host_trace_start(&run.trace, host, outputs->trace, options->realtime, cycles)) {
+        epg_host_communication_end(&run.communication);
+        return FAILED;
+    }
+    epg_host_run_start(&run, options->realtime ? target->application : epg_host_prepare_simulated(&run));
+    int status = epg_host_check_pins(options->setpoints, events) ? DONE : WRONG_INPUT;
+    if (status == DONE && options->realtime) {
+        status = epg_host_run_realtime(&run) ? DONE : FAILED;
+    } else if (status == DONE) {
+        epg_host_run_simulated(&run);
+    }
+    epg_host_trace_end(&run.trace);
+    epg_host_communication_end(&run.communication);
+    if (status == DONE && outputs->statistics != NULL) {
+        epg_host_write_statistics(outputs->statistics, &run);
+    }
+    if (status == DONE && !options->quiet) {
+        epg_host_print_summary(&run);
+    }
+    return status == DONE && epg_host_interrupted ? INTERRUPTED : status;
+}
+
+static int run_with_files(const epg_host_target_t *host, const epg_host_options_t *options,
+                          const epg_host_events_t *events)
+{
+    outputs_t outputs = {NULL, NULL, NULL};
+    int status = FAILED;
+    if (open_output(options->topics, &outputs.topics) && open_output(options->trace, &outputs.trace) &&
+        open_output(options->statistics, &outputs.statistics)) {
+        status = run_target(host, options, events, &outputs);
+    }
+    errno = 0;
+    const bool topics = close_output(options->topics, outputs.topics);
+    const bool trace = close_output(options->trace, outputs.trace);
+    const bool statistics = close_output(options->statistics, outputs.statistics);
+    return topics && trace && statistics ? status : FAILED;
+}
+
+int epg_host_main(const epg_host_target_t *host, int argc, char **argv)
+{
+    epg_host_options_t options;
+    if (!epg_host_read_options(argc, argv, &options)) {
+        return WRONG_INPUT;
+    }
+    if (options.help) {
+        epg_host_print_help(host->target->application->name);
+        return DONE;
+    }
+    epg_host_events_t events = {NULL, 0};
+    if (options.setpoints != NULL &&
+        !epg_host_read_setpoints(options.setpoints, host->target, options.realtime, &events)) {
+        return WRONG_INPUT;
+    }
+    epg_host_interrupted = 0;
+    signal(SIGINT, on_interrupt);
+    signal(SIGTERM, on_interrupt);
+    const int status = run_with_files(host, &options, &events);
+    epg_host_free_setpoints(&events);
+    return status;
+}

@@ -1,0 +1,111 @@
+/**
+ * @file
+ * The command line of a host executable.
+ */
+#include "options.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "number.h"
+
+void epg_host_print_help(const char *name)
+{
+    printf("usage: %s [options] --duration SECONDS\n"
+           "\n"
+           "Runs the target '%s' against its simulated plant.\n"
+           "\n"
+           "  --duration SECONDS   how long to run\n"
+           "  --realtime           in real time, in a thread of its own (default: simulated time)\n"
+           "  --setpoints FILE     CSV with rows time,topic,value: what arrives, and when\n"
+           "  --topics FILE        writes what is published, in the same form\n"
+           "  --trace FILE         writes all signals, one row per control cycle\n"
+           "  --statistics FILE    writes the run's statistics as JSON\n"
+           "  --quiet              prints no summary\n"
+           "  --help               prints this text\n"
+           "\n"
+           "Exit status: 0 done; 1 could not run or write a file; 2 wrong options or setpoint file;\n"
+           "130 interrupted (files are written up to there).\n",
+           name, name);
+}
+
+/** One option: a flag, or a value that is kept as text. */
+typedef struct option {
+    const char *name;
+    bool *flag;
+    const char **value;
+} option_t;
+
+/** Length of the option's name in `argument`: up to "=" or the end. */
+static size_t name_length(const char *argument)
+{
+    return strcspn(argument, "=");
+}
+
+static const option_t *find(const option_t *options, size_t count, const char *argument)
+{
+    const size_t length = name_length(argument);
+    for (size_t i = 0; i < count; i++) {
+        if (strlen(options[i].name) == length && strncmp(options[i].name, argument, length) == 0) {
+            return &options[i];
+        }
+    }
+    return NULL;
+}
+
+/** Takes the option at argv[*i], and moves *i on if its value is the next argument. */
+static bool take(const option_t *option, int argc, char **argv, int *i)
+{
+    const char *given = strchr(argv[*i], '=');
+    if (option->flag != NULL) {
+        *option->flag = true;
+        if (given != NULL) {
+            fprintf(stderr, "error: option %s takes no value\n", option->name);
+        }
+        return given == NULL;
+    }
+    if (given == NULL && *i + 1 < argc) {
+        *i += 1;
+        *option->value = argv[*i];
+    } else {
+        *option->value = given == NULL ? "" : given + 1;
+    }
+    if ((*option->value)[0] == '\0') {
+        fprintf(stderr, "error: option %s needs a value\n", option->name);
+    }
+    return (*option->value)[0] != '\0';
+}
+
+bool epg_host_read_options(int argc, char **argv, epg_host_options_t *options)
+{
+    *options = (epg_host_options_t){0};
+    const char *duration = NULL;
+    const option_t known[] = {
+        {"--help", &options->help, NULL},           {"--quiet", &options->quiet, NULL},
+        {"--realtime", &options->realtime, NULL},   {"--duration", NULL, &duration},
+        {"--setpoints", NULL, &options->setpoints}, {"--topics", NULL, &options->topics},
+        {"--trace", NULL, &options->trace},         {"--statistics", NULL, &options->statistics},
+    };
+    for (int i = 1; i < argc; i++) {
+        const option_t *option = find(known, sizeof known / sizeof known[0], argv[i]);
+        if (option == NULL) {
+            fprintf(stderr, "error: unknown option '%s'\n  hint: --help lists the options\n", argv[i]);
+            return false;
+        }
+        if (!take(option, argc, argv, &i)) {
+            return false;
+        }
+    }
+    if (options->help) {
+        return true;
+    }
+    if (duration == NULL) {
+        fputs("error: no --duration\n  hint: say how many seconds to run, for example --duration 10\n", stderr);
+        return false;
+    }
+    if (!epg_host_parse_time(duration, &options->duration_ns) || options->duration_ns == 0) {
+        fprintf(stderr, "error: --duration '%s' is no time in seconds above 0\n", duration);
+        return false;
+    }
+    return true;
+}

@@ -1,0 +1,28 @@
+/**
+ * @file
+ * The command line of a host executable.
+ */
+#ifndef EPG_HOST_OPTIONS_H
+#define EPG_HOST_OPTIONS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef struct epg_host_options {
+    bool help;
+    bool quiet;
+    bool realtime;
+    uint64_t duration_ns;  /**< > 0 */
+    const char *setpoints; /**< path to read; NULL: none */
+    const char *topics;    /**< paths to write; NULL: not written */
+    const char *trace;
+    const char *statistics;
+} epg_host_options_t;
+
+/** Reads the command line; false after a message to stderr that says what is wrong. */
+bool epg_host_read_options(int argc, char **argv, epg_host_options_t *options);
+
+/** Prints how the program is used. */
+void epg_host_print_help(const char *name);
+
+#endif

@@ -1,0 +1,116 @@
+/**
+ * @file
+ * The port layer against simulated peripherals: decoder counts, PWM levels and pin levels.
+ *
+ * The generator numbers the host's peripherals from 0 in each class, all in block 0; `unit` or `pin` is therefore
+ * enough to name one.  Every word is a relaxed atomic, because in real time a second thread may set an input or look
+ * at an output while the control thread runs; no order between two signals is promised, as on real pins.
+ */
+#include "port.h"
+
+#include <stdatomic.h>
+
+#include "epg/host.h"
+#include "epg/port.h"
+
+enum { UNITS = UINT8_MAX + 1, PINS = UINT8_MAX + 1 };
+
+/** What drives an input pin. */
+enum { UNDRIVEN, DRIVEN_LOW, DRIVEN_HIGH };
+
+static struct {
+    _Atomic int64_t signal; /* as the plant sets it */
+    _Atomic int64_t origin; /* of `signal` when the decoder started */
+} decoders[UNITS];
+
+static struct {
+    _Atomic uint32_t top;
+    _Atomic uint32_t level;
+} pwms[UNITS];
+
+static _Atomic uint8_t driven[PINS];
+static _Atomic uint8_t pulls[PINS];
+static atomic_bool inputs[PINS];
+static atomic_bool outputs[PINS];
+
+#define GET(object) atomic_load_explicit(&(object), memory_order_relaxed)
+#define SET(object, value) atomic_store_explicit(&(object), (value), memory_order_relaxed)
+
+/* Quadrature decoders ----------------------------------------------------------------------------------------- */
+
+/** A decoder counts from 0 wherever the shaft stands: an incremental encoder does not know where that is. */
+void epg_port_quadrature_start(const epg_port_quadrature_t *decoder)
+{
+    SET(decoders[decoder->unit].origin, GET(decoders[decoder->unit].signal));
+}
+
+uint32_t epg_port_quadrature_count(const epg_port_quadrature_t *decoder)
+{
+    const uint64_t signal = (uint64_t)GET(decoders[decoder->unit].signal);
+    const uint64_t origin = (uint64_t)GET(decoders[decoder->unit].origin);
+    return (uint32_t)((signal - origin) & UINT32_MAX);
+}
+
+void epg_host_quadrature_set(uint8_t unit, int64_t count)
+{
+    SET(decoders[unit].signal, count);
+}
+
+/* PWM ---------------------------------------------------------------------------------------------------------- */
+
+void epg_port_pwm_start(const epg_port_pwm_t *pwm)
+{
+    SET(pwms[pwm->unit].level, 0);
+    SET(pwms[pwm->unit].top, pwm->top);
+}
+
+void epg_port_pwm_write(const epg_port_pwm_t *pwm, uint32_t level)
+{
+    SET(pwms[pwm->unit].level, level);
+}
+
+double epg_host_pwm_duty(uint8_t unit)
+{
+    const uint32_t level = GET(pwms[unit].level);
+    const uint32_t clocks = GET(pwms[unit].top) + 1U;
+    return level >= clocks ? 1.0 : (double)level / (double)clocks;
+}
+
+/* Pins --------------------------------------------------------------------------------------------------------- */
+
+void epg_port_output_start(uint8_t pin, bool level)
+{
+    SET(outputs[pin], level);
+}
+
+void epg_port_output_write(uint8_t pin, bool level)
+{
+    SET(outputs[pin], level);
+}
+
+bool epg_host_output(uint8_t pin)
+{
+    return GET(outputs[pin]);
+}
+
+void epg_port_input_start(uint8_t pin, epg_port_pull_t pull)
+{
+    SET(pulls[pin], (uint8_t)pull);
+    SET(inputs[pin], true);
+}
+
+bool epg_port_input_read(uint8_t pin)
+{
+    const uint8_t driver = GET(driven[pin]);
+    return driver == UNDRIVEN ? GET(pulls[pin]) == EPG_PULL_UP : driver == DRIVEN_HIGH;
+}
+
+void epg_host_input_set(uint8_t pin, bool level)
+{
+    SET(driven[pin], level ? DRIVEN_HIGH : DRIVEN_LOW);
+}
+
+bool epg_host_is_input(uint8_t pin)
+{
+    return GET(inputs[pin]);
+}

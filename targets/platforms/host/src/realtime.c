@@ -1,0 +1,248 @@
+/**
+ * @file
+ * Real time: the control cycle in a thread of its own, woken at absolute times of the monotonic clock.
+ *
+ * The only file of the host platform that needs more than C11; it works on Linux.
+ */
+#if defined(__linux__)
+#define _POSIX_C_SOURCE 200809L
+#endif
+
+#include <stdio.h>
+
+#include "epg/host.h"
+#include "run.h"
+
+#if defined(__linux__)
+
+#include <errno.h>
+#include <pthread.h>
+#include <sched.h>
+#include <semaphore.h>
+#include <stdatomic.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <time.h>
+
+#include "clock.h"
+
+enum {
+    PRIORITY = 80,                     /* above threaded interrupts (50), below the kernel's own threads (99) */
+    STACK_SIZE = 2 << 20,              /* bytes; thread-local storage is taken from it, of sanitizers close to 1 MiB */
+    STACK_PREFAULTED = 256 << 10,      /* bytes the cycle may use without a page fault */
+    START_DELAY_NS = 20 * 1000 * 1000, /* from all being ready to the first tick: the caller gets going meanwhile */
+    LONGEST_SLEEP_NS = 100 * 1000 * 1000 /* of the communication side, so that an interrupt is seen soon */
+};
+
+/** A control thread and what it shares with the thread that started it. */
+typedef struct control_thread {
+    epg_host_run_t *run;
+    pthread_t thread;
+    sem_t ready;       /* posted when start_ns is known */
+    uint64_t start_ns; /* monotonic time of the first tick */
+    atomic_bool stop;
+} control_thread_t;
+
+/** Sleeps until monotonic time `time_ns`; may return before when a signal arrives. */
+static int sleep_until(uint64_t time_ns)
+{
+    const struct timespec until = {.tv_sec = (time_t)(time_ns / 1000000000U), .tv_nsec = (long)(time_ns % 1000000000U)};
+    return clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, NULL);
+}
+
+/** Touches the part of the stack that the cycle will use. */
+static void prefault_stack(void)
+{
+    volatile unsigned char stack[STACK_PREFAULTED];
+    for (size_t i = 0; i < sizeof stack; i += 1024) {
+        stack[i] = 0;
+    }
+}
+
+/**
+ * The loop.  The plant is simulated between a cycle and the next, outside the measured time; a plant too slow for
+ * that makes ticks be missed, and they are counted.
+ */
+static void control_loop(control_thread_t *self)
+{
+    epg_host_run_t *run = self->run;
+    const uint64_t period_ns = run->host->target->application->period_ns;
+    uint64_t tick_ns = 0; /* since the first tick, as all times of a run */
+    uint64_t next_ns = 0;
+    uint32_t missed = 0;
+    while (next_ns < run->end_ns && !atomic_load(&self->stop)) {
+        tick_ns = next_ns;
+        const uint64_t due_ns = self->start_ns + tick_ns;
+        while (sleep_until(due_ns) == EINTR) {
+        }
+        const uint64_t begun_ns = epg_host_monotonic_ns();
+        epg_control_cycle(run->host->target->control, due_ns, missed);
+        const uint64_t ended_ns = epg_host_monotonic_ns();
+        epg_host_plant_actuate(&run->plant);
+        epg_host_timing_add(&run->timing, begun_ns - due_ns, ended_ns - begun_ns);
+        epg_host_trace_add(&run->trace, tick_ns, begun_ns - due_ns, ended_ns - begun_ns);
+        epg_host_plant_advance(&run->plant, tick_ns + period_ns);
+        next_ns = epg_host_next_tick(tick_ns, period_ns, epg_host_monotonic_ns() - self->start_ns, &missed);
+        epg_host_plant_advance(&run->plant, next_ns);
+        epg_host_plant_sense(&run->plant);
+    }
+    epg_host_run_end(run, tick_ns, next_ns);
+}
+
+static void *control_main(void *argument)
+{
+    control_thread_t *self = argument;
+    /* Without a real-time policy, the kernel may join timers that lie within 50 us of each other: ask for none. */
+    prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
+    prefault_stack();
+    /* What is mapped by now is all the loop uses.  MCL_FUTURE would make later allocations of others fail. */
+    self->run->memory_locked = mlockall(MCL_CURRENT) == 0;
+    self->start_ns = epg_host_monotonic_ns() + START_DELAY_NS;
+    sem_post(&self->ready);
+    control_loop(self);
+    return NULL;
+}
+
+/** Starts the thread under `policy` and `priority`; returns 0 or the error number. */
+static int create_thread(control_thread_t *self, int policy, int priority)
+{
+    const struct sched_param parameter = {.sched_priority = priority};
+    pthread_attr_t attributes;
+    int error = pthread_attr_init(&attributes);
+    if (error != 0) {
+        return error;
+    }
+    pthread_attr_setstacksize(&attributes, STACK_SIZE);
+    pthread_attr_setinheritsched(&attributes, PTHREAD_EXPLICIT_SCHED);
+    pthread_attr_setschedpolicy(&attributes, policy);
+    pthread_attr_setschedparam(&attributes, &parameter);
+    error = pthread_create(&self->thread, &attributes, control_main, self);
+    pthread_attr_destroy(&attributes);
+    return error;
+}
+
+/** SCHED_FIFO at the highest priority up to PRIORITY that this user may have, else SCHED_OTHER. */
+static int create_thread_best(control_thread_t *self)
+{
+    epg_host_run_t *run = self->run;
+    run->scheduler = "SCHED_FIFO";
+    run->scheduler_reason = NULL;
+    int error = create_thread(self, SCHED_FIFO, PRIORITY);
+    struct rlimit limit;
+    if (error == EPERM && getrlimit(RLIMIT_RTPRIO, &limit) == 0 && limit.rlim_cur > 0 && limit.rlim_cur < PRIORITY) {
+        error = create_thread(self, SCHED_FIFO, (int)limit.rlim_cur);
+    }
+    if (error != 0) {
+        run->scheduler = "SCHED_OTHER";
+        run->scheduler_reason = strerror(error);
+        error = create_thread(self, SCHED_OTHER, 0);
+    }
+    return error;
+}
+
+/** Starts the thread and waits until it knows when it begins; false with a message if there is none. */
+static bool start_thread(control_thread_t *self, epg_host_run_t *run)
+{
+    sigset_t all;
+    sigset_t before;
+    self->run = run;
+    atomic_init(&self->stop, false);
+    sem_init(&self->ready, 0, 0);
+    /* Signals are for the other threads: the control thread inherits this mask. */
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    const int error = create_thread_best(self);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    if (error != 0) {
+        fprintf(stderr, "error: cannot start the control thread: %s\n", strerror(error));
+        sem_destroy(&self->ready);
+        return false;
+    }
+    while (sem_wait(&self->ready) != 0) {
+    }
+    return true;
+}
+
+static void join_thread(control_thread_t *self)
+{
+    pthread_join(self->thread, NULL);
+    sem_destroy(&self->ready);
+}
+
+bool epg_host_run_realtime(epg_host_run_t *run)
+{
+    control_thread_t control;
+    if (!start_thread(&control, run)) {
+        return false;
+    }
+    const uint64_t start_ns = control.start_ns;
+    uint64_t now_ns = 0;
+    run->communication.start_ns = start_ns;
+    sleep_until(start_ns);
+    while (now_ns < run->end_ns && !epg_host_interrupted) {
+        uint64_t until_ns = epg_host_communication_next(&run->communication);
+        until_ns = until_ns < now_ns + LONGEST_SLEEP_NS ? until_ns : now_ns + LONGEST_SLEEP_NS;
+        sleep_until(start_ns + (until_ns < run->end_ns ? until_ns : run->end_ns));
+        const uint64_t monotonic_ns = epg_host_monotonic_ns();
+        now_ns = monotonic_ns > start_ns ? monotonic_ns - start_ns : 0; /* a signal may have come before the start */
+        epg_host_communicate_realtime(&run->communication, now_ns);
+    }
+    atomic_store(&control.stop, epg_host_interrupted != 0);
+    join_thread(&control);
+    run->wall_time_ns = epg_host_monotonic_ns() - start_ns;
+    return true;
+}
+
+/* In a program with its own main() ----------------------------------------------------------------------------- */
+
+static epg_host_run_t own_run;
+static control_thread_t own_control;
+static bool own_running;
+
+bool epg_host_start(const epg_host_target_t *host)
+{
+    if (own_running) {
+        return false;
+    }
+    own_run = (epg_host_run_t){.host = host, .end_ns = UINT64_MAX};
+    epg_host_run_start(&own_run, host->target->application);
+    own_running = start_thread(&own_control, &own_run);
+    return own_running;
+}
+
+void epg_host_stop(void)
+{
+    if (own_running) {
+        atomic_store(&own_control.stop, true);
+        join_thread(&own_control);
+        own_running = false;
+    }
+}
+
+#else /* not Linux */
+
+static bool unavailable(void)
+{
+    fputs("error: real time on the host needs Linux\n  hint: leave out --realtime to run in simulated time\n", stderr);
+    return false;
+}
+
+bool epg_host_run_realtime(epg_host_run_t *run)
+{
+    (void)run;
+    return unavailable();
+}
+
+bool epg_host_start(const epg_host_target_t *host)
+{
+    (void)host;
+    return unavailable();
+}
+
+void epg_host_stop(void)
+{
+}
+
+#endif

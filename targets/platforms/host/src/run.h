@@ -1,0 +1,69 @@
+/**
+ * @file
+ * One run of a target: what both ways of running it share.
+ */
+#ifndef EPG_HOST_RUN_H
+#define EPG_HOST_RUN_H
+
+#include <signal.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "communication.h"
+#include "epg/host.h"
+#include "plant.h"
+#include "timing.h"
+#include "trace.h"
+
+typedef struct epg_host_run {
+    const epg_host_target_t *host;
+    uint64_t end_ns; /**< no cycle starts at or after this time; UINT64_MAX: until stopped */
+    epg_host_plant_run_t plant;
+    epg_host_communication_t communication;
+    epg_host_trace_t trace;
+    epg_host_timing_t timing;
+    uint64_t ran_ns;        /**< how far the run came */
+    uint64_t missed_at_end; /**< ticks missed that no later cycle could count */
+    uint64_t wall_time_ns;
+    const char *scheduler;        /**< "simulated", "SCHED_FIFO" or "SCHED_OTHER" */
+    const char *scheduler_reason; /**< why it is not SCHED_FIFO; NULL otherwise */
+    bool memory_locked;
+} epg_host_run_t;
+
+/** Set by the user's interrupt (Ctrl-C); both loops end after the cycle at hand. */
+extern volatile sig_atomic_t epg_host_interrupted;
+
+/**
+ * Tick after the one at `tick_ns`, when the cycle has ended at `now_ns`: the newest one that is due, at least the
+ * next.  The phase never moves; ticks in between are counted in `*missed`.
+ */
+static inline uint64_t epg_host_next_tick(uint64_t tick_ns, uint64_t period_ns, uint64_t now_ns, uint32_t *missed)
+{
+    const uint64_t next_ns = tick_ns + period_ns;
+    const uint64_t skipped = now_ns > next_ns ? (now_ns - next_ns) / period_ns : 0;
+    *missed = (uint32_t)skipped;
+    return next_ns + skipped * period_ns;
+}
+
+/** Starts the plant, then the application, both at time 0.  `application` is the target's own or a copy of it. */
+void epg_host_run_start(epg_host_run_t *run, const epg_application_t *application);
+
+/**
+ * After the last cycle, that of `tick_ns`, when the next would have been that of `next_ns`: counts the ticks lost up
+ * to the end, and makes the outputs safe.
+ */
+void epg_host_run_end(epg_host_run_t *run, uint64_t tick_ns, uint64_t next_ns);
+
+/**
+ * Puts the simulated clock to 0 and returns the application to start: the target's, except that its cycle takes
+ * simulated time when a `$stall` event says so.
+ */
+const epg_application_t *epg_host_prepare_simulated(epg_host_run_t *run);
+
+/** Runs from time 0 to the end in simulated time. */
+void epg_host_run_simulated(epg_host_run_t *run);
+
+/** Runs from time 0 to the end in real time; false, with a message, if this is not possible. */
+bool epg_host_run_realtime(epg_host_run_t *run);
+
+#endif

@@ -1,0 +1,300 @@
+/**
+ * @file
+ * Reader of the setpoint file.
+ */
+#include "setpoints.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "number.h"
+#include "port.h"
+
+enum { ERRORS_SHOWN = 20, FIELDS = 3 };
+
+static const char header[] = "time,topic,value";
+
+/** One pass over one file. */
+typedef struct reader {
+    const char *path;
+    const epg_target_t *target;
+    bool realtime;
+    unsigned line;
+    unsigned errors;
+    uint64_t previous_ns;
+} reader_t;
+
+#if defined(__GNUC__)
+__attribute__((format(printf, 2, 3)))
+#endif
+static bool
+fail(reader_t *reader, const char *format, ...)
+{
+    reader->errors++;
+    if (reader->errors <= ERRORS_SHOWN) {
+        va_list arguments;
+        va_start(arguments, format);
+        fprintf(stderr, "%s:%u: error: ", reader->path, reader->line);
+        vfprintf(stderr, format, arguments);
+        fputc('\n', stderr);
+        va_end(arguments);
+    }
+    return false;
+}
+
+/** The whole file as a string on the heap; NULL, with a message, if it cannot be read. */
+static char *read_text(const char *path)
+{
+    FILE *file = fopen(path, "rb");
+    if (file == NULL) {
+        fprintf(stderr, "%s: error: cannot read the setpoint file: %s\n", path, strerror(errno));
+        return NULL;
+    }
+    size_t capacity = 1U << 16;
+    size_t size = 0;
+    char *text = malloc(capacity);
+    while (text != NULL) {
+        size += fread(text + size, 1, capacity - size - 1, file);
+        if (size < capacity - 1) {
+            break;
+        }
+        char *larger = realloc(text, capacity *= 2);
+        if (larger == NULL) {
+            free(text);
+        }
+        text = larger;
+    }
+    const char *problem = text == NULL ? "not enough memory" : NULL;
+    if (ferror(file)) {
+        problem = strerror(errno); /* a folder, for instance, opens but cannot be read */
+    } else if (problem == NULL && memchr(text, '\0', size) != NULL) {
+        problem = "it is not a text file";
+    }
+    fclose(file);
+    if (problem != NULL) {
+        fprintf(stderr, "%s: error: cannot read the setpoint file: %s\n", path, problem);
+        free(text);
+        return NULL;
+    }
+    text[size] = '\0';
+    return text;
+}
+
+static char *trim(char *text)
+{
+    text += strspn(text, " \t");
+    size_t length = strlen(text);
+    while (length > 0 && strchr(" \t\r", text[length - 1]) != NULL) {
+        length--;
+    }
+    text[length] = '\0';
+    return text;
+}
+
+/** Splits `line` at its commas; returns how many fields there are, the first FIELDS of them in `fields`. */
+static size_t split(char *line, char *fields[FIELDS])
+{
+    size_t count = 0;
+    while (line != NULL) {
+        char *comma = strchr(line, ',');
+        if (comma != NULL) {
+            *comma = '\0';
+        }
+        if (count < FIELDS) {
+            fields[count] = trim(line);
+        }
+        count++;
+        line = comma == NULL ? NULL : comma + 1;
+    }
+    return count;
+}
+
+/** Names of all subscriptions, for the hint after an unknown topic. */
+static bool fail_topic(reader_t *reader, const char *topic)
+{
+    const epg_target_t *target = reader->target;
+    fail(reader, "unknown topic '%s'", topic);
+    if (reader->errors <= ERRORS_SHOWN) {
+        fputs("  hint: the target subscribes to ", stderr);
+        for (size_t i = 0; i < target->subscription_count; i++) {
+            fprintf(stderr, "'%s', ", target->subscriptions[i].name);
+        }
+        if (target->enable_topic != NULL) {
+            fprintf(stderr, "'%s', ", target->enable_topic);
+        }
+        fputs("and has '$enable', '$pin:<number>' and '$stall'\n", stderr);
+    }
+    return false;
+}
+
+static bool read_pin(reader_t *reader, const char *topic, epg_host_event_t *event)
+{
+    const char *number = strchr(topic, ':') + 1;
+    const size_t length = strlen(number);
+    const long pin = strtol(number, NULL, 10);
+    if (length == 0 || length > 3 || strspn(number, "0123456789") != length || pin > UINT8_MAX) {
+        return fail(reader, "'%s' is no pin number", number);
+    }
+    event->kind = EPG_HOST_PIN;
+    event->index = (size_t)pin;
+    return true;
+}
+
+/** Kind and index of what `topic` names. */
+static bool read_topic(reader_t *reader, const char *topic, epg_host_event_t *event)
+{
+    const epg_target_t *target = reader->target;
+    for (size_t i = 0; i < target->subscription_count; i++) {
+        if (strcmp(topic, target->subscriptions[i].name) == 0) {
+            event->kind = EPG_HOST_SETPOINT;
+            event->index = target->subscriptions[i].index;
+            return true;
+        }
+    }
+    if (strcmp(topic, "$enable") == 0 || (target->enable_topic != NULL && strcmp(topic, target->enable_topic) == 0)) {
+        event->kind = EPG_HOST_ENABLE;
+        return true;
+    }
+    if (strncmp(topic, "$pin:", strlen("$pin:")) == 0) {
+        return read_pin(reader, topic, event);
+    }
+    if (strcmp(topic, "$stall") == 0) {
+        event->kind = EPG_HOST_STALL;
+        return reader->realtime ? fail(reader, "'$stall' works in simulated time only") : true;
+    }
+    return fail_topic(reader, topic);
+}
+
+static bool read_value(reader_t *reader, const char *text, epg_host_event_t *event)
+{
+    uint64_t stall_ns = 0;
+    if (!epg_host_parse_number(text, &event->value)) {
+        return fail(reader, "'%s' is no number", text);
+    }
+    switch (event->kind) {
+    case EPG_HOST_ENABLE:
+    case EPG_HOST_PIN:
+        return event->value == 0.0 || event->value == 1.0 ? true : fail(reader, "'%s' is neither 0 nor 1", text);
+    case EPG_HOST_STALL:
+        return epg_host_parse_time(text, &stall_ns) ? true : fail(reader, "'%s' is no time in seconds", text);
+    case EPG_HOST_SETPOINT:
+    default:
+        return true;
+    }
+}
+
+static bool read_event(reader_t *reader, char *line, epg_host_event_t *event)
+{
+    char *fields[FIELDS] = {NULL, NULL, NULL};
+    const size_t count = split(line, fields);
+    if (count != FIELDS) {
+        return fail(reader, "%zu field%s instead of '%s'", count, count == 1 ? "" : "s", header);
+    }
+    if (!epg_host_parse_time(fields[0], &event->time_ns)) {
+        return fail(reader, "'%s' is no time in seconds", fields[0]);
+    }
+    if (event->time_ns < reader->previous_ns) {
+        return fail(reader, "time %s is before that of the row above", fields[0]);
+    }
+    reader->previous_ns = event->time_ns;
+    event->line = reader->line;
+    return read_topic(reader, fields[1], event) && read_value(reader, fields[2], event);
+}
+
+/**
+ * Values that arrive at one moment are published together.  A non-finite value will be dropped, so it must not be
+ * the one that publishes the others.
+ */
+static void mark_published(epg_host_events_t *events)
+{
+    const epg_host_event_t *later = NULL;
+    for (size_t i = events->count; i > 0; i--) {
+        epg_host_event_t *event = &events->events[i - 1];
+        if (event->kind == EPG_HOST_SETPOINT && isfinite(event->value)) {
+            event->publish = later == NULL || later->time_ns != event->time_ns;
+            later = event;
+        }
+    }
+}
+
+static size_t count_lines(const char *text)
+{
+    size_t count = 1;
+    for (; *text != '\0'; text++) {
+        count += *text == '\n' ? 1 : 0;
+    }
+    return count;
+}
+
+static void read_lines(reader_t *reader, char *text, epg_host_events_t *events)
+{
+    static const char byte_order_mark[] = "\xef\xbb\xbf";
+    char *line = text + (strncmp(text, byte_order_mark, 3) == 0 ? 3 : 0);
+    while (line != NULL) {
+        char *end = strchr(line, '\n');
+        if (end != NULL) {
+            *end = '\0';
+        }
+        reader->line++;
+        line = trim(line);
+        if (reader->line == 1 && strcmp(line, header) != 0) {
+            fail(reader, "the first line must be '%s'", header);
+        } else if (reader->line > 1 && line[0] != '\0') {
+            epg_host_event_t *event = &events->events[events->count];
+            *event = (epg_host_event_t){0};
+            events->count += read_event(reader, line, event) ? 1 : 0;
+        }
+        line = end == NULL ? NULL : end + 1;
+    }
+}
+
+bool epg_host_read_setpoints(const char *path, const epg_target_t *target, bool realtime, epg_host_events_t *events)
+{
+    *events = (epg_host_events_t){0};
+    char *text = read_text(path);
+    if (text == NULL) {
+        return false;
+    }
+    events->events = malloc(count_lines(text) * sizeof events->events[0]);
+    if (events->events == NULL) {
+        fprintf(stderr, "%s: error: not enough memory for the setpoints\n", path);
+        free(text);
+        return false;
+    }
+    reader_t reader = {.path = path, .target = target, .realtime = realtime};
+    read_lines(&reader, text, events);
+    free(text);
+    if (reader.errors > ERRORS_SHOWN) {
+        fprintf(stderr, "%s: error: %u more wrong lines\n", path, reader.errors - ERRORS_SHOWN);
+    }
+    if (reader.errors > 0) {
+        epg_host_free_setpoints(events);
+        return false;
+    }
+    mark_published(events);
+    return true;
+}
+
+bool epg_host_check_pins(const char *path, const epg_host_events_t *events)
+{
+    bool good = true;
+    for (size_t i = 0; i < events->count; i++) {
+        const epg_host_event_t *event = &events->events[i];
+        if (event->kind == EPG_HOST_PIN && !epg_host_is_input((uint8_t)event->index)) {
+            fprintf(stderr, "%s:%u: error: pin %zu is no digital input of this target\n", path, event->line,
+                    event->index);
+            good = false;
+        }
+    }
+    return good;
+}
+
+void epg_host_free_setpoints(epg_host_events_t *events)
+{
+    free(events->events);
+    *events = (epg_host_events_t){0};
+}

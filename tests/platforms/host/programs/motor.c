@@ -1,0 +1,206 @@
+/*
+ * A target as the generator writes it, but small and by hand: a position controller with one quadrature encoder, one
+ * PWM output with a direction pin, one subscription, one publication, an enable topic and a fail-safe input, and a
+ * DC motor as its plant.
+ *
+ * Setpoints of 1000 and above make the controller compute for (setpoint - 1000) milliseconds of monotonic time, for
+ * the tests of overruns in real time.
+ */
+#include <math.h>
+
+#include "epg/host.h"
+#include "epg/port.h"
+
+#ifndef PERIOD_NS
+#define PERIOD_NS 1000000
+#endif
+#ifndef STEPS_PER_PERIOD
+#define STEPS_PER_PERIOD 7 /* no whole number of nanoseconds each */
+#endif
+#ifndef ENABLE_AT_START
+#define ENABLE_AT_START true
+#endif
+
+#define RADIANS_PER_COUNT (2.0 * 3.14159265358979323846 / 4096.0)
+
+enum { DIRECTION = 3, FAIL_SAFE = 5 };
+
+static const epg_port_quadrature_t encoder = {.pin_a = 0, .pin_b = 1, .block = 0, .unit = 0, .pull_up = false};
+static const epg_port_pwm_t pwm = {.pin = 2, .block = 0, .unit = 1, .prescaler = 1, .top = 6249};
+
+static epg_control_t control;
+
+static double position;
+static double setpoint;
+static double duty;
+static double cycle_count;
+
+static void start(void)
+{
+    epg_port_quadrature_start(&encoder);
+    epg_port_pwm_start(&pwm);
+    epg_port_output_start(DIRECTION, false);
+    epg_port_input_start(FAIL_SAFE, EPG_PULL_UP);
+}
+
+static void read_inputs(void)
+{
+    position = (double)(int32_t)epg_port_quadrature_count(&encoder) * RADIANS_PER_COUNT;
+    setpoint = epg_control_setpoint(&control, 0);
+}
+
+static bool inputs_finite(void)
+{
+    return isfinite(position) && isfinite(setpoint);
+}
+
+static void model_init(void)
+{
+    duty = 0.0;
+}
+
+static void model_step(void)
+{
+    cycle_count += 1.0;
+    if (setpoint >= 1000.0) {
+        const uint64_t end_ns = epg_port_time_ns() + (uint64_t)((setpoint - 1000.0) * 1e6);
+        while (epg_port_time_ns() < end_ns) {
+        }
+        duty = 0.0;
+        return;
+    }
+    duty = fmax(-0.9, fmin(0.9, 0.8 * (setpoint - position)));
+}
+
+static bool model_finite(void)
+{
+    return isfinite(duty);
+}
+
+static void write_outputs(void)
+{
+    epg_port_output_write(DIRECTION, duty < 0.0);
+    epg_port_pwm_write(&pwm, (uint32_t)(fabs(duty) * 6250.0 + 0.5));
+}
+
+static void safe(void)
+{
+    epg_port_pwm_write(&pwm, 0);
+}
+
+static void monitor(double *values)
+{
+    values[0] = position;
+    values[1] = setpoint;
+}
+
+static bool fail_safe(void)
+{
+    return epg_port_input_read(FAIL_SAFE);
+}
+
+static const epg_setpoint_t setpoints[1] = {{.initial = 0.25, .action = EPG_TIMEOUT_HOLD}};
+static epg_setpoint_sample_t samples[1];
+static epg_setpoint_sample_t received[1];
+static epg_setpoint_state_t setpoint_states[1];
+static epg_setpoint_sample_t setpoint_slots[4][1];
+static epg_exchange_t setpoint_exchange = EPG_EXCHANGE(setpoint_slots);
+static double monitor_values[2];
+static double monitor_slots[4][2];
+static epg_exchange_t monitor_exchange = EPG_EXCHANGE(monitor_slots);
+
+static const epg_application_t application = {
+    .name = "motor",
+    .period_ns = PERIOD_NS,
+    .step_divider = 1,
+    .overrun_limit = 3,
+    .enable_at_start = ENABLE_AT_START,
+    .start = start,
+    .read = read_inputs,
+    .inputs_finite = inputs_finite,
+    .model_init = model_init,
+    .model_step = model_step,
+    .model_finite = model_finite,
+    .write = write_outputs,
+    .safe = safe,
+    .monitor = monitor,
+    .fail_safe = fail_safe,
+    .setpoint_count = 1,
+    .setpoints = setpoints,
+    .samples = samples,
+    .received = received,
+    .setpoint_states = setpoint_states,
+    .setpoint_exchange = &setpoint_exchange,
+    .monitor_count = 2,
+    .monitor_values = monitor_values,
+    .monitor_exchange = &monitor_exchange,
+};
+
+static const epg_topic_t subscriptions[1] = {{"motor_setpoint", EPG_QOS_BEST_EFFORT, 0}};
+static const epg_topic_t publications[2] = {{"motor_position", EPG_QOS_BEST_EFFORT, 0},
+                                            {"motor_echo", EPG_QOS_BEST_EFFORT, 1}};
+
+static const epg_target_t target = {
+    .control = &control,
+    .application = &application,
+    .node = "motor_node",
+    .name_space = "",
+    .communication_period_ns = 33000000,
+    .enable_topic = "motor_enable",
+    .subscription_count = 1,
+    .subscriptions = subscriptions,
+    .publication_count = 2,
+    .publications = publications,
+};
+
+/* The plant: a motor that reaches 20 rad/s at full duty with a time constant of 50 ms. */
+static double plant_duty;
+static double speed;
+static double angle;
+static double plant_steps;
+
+static void plant_init(void)
+{
+    speed = 0.0;
+    angle = 12.5; /* the encoder must count from 0 all the same */
+}
+
+static void plant_actuate(void)
+{
+    plant_duty = epg_host_pwm_duty(1) * (epg_host_output(DIRECTION) ? -1.0 : 1.0);
+}
+
+static void plant_step(void)
+{
+    const double step = PERIOD_NS * 1e-9 / STEPS_PER_PERIOD;
+    speed += step * (20.0 * plant_duty - speed) / 0.05;
+    angle += step * speed;
+    plant_steps += 1.0;
+}
+
+static void plant_sense(void)
+{
+    epg_host_quadrature_set(0, (int64_t)floor(angle / RADIANS_PER_COUNT));
+}
+
+static const epg_host_plant_t plant = {
+    .steps_per_period = STEPS_PER_PERIOD,
+    .init = plant_init,
+    .actuate = plant_actuate,
+    .step = plant_step,
+    .sense = plant_sense,
+};
+
+static const epg_host_signal_t signals[] = {
+    {"inputs.position", &position},     {"inputs.setpoint", &setpoint},  {"outputs.duty", &duty},
+    {"plant.inputs.duty", &plant_duty}, {"plant.outputs.angle", &angle}, {"plant.steps", &plant_steps},
+    {"model.steps", &cycle_count},
+};
+
+extern const epg_host_target_t epg_host_application;
+const epg_host_target_t epg_host_application = {
+    .target = &target,
+    .plant = &plant,
+    .signal_count = sizeof signals / sizeof signals[0],
+    .signals = signals,
+};

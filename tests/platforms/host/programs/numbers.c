@@ -1,0 +1,18 @@
+/* Reads the bits of doubles in hexadecimal, one per line; prints each as the host's files hold it. */
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "number.h"
+
+int main(void)
+{
+    uint64_t bits;
+    while (scanf("%" SCNx64, &bits) == 1) {
+        double value;
+        memcpy(&value, &bits, sizeof value);
+        epg_host_write_number(stdout, value);
+        putchar('\n');
+    }
+    return 0;
+}

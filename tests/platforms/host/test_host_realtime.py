@@ -1,0 +1,156 @@
+"""Real time.  Times of a shared machine are not asserted, only that what is reported is consistent."""
+
+from __future__ import annotations
+
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+from .program import (
+    ADDRESS_SANITIZER,
+    PROGRAMS,
+    THREAD_SANITIZER,
+    Program,
+    Run,
+    compile_program,
+    platform_sources,
+    rows,
+)
+
+pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="real time on the host needs Linux")
+
+
+def assert_consistent(run: Run, ticks: int) -> None:
+    """Every tick ran a cycle or is counted as missed, and all cycles belong to ticks of the same phase."""
+    statistics, trace = run.statistics, run.trace
+    assert statistics["cycles"] + statistics["missed"] == ticks
+    assert len(trace["time"]) == statistics["cycles"]
+    indices = [round(value * 1000) for value in trace["time"]]
+    assert trace["time"] == [index / 1000 for index in indices]
+    assert all(later > earlier for earlier, later in pairwise(indices))
+    assert max(trace["lateness"]) == statistics["lateness_max"]
+    assert min(trace["lateness"]) == statistics["lateness_min"] >= 0.0
+    assert min(trace["computation"]) == statistics["computation_min"] > 0.0
+    assert max(trace["computation"]) == statistics["computation_max"]
+    assert sum(trace["lateness"]) / len(trace["lateness"]) == pytest.approx(statistics["lateness_mean"])
+    ordered = sorted(trace["lateness"])
+    for key, share in (("lateness_p99", 0.99), ("lateness_p999", 0.999)):
+        exact = ordered[max(0, -int(-share * len(ordered) // 1) - 1)]
+        assert exact <= statistics[key] * (1 + 1e-9) and statistics[key] <= exact * 1.04 + 1e-9
+    deviations = [later - earlier for earlier, later in pairwise(trace["lateness"])]
+    assert min(deviations) == pytest.approx(statistics["interval_deviation_min"], abs=1e-12)
+    assert max(deviations) == pytest.approx(statistics["interval_deviation_max"], abs=1e-12)
+    assert sum(bin_["count"] for bin_ in statistics["lateness_histogram"]) == statistics["cycles"]
+
+
+def test_two_seconds_at_one_millisecond(motor: Program, tmp_path: Path) -> None:
+    run = motor.run_good(tmp_path, 2, rows("0.1,motor_setpoint,1"), "--realtime")
+    assert_consistent(run, 2000)
+    statistics, trace = run.statistics, run.trace
+    assert statistics["mode"] == "realtime"
+    assert statistics["scheduler"] in ("SCHED_FIFO", "SCHED_OTHER")
+    assert statistics["duration"] == 2.0
+    assert statistics["wall_time"] >= 1.999
+    assert statistics["cycles"] > 1000
+    assert f"scheduler    {statistics['scheduler']}" in run.stdout
+    if statistics["scheduler"] == "SCHED_OTHER":
+        assert "SCHED_FIFO refused: " in run.stdout
+    # The setpoint comes no earlier than its time, and the plant follows as in simulated time.
+    arrival = trace["inputs.setpoint"].index(1.0)
+    assert trace["time"][arrival] >= 0.1
+    assert abs(trace["inputs.position"][-1] - 1.0) < 0.05
+    assert all(steps == 7 * round(now * 1000) for steps, now in zip(trace["plant.steps"], trace["time"]))
+
+
+def test_publications_in_real_time(motor: Program, tmp_path: Path) -> None:
+    times = [when for when, topic, _ in motor.run_good(tmp_path, 1, None, "--realtime").topics if topic == "motor_echo"]
+    slots = [int(when / 0.033) for when in times]
+    assert all(later > earlier for earlier, later in pairwise(slots))
+    assert len(times) >= 15
+    assert times[0] >= 0.0 and times[-1] < 1.1
+
+
+def test_slow_cycles_miss_ticks_but_keep_the_phase(motor: Program, tmp_path: Path) -> None:
+    # 5.3 ms of computation in each cycle: only every sixth tick runs one, and the fault of three overruns comes.
+    run = motor.run_good(tmp_path, 0.5, rows("0.1,motor_setpoint,1005.3", "0.3,motor_setpoint,0"), "--realtime")
+    assert_consistent(run, 500)
+    statistics = run.statistics
+    assert statistics["missed"] >= 100
+    assert statistics["computation_max"] >= 0.0053
+    assert statistics["overruns"] >= 20
+    assert statistics["fault"] == "overrun"
+
+
+def test_events_act_in_real_time(motor: Program, tmp_path: Path) -> None:
+    events = rows("0,motor_setpoint,5", "0.2,$pin:5,0", "0.3,$pin:5,1", "0.4,motor_enable,1", "0.5,motor_setpoint,nan")
+    run = motor.run_good(tmp_path, 0.6, events, "--realtime")
+    enabled = dict(zip((round(now * 1000) for now in run.trace["time"]), run.trace["enabled"]))
+    changes = [(ms, state) for (_, before), (ms, state) in pairwise(sorted(enabled.items())) if state != before]
+    assert [state for _, state in changes] == [0.0, 1.0]
+    assert changes[0][0] >= 200
+    assert changes[1][0] >= 400
+    assert run.statistics["setpoints_dropped"] == 1
+
+
+def test_stall_is_refused(motor: Program, tmp_path: Path) -> None:
+    run = motor.run(tmp_path, 1, rows("0.1,$stall,0.1"), "--realtime")
+    assert run.status == 2
+    assert run.stderr == f"{tmp_path / 'setpoints.csv'}:2: error: '$stall' works in simulated time only\n"
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_interrupt_ends_the_run_and_writes_the_files(motor: Program, tmp_path: Path, number: signal.Signals) -> None:
+    command = motor.arguments(tmp_path, 60, None, "--realtime")
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        time.sleep(1.0)
+        process.send_signal(number)
+        stdout, stderr = process.communicate(timeout=10)
+    assert (process.returncode, stderr) == (130, "")
+    assert "interrupted" in stdout
+    run = Run(process.returncode, stdout, stderr, tmp_path)
+    assert run.statistics["interrupted"] is True
+    assert 0.1 < run.statistics["duration"] < 20
+    assert len(run.trace["time"]) == run.statistics["cycles"] > 10
+    assert run.topics
+
+
+def test_trace_too_large_for_memory(motor: Program, tmp_path: Path) -> None:
+    plain = compile_program(tmp_path / "plain", [PROGRAMS / "motor.c", *platform_sources()], sanitize=[])
+    run = Program(plain).run(tmp_path, 1e9, None, "--realtime")
+    assert run.status == 1
+    assert "error: not enough memory for a trace of " in run.stderr
+    assert "hint: in real time the whole trace is kept in memory; choose a shorter --duration" in run.stderr
+
+
+def run_checked(program: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """Runs under ``setarch -R``: ThreadSanitizer of gcc 12 fails on kernels with more address randomisation."""
+    setarch = shutil.which("setarch")
+    prefix = [setarch, "-R"] if setarch is not None else []
+    return subprocess.run([*prefix, str(program), *arguments], capture_output=True, text=True, timeout=60, check=False)
+
+
+@pytest.mark.parametrize("sanitize", [ADDRESS_SANITIZER, THREAD_SANITIZER], ids=["address", "thread"])
+def test_own_main(tmp_path: Path, sanitize: list[str]) -> None:
+    sources = [PROGRAMS / "motor.c", PROGRAMS / "own_main.c", *platform_sources(main=False)]
+    done = run_checked(compile_program(tmp_path / "own", sources, sanitize=sanitize))
+    assert (done.returncode, done.stderr) == (0, ""), done.stdout
+    assert done.stdout.count("position") >= 20
+
+
+def test_no_data_race(tmp_path: Path) -> None:
+    sources = [PROGRAMS / "motor.c", *platform_sources()]
+    program = compile_program(tmp_path / "motor", sources, sanitize=THREAD_SANITIZER)
+    (tmp_path / "in.csv").write_text(
+        rows(*(f"{k / 100},motor_setpoint,{k % 7}" for k in range(90)), "0.95,$enable,0", "0.96,$pin:5,0")
+    )
+    done = run_checked(
+        program, "--realtime", "--duration", "1", "--setpoints", str(tmp_path / "in.csv"),
+        "--topics", str(tmp_path / "topics.csv"), "--trace", str(tmp_path / "trace.csv"),
+    )  # fmt: skip
+    assert (done.returncode, done.stderr) == (0, "")
