@@ -1,5 +1,11 @@
-# The version is the Python package's: one place to change.
-file(STRINGS "${CMAKE_CURRENT_LIST_DIR}/EPGVersion.txt" PACKAGE_VERSION LIMIT_COUNT 1)
+# The version is the Python package's, so that there is one place to change.
+get_filename_component(_epg_above "${CMAKE_CURRENT_LIST_DIR}/.." ABSOLUTE)
+set(_epg_init "${_epg_above}/epg/__init__.py")
+if(NOT EXISTS "${_epg_init}")
+  set(_epg_init "${_epg_above}/../__init__.py")
+endif()
+file(STRINGS "${_epg_init}" PACKAGE_VERSION REGEX "^__version__")
+string(REGEX REPLACE ".*\"(.*)\".*" "\\1" PACKAGE_VERSION "${PACKAGE_VERSION}")
 if(PACKAGE_FIND_VERSION VERSION_GREATER PACKAGE_VERSION)
   set(PACKAGE_VERSION_COMPATIBLE FALSE)
 else()

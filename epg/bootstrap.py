@@ -29,6 +29,15 @@ LOCKS = Path(__file__).resolve().parent / "lock"
 REQUIREMENTS = {
     "generator": {"yaml": ("PyYAML", (5, 4)), "jinja2": ("Jinja2", (3, 0)), "jsonschema": ("jsonschema", (4, 10))},
     "plot": {"matplotlib": ("matplotlib", (3, 5)), "numpy": ("numpy", (1, 23))},
+    "test": {
+        "pytest": ("pytest", (8, 0)),
+        "pytest_cmake": ("pytest-cmake", (1, 6)),
+        "hypothesis": ("hypothesis", (6, 100)),
+        "matplotlib": ("matplotlib", (3, 5)),
+        "yaml": ("PyYAML", (5, 4)),
+        "jinja2": ("Jinja2", (3, 0)),
+        "jsonschema": ("jsonschema", (4, 10)),
+    },
 }
 
 
@@ -65,6 +74,18 @@ def ensure(group: str = "generator", *, install: bool | None = None) -> None:
     still = _missing(group)
     if still:
         raise MissingPackages(_remedy(still, f"{folder} does not hold them; delete it to have it made again"))
+
+
+def main(arguments: list[str]) -> int:
+    """``python epg/bootstrap.py GROUP``: prints the folder to add to the module path, or nothing if none is needed."""
+    try:
+        missing = bool(_missing(arguments[0]))
+        ensure(arguments[0])
+    except MissingPackages as problem:
+        sys.stderr.write(f"{problem}\n")
+        return 4
+    print(_package_folder(arguments[0]).as_posix() if missing else "")
+    return 0
 
 
 def _missing(group: str) -> list[str]:
@@ -140,3 +161,8 @@ def _remedy(missing: list[str], reason: str) -> str:
         f"    apt install {debian}          (Debian, Ubuntu)\n"
         f"    cmake -DPython3_EXECUTABLE=<a Python that has them> ..."
     )
+
+
+if __name__ == "__main__":
+    sys.path[0] = str(Path(__file__).resolve().parent.parent)
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,15 @@
+# Installed as share/EPG/cmake/EPGConfig.cmake, where find_package() looks: leads to the package inside the Python
+# package, wherever the interpreter of this prefix keeps it.
+get_filename_component(_epg_prefix "${CMAKE_CURRENT_LIST_DIR}/../../.." ABSOLUTE)
+file(GLOB _epg_configs
+  "${_epg_prefix}/lib*/python*/*-packages/epg/_data/cmake/EPGConfig.cmake"
+  "${_epg_prefix}/local/lib*/python*/*-packages/epg/_data/cmake/EPGConfig.cmake"
+  "${_epg_prefix}/[Ll]ib/*-packages/epg/_data/cmake/EPGConfig.cmake")
+list(LENGTH _epg_configs _epg_count)
+if(_epg_count EQUAL 0)
+  set(EPG_FOUND FALSE)
+  set(EPG_NOT_FOUND_MESSAGE "the Python package 'epg' is not below ${_epg_prefix}; set EPG_DIR to the output of 'python -m epg --cmake-dir'")
+else()
+  list(GET _epg_configs 0 _epg_config)
+  include("${_epg_config}")
+endif()
