@@ -3,6 +3,7 @@
 #   epg_add_target(<name> TCF <file> MODEL <folder> BINDINGS <file> ...)   library EPG::<name>: model, tables, runtime
 #   epg_add_executable(<executable> EPG::<name>)                           firmware with EPG's own main()
 #   epg_add_model(<name> MODEL <folder> [INSTANCES <n>])                   library EPG::<name>: a model alone
+#   epg_add_simulation(<name> EXECUTABLE <host executable> SCENARIO <file>) target that runs and judges a simulation
 #
 # The package defines functions only (and, when they are first needed, libraries guarded by if(NOT TARGET)), so that it
 # may be found again in every directory of a project.  docs/cmake.md describes the functions.
@@ -18,4 +19,5 @@ cmake_policy(VERSION 3.22...3.31)
 include("${CMAKE_CURRENT_LIST_DIR}/EPGPython.cmake")
 include("${CMAKE_CURRENT_LIST_DIR}/EPGModel.cmake")
 include("${CMAKE_CURRENT_LIST_DIR}/EPGTarget.cmake")
+include("${CMAKE_CURRENT_LIST_DIR}/EPGSimulation.cmake")
 cmake_policy(POP)
