@@ -12,6 +12,7 @@ function(epg_add_simulation name)
   if(NOT arg_OUTPUT)
     set(arg_OUTPUT "${CMAKE_CURRENT_BINARY_DIR}")
   endif()
+  get_filename_component(arg_OUTPUT "${arg_OUTPUT}" ABSOLUTE BASE_DIR "${CMAKE_CURRENT_BINARY_DIR}")
   get_filename_component(scenario "${arg_SCENARIO}" ABSOLUTE BASE_DIR "${CMAKE_CURRENT_SOURCE_DIR}")
   _epg_find_python(python)
   _epg_python_folder(folder)
@@ -21,7 +22,7 @@ function(epg_add_simulation name)
   endif()
   add_custom_target(${name}
     COMMAND "${python}" "${folder}/__main__.py" simulate "$<TARGET_FILE:${arg_EXECUTABLE}>"
-      --scenario "${scenario}" --output "${arg_OUTPUT}" --name "${name}" ${realtime}
+      --scenario "${scenario}" --output "${arg_OUTPUT}" ${realtime}
     DEPENDS ${arg_EXECUTABLE} "${scenario}"
     USES_TERMINAL VERBATIM)
 endfunction()

@@ -80,8 +80,9 @@ def _run(options: argparse.Namespace) -> int:
     status: int = EXIT_OK
     try:
         status = importlib.import_module(f"epg.cli.{options.command.replace('-', '_')}").run(options, diagnostics) or EXIT_OK
-    except UserError:
-        pass
+    except UserError as problem:
+        if problem.diagnostics is not diagnostics:
+            diagnostics.items.extend(problem.diagnostics)
     except (MissingTool, bootstrap.MissingPackages) as problem:
         sys.stderr.write(f"epg: {problem}\n")
         return EXIT_MISSING
