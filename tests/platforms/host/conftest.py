@@ -12,3 +12,11 @@ def motor(tmp_path_factory: pytest.TempPathFactory) -> Program:
     """The motor target, with AddressSanitizer and UndefinedBehaviorSanitizer."""
     folder: Path = tmp_path_factory.mktemp("motor")
     return Program(compile_program(folder / "motor", [PROGRAMS / "motor.c", *platform_sources()]))
+
+
+@pytest.fixture(scope="session")
+def patient_motor(tmp_path_factory: pytest.TempPathFactory) -> Program:
+    """The same, but never disabled by overruns, which a busy machine may cause in real time."""
+    folder: Path = tmp_path_factory.mktemp("patient_motor")
+    sources = [PROGRAMS / "motor.c", *platform_sources()]
+    return Program(compile_program(folder / "motor", sources, defines=["OVERRUN_LIMIT=0"]))

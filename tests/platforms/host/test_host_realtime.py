@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import json
+import os
+import resource
 import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from itertools import pairwise
 from pathlib import Path
@@ -49,8 +53,8 @@ def assert_consistent(run: Run, ticks: int) -> None:
     assert sum(bin_["count"] for bin_ in statistics["lateness_histogram"]) == statistics["cycles"]
 
 
-def test_two_seconds_at_one_millisecond(motor: Program, tmp_path: Path) -> None:
-    run = motor.run_good(tmp_path, 2, rows("0.1,motor_setpoint,1"), "--realtime")
+def test_two_seconds_at_one_millisecond(patient_motor: Program, tmp_path: Path) -> None:
+    run = patient_motor.run_good(tmp_path, 2, rows("0.1,motor_setpoint,1"), "--realtime")
     assert_consistent(run, 2000)
     statistics, trace = run.statistics, run.trace
     assert statistics["mode"] == "realtime"
@@ -68,8 +72,12 @@ def test_two_seconds_at_one_millisecond(motor: Program, tmp_path: Path) -> None:
     assert all(steps == 7 * round(now * 1000) for steps, now in zip(trace["plant.steps"], trace["time"]))
 
 
-def test_publications_in_real_time(motor: Program, tmp_path: Path) -> None:
-    times = [when for when, topic, _ in motor.run_good(tmp_path, 1, None, "--realtime").topics if topic == "motor_echo"]
+def test_publications_in_real_time(patient_motor: Program, tmp_path: Path) -> None:
+    times = [
+        when
+        for when, topic, _ in patient_motor.run_good(tmp_path, 1, None, "--realtime").topics
+        if topic == "motor_echo"
+    ]
     slots = [int(when / 0.033) for when in times]
     assert all(later > earlier for earlier, later in pairwise(slots))
     assert len(times) >= 15
@@ -87,15 +95,33 @@ def test_slow_cycles_miss_ticks_but_keep_the_phase(motor: Program, tmp_path: Pat
     assert statistics["fault"] == "overrun"
 
 
-def test_events_act_in_real_time(motor: Program, tmp_path: Path) -> None:
+def test_events_act_in_real_time(patient_motor: Program, tmp_path: Path) -> None:
     events = rows("0,motor_setpoint,5", "0.2,$pin:5,0", "0.3,$pin:5,1", "0.4,motor_enable,1", "0.5,motor_setpoint,nan")
-    run = motor.run_good(tmp_path, 0.6, events, "--realtime")
+    run = patient_motor.run_good(tmp_path, 0.6, events, "--realtime")
     enabled = dict(zip((round(now * 1000) for now in run.trace["time"]), run.trace["enabled"]))
     changes = [(ms, state) for (_, before), (ms, state) in pairwise(sorted(enabled.items())) if state != before]
     assert [state for _, state in changes] == [0.0, 1.0]
     assert changes[0][0] >= 200
     assert changes[1][0] >= 400
     assert run.statistics["setpoints_dropped"] == 1
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="needs root, to run as a user without privileges")
+def test_user_without_privileges(patient_motor: Program) -> None:
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        folder.chmod(0o777)  # that user cannot reach pytest's own folders
+        program = shutil.copy(patient_motor.path, folder / "motor")
+        done = subprocess.run(
+            [program, "--realtime", "--duration", "0.2", "--statistics", str(folder / "statistics.json")],
+            capture_output=True, text=True, check=False, timeout=60, user=65534, group=65534, extra_groups=[],
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_RTPRIO, (0, 0)),
+        )  # fmt: skip
+        statistics = json.loads((folder / "statistics.json").read_text())
+    assert done.returncode == 0
+    assert statistics["scheduler"] == "SCHED_OTHER"
+    assert statistics["cycles"] + statistics["missed"] == 200
+    assert "scheduler    SCHED_OTHER (SCHED_FIFO refused: Operation not permitted), memory " in done.stdout
 
 
 def test_stall_is_refused(motor: Program, tmp_path: Path) -> None:
@@ -138,7 +164,7 @@ def run_checked(program: Path, *arguments: str) -> subprocess.CompletedProcess[s
 @pytest.mark.parametrize("sanitize", [ADDRESS_SANITIZER, THREAD_SANITIZER], ids=["address", "thread"])
 def test_own_main(tmp_path: Path, sanitize: list[str]) -> None:
     sources = [PROGRAMS / "motor.c", PROGRAMS / "own_main.c", *platform_sources(main=False)]
-    done = run_checked(compile_program(tmp_path / "own", sources, sanitize=sanitize))
+    done = run_checked(compile_program(tmp_path / "own", sources, defines=["OVERRUN_LIMIT=0"], sanitize=sanitize))
     assert (done.returncode, done.stderr) == (0, ""), done.stdout
     assert done.stdout.count("position") >= 20
 

@@ -199,6 +199,31 @@ def test_long_traces_are_written_piece_by_piece(motor: Program, tmp_path: Path) 
     assert all(later - earlier == 7.0 for earlier, later in pairwise(trace["plant.steps"]))
 
 
+def test_without_plant_sensors_stand_still(tmp_path: Path) -> None:
+    program = Program(
+        compile_program(
+            tmp_path / "motor", [PROGRAMS / "motor.c", *platform_sources()], defines=["WITHOUT_PLANT"], sanitize=[]
+        )
+    )
+    run = program.run_good(tmp_path / "run", 0.1, rows("0.05,motor_setpoint,1"))
+    assert set(run.trace["inputs.position"]) == set(run.trace["plant.steps"]) == {0.0}
+    assert run.trace["outputs.duty"] == [0.2] * 50 + [0.8] * 50
+    assert [value for _, topic, value in run.topics if topic == "motor_position"] == [0.0] * 4
+
+
+def test_simulated_time_needs_no_linux(tmp_path: Path) -> None:
+    """The sources as a system without Linux sees them: simulated time works, real time says what it needs."""
+    sources = [PROGRAMS / "motor.c", *platform_sources()]
+    flags = ["-U__linux__", "-U__linux", "-Ulinux", "-D_POSIX_C_SOURCE=200809L"]
+    program = Program(compile_program(tmp_path / "motor", sources, sanitize=flags))
+    assert program.run_good(tmp_path / "run", 0.1).statistics["cycles"] == 100
+    run = program.run(tmp_path / "real", 0.1, None, "--realtime")
+    assert run.status == 1
+    assert run.stderr == (
+        "error: real time on the host needs Linux\n  hint: leave out --realtime to run in simulated time\n"
+    )
+
+
 def test_disabled_at_start(tmp_path: Path) -> None:
     program = Program(
         compile_program(

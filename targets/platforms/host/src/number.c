@@ -4,9 +4,11 @@
  */
 #include "number.h"
 
-#include <math.h>
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "epg/finite.h"
 
 bool epg_host_parse_number(const char *text, double *value)
 {
@@ -18,7 +20,7 @@ bool epg_host_parse_number(const char *text, double *value)
     }
     char *end = NULL;
     *value = strtod(text, &end);
-    return *end == '\0' && (named || isfinite(*value));
+    return *end == '\0' && (named || epg_is_finite(*value));
 }
 
 bool epg_host_parse_time(const char *text, uint64_t *time_ns)
@@ -33,8 +35,9 @@ bool epg_host_parse_time(const char *text, uint64_t *time_ns)
 
 void epg_host_write_number(FILE *file, double value)
 {
-    if (isnan(value)) {
-        fputs("nan", file); /* never "-nan": the sign of a NaN says nothing and differs between machines */
+    if (!epg_is_finite(value)) {
+        /* Never "-nan": the sign of a NaN says nothing and differs between machines. */
+        fputs(value > DBL_MAX ? "inf" : value < -DBL_MAX ? "-inf" : "nan", file);
         return;
     }
     char text[32];

@@ -5,12 +5,12 @@
 #include "setpoints.h"
 
 #include <errno.h>
-#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "epg/finite.h"
 #include "number.h"
 #include "port.h"
 
@@ -192,7 +192,7 @@ static bool read_event(reader_t *reader, char *line, epg_host_event_t *event)
     char *fields[FIELDS] = {NULL, NULL, NULL};
     const size_t count = split(line, fields);
     if (count != FIELDS) {
-        return fail(reader, "%zu field%s instead of '%s'", count, count == 1 ? "" : "s", header);
+        return fail(reader, "%u field%s instead of '%s'", (unsigned)count, count == 1 ? "" : "s", header);
     }
     if (!epg_host_parse_time(fields[0], &event->time_ns)) {
         return fail(reader, "'%s' is no time in seconds", fields[0]);
@@ -214,7 +214,7 @@ static void mark_published(epg_host_events_t *events)
     const epg_host_event_t *later = NULL;
     for (size_t i = events->count; i > 0; i--) {
         epg_host_event_t *event = &events->events[i - 1];
-        if (event->kind == EPG_HOST_SETPOINT && isfinite(event->value)) {
+        if (event->kind == EPG_HOST_SETPOINT && epg_is_finite(event->value)) {
             event->publish = later == NULL || later->time_ns != event->time_ns;
             later = event;
         }
@@ -285,8 +285,8 @@ bool epg_host_check_pins(const char *path, const epg_host_events_t *events)
     for (size_t i = 0; i < events->count; i++) {
         const epg_host_event_t *event = &events->events[i];
         if (event->kind == EPG_HOST_PIN && !epg_host_is_input((uint8_t)event->index)) {
-            fprintf(stderr, "%s:%u: error: pin %zu is no digital input of this target\n", path, event->line,
-                    event->index);
+            fprintf(stderr, "%s:%u: error: pin %u is no digital input of this target\n", path, event->line,
+                    (unsigned)event->index);
             good = false;
         }
     }

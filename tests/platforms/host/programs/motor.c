@@ -8,6 +8,7 @@
  */
 #include <math.h>
 
+#include "epg/finite.h"
 #include "epg/host.h"
 #include "epg/port.h"
 
@@ -16,6 +17,9 @@
 #endif
 #ifndef STEPS_PER_PERIOD
 #define STEPS_PER_PERIOD 7 /* no whole number of nanoseconds each */
+#endif
+#ifndef OVERRUN_LIMIT
+#define OVERRUN_LIMIT 3
 #endif
 #ifndef ENABLE_AT_START
 #define ENABLE_AT_START true
@@ -51,7 +55,7 @@ static void read_inputs(void)
 
 static bool inputs_finite(void)
 {
-    return isfinite(position) && isfinite(setpoint);
+    return epg_is_finite(position) && epg_is_finite(setpoint);
 }
 
 static void model_init(void)
@@ -74,7 +78,7 @@ static void model_step(void)
 
 static bool model_finite(void)
 {
-    return isfinite(duty);
+    return epg_is_finite(duty);
 }
 
 static void write_outputs(void)
@@ -113,7 +117,7 @@ static const epg_application_t application = {
     .name = "motor",
     .period_ns = PERIOD_NS,
     .step_divider = 1,
-    .overrun_limit = 3,
+    .overrun_limit = OVERRUN_LIMIT,
     .enable_at_start = ENABLE_AT_START,
     .start = start,
     .read = read_inputs,
@@ -183,7 +187,8 @@ static void plant_sense(void)
     epg_host_quadrature_set(0, (int64_t)floor(angle / RADIANS_PER_COUNT));
 }
 
-static const epg_host_plant_t plant = {
+extern const epg_host_plant_t motor_plant; /* not static: it may be unused */
+const epg_host_plant_t motor_plant = {
     .steps_per_period = STEPS_PER_PERIOD,
     .init = plant_init,
     .actuate = plant_actuate,
@@ -200,7 +205,9 @@ static const epg_host_signal_t signals[] = {
 extern const epg_host_target_t epg_host_application;
 const epg_host_target_t epg_host_application = {
     .target = &target,
-    .plant = &plant,
+#ifndef WITHOUT_PLANT
+    .plant = &motor_plant,
+#endif
     .signal_count = sizeof signals / sizeof signals[0],
     .signals = signals,
 };
