@@ -120,13 +120,13 @@ void RELbot_Control::Initialize (XXDouble *u, XXDouble *y, XXDouble t)
 	/* set the parameters */
 	m_P[0] = 2.0;		/* PID_Left\kp {} */
 	m_P[1] = 0.04;		/* PID_Left\tauD {s} */
-	m_P[2] = 0.2;		/* PID_Left\beta {} */
-	m_P[3] = 8.0;		/* PID_Left\tauI {s} */
+	m_P[2] = 0.3;		/* PID_Left\beta {} */
+	m_P[3] = 4.0;		/* PID_Left\tauI {s} */
 	m_P[4] = 1.0;		/* PID_Left\limit {} */
 	m_P[5] = 2.0;		/* PID_Right\kp {} */
 	m_P[6] = 0.04;		/* PID_Right\tauD {s} */
-	m_P[7] = 0.2;		/* PID_Right\beta {} */
-	m_P[8] = 8.0;		/* PID_Right\tauI {s} */
+	m_P[7] = 0.3;		/* PID_Right\beta {} */
+	m_P[8] = 4.0;		/* PID_Right\tauI {s} */
 	m_P[9] = 1.0;		/* PID_Right\limit {} */
 
 	/* set the initial values */

@@ -1,7 +1,7 @@
 """A closed loop of an example's C models, without EPG in between: what the models themselves are worth.
 
-Encoders count whole steps, are zero at the start, and read zero in the cycle after a reset; PWM has 6250
-steps, setpoints come every 33 ms, and the cycle takes 1 ms.  The export's own functions are called, through shared libraries.
+Encoders count whole steps, are zero at the start, and read zero in the cycle after a reset; PWM has 6250 steps,
+setpoints come every 33 ms, and the cycle takes 1 ms.  The export's own functions are called, through shared libraries.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class Export:
         self._code.XXCalculateStatic()
 
     def step(self, *inputs: float) -> list[float]:
-        self._u[:] = inputs
+        self._u[:] = list(inputs)
         self._code.XXCalculateSubmodel(self._u, self._y, 0.0)
         return list(self._y)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import shutil
 from pathlib import Path
@@ -81,8 +82,8 @@ def test_hand_over_has_no_kick(build: Path) -> None:
         after = recorded.duty[axis][pulse:]
         assert abs(recorded.angle[axis][-1] - 1.0) < 0.03
         assert max(abs(duty) for duty in after) < 0.35
-        assert max(abs(b - a) for a, b in zip(after, after[1:])) < 0.12, "a count of the encoder is worth 0.07"
-        speeds = [(b - a) / 0.001 for a, b in zip(recorded.angle[axis], recorded.angle[axis][1:])]
+        assert max(abs(b - a) for a, b in itertools.pairwise(after)) < 0.12, "a count of the encoder is worth 0.07"
+        speeds = [(b - a) / 0.001 for a, b in itertools.pairwise(recorded.angle[axis])]
         assert max(speeds) < 1.7
 
 

@@ -127,7 +127,8 @@ void RungeKutta4::Step ()
 	model->CalculateDynamic ();
 	for (index = 0; index < model->m_number_states; index++)
 	{
-		model->m_s [index] = q0 [index] + (q1 [index] + 2.0 * q2 [index] + 2.0 * q3 [index] + model->m_R [index] * h) / 6.0;
+		model->m_s [index] = q0 [index] + (q1 [index] + 2.0 * q2 [index] + 2.0 * q3 [index]
+			+ model->m_R [index] * h) / 6.0;
 	}
 
 	model->m_major = true;

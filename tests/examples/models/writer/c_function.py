@@ -297,7 +297,8 @@ def _name_tables(model: Definition) -> str:
         "rate": [s.rate for s in model.states],
     }
     rows = "".join(f"XXString xx_{kind}_names[] = {{\n{quoted(names)},\tNULL\n}};\n" for kind, names in tables.items())
-    return f"/* the names of the variables as used in the arrays above\n   uncomment this part if these names are needed\n{rows}*/\n"
+    title = "the names of the variables as used in the arrays above\n   uncomment this part if these names are needed"
+    return f"/* {title}\n{rows}*/\n"
 
 
 def _model_c(model: Definition) -> str:

@@ -29,7 +29,16 @@ def header(file: str, model: Definition, *, end: str = "\n") -> str:
 
 def assignments(quantities: Iterable[Quantity], array: str, prefix: str) -> str:
     """``xx_P[0] = 2.6;  /* Pan\\PID\\kp {} */``, one per line."""
-    return "".join(f"\t{prefix}{array}[{i}] = {q.value};\t\t/* {q.name}{q.braces} */\n" for i, q in enumerate(quantities))
+    return _rows(f"{prefix}{array}", quantities)
+
+
+def zeros(ports: Iterable[Quantity], array: str) -> str:
+    """``u[0] = 0.0;  /* position {rad} */``, one per line."""
+    return _rows(array, (Quantity(port.name, "0.0", port.unit) for port in ports))
+
+
+def _rows(array: str, quantities: Iterable[Quantity]) -> str:
+    return "".join(f"\t{array}[{i}] = {q.value};\t\t/* {q.name}{q.braces} */\n" for i, q in enumerate(quantities))
 
 
 def initial_values(model: Definition) -> tuple[Quantity, ...]:

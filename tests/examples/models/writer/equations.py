@@ -92,7 +92,9 @@ def _operand(tokens: list[str]) -> tuple[Expression, list[str]]:
         return Expression("if", f"(if {condition.text} then {yes.text} else {no.text} end)", (condition, yes, no)), rest
     if head in ("-", "not"):
         operand, rest = _operand(rest)
-        return Expression(head if head == "not" else "minus", f"{head}{' ' * (head == 'not')}{operand.text}", (operand,)), rest
+        if head == "-":
+            return Expression("minus", f"-{operand.text}", (operand,)), rest
+        return Expression("not", f"not {operand.text}", (operand,)), rest
     if head == "(":
         inner, rest = _parse(rest, 0)
         if inner.kind == "if":  # brings its own parentheses

@@ -65,7 +65,8 @@ _AXIS_CONTROL = {
         else (if @\Homing\mode_previous == 2 then @\Homing\reset
         else (if @\Homing\mode_previous == 3 then @\Homing\rest else @\Homing\mode_previous end) end) end) end
     @\Homing\changed = @\Homing\mode <> @\Homing\mode_previous
-    @\Homing\elapsed = if @\Homing\mode < 2 then @\Homing\elapsed_previous + sampletime else @\Homing\elapsed_previous end
+    @\Homing\elapsed = if @\Homing\mode < 2 then @\Homing\elapsed_previous + sampletime
+        else @\Homing\elapsed_previous end
     @\Homing\phase = if @\Homing\changed then 0 else @\Homing\phase_previous + sampletime end
     @\Homing\origin = if @\Homing\changed then position_$ else @\Homing\from end
     @\Homing\mark = if @\Homing\changed or @\Homing\left then position_$ else @\Homing\mark_previous end
@@ -81,7 +82,8 @@ _AXIS_CONTROL = {
     @\Reference\output = if not @\control then position_$
         else (if @\Reference\following then setpoint_$ else @\Reference\towards end) end
     @\PID\error = @\Reference\output - position_$
-    @\PID\uD = if not @\control then @\PID\kp * @\PID\error else @\PID\factor * (@\PID\tauD * @\PID\uD_previous * @\PID\beta
+    @\PID\uD = if not @\control then @\PID\kp * @\PID\error
+        else @\PID\factor * (@\PID\tauD * @\PID\uD_previous * @\PID\beta
         + @\PID\tauD * @\PID\kp * (@\PID\error - @\PID\error_previous) + sampletime * @\PID\kp * @\PID\error) end
     @\PID\integral = @\PID\uI_previous + sampletime * @\PID\uD / @\PID\tauI
     @\PID\sum = @\PID\integral + @\PID\uD

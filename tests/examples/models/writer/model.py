@@ -104,23 +104,24 @@ def define(name: str, method: str, step: str, finish: str, text: str) -> Definit
         method,
         step,
         finish,
-        *(_quantities(rows[kind], sort) for kind, sort in (("inputs", True), ("outputs", True))),
-        _quantities(rows["parameters"], False),
-        _quantities(rows["states"], False),
+        tuple(sorted(_quantities(rows["inputs"]), key=lambda port: port.name)),
+        tuple(sorted(_quantities(rows["outputs"]), key=lambda port: port.name)),
+        _quantities(rows["parameters"]),
+        _quantities(rows["states"]),
         {kind: tuple(_equation(row) for row in rows[kind]) for kind in ("static", "dynamic", "output")},
     )
     _check(model)
     return model
 
 
-def _quantities(rows: list[str], sort: bool) -> tuple[Quantity, ...]:
+def _quantities(rows: list[str]) -> tuple[Quantity, ...]:
     found = []
     for row in rows:
         match = _VARIABLE.fullmatch(row)
         if not match:
             raise ValueError(f"not understood: {row!r}")
         found.append(Quantity(match[1], match[2] or "0.0", match[3], match[4] or ""))
-    return tuple(sorted(found, key=lambda quantity: quantity.name) if sort else found)
+    return tuple(found)
 
 
 def _equation(row: str) -> tuple[str, str]:

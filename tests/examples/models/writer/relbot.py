@@ -34,8 +34,8 @@ output
 
 _PARAMETERS = r"""@\kp = 2.0 {}
     @\tauD = 0.04 {s}
-    @\beta = 0.2 {}
-    @\tauI = 8.0 {s}
+    @\beta = 0.3 {}
+    @\tauI = 4.0 {s}
     @\limit = 1.0 {}
 """
 

@@ -1,0 +1,206 @@
+"""Scenario files: reading, and every check that needs no run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from pathlib import Path
+
+from epg.check.schema import load_schema, validate
+from epg.diagnostics import Diagnostics, did_you_mean
+from epg.load.yaml_file import load_yaml
+from epg.quantity import QuantityError, dimension_of, normal_unit, parse_quantity
+from epg.simulate.scenario import Axis, Event, Homing, Part, Profile, Scenario, Window
+from epg.source import Node
+
+#: shape -> keys it needs beside shape and start
+_SHAPES = {
+    "raised_cosine": ("duration", "height"),
+    "move": ("duration", "to"),
+    "ramp": ("duration", "to"),
+    "step": ("to",),
+    "sine": ("duration", "height", "frequency"),
+}
+_ACTIONS = ("enable", "setpoint", "lost", "stall", "pin")
+MAX_SETPOINTS = 2_000_000
+
+
+def load_scenario(path: Path, diagnostics: Diagnostics) -> Scenario | None:
+    """The scenario in ``path``, or None after reporting what is wrong with it."""
+    before = diagnostics.error_count
+    root = load_yaml(path, diagnostics)
+    if root is None or not validate(root, load_schema("scenario"), diagnostics):
+        return None
+    scenario = _Reader(diagnostics).scenario(path, root)
+    return scenario if diagnostics.error_count == before else None
+
+
+class _Reader:
+    """Turns a validated tree into data.  After a problem it goes on with a harmless value, so that all are found."""
+
+    def __init__(self, diagnostics: Diagnostics) -> None:
+        self.diagnostics = diagnostics
+
+    def scenario(self, path: Path, root: Node) -> Scenario:
+        duration = self.time(root["duration"], positive=True)
+        interval = self.time(root["interval"], positive=True) if "interval" in root else Fraction(33, 1000)
+        setpoints = root["setpoints"]
+        if duration / interval * len(setpoints.plain()) > MAX_SETPOINTS:
+            node = root.get("interval") or root["duration"]
+            message = f"this makes more than {MAX_SETPOINTS} setpoints"
+            self.error("too-many-setpoints", node, message, "use a longer interval")
+        profiles = {topic: self.profile(node, duration) for topic, node in setpoints.items()}
+        reference = root.get("reference")
+        if reference is not None and not (path.parent / str(reference.value)).is_file():
+            hint = did_you_mean(str(reference.value), [file.name for file in path.parent.glob("*.py")])
+            self.error("file-not-found", reference, f"there is no file '{reference.value}'", hint)
+        events = root.get("events")
+        return Scenario(
+            path=path,
+            duration=duration,
+            interval=interval,
+            reference=path.parent / str(reference.value) if reference is not None else None,
+            profiles=profiles,
+            events=tuple(self.event(node, duration, profiles) for node in (events.elements() if events else ())),
+            axes=tuple(self.axis(name, node, duration, profiles) for name, node in root["axes"].items()),
+        )
+
+    def profile(self, node: Node, duration: Fraction) -> Profile:
+        initial = self.value(node["initial"]) if "initial" in node else 0.0
+        listed = node.get("profile")
+        parts: list[Part] = []
+        for element in listed.elements() if listed else ():
+            part = self.part(element)
+            if parts and part.start < parts[-1].end:
+                self.error("overlapping-parts", element["start"], f"the part before ends at {parts[-1].end:g} s only")
+            if part.end > duration:
+                message = f"the part ends at {part.end:g} s, the run at {float(duration):g} s"
+                self.error("beyond-duration", element["start"], message)
+            parts.append(part)
+        return Profile(initial, tuple(parts))
+
+    def part(self, node: Node) -> Part:
+        shape = str(node["shape"].value)
+        needed = _SHAPES[shape]
+        for key in needed:
+            if key not in node:
+                self.error("missing-key", node["shape"], f"'{key}' is missing: a {shape} needs {', '.join(needed)}")
+        for key, _ in node.items():
+            if key not in (*needed, "shape", "start"):
+                self.diagnostics.error(
+                    "unknown-key", node.key_span(key), f"a {shape} has no '{key}'", hint=f"it needs {', '.join(needed)}"
+                )
+        target = node.get("to") or node.get("height")
+        return Part(
+            shape,
+            float(self.time(node["start"])),
+            float(self.time(node["duration"], positive=True)) if "duration" in node else 0.0,
+            self.value(target) if target else 0.0,
+            float(self.quantity(node["frequency"], "frequency")) if "frequency" in node else 0.0,
+        )
+
+    def event(self, node: Node, duration: Fraction, profiles: Mapping[str, Profile]) -> Event:
+        at = self.time(node["at"])
+        actions = [key for key, _ in node.items() if key in _ACTIONS]
+        if len(actions) != 1:
+            message = f"an event does one thing, this one {' and '.join(actions)}"
+            message = message if actions else "this event does nothing"
+            self.error("wrong-event", node["at"], message, f"write one of {', '.join(_ACTIONS)}")
+            return Event(at, "none")
+        action = actions[0]
+        needed = {"setpoint": "topic", "pin": "level"}.get(action)
+        if needed and needed not in node:
+            self.error("missing-key", node[action], f"'{needed}' is missing beside '{action}'")
+            return Event(at, "none")
+        for key, value in node.items():
+            if key not in ("at", action, needed) and not (key == "topic" and action == "lost"):
+                self.error("unknown-key", value, f"'{key}' has no meaning beside '{action}'")
+        if at >= duration:
+            self.error("beyond-duration", node["at"], f"the run ends at {float(duration):g} s")
+        topic = self.topic(node["topic"], profiles) if "topic" in node else ""
+        if action == "enable":
+            return Event(at, "enable" if node["enable"].value else "disable")
+        if action == "setpoint":
+            return Event(at, "setpoint", topic, self.value(node["setpoint"], finite=False))
+        if action == "pin":
+            return Event(at, "pin", pin=int(str(node["pin"].value)), value=float(bool(node["level"].value)))
+        return Event(at, action, topic, duration=self.time(node[action], positive=True))
+
+    def axis(self, name: str, node: Node, duration: Fraction, profiles: Mapping[str, Profile]) -> Axis:
+        topic = self.topic(node["setpoint"], profiles)
+        listed = node.get("windows")
+        windows = tuple(self.window(element, duration) for element in (listed.elements() if listed else ()))
+        if not windows:
+            start, end = (profiles[topic].span if topic in profiles else None) or (0.0, float(duration))
+            windows = (Window(start, end),)
+        duty, homing, unit = node.get("duty"), node.get("homing"), node.get("unit")
+        if homing is not None and "duty" in homing and duty is None:
+            message = f"'duty' is missing in 'axes.{name}': which signal is limited here?"
+            self.error("missing-key", homing["duty"], message, "for example: duty: outputs.pwm_pan")
+        return Axis(
+            name=name,
+            setpoint=topic,
+            position=str(node["position"].value),
+            duty=str(duty.value) if duty else None,
+            unit=normal_unit(str(unit.value)) if unit else "rad",
+            homing=self.homing(homing, duration) if homing else None,
+            windows=windows,
+        )
+
+    def homing(self, node: Node, duration: Fraction) -> Homing:
+        duty = node.get("duty")
+        return Homing(
+            self.within(node["until"], duration),
+            float(str(duty.value)) if duty else None,
+            self.value(node["position"]) if "position" in node else None,
+        )
+
+    def window(self, node: Node, duration: Fraction) -> Window:
+        start, end = self.within(node["from"], duration), self.within(node["until"], duration)
+        if end <= start:
+            self.error("wrong-value", node["until"], "the window ends before it begins")
+        limits = (self.value(node[key]) if key in node else None for key in ("rms", "largest"))
+        return Window(start, end, *limits)
+
+    def topic(self, node: Node, profiles: Mapping[str, Profile]) -> str:
+        topic = str(node.value)
+        if topic not in profiles:
+            hint = did_you_mean(topic, profiles, "topics")
+            self.error("unknown-topic", node, f"no setpoints are sent on '{topic}'", hint)
+        return topic
+
+    def within(self, node: Node, duration: Fraction) -> float:
+        time = self.time(node)
+        if time > duration:
+            self.error("beyond-duration", node, f"the run ends at {float(duration):g} s")
+        return float(time)
+
+    def time(self, node: Node, *, positive: bool = False) -> Fraction:
+        time = self.quantity(node, "time")
+        if time < 0 or (positive and time == 0):
+            least = "more than" if positive else "at least"
+            self.error("out-of-range", node, f"'{node.value}' is out of range: must be {least} 0 s")
+            return Fraction(1)
+        return Fraction(time)
+
+    def quantity(self, node: Node, dimension: str) -> Fraction | float:
+        try:
+            return parse_quantity(node.value, dimension)
+        except QuantityError as problem:
+            self.error("wrong-quantity", node, str(problem), problem.hint)
+            return Fraction(1)
+
+    def value(self, node: Node, *, finite: bool = True) -> float:
+        """A number as it is, or a quantity of any dimension in its base unit (rad for deg)."""
+        if isinstance(node.value, (int, float)) and not isinstance(node.value, bool):
+            value = float(node.value)
+            if finite and value - value != 0:
+                self.error("wrong-value", node, "the value must be finite here")
+                return 0.0
+            return value
+        text = str(node.value).split(None, 1)
+        dimension = dimension_of(text[1]) if len(text) == 2 else None
+        return float(self.quantity(node, dimension or "angle"))
+
+    def error(self, id: str, node: Node, message: str, hint: str = "") -> None:
+        self.diagnostics.error(id, node.span, message, hint=hint)

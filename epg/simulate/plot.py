@@ -1,0 +1,66 @@
+"""The plot of a run: setpoint, reference and position of each axis over time, and the error below."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from epg.diagnostics import Diagnostics
+from epg.simulate.tracking import Tracking
+from epg.source import Span
+
+# M. Okabe, K. Ito, "Color Universal Design", 2008: told apart by people with any common colour vision
+_BLACK, _BLUE, _ORANGE, _GREY = "#000000", "#0072B2", "#D55E00", "#999999"
+
+
+def plot(trackings: Sequence[Tracking], path: Path, diagnostics: Diagnostics) -> bool:
+    """Draws ``path``; False, with a warning that says what to install, without matplotlib."""
+    try:
+        import matplotlib
+
+        matplotlib.use("Agg")
+        from matplotlib.figure import Figure
+    except ImportError as error:
+        diagnostics.warning(
+            "matplotlib-missing",
+            Span(path.name),
+            f"not drawn: {error}",
+            hint="python3 -m pip install matplotlib, or on Debian and Ubuntu: apt install python3-matplotlib",
+        )
+        return False
+    count = len(trackings)
+    figure = Figure(figsize=(8.0, 3.7 * count), layout="constrained")
+    panels = figure.subplots(2 * count, 1, sharex=True, squeeze=False, gridspec_kw={"height_ratios": [3, 1] * count})
+    for number, tracking in enumerate(trackings):
+        _draw(tracking, panels[2 * number][0], panels[2 * number + 1][0])
+    panels[-1][0].set_xlabel("time (s)")
+    panels[-1][0].set_xlim(0.0, trackings[0].time[-1])
+    figure.savefig(path, dpi=150, metadata={"Software": None})
+    return True
+
+
+def _draw(tracking: Tracking, upper, lower) -> None:  # type: ignore[no-untyped-def]  # matplotlib brings no types
+    axis = tracking.axis
+    begin = axis.homing.until if axis.homing else 0.0
+    shown = [i for i, time in enumerate(tracking.time) if time >= begin]
+    upper.plot(tracking.time, tracking.setpoint, color=_BLACK, linestyle="--", linewidth=1.0, label="setpoint")
+    if tracking.reference is not None:
+        upper.plot(tracking.time, tracking.reference, color=_ORANGE, linewidth=2.4, label="reference (ideal loop)")
+    upper.plot(tracking.time, tracking.position, color=_BLUE, linewidth=1.1, label="position")
+    upper.set_ylabel(f"{axis.name} ({axis.unit})")
+    times = [tracking.time[i] for i in shown]
+    milli = 1000.0 if axis.unit in ("rad", "m") else 1.0
+    if tracking.reference is not None:
+        ideal = [milli * (tracking.reference[i] - tracking.setpoint[i]) for i in shown]
+        lower.plot(times, ideal, color=_ORANGE, linewidth=1.8)
+    errors = [milli * (tracking.position[i] - tracking.setpoint[i]) for i in shown]
+    lower.plot(times, errors, color=_BLUE, linewidth=0.9)
+    lower.set_ylabel(f"error ({'m' if milli > 1 else ''}{axis.unit})")
+    for panel in (upper, lower):
+        panel.grid(True, color=_GREY, alpha=0.3, linewidth=0.6)
+        if begin > 0.0:
+            label = "homing" if panel is upper else None
+            panel.axvspan(0.0, begin, color=_GREY, alpha=0.15, linewidth=0.0, label=label)
+    upper.legend(loc="upper right", fontsize="small", ncols=4)
+    low, high = upper.get_ylim()
+    upper.set_ylim(low, high + 0.22 * (high - low))  # room for the legend

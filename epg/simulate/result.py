@@ -1,0 +1,26 @@
+"""What a simulation gives."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from epg.diagnostics import Diagnostics
+from epg.simulate.executable import Statistics
+from epg.simulate.tracking import Check, WindowResult
+
+
+@dataclass(frozen=True)
+class Result:
+    """``files`` lists what was written, ``diagnostics`` holds warnings only."""
+
+    statistics: Statistics
+    windows: tuple[WindowResult, ...]
+    checks: tuple[Check, ...]
+    files: tuple[Path, ...]
+    diagnostics: Diagnostics
+
+    @property
+    def passed(self) -> bool:
+        """Whether every limit of the scenario holds."""
+        return all(check.passed for check in self.checks)

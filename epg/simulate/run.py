@@ -1,0 +1,73 @@
+"""One run of a host executable under a scenario, from setpoints to plot."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from epg.diagnostics import Diagnostics
+from epg.simulate.executable import read_statistics, read_trace, run_executable
+from epg.simulate.load_scenario import load_scenario
+from epg.simulate.plot import plot
+from epg.simulate.reference import load_reference
+from epg.simulate.result import Result
+from epg.simulate.scenario import Scenario
+from epg.simulate.setpoints import setpoint_rows, write_setpoints
+from epg.simulate.tracking import check, evaluate, track, write_tracking
+from epg.source import Span
+
+
+def simulate(
+    executable: Path,
+    scenario: Path,
+    output: Path,
+    *,
+    realtime: bool = False,
+    progress: Callable[[str], None] = lambda message: None,
+) -> Result:
+    """Runs ``executable`` under ``scenario`` and evaluates it.
+
+    Writes into the folder ``output`` (made if missing): ``setpoints.csv``, ``topics.csv``, ``trace.csv``,
+    ``statistics.json``, ``tracking.csv`` and, with matplotlib, ``tracking.png``.  Files of an earlier run are
+    replaced.  ``progress`` gets short messages, about one per second.
+
+    Raises UserError for a wrong scenario, an executable that fails, or a signal it does not have.  Limits that do not
+    hold are no error: see ``Result.passed``.
+    """
+    diagnostics = Diagnostics()
+    read = load_scenario(scenario, diagnostics)
+    diagnostics.stop_if_errors()
+    assert read is not None
+    reference = load_reference(read.reference) if read.reference else None
+    if realtime and any(event.kind == "stall" for event in read.events):
+        diagnostics.warning("no-stall", Span(str(scenario)), "cycles are stalled in simulated time only")
+    output.mkdir(parents=True, exist_ok=True)
+    names = ("setpoints.csv", "topics.csv", "trace.csv", "statistics.json", "tracking.csv", "tracking.png")
+    files = [output / name for name in names]
+    for file in files:
+        file.unlink(missing_ok=True)
+
+    write_setpoints(setpoint_rows(read, realtime=realtime), files[0])
+    run_executable(executable, output, float(read.duration), files[0], realtime=realtime, progress=progress)
+    columns = read_trace(output / "trace.csv", _signals(read))
+    progress("evaluating")
+    trackings = [track(axis, read.profiles[axis.setpoint], columns, reference) for axis in read.axes]
+    write_tracking(trackings, output / "tracking.csv")
+    if not plot(trackings, output / "tracking.png", diagnostics):
+        files.pop()
+    windows = [evaluate(tracking) for tracking in trackings]
+    checks = [held for tracking, results in zip(trackings, windows) for held in check(tracking, results)]
+    return Result(
+        statistics=read_statistics(output / "statistics.json"),
+        windows=tuple(result for results in windows for result in results),
+        checks=tuple(checks),
+        files=tuple(files),
+        diagnostics=diagnostics,
+    )
+
+
+def _signals(scenario: Scenario) -> list[tuple[str, Span]]:
+    """The signals a scenario asks for, with the file that does."""
+    span = Span(str(scenario.path))
+    names = {name for axis in scenario.axes for name in (axis.position, axis.duty) if name}
+    return [(name, span) for name in sorted(names)]

@@ -1,0 +1,42 @@
+"""A scenario as the rows of the file a host executable reads: time, topic, value."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+from pathlib import Path
+
+from epg.simulate.scenario import Event, Scenario
+
+Row = tuple[Fraction, str, float]
+
+
+def setpoint_rows(scenario: Scenario, *, realtime: bool = False) -> list[Row]:
+    """All rows in order of time.  ``realtime`` leaves out stalls, which only simulated time can make."""
+    rows: list[Row] = []
+    for topic, profile in sorted(scenario.profiles.items()):
+        gaps = [event for event in scenario.events if event.kind == "lost" and event.topic in ("", topic)]
+        for number in range(math.ceil(scenario.duration / scenario.interval)):
+            time = number * scenario.interval
+            if not any(gap.at <= time < gap.at + gap.duration for gap in gaps):
+                rows.append((time, topic, profile.value(float(time))))
+    rows += [row for event in scenario.events for row in _event_rows(event, realtime)]
+    return sorted(rows, key=lambda row: (row[0], not row[1].startswith("$"), row[1]))
+
+
+def _event_rows(event: Event, realtime: bool) -> list[Row]:
+    if event.kind in ("enable", "disable"):
+        return [(event.at, "$enable", float(event.kind == "enable"))]
+    if event.kind == "setpoint":
+        return [(event.at, event.topic, event.value)]
+    if event.kind == "stall" and not realtime:
+        return [(event.at, "$stall", float(event.duration))]
+    if event.kind == "pin":
+        return [(event.at, f"$pin:{event.pin}", event.value)]
+    return []
+
+
+def write_setpoints(rows: list[Row], path: Path) -> None:
+    """Numbers are written with as few digits as give the same double again."""
+    lines = ["time,topic,value\n", *(f"{float(time)!r},{topic},{value!r}\n" for time, topic, value in rows)]
+    path.write_text("".join(lines), encoding="utf-8", newline="\n")

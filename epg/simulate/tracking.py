@@ -1,0 +1,123 @@
+"""How well each axis followed its setpoint."""
+
+from __future__ import annotations
+
+import math
+from array import array
+from bisect import bisect_left, bisect_right
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from epg.simulate.reference import Reference
+from epg.simulate.scenario import Axis, Profile, Window
+
+
+@dataclass(frozen=True)
+class Tracking:
+    """The signals of one axis, one value per control cycle.  ``reference`` is NaN where there is none."""
+
+    axis: Axis
+    time: Sequence[float]
+    setpoint: Sequence[float]
+    position: Sequence[float]
+    reference: Sequence[float] | None
+    duty: Sequence[float] | None
+
+
+@dataclass(frozen=True)
+class WindowResult:
+    """Errors are position - setpoint; ``deviation`` is the RMS of position - reference.  In the axis' unit."""
+
+    axis: str
+    unit: str
+    window: Window
+    rms: float
+    largest: float
+    deviation: float | None
+
+
+@dataclass(frozen=True)
+class Check:
+    """A limit of the scenario and what was measured; a value that is not finite has not passed."""
+
+    text: str
+    value: float
+    limit: float
+    unit: str
+
+    @property
+    def passed(self) -> bool:
+        return self.value <= self.limit
+
+
+def track(axis: Axis, profile: Profile, columns: Mapping[str, array[float]], reference: Reference | None) -> Tracking:
+    """The signals of ``axis`` from a trace.  The setpoint is the continuous profile, not what had been sent so far."""
+    time = columns["time"]
+    setpoint = array("d", (profile.value(t) for t in time))
+    ideal: array[float] | None = None
+    if reference is not None:
+        begin = bisect_left(time, axis.homing.until) if axis.homing else 0
+        ideal = array("d", [math.nan] * begin)
+        ideal.extend(reference(axis.name, time[begin:], setpoint[begin:]))
+    return Tracking(axis, time, setpoint, columns[axis.position], ideal, columns[axis.duty] if axis.duty else None)
+
+
+def evaluate(tracking: Tracking) -> list[WindowResult]:
+    """RMS and largest error in each window of the axis; NaN for a window in which no cycle ran."""
+    results = []
+    for window in tracking.axis.windows:
+        inside = slice(bisect_left(tracking.time, window.start), bisect_right(tracking.time, window.end))
+        position = tracking.position[inside]
+        errors = [p - s for p, s in zip(position, tracking.setpoint[inside])]
+        deviation = None
+        if tracking.reference is not None:
+            deviations = [p - r for p, r in zip(position, tracking.reference[inside]) if not math.isnan(r)]
+            deviation = _rms(deviations) if deviations else None
+        largest = max(map(abs, errors)) if errors else math.nan
+        results.append(WindowResult(tracking.axis.name, tracking.axis.unit, window, _rms(errors), largest, deviation))
+    return results
+
+
+def check(tracking: Tracking, results: Sequence[WindowResult]) -> list[Check]:
+    """All limits of one axis."""
+    axis = tracking.axis
+    checks = []
+    for result in results:
+        between = f"from {result.window.start:g} s to {result.window.end:g} s"
+        if result.window.rms is not None:
+            checks.append(Check(f"{axis.name}: RMS error {between}", result.rms, result.window.rms, axis.unit))
+        if result.window.largest is not None:
+            limit = result.window.largest
+            checks.append(Check(f"{axis.name}: largest error {between}", result.largest, limit, axis.unit))
+    homing = axis.homing
+    if homing is not None:
+        count = bisect_left(tracking.time, homing.until)
+        if homing.duty is not None and tracking.duty is not None:
+            largest = max(map(abs, tracking.duty[:count]), default=math.nan)
+            checks.append(Check(f"{axis.name}: duty while homing", largest, homing.duty, ""))
+        if homing.position is not None:
+            at = min(count, len(tracking.time) - 1)
+            distance = abs(tracking.position[at] - tracking.setpoint[at]) if tracking.time else math.nan
+            checks.append(Check(f"{axis.name}: distance from zero after homing", distance, homing.position, axis.unit))
+    return checks
+
+
+def _rms(values: Sequence[float]) -> float:
+    return math.sqrt(math.fsum(value * value for value in values) / len(values)) if values else math.nan
+
+
+def write_tracking(trackings: Sequence[Tracking], path: Path) -> None:
+    """A table for people and spreadsheets: time, then setpoint, reference, position and duty of each axis."""
+    header = ["time"]
+    columns: list[Sequence[float]] = [trackings[0].time]
+    for tracking in trackings:
+        signals = {"setpoint": tracking.setpoint, "reference": tracking.reference}
+        for name, column in (signals | {"position": tracking.position, "duty": tracking.duty}).items():
+            if column is not None:
+                header.append(f"{tracking.axis.name}_{name}")
+                columns.append(column)
+    with path.open("w", encoding="utf-8", newline="\n") as file:
+        file.write(",".join(header) + "\n")
+        for row in zip(*columns):
+            file.write(",".join("" if math.isnan(value) else repr(value) for value in row) + "\n")
