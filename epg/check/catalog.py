@@ -1,0 +1,93 @@
+"""The files of ``targets`` folders, checked: structure by schema, then what a schema cannot say."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from pathlib import Path
+
+from epg.check.hardware import check_board, check_platform, check_soc, check_target
+from epg.check.kind import check_kind
+from epg.check.schema import load_schema, validate
+from epg.diagnostics import Diagnostics, did_you_mean
+from epg.load.catalog import Catalog, CatalogCheck
+from epg.load.hardware import Target
+from epg.source import Node, Span
+
+
+def check_catalog(catalog: Catalog, diagnostics: Diagnostics) -> None:
+    """Makes ``catalog`` check every file it reads from now on.  Problems go to the catalog's own diagnostics."""
+    catalog.check = _Check()
+
+
+def check_all(catalog: Catalog) -> None:
+    """Reads everything in the catalog, so that all problems of all its files are reported."""
+    for name in catalog.kind_names():
+        catalog.find_kind(name)
+    for name in catalog.target_names():
+        catalog.find_target(name)
+
+
+class _Check(CatalogCheck):
+    def file(self, sort: str, node: Node, name: str, diagnostics: Diagnostics) -> bool:
+        key = "kind" if sort == "component" else sort
+        if not node.is_mapping:
+            span = Span(node.span.file, 1, 1, 2)
+            diagnostics.error(
+                "wrong-type", span, f"a {sort}.yaml is a map (key: value)", hint="it begins with 'api: 1'"
+            )
+            return False
+        if _newer(node, diagnostics) or not validate(node, load_schema(sort), diagnostics):
+            return False
+        errors = diagnostics.error_count
+        if node[key].value != name:
+            message = f"{key} '{node[key].value}' stands in a folder called '{name}'"
+            hint = f"write '{key}: {name}', or rename the folder"
+            diagnostics.error("wrong-folder", node[key].span, message, hint=hint)
+        if sort == "soc":
+            check_soc(node, diagnostics)
+        elif sort == "board":
+            check_board(node, diagnostics)
+        elif sort == "platform":
+            check_platform(node, diagnostics)
+            _files_exist(node, ("templates",), _names_in(node, ("templates",)), diagnostics)
+        else:
+            check_kind(node, diagnostics)
+            for path in (("driver", "headers"), ("driver", "sources")):
+                _files_exist(node, path, _names_in(node, path), diagnostics)
+            _template_exists(node, diagnostics)
+        return diagnostics.error_count == errors
+
+    def target(self, target: Target, diagnostics: Diagnostics) -> bool:
+        return check_target(target, diagnostics)
+
+
+def _newer(node: Node, diagnostics: Diagnostics) -> bool:
+    api = node.get("api")
+    if api is None or not isinstance(api.value, int) or isinstance(api.value, bool) or api.value <= 1:
+        return False
+    message = f"file format {api.value} is newer than this EPG, which reads up to 1"
+    diagnostics.error("newer-version", api.span, message, hint="update EPG")
+    return True
+
+
+def _names_in(node: Node, path: tuple[str, ...]) -> list[Node]:
+    found = node.get(*path)
+    return list(found.elements()) if found is not None else []
+
+
+def _files_exist(node: Node, path: tuple[str, ...], names: Collection[Node], diagnostics: Diagnostics) -> None:
+    """Reports names in ``node`` that are no files beside it."""
+    folder = Path(node.span.file).parent
+    for name in names:
+        if not (folder / str(name.value)).is_file():
+            there = [file.name for file in folder.iterdir() if file.is_file()]
+            hint = did_you_mean(str(name.value), there, "in that folder")
+            message = f"{'.'.join(path)}: there is no file '{name.value}'"
+            diagnostics.error("file-not-found", name.span, message, hint=hint)
+
+
+def _template_exists(node: Node, diagnostics: Diagnostics) -> None:
+    if not (Path(node.span.file).parent / "code.c.j2").is_file():
+        message = f"kind '{node['kind'].value}' has no code.c.j2"
+        hint = "docs/adding-a-component-kind.md lists the macros it holds"
+        diagnostics.error("file-not-found", node["kind"].span, message, hint=hint)

@@ -1,0 +1,216 @@
+"""Components as their kinds describe them: the JSON Schema of a component, and its parameters as typed values."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from fractions import Fraction
+from types import MappingProxyType
+from typing import Any
+
+from epg.check.schema import extended_from, load_schema, validate
+from epg.diagnostics import Diagnostics, Note
+from epg.load.kind import Kind, KindParameter, make_parameter
+from epg.quantity import QuantityError, parse_quantity, parse_ratio
+from epg.source import Node, Span
+
+COMMON_PARAMETERS = ("kind", "scale", "offset", "unit", "limits")
+"""Keys that every component has besides ``pins`` and the parameters of its kind."""
+
+_WORDS = {
+    "minimum": "at least",
+    "exclusiveMinimum": "more than",
+    "maximum": "at most",
+    "exclusiveMaximum": "less than",
+}
+_PIN = {"type": ["integer", "string"], "minimum": 0, "description": "number or name of a pin"}
+
+
+def component_schema(kind: Kind, with_pins: bool) -> dict[str, Any]:
+    """The JSON Schema (draft 2020-12) of a component of ``kind``; on targets without pins they may be left out."""
+    properties: dict[str, Any] = {"kind": {"const": kind.name, "description": kind.summary}}
+    required = ["kind"]
+    if kind.pins:
+        properties["pins"] = {
+            "type": "object",
+            "description": "where it is wired to",
+            "properties": {pin: dict(_PIN) for pin in kind.pins},
+            "required": list(kind.pins) if with_pins else [],
+            "additionalProperties": False,
+            "examples": [{pin: number for number, pin in enumerate(kind.pins)}],
+        }
+        required += ["pins"] if with_pins else []
+    for parameter in kind.parameters:
+        properties[parameter.name] = _parameter_schema(parameter)
+    properties |= load_schema("bindings")["$defs"]["conversion"]
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": kind.name,
+        "description": kind.summary,
+        "type": "object",
+        "properties": properties,
+        "required": required + [parameter.name for parameter in kind.parameters if parameter.required],
+        "additionalProperties": False,
+    }
+
+
+def typed_parameters(kind: Kind, node: Node, diagnostics: Diagnostics) -> Mapping[str, object]:
+    """The parameters of a component that has passed :func:`component_schema`; problems with values are reported.
+
+    Quantities are in base units (s, Hz, rad, ...) and, like ratios, exact fractions unless their unit is not; other
+    numbers are floats, integers stay; ``pins`` maps names to pins as written.  Parameters that are not stated have
+    their default, or None.
+    """
+    _relations(kind, node, diagnostics)
+    values: dict[str, object] = {}
+    for parameter in kind.parameters:
+        values[parameter.name] = _typed(parameter, node.get(parameter.name), diagnostics)
+    pins = node.get("pins")
+    values["pins"] = MappingProxyType({pin: child.value for pin, child in pins.items()} if pins else {})
+    return MappingProxyType(values)
+
+
+def parameter_problems(name: str, node: Node, span: Span, diagnostics: Diagnostics) -> None:
+    """Reports what is wrong with the description of a parameter in a kind: its type, bounds and default."""
+    if ("type" in node) == ("quantity" in node):
+        hint = "'quantity' is for numbers with a unit"
+        diagnostics.error("exactly-one", span, f"parameter '{name}' states either 'type' or 'quantity'", hint=hint)
+        return
+    nested = "type" in node and node["type"].value == "object"
+    if nested != ("properties" in node):
+        message = (
+            f"parameter '{name}' is an object without 'properties'" if nested else "only an object has 'properties'"
+        )
+        diagnostics.error("wrong-value", span, message)
+        return
+    if "properties" in node:
+        for child, described in node["properties"].items():
+            parameter_problems(child, described, node["properties"].key_span(child), diagnostics)
+    errors = diagnostics.error_count
+    parameter = make_parameter(name, node, span)
+    for bound in parameter.bounds.values():
+        try:
+            _value(parameter, bound.value)
+        except QuantityError as problem:
+            diagnostics.error("wrong-value", bound.span, str(problem), hint=problem.hint)
+    if parameter.default is not None and diagnostics.error_count == errors:
+        if parameter.required:
+            diagnostics.error("wrong-value", parameter.default.span, "a parameter with a default is not required")
+        if validate(parameter.default, _parameter_schema(parameter), diagnostics):
+            _typed(parameter, parameter.default, diagnostics)
+
+
+def _parameter_schema(parameter: KindParameter) -> dict[str, Any]:
+    schema: dict[str, Any] = {"description": _description(parameter), **parameter.keywords}
+    if parameter.default is not None:
+        schema["default"] = parameter.default.plain()
+    if parameter.type == "quantity":
+        schema |= {"type": "string", "x-quantity": parameter.dimension, "pattern": "^\\s*[-+]?[0-9.]"}
+    elif parameter.type == "ratio":
+        schema |= {"type": ["number", "string"], "x-quantity": "ratio", "pattern": "^\\s*[-+]?[0-9.]"}
+    elif parameter.type == "object":
+        properties = {child.name: _parameter_schema(child) for child in parameter.properties}
+        schema |= {"type": "object", "properties": properties, "additionalProperties": False}
+        schema["required"] = [child.name for child in parameter.properties if child.required]
+        examples = {
+            child.name: child.keywords["examples"][0] for child in parameter.properties if "examples" in child.keywords
+        }
+        if examples:
+            schema.setdefault("examples", [examples])
+    else:
+        schema["type"] = parameter.type
+        schema |= {key: bound.plain() for key, bound in parameter.bounds.items()}
+    return schema
+
+
+def _description(parameter: KindParameter) -> str:
+    bounds = [f"{_WORDS[key]} {bound.value}" for key, bound in parameter.bounds.items()]
+    return f"{parameter.description} ({', '.join(bounds)})" if bounds else parameter.description
+
+
+def _typed(parameter: KindParameter, node: Node | None, diagnostics: Diagnostics) -> object:
+    stated = node if node is not None else parameter.default
+    if stated is None:
+        return None
+    if parameter.type == "object":
+        values = {child.name: _typed(child, stated.get(child.name), diagnostics) for child in parameter.properties}
+        return MappingProxyType(values)
+    try:
+        value = _value(parameter, stated.value)
+    except QuantityError as problem:
+        id = "wrong-unit" if "unit" in str(problem) else "wrong-quantity"
+        diagnostics.error(id, stated.span, str(problem), hint=problem.hint, notes=extended_from(stated))
+        return None
+    if isinstance(value, float) and not math.isfinite(value):
+        diagnostics.error("wrong-value", stated.span, "this number is not finite", notes=extended_from(stated))
+    elif parameter.type in ("quantity", "ratio"):
+        _check_bounds(parameter, value, stated, diagnostics)
+    return value
+
+
+def _value(parameter: KindParameter, written: object) -> Fraction | float | int | str | bool:
+    """The typed value of what is written; raises :class:`QuantityError`."""
+    if parameter.type == "quantity":
+        return parse_quantity(written, parameter.dimension)
+    if parameter.type == "ratio":
+        return parse_ratio(written)
+    if parameter.type == "number" and isinstance(written, (int, float)) and not isinstance(written, bool):
+        try:
+            return float(written)
+        except OverflowError:
+            return math.inf
+    if parameter.type == "number":
+        raise QuantityError(f"'{written}' is no number")
+    if parameter.type == "integer":
+        if isinstance(written, bool) or not isinstance(written, (int, float)) or written != int(written):
+            raise QuantityError(f"'{written}' is no whole number")
+        return int(written)
+    assert isinstance(written, (str, bool))
+    return written
+
+
+def _check_bounds(parameter: KindParameter, value: object, node: Node, diagnostics: Diagnostics) -> None:
+    assert isinstance(value, (int, float, Fraction))
+    for key, bound in parameter.bounds.items():
+        limit = _value(parameter, bound.value)
+        assert isinstance(limit, (int, float, Fraction))
+        within = {
+            "minimum": value >= limit,
+            "exclusiveMinimum": value > limit,
+            "maximum": value <= limit,
+            "exclusiveMaximum": value < limit,
+        }
+        if not within[key]:
+            message = f"'{node.value}' is out of range: must be {_WORDS[key]} {bound.value}"
+            diagnostics.error("out-of-range", node.span, message, notes=extended_from(node))
+
+
+def _relations(kind: Kind, node: Node, diagnostics: Diagnostics) -> None:
+    span = node["kind"].span
+    for names in kind.exactly_one:
+        stated = [name for name in names if name in node]
+        if not stated:
+            message = f"a {kind.name} states {_alternatives(names)}"
+            hints = [
+                f"{name}: {parameter.description}" for parameter in kind.parameters if (name := parameter.name) in names
+            ]
+            diagnostics.error("exactly-one", span, message, hint="; ".join(hints), notes=extended_from(node["kind"]))
+        elif len(stated) > 1:
+            first = Note("the other one", node.key_span(stated[0]))
+            message = f"a {kind.name} states {_alternatives(names)}, not several of them"
+            notes = [first, *extended_from(node[stated[1]])]
+            hint = (
+                "remove one of the two; '" + stated[0] + ": null' removes one that a file this one extends has written"
+            )
+            diagnostics.error("exactly-one", node.key_span(stated[1]), message, hint=hint, notes=notes)
+    for key, needed in kind.only_with:
+        if key in node and needed not in node:
+            message = f"'{key}' means something only together with '{needed}'"
+            hint = f"remove '{key}', or state '{needed}'"
+            diagnostics.error("only-with", node.key_span(key), message, hint=hint, notes=extended_from(node[key]))
+
+
+def _alternatives(names: tuple[str, ...]) -> str:
+    quoted = [f"'{name}'" for name in names]
+    start = "either " if len(names) == 2 else "exactly one of "
+    return start + (" or ".join(quoted) if len(names) == 2 else ", ".join(quoted))

@@ -1,0 +1,189 @@
+"""What the schemas of chips, boards and platforms cannot say: that the names in them belong to each other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from epg.diagnostics import Diagnostics, Note, did_you_mean
+from epg.load.hardware import Target
+from epg.load.items import integer_range, map_of, pin_names
+from epg.quantity import QuantityError, parse_quantity
+from epg.source import Node, Span
+
+
+def check_soc(node: Node, diagnostics: Diagnostics) -> None:
+    """A chip in itself: pins, slots, instances and dividers that exist."""
+    try:
+        if parse_quantity(node["clock"].value, "frequency") <= 0:
+            diagnostics.error("out-of-range", node["clock"].span, "a clock must be more than 0 Hz")
+    except QuantityError as problem:
+        diagnostics.error("wrong-unit", node["clock"].span, str(problem), hint=problem.hint)
+    pins = _pins(node.get("pins"), diagnostics)
+    for name, peripheral in map_of(node, "peripherals").items():
+        _peripheral(name, peripheral, pins, diagnostics)
+    peripherals = map_of(node, "peripherals")
+    for name, resource_class in map_of(node, "classes").items():
+        _resource_class(name, resource_class, peripherals, diagnostics)
+
+
+def check_board(node: Node, diagnostics: Diagnostics) -> None:
+    """A board in itself: each pin has one meaning."""
+    seen: dict[str, tuple[str, Span]] = {}
+    listed = node.get("pins")
+    groups = [("pins", name, listed.span) for name in _pins(listed, diagnostics)] if listed else []
+    for section in ("onboard", "reserved"):
+        groups += [(section, name, node[section].key_span(name)) for name in map_of(node, section)]
+    for section, name, span in groups:
+        if name in seen:
+            first = Note("first here", seen[name][1])
+            message = f"pin {name} is in '{seen[name][0]}' and in '{section}'"
+            diagnostics.error("wrong-value", span, message, hint="keep one of the two", notes=[first])
+        seen.setdefault(name, (section, span))
+
+
+def check_platform(node: Node, diagnostics: Diagnostics) -> None:
+    """A platform serves families of chips or one board; its tick is one of its classes."""
+    if ("board" in node) == ("families" in node):
+        message = "a platform states either 'families' or 'board'"
+        hint = "'families' lists the chips it runs on; 'board' is for a port layer that has one board"
+        diagnostics.error("exactly-one", node["platform"].span, message, hint=hint)
+    tick = node.get("tick", "class")
+    classes = [str(element.value) for element in node["classes"].elements()]
+    if tick is not None and tick.value not in classes:
+        _unknown("class", tick, classes, diagnostics)
+
+
+def check_target(target: Target, diagnostics: Diagnostics) -> bool:
+    """Whether board, chip and platform go together: pins that the chip has, a tick that it can give."""
+    errors = diagnostics.error_count
+    board, soc = target.board, target.soc
+    node = board.node
+    for section in ("onboard", "reserved"):
+        for name in map_of(node, section):
+            if name not in soc.pins:
+                _no_pin(name, node[section].key_span(name), target, diagnostics)
+    for written in map_of(node, "names").values():
+        if str(written.value) not in soc.pins:
+            _no_pin(str(written.value), written.span, target, diagnostics)
+    for name in board.pins:
+        if name not in soc.pins:
+            _no_pin(name, node["pins"].span, target, diagnostics)
+    for child in map_of(node, "onboard").values():
+        for element in child["classes"].elements():
+            if element.value not in soc.classes:
+                _unknown("class", element, soc.classes, diagnostics)
+    tick = target.platform.node.get("tick", "class")
+    if tick is not None:
+        resource_class = soc.classes.get(str(tick.value))
+        if resource_class is None:
+            message = f"{soc.title} implements no class '{tick.value}'"
+            hint = did_you_mean(str(tick.value), soc.classes, "it implements")
+            diagnostics.error("unknown-class", tick.span, message, hint=hint, notes=[Note("this chip", soc.span)])
+        elif resource_class.divider_from != "period" or resource_class.signals:
+            message = f"class '{tick.value}' of {soc.title} is no timer of the control loop"
+            hint = "such a class has 'divider: {from: period}' and no signals"
+            diagnostics.error(
+                "wrong-value", tick.span, message, hint=hint, notes=[Note("this class", resource_class.span)]
+            )
+    return diagnostics.error_count == errors
+
+
+def _peripheral(name: str, node: Node, pins: Iterable[str], diagnostics: Diagnostics) -> None:
+    instances = _listed(node["instances"])
+    slots = [""]
+    if "slots" in node:
+        count, names = node.get("slots", "count"), node.get("slots", "names")
+        stated = [part for part in (count, names) if part is not None]
+        if len(stated) != 1:
+            message = f"slots of '{name}' state either 'count' or 'names'"
+            diagnostics.error("exactly-one", node.key_span("slots"), message)
+            return
+        slots = _listed(stated[0])
+    for key in ("prescaler", "counter"):
+        _range(node.get("divider", key), diagnostics)
+    known = set(pins)
+    for instance, reached in map_of(node, "pins").items():
+        if instance not in instances:
+            span = node["pins"].key_span(instance)
+            hint = did_you_mean(instance, instances, "instances")
+            diagnostics.error("unknown-name", span, f"'{name}' has no instance '{instance}'", hint=hint)
+        for slot, listed in reached.items():
+            if slot not in slots:
+                hint = did_you_mean(slot, slots, "slots")
+                diagnostics.error("unknown-name", reached.key_span(slot), f"'{name}' has no slot '{slot}'", hint=hint)
+            for pin in listed.elements():
+                if str(pin.value) not in known:
+                    hint = did_you_mean(str(pin.value), known, "pins")
+                    diagnostics.error("unknown-name", pin.span, f"this chip has no pin '{pin.value}'", hint=hint)
+    if "frequency" in _listed(node.get("agree")) and "divider" not in node:
+        diagnostics.error("unknown-name", node.key_span("agree"), f"'{name}' has no divider that sets a frequency")
+
+
+def _resource_class(name: str, node: Node, peripherals: dict[str, Node], diagnostics: Diagnostics) -> None:
+    stated = node.get("peripheral")
+    if stated is not None and stated.value not in peripherals:
+        _unknown("peripheral", stated, peripherals, diagnostics)
+        return
+    peripheral = peripherals[str(stated.value)] if stated is not None else None
+    slots = _listed(peripheral.get("slots", "names")) if peripheral else []
+    instances = _listed(peripheral["instances"]) if peripheral else []
+    whole = node.get("takes") is not None and node["takes"].value == "instance"
+    for element in node["instances"].elements() if "instances" in node else ():
+        if str(element.value) not in instances:
+            _unknown("instance", element, instances, diagnostics)
+    signals = map_of(node, "signals")
+    possible = ["any", *(slots if whole else ["slot"])] if peripheral else ["any"]
+    for how in signals.values():
+        if how.value not in possible:
+            _unknown("way to reach a pin", how, possible, diagnostics)
+    if peripheral is None and list(signals) == []:
+        diagnostics.error("wrong-value", node.span, f"class '{name}' has neither a peripheral nor signals")
+    for element in node["neighbours"].elements() if "neighbours" in node else ():
+        if element.value not in signals:
+            _unknown("signal", element, signals, diagnostics)
+    if "divider" in node:
+        _range(node.get("divider", "counter"), diagnostics)
+        if peripheral is None or "divider" not in peripheral:
+            diagnostics.error("wrong-value", node.key_span("divider"), f"the peripheral of '{name}' has no divider")
+
+
+def _pins(node: Node | None, diagnostics: Diagnostics) -> tuple[str, ...]:
+    """The pins of a list, empty after reporting a range that is none or a pin that is there twice."""
+    try:
+        names = pin_names(node)
+    except ValueError as problem:
+        assert node is not None
+        diagnostics.error("wrong-value", node.span, str(problem), hint="write the lower end first, such as 0-22")
+        return ()
+    double = next((name for name in names if names.count(name) > 1), None)
+    if double is not None and node is not None:
+        diagnostics.error("wrong-value", node.span, f"pin {double} is listed twice")
+    return names
+
+
+def _listed(node: Node | None) -> list[str]:
+    if node is None:
+        return []
+    if isinstance(node.value, int):
+        return [str(number) for number in range(node.value)]
+    return [str(element.value) for element in node.elements()]
+
+
+def _range(node: Node | None, diagnostics: Diagnostics) -> None:
+    if node is None:
+        return
+    first, last = integer_range(node)
+    if not 1 <= first <= last <= 0x1_0000:
+        message = f"'{node.value}' is no range within 1-65536"
+        diagnostics.error("out-of-range", node.span, message, hint="write the lower end first, such as 2-65536")
+
+
+def _no_pin(name: str, span: Span, target: Target, diagnostics: Diagnostics) -> None:
+    hint = did_you_mean(name, target.soc.pins, "pins")
+    notes = [Note("this chip", target.soc.span)]
+    diagnostics.error("unknown-name", span, f"{target.soc.title} has no pin '{name}'", hint=hint, notes=notes)
+
+
+def _unknown(what: str, node: Node, known: Iterable[str], diagnostics: Diagnostics) -> None:
+    hint = did_you_mean(str(node.value), known, "known")
+    diagnostics.error("unknown-name", node.span, f"unknown {what} '{node.value}'", hint=hint)

@@ -1,0 +1,180 @@
+"""The catalog: chips, boards, platforms and component kinds of all ``targets`` folders, read when they are asked for.
+
+>>> # catalog = load_catalog(targets_roots(), diagnostics)
+>>> # catalog.target("rpi_pico2_freertos", span, diagnostics).soc.name
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TypeVar
+
+from epg.diagnostics import Diagnostics, Note, did_you_mean
+from epg.load.hardware import Board, Platform, Soc, Target, make_board, make_platform, make_soc
+from epg.load.kind import Kind, KindPort, make_kind
+from epg.load.yaml_file import load_yaml
+from epg.source import Node, Span
+
+__all__ = ["Catalog", "CatalogCheck", "Kind", "KindPort", "Target", "load_catalog"]
+
+FOLDERS = {"soc": "socs", "board": "boards", "platform": "platforms", "component": "components"}
+"""What a folder of ``targets`` holds: each item is a folder with a file of the item's sort, ``boards/x/board.yaml``."""
+
+Item = TypeVar("Item", Soc, Board, Platform, Kind)
+
+
+class CatalogCheck:
+    """What a catalog asks about a file before it reads it, and about a target before it gives it out.
+
+    This one accepts everything; :func:`epg.check.catalog.check_catalog` brings the one that knows the schemas.
+    """
+
+    def file(self, sort: str, node: Node, name: str, diagnostics: Diagnostics) -> bool:
+        """Whether the file of the item ``name`` is right; reports what is not."""
+        return True
+
+    def target(self, target: Target, diagnostics: Diagnostics) -> bool:
+        """Whether board, chip and platform fit together; reports why not."""
+        return True
+
+
+class Catalog:
+    """Everything in the ``targets`` folders ``roots``, of which the first wins where names meet."""
+
+    def __init__(self, roots: Sequence[Path], diagnostics: Diagnostics) -> None:
+        self.roots = tuple(roots)
+        self.check = CatalogCheck()
+        self._diagnostics = diagnostics
+        self._files: dict[str, dict[str, list[Path]]] = {}
+        self._items: dict[tuple[str, str], Soc | Board | Platform | Kind | None] = {}
+
+    def names(self, sort: str) -> list[str]:
+        """Names of all items of a sort: "soc", "board", "platform" or "component"."""
+        return sorted(self._paths(sort))
+
+    def kind_names(self) -> list[str]:
+        return self.names("component")
+
+    def target_names(self) -> list[str]:
+        """Names of all targets: each platform with each board whose chip it serves."""
+        found = set()
+        for platform_name in self.names("platform"):
+            platform = self._item("platform", platform_name, make_platform)
+            if platform is None:
+                continue
+            if platform.board is not None:
+                found.add(platform_name)
+                continue
+            for board_name in self.names("board"):
+                board = self._item("board", board_name, make_board)
+                soc = self._item("soc", board.soc, make_soc) if board else None
+                if soc and soc.family in platform.families:
+                    found.add(f"{board_name}_{platform_name}")
+        return sorted(found)
+
+    def find_kind(self, name: str) -> Kind | None:
+        """The kind called ``name``, or None."""
+        return self._item("component", name, make_kind)
+
+    def find_target(self, name: str) -> Target | None:
+        """The target called ``name``, or None."""
+        return self._target(name)[0]
+
+    def kind(self, name: str, span: Span, diagnostics: Diagnostics) -> Kind | None:
+        """The kind that ``span`` names, or None after reporting that there is none."""
+        if name not in self._paths("component"):
+            hint = did_you_mean(name, self.kind_names(), "kinds")
+            diagnostics.error("unknown-kind", span, f"there is no kind '{name}'", hint=hint)
+        return self.find_kind(name)
+
+    def target(self, name: str, span: Span, diagnostics: Diagnostics) -> Target | None:
+        """The target that ``span`` names, or None after reporting that there is none."""
+        target, exists = self._target(name)
+        if not exists:
+            hint = did_you_mean(name, self.target_names(), "targets")
+            diagnostics.error("unknown-target", span, f"there is no target '{name}'", hint=hint)
+        return target
+
+    def _target(self, name: str) -> tuple[Target | None, bool]:
+        """The target, and whether there is one of that name at all: what is wrong with its files is reported."""
+        for board_name, platform_name in self._splits(name):
+            platform = self._item("platform", platform_name, make_platform)
+            if platform is None:
+                return None, True
+            if (platform.board is not None) != (name == platform_name):
+                continue
+            board = self._item("board", platform.board or board_name, make_board)
+            soc = self._item("soc", board.soc, make_soc) if board else None
+            if board is None or soc is None:
+                self._report_missing(platform, board)
+                return None, True
+            if platform.board is None and soc.family not in platform.families:
+                continue
+            target = Target(name, board, soc, platform)
+            return (target if self.check.target(target, self._diagnostics) else None), True
+        return None, False
+
+    def _splits(self, name: str) -> list[tuple[str, str]]:
+        """The boards and platforms whose names could make ``name``."""
+        platforms, boards = self._paths("platform"), self._paths("board")
+        ends = [platform for platform in platforms if name.endswith(f"_{platform}")]
+        pairs = [(name.removesuffix(f"_{platform}"), platform) for platform in ends]
+        alone = [("", name)] if name in platforms else []
+        return alone + sorted(pair for pair in pairs if pair[0] in boards)
+
+    def _report_missing(self, platform: Platform, board: Board | None) -> None:
+        """Reports a board that a platform names, or a chip that a board names, when there is no such folder."""
+        sort, node = ("soc", board.node["soc"]) if board else ("board", platform.node.get("board"))
+        if node is not None and str(node.value) not in self._paths(sort):
+            hint = did_you_mean(str(node.value), self.names(sort), f"in {FOLDERS[sort]}/")
+            self._diagnostics.error(f"unknown-{sort}", node.span, f"there is no {sort} '{node.value}'", hint=hint)
+
+    def _paths(self, sort: str) -> dict[str, list[Path]]:
+        """The files of all items of a sort, by name; several where roots have the same name."""
+        if sort not in self._files:
+            files: dict[str, list[Path]] = {}
+            for root in self.roots:
+                for path in sorted((root / FOLDERS[sort]).glob(f"*/{sort}.yaml")):
+                    files.setdefault(path.parent.name, []).append(path)
+            self._files[sort] = files
+        return self._files[sort]
+
+    def _item(self, sort: str, name: str, make: Callable[[Node, Path], Item]) -> Item | None:
+        if (sort, name) not in self._items:
+            self._items[sort, name] = self._load(sort, name, make)
+        return self._items[sort, name]  # type: ignore[return-value]
+
+    def _load(self, sort: str, name: str, make: Callable[[Node, Path], Item]) -> Item | None:
+        paths = self._paths(sort).get(name, [])
+        if not paths:
+            return None
+        node = load_yaml(paths[0], self._diagnostics)
+        if node is None or not self.check.file(sort, node, name, self._diagnostics):
+            return None
+        if len(paths) > 1:
+            message = f"this {sort} '{name}' replaces another one of that name"
+            notes = [Note("the other one", Span(str(paths[1]), 1, 1, 2))]
+            hint = "rename its folder to have both"
+            self._diagnostics.warning("shadowed-item", node[_NAME_KEYS[sort]].span, message, hint=hint, notes=notes)
+        return make(node, paths[0].parent)
+
+
+_NAME_KEYS = {"soc": "soc", "board": "board", "platform": "platform", "component": "kind"}
+
+
+def load_catalog(roots: Sequence[Path], diagnostics: Diagnostics) -> Catalog:
+    """The catalog of ``roots``, the user's first.
+
+    Nothing is read until it is asked for; problems of files are reported to ``diagnostics`` then.  A folder that is
+    missing is reported at once.
+    """
+    for root in roots:
+        if not root.is_dir():
+            hint = "correct EPG_TARGETS_PATH"
+            diagnostics.error("targets-not-found", Span(str(root)), f"there is no folder '{root.name}'", hint=hint)
+        elif not any((root / folder).is_dir() for folder in (*FOLDERS.values(), "robots")):
+            message = f"'{root.name}' has no shape of a targets folder"
+            hint = f"it should hold folders such as {', '.join([*FOLDERS.values(), 'robots'])}"
+            diagnostics.warning("targets-empty", Span(str(root)), message, hint=hint)
+    return Catalog(roots, diagnostics)

@@ -1,0 +1,58 @@
+"""Reading aids for the folders of ``targets/``: values of nodes whose structure a schema has checked already."""
+
+from __future__ import annotations
+
+import re
+
+from epg.source import Node
+
+_RANGE = re.compile(r"([A-Za-z_]*)([0-9]+)-([A-Za-z_]*)([0-9]+)")
+
+
+def text_of(node: Node, key: str, otherwise: str = "") -> str:
+    """The text at ``key``."""
+    found = node.get(key)
+    return otherwise if found is None else str(found.value)
+
+
+def flag_of(node: Node, key: str) -> bool:
+    """The boolean at ``key``; false when there is none."""
+    found = node.get(key)
+    return found is not None and found.value is True
+
+
+def texts_of(node: Node, *path: str) -> tuple[str, ...]:
+    """The elements of the list at ``path`` as text."""
+    found = node.get(*path)
+    return () if found is None else tuple(str(element.value) for element in found.elements())
+
+
+def map_of(node: Node, *path: str) -> dict[str, Node]:
+    """The entries of the map at ``path``."""
+    found = node.get(*path)
+    return {} if found is None else dict(found.items())
+
+
+def pin_names(node: Node | None) -> tuple[str, ...]:
+    """All pins of a list of pins and ranges: ``[0-2, 7]`` gives 0, 1, 2 and 7, ``[PA0-PA15]`` sixteen.
+
+    Raises ValueError for a range that is none: backwards, between different ports, or absurdly long.
+    """
+    names: list[str] = []
+    for element in node.elements() if node is not None else ():
+        text = str(element.value)
+        match = _RANGE.fullmatch(text)
+        if match is None:
+            names.append(text)
+            continue
+        prefix, first, other, last = match[1], int(match[2]), match[3], int(match[4])
+        if other != prefix or last < first or last - first > 255:
+            raise ValueError(f"'{text}' is no range of pins")
+        names.extend(f"{prefix}{number}" for number in range(first, last + 1))
+    return tuple(names)
+
+
+def integer_range(node: Node) -> tuple[int, int]:
+    """First and last of ``1-255``."""
+    first, _, last = str(node.value).partition("-")
+    return int(first), int(last)

@@ -1,0 +1,158 @@
+"""Component kinds as data: ``components/<kind>/component.yaml`` below the ``targets`` folders."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+from epg.load.items import flag_of, map_of, text_of, texts_of
+from epg.source import Node, Span
+
+_BOUNDS = ("minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum")
+
+
+@dataclass(frozen=True)
+class KindParameter:
+    """A parameter of a kind.  ``type`` is "quantity" when ``dimension`` says of what, else a name of a type.
+
+    ``default`` and ``bounds`` are as written, in units: ``20 kHz``; ``default`` is None when there is none.
+    """
+
+    name: str
+    type: str  # "number", "integer", "boolean", "string", "ratio", "quantity" or "object"
+    dimension: str
+    description: str
+    required: bool
+    default: Node | None
+    bounds: Mapping[str, Node]
+    keywords: Mapping[str, Any]  # enum, pattern, minLength, examples: as in JSON Schema
+    properties: tuple[KindParameter, ...]
+    span: Span
+
+
+@dataclass(frozen=True)
+class KindPort:
+    """What a model's port can be bound to.  A "source" gives values to the model, a "sink" takes them.
+
+    ``default``: meant when only the component is named.  ``actuator``: made safe while the target is disabled.
+    """
+
+    name: str
+    direction: str
+    type: str  # "real" or "boolean"
+    unit: str
+    default: bool
+    actuator: bool
+    description: str
+
+
+@dataclass(frozen=True)
+class KindClaim:
+    """Hardware that each component of a kind needs: signal -> name of a pin, attribute -> name of a parameter."""
+
+    name: str
+    resource_class: str
+    signals: Mapping[str, str]
+    attributes: Mapping[str, str]
+    span: Span
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of component.  ``headers`` and ``sources`` are files in ``folder``."""
+
+    name: str
+    summary: str
+    communication: str | None  # "subscribe", "publish" or None
+    pins: tuple[str, ...]
+    parameters: tuple[KindParameter, ...]
+    exactly_one: tuple[tuple[str, ...], ...]
+    only_with: tuple[tuple[str, str], ...]  # (key, what it needs)
+    ports: tuple[KindPort, ...]
+    claims: tuple[KindClaim, ...]
+    headers: tuple[str, ...]
+    sources: tuple[str, ...]
+    node: Node
+    folder: Path
+    span: Span
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """The files that describe and implement the kind."""
+        names = ("component.yaml", "code.c.j2", *self.headers, *self.sources)
+        return tuple(self.folder / name for name in names)
+
+
+def make_kind(node: Node, folder: Path) -> Kind:
+    """The kind that a checked ``component.yaml`` describes."""
+    relations = node.get("relations")
+    exactly_one: list[tuple[str, ...]] = []
+    only_with: list[tuple[str, str]] = []
+    for relation in relations.elements() if relations else ():
+        if "exactly_one" in relation:
+            exactly_one.append(texts_of(relation, "exactly_one"))
+        else:
+            only_with.append((text_of(relation["only_with"], "key"), text_of(relation["only_with"], "needs")))
+    return Kind(
+        name=text_of(node, "kind"),
+        summary=text_of(node, "summary"),
+        communication=text_of(node, "communication") or None,
+        pins=texts_of(node, "pins"),
+        parameters=_parameters(node.get("parameters")),
+        exactly_one=tuple(exactly_one),
+        only_with=tuple(only_with),
+        ports=tuple(_port(name, child) for name, child in map_of(node, "ports").items()),
+        claims=tuple(_claim(name, child, node) for name, child in map_of(node, "claims").items()),
+        headers=texts_of(node, "driver", "headers"),
+        sources=texts_of(node, "driver", "sources"),
+        node=node,
+        folder=folder,
+        span=node["kind"].span,
+    )
+
+
+def _parameters(section: Node | None) -> tuple[KindParameter, ...]:
+    return (
+        ()
+        if section is None
+        else tuple(make_parameter(name, node, section.key_span(name)) for name, node in section.items())
+    )
+
+
+def make_parameter(name: str, node: Node, span: Span) -> KindParameter:
+    """The parameter that a checked part of a ``component.yaml`` describes."""
+    keywords = {key: node[key].plain() for key in ("enum", "pattern", "minLength", "examples") if key in node}
+    return KindParameter(
+        name=name,
+        type="quantity" if "quantity" in node else text_of(node, "type"),
+        dimension=text_of(node, "quantity"),
+        description=text_of(node, "description"),
+        required=flag_of(node, "required"),
+        default=node.get("default"),
+        bounds=MappingProxyType({key: node[key] for key in _BOUNDS if key in node}),
+        keywords=MappingProxyType(keywords),
+        properties=_parameters(node.get("properties")),
+        span=span,
+    )
+
+
+def _port(name: str, node: Node) -> KindPort:
+    return KindPort(
+        name=name,
+        direction=text_of(node, "direction"),
+        type=text_of(node, "type"),
+        unit=text_of(node, "unit"),
+        default=flag_of(node, "default"),
+        actuator=flag_of(node, "actuator"),
+        description=text_of(node, "description"),
+    )
+
+
+def _claim(name: str, node: Node, kind: Node) -> KindClaim:
+    def names(key: str) -> Mapping[str, str]:
+        return MappingProxyType({entry: str(child.value) for entry, child in map_of(node, key).items()})
+
+    return KindClaim(name, text_of(node, "class"), names("signals"), names("attributes"), kind["claims"].key_span(name))
