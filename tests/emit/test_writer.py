@@ -1,0 +1,49 @@
+"""The writer touches only what changed, writes whole files, and stays in its folder."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+from epg.cli.output import update_folder
+from epg.emit.writer import write_outputs
+
+
+def test_only_what_changed_is_written(tmp_path: Path) -> None:
+    assert write_outputs(tmp_path, {"a.c": "1\n", "sub/b.c": "2\n"}) == ["a.c", "sub/b.c"]
+    os.utime(tmp_path / "a.c", ns=(1, 1))
+    assert write_outputs(tmp_path, {"a.c": "1\n", "sub/b.c": "3\n"}) == ["sub/b.c"]
+    assert (tmp_path / "a.c").stat().st_mtime_ns == 1
+    assert (tmp_path / "sub/b.c").read_text() == "3\n"
+
+
+def test_no_line_end_is_translated(tmp_path: Path) -> None:
+    write_outputs(tmp_path, {"a": "x\r\ny\n"})
+    assert (tmp_path / "a").read_bytes() == b"x\r\ny\n"
+
+
+@pytest.mark.parametrize("name", ["../a", "/tmp/a", "sub/../../a"])
+def test_nothing_is_written_outside(tmp_path: Path, name: str) -> None:
+    with pytest.raises(ValueError, match="outside"):
+        write_outputs(tmp_path / "out", {name: "x"})
+
+
+def test_a_failure_leaves_the_old_file_and_no_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    write_outputs(tmp_path, {"a": "old"})
+
+    def fail(*_: object) -> None:
+        raise OSError("disk full")
+
+    monkeypatch.setattr(os, "replace", fail)
+    with pytest.raises(OSError, match="disk full"):
+        write_outputs(tmp_path, {"a": "new"})
+    assert [path.name for path in tmp_path.iterdir()] == ["a"]
+    assert (tmp_path / "a").read_text() == "old"
+
+
+def test_what_is_no_longer_generated_is_deleted_and_nothing_else(tmp_path: Path) -> None:
+    update_folder(tmp_path, {"a": "1", "b": "2"}, None)
+    (tmp_path / "mine").write_text("of the user")
+    update_folder(tmp_path, {"a": "1"}, None)
+    assert sorted(path.name for path in tmp_path.iterdir()) == [".epg-outputs.json", "a", "mine"]
