@@ -7,7 +7,7 @@ import json
 import subprocess
 import time
 from array import array
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -102,7 +102,7 @@ def read_statistics(path: Path) -> Statistics:
     return Statistics(**{name: found[name] for name in Statistics.__dataclass_fields__})
 
 
-def read_trace(path: Path, wanted: Iterable[tuple[str, Span]]) -> dict[str, array[float]]:
+def read_trace(path: Path, wanted: Sequence[tuple[str, Span]]) -> dict[str, array[float]]:
     """The columns ``time`` and ``wanted`` (signal and where it is asked for) of a trace.
 
     Raises UserError for a signal the target does not have.
@@ -117,7 +117,7 @@ def read_trace(path: Path, wanted: Iterable[tuple[str, Span]]) -> dict[str, arra
                 message = f"the target has no signal '{name}'"
                 diagnostics.error("unknown-signal", span, message, hint=did_you_mean(name, signals, "signals"))
         diagnostics.stop_if_errors()
-        columns = {name: header.index(name) for name in ("time", *(name for name, _ in wanted))}
+        columns = {name: header.index(name) for name in sorted({"time", *(name for name, _ in wanted)})}
         values: dict[str, array[float]] = {name: array("d") for name in columns}
         for row in rows:
             for name, index in columns.items():

@@ -145,6 +145,7 @@ class _Reader:
             unit=normal_unit(str(unit.value)) if unit else "rad",
             homing=self.homing(homing, duration) if homing else None,
             windows=windows,
+            signals=tuple((str(signal.value), signal.span) for signal in (node["position"], duty) if signal),
         )
 
     def homing(self, node: Node, duration: Fraction) -> Homing:

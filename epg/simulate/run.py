@@ -11,7 +11,6 @@ from epg.simulate.load_scenario import load_scenario
 from epg.simulate.plot import plot
 from epg.simulate.reference import load_reference
 from epg.simulate.result import Result
-from epg.simulate.scenario import Scenario
 from epg.simulate.setpoints import setpoint_rows, write_setpoints
 from epg.simulate.tracking import check, evaluate, track, write_tracking
 from epg.source import Span
@@ -49,7 +48,7 @@ def simulate(
 
     write_setpoints(setpoint_rows(read, realtime=realtime), files[0])
     run_executable(executable, output, float(read.duration), files[0], realtime=realtime, progress=progress)
-    columns = read_trace(output / "trace.csv", _signals(read))
+    columns = read_trace(output / "trace.csv", [signal for axis in read.axes for signal in axis.signals])
     progress("evaluating")
     trackings = [track(axis, read.profiles[axis.setpoint], columns, reference) for axis in read.axes]
     write_tracking(trackings, output / "tracking.csv")
@@ -64,10 +63,3 @@ def simulate(
         files=tuple(files),
         diagnostics=diagnostics,
     )
-
-
-def _signals(scenario: Scenario) -> list[tuple[str, Span]]:
-    """The signals a scenario asks for, with the file that does."""
-    span = Span(str(scenario.path))
-    names = {name for axis in scenario.axes for name in (axis.position, axis.duty) if name}
-    return [(name, span) for name in sorted(names)]

@@ -12,6 +12,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 
+from epg.source import Span
+
 
 @dataclass(frozen=True)
 class Part:
@@ -92,7 +94,10 @@ class Homing:
 
 @dataclass(frozen=True)
 class Axis:
-    """What is evaluated: signal ``position`` against the profile of topic ``setpoint``."""
+    """What is evaluated: signal ``position`` against the profile of topic ``setpoint``.
+
+    ``signals`` says for each signal of the axis where it is named.
+    """
 
     name: str
     setpoint: str
@@ -101,6 +106,7 @@ class Axis:
     unit: str
     homing: Homing | None
     windows: tuple[Window, ...]
+    signals: tuple[tuple[str, Span], ...]
 
 
 @dataclass(frozen=True)

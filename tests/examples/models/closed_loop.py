@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ctypes
 import math
+import shutil
 import subprocess
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -29,7 +30,9 @@ class Export:
         if not library.exists():
             sources = sorted(str(path) for path in folder.glob("*.c"))
             flags = ["-std=c11", "-O1", "-ffp-contract=off", "-fPIC", "-shared", "-Wl,-Bsymbolic"]
-            subprocess.run(["gcc", *flags, *sources, "-o", str(library), "-lm"], check=True)
+            compiler = shutil.which("gcc") or shutil.which("cc")
+            assert compiler is not None, "a C compiler is needed"
+            subprocess.run([compiler, *flags, *sources, "-o", str(library), "-lm"], check=True)
         self._code = ctypes.CDLL(str(library))
         self._u = (ctypes.c_double * inputs)()
         self._y = (ctypes.c_double * outputs)()
