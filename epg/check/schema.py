@@ -102,7 +102,7 @@ def _report(error: Any, root: Node, diagnostics: Diagnostics) -> None:
 def _violations(value: object, schema: Mapping[str, Any]) -> Iterable[object]:
     from jsonschema import Draft202012Validator
 
-    return Draft202012Validator(schema).iter_errors(value)
+    return list(Draft202012Validator(schema).iter_errors(value))
 
 
 def _explain(keyword: str, error: Any, node: Node, schema: Mapping[str, Any]) -> tuple[str, str, str]:

@@ -27,7 +27,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     diagnostics.stop_if_errors()
     assert app is not None
     if not app.target.platform.builds:
-        span = app.target.span
+        span = app.target_span
         message = f"{app.target.name} can be checked, but this EPG has no port layer for {app.target.platform.name}"
         diagnostics.error("platform-not-built", span, message, hint="choose another target: 'epg targets' lists them")
         diagnostics.stop_if_errors()

@@ -61,11 +61,11 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         ]
         print(table(("kind", "ports", "what it is"), rows))
         return 0
-    rows = [
+    lines = [
         (t.name, t.board.summary, t.platform.summary, ", ".join(t.platform.middlewares), "yes" if t.platform.builds else "check only")
         for t in targets
     ]
-    print(table(("target", "board", "platform", "middlewares", "builds"), rows))
+    print(table(("target", "board", "platform", "middlewares", "builds"), lines))
     print("\ncomponent kinds: " + ", ".join(k.name for k in kinds) + "   (epg targets --kinds)")
     print("predefined .tcf: " + ", ".join(files))
     return 0

@@ -89,6 +89,7 @@ class Application:
 
     name: str
     target: Target
+    target_span: Span
     node: str
     namespace: str
     control: Control

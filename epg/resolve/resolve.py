@@ -62,6 +62,7 @@ def resolve(
     return Application(
         name=name,
         target=configuration.target,
+        target_span=configuration.root["target"].span,
         node=configuration.node,
         namespace=configuration.namespace,
         control=configuration.control,
@@ -109,10 +110,11 @@ def _period(configuration: Configuration, model: Model, diagnostics: Diagnostics
 def allocate_hardware(
     configuration: Configuration, period: Fraction | None, diagnostics: Diagnostics
 ) -> Mapping[tuple[str, str], Assignment] | None:
-    """Peripherals for all components, and for the loop's timer when the ``period`` (seconds) is known."""
-    claims = list(component_claims(configuration))
-    if period is not None:
-        claims += tick_claims(configuration.target, period, configuration.control.period_span)
+    """Peripherals for all components and the loop's timer; ``period`` in seconds, None when it is not known yet."""
+    claims = [
+        *component_claims(configuration),
+        *tick_claims(configuration.target, period, configuration.control.period_span),
+    ]
     return allocate(claims, configuration.target, diagnostics)
 
 

@@ -137,8 +137,7 @@ def _possible(components: Iterable[Component], direction: str) -> list[str]:
 
 
 def _default(ports: list[KindPort]) -> KindPort | None:
-    marked = [port for port in ports if port.default]
-    return (marked or ports or [None])[0]
+    return next((port for port in ports if port.default), ports[0] if ports else None)
 
 
 def _end(
@@ -155,7 +154,8 @@ def _end(
     if binding.port is None:
         default = _default([port for port in ports.values() if port.direction == direction])
         if default is None:
-            return _wrong_direction(component, component.name, direction, possible, binding, diagnostics)
+            _wrong_direction(component, component.name, direction, possible, binding, diagnostics)
+            return None
         return component, default
     if binding.port not in ports:
         message = f"a {component.kind.name} has no port '{binding.port}'"
@@ -163,7 +163,8 @@ def _end(
         diagnostics.error("unknown-port", binding.span, message, hint=hint)
         return None
     if ports[binding.port].direction != direction:
-        return _wrong_direction(component, f"{component.name}.{binding.port}", direction, possible, binding, diagnostics)
+        _wrong_direction(component, f"{component.name}.{binding.port}", direction, possible, binding, diagnostics)
+        return None
     return component, ports[binding.port]
 
 
