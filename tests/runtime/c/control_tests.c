@@ -1,0 +1,657 @@
+/**
+ * @file
+ * The control cycle: its order, its counters, and each row of the table in epg/control.h.
+ */
+#include <math.h>
+
+#include "check.h"
+#include "epg/finite.h"
+#include "fake_application.h"
+#include "fake_port.h"
+
+static void begin(void)
+{
+    fake_reset();
+    fake_start();
+}
+
+static bool safe_level(void)
+{
+    return true;
+}
+
+static bool fail_safe_input(void)
+{
+    return fake.fail_safe;
+}
+
+static void request(bool enable)
+{
+    epg_control_request(&fake.control, enable);
+}
+
+/** The target is off and says why; and it stays so though its cause has gone, until it is enabled again. */
+static void check_latched(epg_fault_t fault)
+{
+    CHECK_EQUAL(fake.actuator, 0.0);
+    CHECK(!fake_status().enabled);
+    CHECK(fake_status().fault == fault);
+    CHECK_EQUAL(fake_status().statistics.faults, 1);
+    fake.sensor = 0.0;
+    fake.state_error = 0.0;
+    fake.output_error = 0.0;
+    fake.stop = false;
+    fake.fail_safe = true;
+    fake.step_ns = 0;
+    fake_cycles(100);
+    CHECK_EQUAL(fake.actuator, 0.0);
+    CHECK(!fake_status().enabled);
+    CHECK(fake_status().fault == fault);
+    CHECK_EQUAL(fake_status().statistics.faults, 1);
+
+    request(false);
+    fake_cycle();
+    CHECK(fake_status().fault == fault);
+
+    const unsigned int inits = fake.inits;
+    request(true);
+    fake_cycle();
+    CHECK(fake_status().enabled);
+    CHECK(fake_status().fault == EPG_FAULT_NONE);
+    CHECK_EQUAL(fake.inits, inits + 1);
+    CHECK_EQUAL(fake.state, 1.0);
+    CHECK_EQUAL(fake.actuator, 1.0);
+}
+
+/* Order and start ---------------------------------------------------------------------------------------------- */
+
+TEST(start_makes_peripherals_safe_and_runs_nothing)
+{
+    begin();
+    CHECK(strcmp(fake.calls, "ps") == 0);
+    epg_status_t status;
+    double value;
+    CHECK(!epg_control_status(&fake.control, &status));
+    CHECK(!epg_control_monitor(&fake.control, &value));
+}
+
+TEST(nothing_is_read_or_taken_before_start)
+{
+    fake_reset();
+    epg_status_t status;
+    double value;
+    CHECK(!epg_control_status(&fake.control, &status));
+    CHECK(!epg_control_monitor(&fake.control, &value));
+    CHECK(!epg_control_receive(&fake.control, 0, 1.0, 0, true));
+}
+
+TEST(first_cycle_initialises_with_its_own_inputs)
+{
+    begin();
+    fake.sensor = 10.0;
+    fake_cycle();
+    CHECK(strcmp(fake.calls, "rimwo") == 0);
+    CHECK_EQUAL(fake.actuator, 11.0);
+}
+
+TEST(a_cycle_reads_steps_writes_and_publishes_in_this_order)
+{
+    begin();
+    fake_cycles(2);
+    CHECK(strcmp(fake.calls, "rmwo") == 0);
+    CHECK_EQUAL(fake.actuator, 2.0);
+    CHECK_EQUAL(fake_published(), 2.0);
+}
+
+TEST(a_setpoint_reaches_the_actuator_in_the_next_cycle)
+{
+    begin();
+    fake_cycle();
+    CHECK(fake_receive(0, 100.0));
+    fake_cycle();
+    CHECK_EQUAL(fake.actuator, 102.0);
+}
+
+TEST(start_again_starts_afresh)
+{
+    begin();
+    fake_receive(0, 7.0);
+    request(false);
+    fake_cycles(3);
+    fake_start();
+    epg_status_t status;
+    double value;
+    CHECK(!epg_control_status(&fake.control, &status));
+    CHECK(!epg_control_monitor(&fake.control, &value));
+    fake_cycle();
+    CHECK(fake_status().enabled);
+    CHECK_EQUAL(fake.input, 0.0);
+    CHECK_EQUAL(fake.state, 1.0);
+    CHECK_EQUAL(fake_status().statistics.cycles, 1);
+}
+
+TEST(model_runs_every_nth_cycle_sensors_every_cycle)
+{
+    fake_reset();
+    fake.application.step_divider = 5;
+    fake_start();
+    fake_cycles(5);
+    CHECK_EQUAL(fake.steps, 1);
+    CHECK_EQUAL(fake.reads, 5);
+    CHECK_EQUAL(fake.writes, 1);
+    CHECK_EQUAL(fake.actuator, 1.0);
+    fake_cycle();
+    CHECK_EQUAL(fake.steps, 2);
+    CHECK_EQUAL(fake.actuator, 2.0);
+    fake_cycles(44);
+    CHECK_EQUAL(fake.steps, 10);
+}
+
+TEST(enabling_runs_the_model_at_once_whatever_its_turn)
+{
+    fake_reset();
+    fake.application.step_divider = 5;
+    fake_start();
+    fake_cycles(2);
+    request(false);
+    fake_cycle();
+    request(true);
+    fake_cycle();
+    CHECK(strcmp(fake.calls, "rimwo") == 0);
+    fake_cycles(4);
+    CHECK_EQUAL(fake.state, 1.0);
+    fake_cycle();
+    CHECK_EQUAL(fake.state, 2.0);
+}
+
+TEST(a_fault_between_steps_is_safe_at_once)
+{
+    fake_reset();
+    fake.application.step_divider = 5;
+    fake_start();
+    fake_cycles(2);
+    CHECK_EQUAL(fake.actuator, 1.0);
+    fake.sensor = NAN;
+    fake_cycle();
+    CHECK_EQUAL(fake.actuator, 0.0);
+}
+
+/* Enabled and disabled ----------------------------------------------------------------------------------------- */
+
+TEST(disabled_is_safe_within_one_cycle_while_the_model_runs_on)
+{
+    begin();
+    fake_cycles(3);
+    request(false);
+    fake_cycle();
+    CHECK(strcmp(fake.calls, "rmso") == 0);
+    CHECK_EQUAL(fake.actuator, 0.0);
+    CHECK(!fake_status().enabled);
+    CHECK(fake_status().fault == EPG_FAULT_NONE);
+    CHECK_EQUAL(fake_status().statistics.faults, 0);
+    CHECK_EQUAL(fake_published(), 4.0);
+    fake.sensor = 50.0;
+    fake_cycle();
+    CHECK_EQUAL(fake_published(), 55.0);
+    CHECK_EQUAL(fake.safes, 3); /* one of the start */
+    CHECK_EQUAL(fake.writes, 3);
+}
+
+TEST(enabled_again_initialises_the_model)
+{
+    begin();
+    fake_cycles(3);
+    request(false);
+    fake_cycles(3);
+    CHECK_EQUAL(fake.inits, 1);
+    request(true);
+    fake_cycle();
+    CHECK(strcmp(fake.calls, "rimwo") == 0);
+    CHECK_EQUAL(fake.inits, 2);
+    CHECK_EQUAL(fake.actuator, 1.0);
+    CHECK(fake_status().enabled);
+}
+
+TEST(a_request_to_enable_what_is_enabled_does_nothing)
+{
+    begin();
+    fake_cycles(3);
+    request(true);
+    fake_cycle();
+    CHECK_EQUAL(fake.inits, 1);
+    CHECK_EQUAL(fake.actuator, 4.0);
+}
+
+TEST(of_several_requests_the_last_one_counts)
+{
+    begin();
+    fake_cycle();
+    request(false);
+    request(true);
+    fake_cycle();
+    CHECK(fake_status().enabled);
+    CHECK_EQUAL(fake.inits, 1);
+    request(true);
+    request(false);
+    fake_cycle();
+    CHECK(!fake_status().enabled);
+}
+
+TEST(a_request_acts_once)
+{
+    begin();
+    request(true);
+    fake_cycle();
+    fake.sensor = INFINITY;
+    fake_cycle();
+    fake.sensor = 0.0;
+    fake_cycles(10);
+    CHECK(!fake_status().enabled);
+}
+
+TEST(not_enabled_at_start_stays_safe_and_live)
+{
+    fake_reset();
+    fake.application.enable_at_start = false;
+    fake_start();
+    fake_cycles(5);
+    CHECK_EQUAL(fake.writes, 0);
+    CHECK_EQUAL(fake.actuator, 0.0);
+    CHECK_EQUAL(fake_published(), 5.0);
+    CHECK(!fake_status().enabled);
+    CHECK(fake_status().fault == EPG_FAULT_NONE);
+    request(true);
+    fake_cycle();
+    CHECK_EQUAL(fake.actuator, 1.0);
+}
+
+/* Faults ------------------------------------------------------------------------------------------------------- */
+
+TEST(input_not_a_number)
+{
+    begin();
+    fake_cycles(3);
+    fake.sensor = NAN;
+    fake_cycle();
+    CHECK_EQUAL(fake.steps, 3); /* the model never saw it */
+    check_latched(EPG_FAULT_NOT_FINITE);
+}
+
+TEST(input_infinite)
+{
+    begin();
+    fake_cycles(3);
+    fake.sensor = -INFINITY;
+    fake_cycle();
+    CHECK_EQUAL(fake.steps, 3);
+    check_latched(EPG_FAULT_NOT_FINITE);
+}
+
+TEST(input_not_finite_in_the_first_cycle)
+{
+    begin();
+    fake.sensor = NAN;
+    fake_cycle();
+    CHECK_EQUAL(fake.inits, 0);
+    check_latched(EPG_FAULT_NOT_FINITE);
+}
+
+TEST(output_not_finite_never_reaches_an_actuator)
+{
+    begin();
+    fake_cycles(3);
+    fake.output_error = NAN;
+    fake_cycle();
+    CHECK_EQUAL(fake.writes, 3);
+    check_latched(EPG_FAULT_NOT_FINITE);
+}
+
+TEST(state_not_finite_though_the_output_is)
+{
+    begin();
+    fake_cycles(3);
+    fake.limit = 100.0;
+    fake.state_error = INFINITY;
+    fake_cycle();
+    CHECK_EQUAL(fake.output, 100.0);
+    check_latched(EPG_FAULT_NOT_FINITE);
+}
+
+TEST(after_not_finite_the_model_rests_and_its_last_finite_values_stay)
+{
+    begin();
+    fake_cycles(3);
+    fake.output_error = NAN;
+    fake_cycle();
+    CHECK_EQUAL(fake_published(), 3.0);
+    fake.output_error = 0.0;
+    fake_cycles(10);
+    CHECK_EQUAL(fake.steps, 4);
+    CHECK_EQUAL(fake.reads, 14);
+    CHECK_EQUAL(fake_published(), 3.0);
+}
+
+TEST(nothing_is_published_when_the_first_step_is_not_finite)
+{
+    begin();
+    fake.output_error = INFINITY;
+    fake_cycle();
+    double value;
+    CHECK(!epg_control_monitor(&fake.control, &value));
+    CHECK_EQUAL(fake.writes, 0);
+}
+
+TEST(not_finite_while_disabled_is_latched_too)
+{
+    begin();
+    request(false);
+    fake_cycle();
+    fake.output_error = NAN;
+    fake_cycle();
+    check_latched(EPG_FAULT_NOT_FINITE);
+}
+
+TEST(enabling_while_the_input_is_not_finite_fails_and_the_model_rests)
+{
+    begin();
+    fake_cycle();
+    fake.sensor = NAN;
+    fake_cycle();
+    request(true);
+    fake_cycle();
+    CHECK(!fake_status().enabled);
+    CHECK(fake_status().fault == EPG_FAULT_NOT_FINITE);
+    CHECK_EQUAL(fake_status().statistics.faults, 2);
+    fake.sensor = 0.0;
+    fake_cycles(5);
+    CHECK_EQUAL(fake.inits, 1);
+    CHECK_EQUAL(fake.steps, 1);
+}
+
+TEST(model_asks_to_stop)
+{
+    begin();
+    fake_cycles(3);
+    fake.stop = true;
+    fake_cycle();
+    CHECK_EQUAL(fake.writes, 3);
+    CHECK_EQUAL(fake_published(), 4.0);
+    fake_cycles(3);
+    CHECK_EQUAL(fake.steps, 4);
+    check_latched(EPG_FAULT_MODEL_STOPPED);
+}
+
+TEST(a_model_that_never_stops_needs_no_function_for_it)
+{
+    fake_reset();
+    fake.application.model_stopped = NULL;
+    fake_start();
+    fake_cycles(3);
+    CHECK_EQUAL(fake.actuator, 3.0);
+}
+
+TEST(overruns_in_a_row)
+{
+    fake_reset();
+    fake.application.overrun_limit = 3;
+    fake_start();
+    fake.step_ns = FAKE_PERIOD_NS + 1;
+    fake_cycles(2);
+    CHECK(fake_status().enabled);
+    CHECK_EQUAL(fake.actuator, 2.0);
+    fake_cycle();
+    CHECK_EQUAL(fake_status().statistics.overruns, 3);
+    check_latched(EPG_FAULT_OVERRUN);
+}
+
+TEST(overruns_with_a_good_cycle_between_do_not_disable)
+{
+    fake_reset();
+    fake.application.overrun_limit = 3;
+    fake_start();
+    for (int i = 0; i < 10; i++) {
+        fake.step_ns = FAKE_PERIOD_NS + 1;
+        fake_cycles(2);
+        fake.step_ns = 0;
+        fake_cycle();
+    }
+    CHECK(fake_status().enabled);
+    CHECK_EQUAL(fake_status().statistics.overruns, 20);
+}
+
+TEST(overruns_without_a_limit_are_only_counted)
+{
+    begin();
+    fake.step_ns = 2 * FAKE_PERIOD_NS;
+    fake_cycles(100);
+    CHECK(fake_status().enabled);
+    CHECK_EQUAL(fake_status().statistics.overruns, 100);
+}
+
+TEST(enabling_forgets_the_overruns_before)
+{
+    fake_reset();
+    fake.application.overrun_limit = 3;
+    fake_start();
+    fake.step_ns = 2 * FAKE_PERIOD_NS;
+    fake_cycles(5);
+    CHECK(!fake_status().enabled);
+    request(true);
+    fake_cycles(2);
+    CHECK(fake_status().enabled);
+    fake_cycle();
+    CHECK(fake_status().fault == EPG_FAULT_OVERRUN);
+}
+
+TEST(fail_safe_input_falls)
+{
+    fake_reset();
+    fake.application.fail_safe = fail_safe_input;
+    fake_start();
+    fake_cycles(3);
+    CHECK_EQUAL(fake.actuator, 3.0);
+    fake.fail_safe = false;
+    fake_cycle();
+    CHECK_EQUAL(fake.writes, 3);
+    check_latched(EPG_FAULT_FAIL_SAFE);
+}
+
+TEST(fail_safe_input_at_start)
+{
+    fake_reset();
+    fake.application.fail_safe = fail_safe_input;
+    fake.fail_safe = false;
+    fake_start();
+    fake_cycle();
+    CHECK_EQUAL(fake.writes, 0);
+    CHECK_EQUAL(fake_published(), 1.0); /* the model runs on as when disabled by request */
+    check_latched(EPG_FAULT_FAIL_SAFE);
+}
+
+TEST(fail_safe_input_refuses_enabling)
+{
+    fake_reset();
+    fake.application.fail_safe = fail_safe_input;
+    fake_start();
+    fake_cycles(3);
+    fake.fail_safe = false;
+    fake_cycle();
+    request(true);
+    fake_cycle();
+    CHECK_EQUAL(fake.writes, 3);
+    CHECK_EQUAL(fake.inits, 1);
+    CHECK(!fake_status().enabled);
+    CHECK(fake_status().fault == EPG_FAULT_FAIL_SAFE);
+    fake.fail_safe = true;
+    fake_cycles(3);
+    CHECK(!fake_status().enabled); /* the refused request does not wait */
+}
+
+TEST(an_active_fail_safe_input_changes_nothing)
+{
+    fake_reset();
+    fake.application.fail_safe = safe_level;
+    fake_start();
+    fake_cycles(3);
+    CHECK_EQUAL(fake.actuator, 3.0);
+}
+
+TEST(the_first_of_several_faults_stays)
+{
+    fake_reset();
+    fake.application.fail_safe = fail_safe_input;
+    fake_start();
+    fake_cycle();
+    fake.stop = true;
+    fake_cycle();
+    fake.fail_safe = false;
+    fake.sensor = NAN;
+    fake_cycle();
+    CHECK(fake_status().fault == EPG_FAULT_MODEL_STOPPED);
+    CHECK_EQUAL(fake_status().statistics.faults, 1);
+}
+
+TEST(faults_have_names)
+{
+    CHECK(strcmp(epg_fault_name(EPG_FAULT_NONE), "none") == 0);
+    CHECK(strcmp(epg_fault_name(EPG_FAULT_NOT_FINITE), "not finite") == 0);
+    CHECK(strcmp(epg_fault_name(EPG_FAULT_MODEL_STOPPED), "model stopped") == 0);
+    CHECK(strcmp(epg_fault_name(EPG_FAULT_OVERRUN), "overrun") == 0);
+    CHECK(strcmp(epg_fault_name(EPG_FAULT_SETPOINT_TIMEOUT), "setpoint timeout") == 0);
+    CHECK(strcmp(epg_fault_name(EPG_FAULT_FAIL_SAFE), "fail-safe") == 0);
+    CHECK(strcmp(epg_fault_name((epg_fault_t)6), "unknown") == 0);
+}
+
+/* Statistics --------------------------------------------------------------------------------------------------- */
+
+TEST(a_late_cycle_runs_once_and_the_missed_ticks_are_counted)
+{
+    begin();
+    fake_cycles(2);
+    fake_late_cycle(300, 4);
+    CHECK_EQUAL(fake.steps, 3);
+    CHECK_EQUAL(fake_status().statistics.cycles, 3);
+    CHECK_EQUAL(fake_status().statistics.missed, 4);
+    CHECK_EQUAL(fake_status().statistics.overruns, 1);
+    CHECK_EQUAL(fake_status().statistics.lateness_max, 300);
+    fake_cycle();
+    CHECK_EQUAL(fake.steps, 4);
+    CHECK_EQUAL(fake_status().statistics.overruns, 1);
+}
+
+TEST(ending_at_the_next_tick_is_in_time)
+{
+    begin();
+    fake.step_ns = FAKE_PERIOD_NS;
+    fake_cycle();
+    CHECK_EQUAL(fake_status().statistics.overruns, 0);
+    fake.step_ns = FAKE_PERIOD_NS - 100;
+    fake_late_cycle(101, 0);
+    CHECK_EQUAL(fake_status().statistics.overruns, 1);
+}
+
+TEST(computation_times)
+{
+    begin();
+    fake.step_ns = 300;
+    fake_cycle();
+    fake.step_ns = 100;
+    fake_late_cycle(50, 0);
+    fake.step_ns = 0;
+    fake_late_cycle(20, 0);
+    fake.step_ns = 200;
+    fake_cycle();
+    const epg_statistics_t statistics = fake_status().statistics;
+    CHECK_EQUAL(statistics.computation_min, 0);
+    CHECK_EQUAL(statistics.computation_max, 300);
+    CHECK_EQUAL(statistics.computation_total, 600);
+    CHECK_EQUAL(statistics.lateness_max, 50);
+}
+
+TEST(shortest_cycle_is_not_the_zero_it_starts_with)
+{
+    begin();
+    fake_cycle();
+    CHECK_EQUAL(fake_status().statistics.computation_min, 0);
+    begin();
+    fake.step_ns = 7;
+    fake_cycle();
+    CHECK_EQUAL(fake_status().statistics.computation_min, 7);
+}
+
+TEST(times_saturate)
+{
+    begin();
+    fake.step_ns = 5000000000U;
+    fake_late_cycle(6000000000U, 0);
+    CHECK_EQUAL(fake_status().statistics.lateness_max, UINT32_MAX);
+    CHECK_EQUAL(fake_status().statistics.computation_max, UINT32_MAX);
+}
+
+TEST(a_cycle_before_its_tick_is_not_late)
+{
+    begin();
+    fake_port.now_ns = 900;
+    epg_control_cycle(&fake.control, 1000, 0);
+    CHECK_EQUAL(fake_status().statistics.lateness_max, 0);
+    CHECK_EQUAL(fake_status().time_ns, 1000);
+}
+
+TEST(counts_of_others)
+{
+    begin();
+    epg_control_count_clamped(&fake.control);
+    epg_control_count_clamped(&fake.control);
+    epg_control_count_reconnect(&fake.control);
+    fake_cycle();
+    CHECK_EQUAL(fake_status().statistics.clamped, 2);
+    CHECK_EQUAL(fake_status().statistics.reconnects, 1);
+}
+
+TEST(reconnecting_clears_no_latch)
+{
+    begin();
+    fake_cycle();
+    fake.stop = true;
+    fake_cycle();
+    fake.stop = false;
+    epg_control_count_reconnect(&fake.control);
+    fake_receive(0, 1.0);
+    fake_cycles(3);
+    CHECK(fake_status().fault == EPG_FAULT_MODEL_STOPPED);
+}
+
+TEST(finite_by_bits)
+{
+    CHECK(epg_is_finite(0.0));
+    CHECK(epg_is_finite(-0.0));
+    CHECK(epg_is_finite(4.9406564584124654e-324));
+    CHECK(epg_is_finite(-1.7976931348623157e308));
+    CHECK(!epg_is_finite(INFINITY));
+    CHECK(!epg_is_finite(-INFINITY));
+    CHECK(!epg_is_finite(NAN));
+    CHECK(!epg_is_finite(-NAN));
+}
+
+RUN(ENTRY(start_makes_peripherals_safe_and_runs_nothing), ENTRY(nothing_is_read_or_taken_before_start),
+    ENTRY(first_cycle_initialises_with_its_own_inputs), ENTRY(a_cycle_reads_steps_writes_and_publishes_in_this_order),
+    ENTRY(a_setpoint_reaches_the_actuator_in_the_next_cycle), ENTRY(start_again_starts_afresh),
+    ENTRY(model_runs_every_nth_cycle_sensors_every_cycle), ENTRY(enabling_runs_the_model_at_once_whatever_its_turn),
+    ENTRY(a_fault_between_steps_is_safe_at_once), ENTRY(disabled_is_safe_within_one_cycle_while_the_model_runs_on),
+    ENTRY(enabled_again_initialises_the_model), ENTRY(a_request_to_enable_what_is_enabled_does_nothing),
+    ENTRY(of_several_requests_the_last_one_counts), ENTRY(a_request_acts_once),
+    ENTRY(not_enabled_at_start_stays_safe_and_live), ENTRY(input_not_a_number), ENTRY(input_infinite),
+    ENTRY(input_not_finite_in_the_first_cycle), ENTRY(output_not_finite_never_reaches_an_actuator),
+    ENTRY(state_not_finite_though_the_output_is),
+    ENTRY(after_not_finite_the_model_rests_and_its_last_finite_values_stay),
+    ENTRY(nothing_is_published_when_the_first_step_is_not_finite), ENTRY(not_finite_while_disabled_is_latched_too),
+    ENTRY(enabling_while_the_input_is_not_finite_fails_and_the_model_rests), ENTRY(model_asks_to_stop),
+    ENTRY(a_model_that_never_stops_needs_no_function_for_it), ENTRY(overruns_in_a_row),
+    ENTRY(overruns_with_a_good_cycle_between_do_not_disable), ENTRY(overruns_without_a_limit_are_only_counted),
+    ENTRY(enabling_forgets_the_overruns_before), ENTRY(fail_safe_input_falls), ENTRY(fail_safe_input_at_start),
+    ENTRY(fail_safe_input_refuses_enabling), ENTRY(an_active_fail_safe_input_changes_nothing),
+    ENTRY(the_first_of_several_faults_stays), ENTRY(faults_have_names),
+    ENTRY(a_late_cycle_runs_once_and_the_missed_ticks_are_counted), ENTRY(ending_at_the_next_tick_is_in_time),
+    ENTRY(computation_times), ENTRY(shortest_cycle_is_not_the_zero_it_starts_with), ENTRY(times_saturate),
+    ENTRY(a_cycle_before_its_tick_is_not_late), ENTRY(counts_of_others), ENTRY(reconnecting_clears_no_latch),
+    ENTRY(finite_by_bits))

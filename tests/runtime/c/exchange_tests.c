@@ -1,0 +1,72 @@
+/**
+ * @file
+ * The exchange from one thread: what a write leaves for a read.  Two threads: stress.c and exchange.pml.
+ */
+#include "check.h"
+#include "epg/exchange.h"
+
+typedef struct value {
+    uint32_t number;
+    char text[11]; /* an odd size on purpose */
+} value_t;
+
+static value_t slots[4];
+static epg_exchange_t exchange = EPG_EXCHANGE(slots);
+
+static void write_number(uint32_t number)
+{
+    value_t value = {.number = number};
+    snprintf(value.text, sizeof value.text, "%u", number);
+    epg_exchange_write(&exchange, &value);
+}
+
+static bool holds(uint32_t number)
+{
+    value_t value;
+    char text[11];
+    snprintf(text, sizeof text, "%u", number);
+    return epg_exchange_read(&exchange, &value) && value.number == number && strcmp(value.text, text) == 0;
+}
+
+TEST(empty_until_the_first_write)
+{
+    value_t value = {.number = 77};
+    CHECK(!epg_exchange_read(&exchange, &value));
+    CHECK(value.number == 77);
+    write_number(1);
+    CHECK(holds(1));
+}
+
+TEST(every_pattern_of_reads_and_writes_gives_the_newest)
+{
+    for (uint32_t pattern = 0; pattern < 4096; pattern++) {
+        epg_exchange_clear(&exchange);
+        uint32_t newest = 0;
+        for (uint32_t bit = 0; bit < 12; bit++) {
+            if ((pattern >> bit & 1U) != 0) {
+                write_number(++newest);
+            } else if (newest > 0) {
+                CHECK(holds(newest));
+            }
+        }
+    }
+}
+
+TEST(a_value_may_be_read_again)
+{
+    write_number(5);
+    CHECK(holds(5));
+    CHECK(holds(5));
+}
+
+TEST(cleared_is_empty)
+{
+    write_number(5);
+    CHECK(holds(5));
+    epg_exchange_clear(&exchange);
+    value_t value;
+    CHECK(!epg_exchange_read(&exchange, &value));
+}
+
+RUN(ENTRY(empty_until_the_first_write), ENTRY(every_pattern_of_reads_and_writes_gives_the_newest),
+    ENTRY(a_value_may_be_read_again), ENTRY(cleared_is_empty))

@@ -1,0 +1,72 @@
+/**
+ * @file
+ * A port layer whose clock and signals a test sets and sees.
+ */
+#include "fake_port.h"
+
+#include <stddef.h>
+
+fake_port_t fake_port;
+
+void fake_port_reset(void)
+{
+    fake_port = (fake_port_t){0};
+}
+
+static void written(void)
+{
+    fake_port.writes++;
+    if (fake_port.on_write != NULL) {
+        fake_port.on_write();
+    }
+}
+
+uint64_t epg_port_time_ns(void)
+{
+    return fake_port.now_ns;
+}
+
+void epg_port_quadrature_start(const epg_port_quadrature_t *decoder)
+{
+    (void)decoder;
+}
+
+uint32_t epg_port_quadrature_count(const epg_port_quadrature_t *decoder)
+{
+    return fake_port.counts[decoder->unit];
+}
+
+void epg_port_pwm_start(const epg_port_pwm_t *pwm)
+{
+    fake_port.tops[pwm->unit] = pwm->top;
+    fake_port.levels[pwm->unit] = 0;
+    written();
+}
+
+void epg_port_pwm_write(const epg_port_pwm_t *pwm, uint32_t level)
+{
+    fake_port.levels[pwm->unit] = level;
+    written();
+}
+
+void epg_port_output_start(uint8_t pin, bool level)
+{
+    fake_port.outputs[pin] = level;
+    written();
+}
+
+void epg_port_output_write(uint8_t pin, bool level)
+{
+    fake_port.outputs[pin] = level;
+    written();
+}
+
+void epg_port_input_start(uint8_t pin, epg_port_pull_t pull)
+{
+    fake_port.pulls[pin] = pull;
+}
+
+bool epg_port_input_read(uint8_t pin)
+{
+    return fake_port.inputs[pin];
+}

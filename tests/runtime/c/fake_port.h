@@ -1,0 +1,29 @@
+/**
+ * @file
+ * A port layer whose clock and signals a test sets and sees.
+ */
+#ifndef FAKE_PORT_H
+#define FAKE_PORT_H
+
+#include "epg/port.h"
+
+enum { FAKE_UNITS = 8, FAKE_PINS = 32 };
+
+typedef struct fake_port {
+    uint64_t now_ns;             /**< what epg_port_time_ns() returns */
+    uint32_t counts[FAKE_UNITS]; /**< of the quadrature decoders */
+    uint32_t levels[FAKE_UNITS]; /**< of the PWM outputs, as written last */
+    uint32_t tops[FAKE_UNITS];   /**< as started */
+    bool outputs[FAKE_PINS];
+    bool inputs[FAKE_PINS];
+    epg_port_pull_t pulls[FAKE_PINS];
+    unsigned int writes;    /**< of PWM levels and pins */
+    void (*on_write)(void); /**< called after each of them: nothing happens unseen */
+} fake_port_t;
+
+extern fake_port_t fake_port;
+
+/** Everything to zero. */
+void fake_port_reset(void);
+
+#endif

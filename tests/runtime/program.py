@@ -1,0 +1,53 @@
+"""Compiles C tests against the runtime, the component drivers and a port layer the tests control."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+from collections.abc import Sequence
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+RUNTIME = ROOT / "targets" / "runtime"
+COMPONENTS = ROOT / "targets" / "components"
+SOURCES = Path(__file__).resolve().parent / "c"
+
+WARNINGS = ["-Wall", "-Wextra", "-Wconversion", "-Wdouble-promotion", "-Wshadow", "-pedantic", "-Werror"]
+ADDRESS_SANITIZER = ["-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-fno-omit-frame-pointer"]
+THREAD_SANITIZER = ["-fsanitize=thread"]
+
+
+def compile_program(
+    output: Path,
+    sources: Sequence[Path],
+    *,
+    options: Sequence[str] = ("-O1", *ADDRESS_SANITIZER),
+    defines: Sequence[str] = (),
+    includes: Sequence[Path] = (),
+) -> Path:
+    """Compiles ``sources`` as C11 with the project's warnings as errors into the executable ``output``."""
+    compiler = shutil.which("gcc") or shutil.which("cc")
+    assert compiler is not None, "a C compiler is needed"
+    folders = [RUNTIME / "include", SOURCES, *sorted(p for p in COMPONENTS.iterdir() if p.is_dir()), *includes]
+    command = [compiler, "-std=c11", "-g", "-ffp-contract=off", *WARNINGS, *options]
+    command += [f"-I{folder}" for folder in folders] + [f"-D{define}" for define in defines]
+    command += [str(source) for source in sources] + ["-pthread", "-lm", "-o", str(output)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return output
+
+
+def runtime_sources() -> list[Path]:
+    """All C files of the runtime."""
+    return sorted((RUNTIME / "src").glob("*.c"))
+
+
+def names_in(source: Path) -> list[str]:
+    """Names of the ``TEST(name)`` in a C file, in order."""
+    return re.findall(r"^TEST\((\w+)\)", source.read_text(), flags=re.MULTILINE)
+
+
+def run_program(command: Sequence[str | Path], *, timeout: float = 120) -> subprocess.CompletedProcess[str]:
+    """Runs a program and keeps what it prints; the caller judges its exit status."""
+    return subprocess.run([str(part) for part in command], capture_output=True, text=True, check=False, timeout=timeout)
