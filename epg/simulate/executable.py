@@ -10,8 +10,9 @@ from array import array
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NoReturn
 
-from epg.diagnostics import Diagnostics, did_you_mean
+from epg.diagnostics import Diagnostics, UserError, did_you_mean
 from epg.source import Span
 
 Progress = Callable[[str], None]
@@ -90,10 +91,10 @@ def _patience(duration: float) -> float:
     return 60.0 + 3.0 * duration
 
 
-def _fail(executable: Path, message: str, hint: str) -> None:
+def _fail(executable: Path, message: str, hint: str) -> NoReturn:
     diagnostics = Diagnostics()
     diagnostics.error("simulation-failed", Span(executable.name), message, hint=hint)
-    diagnostics.stop_if_errors()
+    raise UserError(diagnostics)
 
 
 def read_statistics(path: Path) -> Statistics:

@@ -43,10 +43,10 @@ def _draw(tracking: Tracking, upper, lower) -> None:  # type: ignore[no-untyped-
     axis = tracking.axis
     begin = axis.homing.until if axis.homing else 0.0
     shown = [i for i, time in enumerate(tracking.time) if time >= begin]
-    upper.plot(tracking.time, tracking.setpoint, color=_BLACK, linestyle="--", linewidth=1.0, label="setpoint")
     if tracking.reference is not None:
         upper.plot(tracking.time, tracking.reference, color=_ORANGE, linewidth=2.4, label="reference (ideal loop)")
-    upper.plot(tracking.time, tracking.position, color=_BLUE, linewidth=1.1, label="position")
+    upper.plot(tracking.time, tracking.position, color=_BLUE, linewidth=1.4, label="position")
+    upper.plot(tracking.time, tracking.setpoint, color=_BLACK, linestyle=(0, (4, 4)), linewidth=0.9, label="setpoint")
     upper.set_ylabel(f"{axis.name} ({axis.unit})")
     times = [tracking.time[i] for i in shown]
     milli = 1000.0 if axis.unit in ("rad", "m") else 1.0

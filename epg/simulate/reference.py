@@ -6,12 +6,14 @@
 
 from __future__ import annotations
 
-import importlib.util
 import math
+import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from types import ModuleType
+from typing import NoReturn
 
-from epg.diagnostics import Diagnostics
+from epg.diagnostics import Diagnostics, UserError
 from epg.source import Span
 
 Reference = Callable[[str, Sequence[float], Sequence[float]], list[float]]
@@ -19,22 +21,22 @@ Reference = Callable[[str, Sequence[float], Sequence[float]], list[float]]
 
 def load_reference(path: Path) -> Reference:
     """The function ``reference`` of a Python file.  Raises UserError when there is none."""
-    spec = importlib.util.spec_from_file_location(path.stem, path)
-    assert spec is not None and spec.loader is not None  # the schema asks for a name that ends in .py
-    module = importlib.util.module_from_spec(spec)
+    # Executed rather than imported: an import would leave a __pycache__ beside the user's file.  The module is
+    # registered all the same, because dataclasses look their annotations up there.
+    module = ModuleType(f"epg_reference_{path.stem}")
+    module.__file__ = str(path)
+    sys.modules[module.__name__] = module
     try:
-        spec.loader.exec_module(module)
+        exec(compile(path.read_bytes(), str(path), "exec"), module.__dict__)
         function: Reference = module.reference
     except Exception as error:  # the file is the user's: whatever it raises is about the file
         _fail(path, f"cannot load the reference: {type(error).__name__}: {error}")
-        raise AssertionError from error
 
     def checked(axis: str, time: Sequence[float], setpoint: Sequence[float]) -> list[float]:
         try:
             values = [float(value) for value in function(axis, time, setpoint)]
         except Exception as error:
             _fail(path, f"reference() failed for axis '{axis}': {type(error).__name__}: {error}")
-            raise AssertionError from error
         if len(values) != len(time) or not all(map(math.isfinite, values)):
             _fail(path, f"reference() must return {len(time)} finite values for axis '{axis}'")
         return values
@@ -42,8 +44,8 @@ def load_reference(path: Path) -> Reference:
     return checked
 
 
-def _fail(path: Path, message: str) -> None:
+def _fail(path: Path, message: str) -> NoReturn:
     diagnostics = Diagnostics()
     hint = "it needs: def reference(axis, time, setpoint), which returns a list as long as time"
     diagnostics.error("wrong-reference", Span(str(path)), message, hint=hint)
-    diagnostics.stop_if_errors()
+    raise UserError(diagnostics)

@@ -20,7 +20,7 @@ def format_table(result: Result) -> str:
         lines += [f"NOT HELD: {c.text}: {c.value:.4g} {c.unit}".rstrip() + f" (limit {c.limit:g})" for c in failed]
     elif result.checks:
         lines += ["", f"all {len(result.checks)} limits of the scenario hold"]
-    return "\n".join(lines) + "\n"
+    return "\n".join(lines)
 
 
 def _run(statistics: Statistics) -> list[tuple[str, str]]:

@@ -11,6 +11,9 @@ from closed_loop import AXES, COUNTS_PER_RADIAN, Run, run
 from write_models import EXAMPLES, model_files
 from writer import equations
 
+from epg.diagnostics import Diagnostics
+from epg.load.models import load_model
+
 JIWY = EXAMPLES / "jiwy"
 START, LENGTH = 5.0, 3.0
 RANGE = {"pan": math.pi, "tilt": math.pi / 2}
@@ -39,6 +42,16 @@ def rms(recorded: Run, axis: str) -> float:
 def test_files_are_what_the_equations_say() -> None:
     for path, text in model_files().items():
         assert (EXAMPLES / path).read_text(encoding="utf-8") == text, f"{path}: run write_models.py"
+
+
+@pytest.mark.parametrize("folder", ["jiwy/model", "jiwy/plant", "relbot/model", "relbot/plant"])
+def test_importer_reads_them(folder: str) -> None:
+    """Ports, parameters and metadata go together: there is nothing to warn about."""
+    diagnostics = Diagnostics()
+    model = load_model(EXAMPLES / folder, diagnostics)
+    assert model is not None
+    assert [item.message for item in diagnostics] == []
+    assert (model.inputs, model.outputs) != ((), ())
 
 
 def test_equation_language() -> None:
