@@ -1,8 +1,8 @@
-"""The whole way of the data, for callers that have file names: the command line, CMake, tests.
+"""From file names to an application: load, check and resolve, for callers such as the command line and tests.
 
 >>> # request = Request("jiwy", tcf="host_jiwy.tcf", model=Path("model"), bindings=Path("jiwy.bindings.yaml"))
 >>> # application = load_application(request, diagnostics)
->>> # files = outputs(request, application)
+>>> # files = epg.emit.outputs.application_outputs(application, request.roots, names)
 """
 
 from __future__ import annotations
@@ -17,10 +17,6 @@ from epg.check.configuration import Configuration, check_configuration
 from epg.check.names import identifier_problem
 from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
-from epg.emit.application import emit_application
-from epg.emit.cmake import PathNames, application_cmake, model_cmake
-from epg.emit.description import describe
-from epg.emit.model import emit_model, model_build
 from epg.load.catalog import Catalog, load_catalog
 from epg.load.models import load_model
 from epg.load.models.model import Model
@@ -94,28 +90,6 @@ def check_name(name: str, span: Span, diagnostics: Diagnostics) -> None:
     problem = identifier_problem(name)
     if problem:
         diagnostics.error("invalid-name", span, f"target '{name}' {problem}")
-
-
-def outputs(request: Request, app: Application, names: PathNames) -> dict[str, str]:
-    """All generated files of ``app``: C, the model libraries, CMake and the description."""
-    files = emit_application(app, request.roots)
-    parts = [(app.model, f"{app.name}_model", app.parameters)]
-    if app.plant is not None:
-        parts.append((app.plant.model, f"{app.name}_plant", app.plant.parameters))
-    builds = []
-    for model, name, parameters in parts:
-        files |= emit_model(model, name, parameters)
-        builds.append((name, model_build(model, name, parameters)))
-    files[f"{app.name}.cmake"] = application_cmake(app, builds, sorted(files), names, request.roots)
-    files[f"{app.name}.json"] = describe(app, names)
-    return files
-
-
-def model_outputs(model: Model, name: str, instances: int, names: PathNames) -> dict[str, str]:
-    """The generated files of a model alone, ``epg_add_model``'s library."""
-    files = emit_model(model, name, {}, instances)
-    files[f"{name}.cmake"] = model_cmake(name, model_build(model, name, {}), model.files, names)
-    return files
 
 
 def check_target(request: Request, catalog: Catalog, diagnostics: Diagnostics) -> Configuration | None:

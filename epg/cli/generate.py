@@ -20,7 +20,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from epg.cli.output import update_folder
     from epg.emit.cmake import PathNames
-    from epg.project import load_application, outputs
+    from epg.emit.outputs import application_outputs
+    from epg.project import load_application
 
     request = request_of(options, options.name)
     app = load_application(request, diagnostics)
@@ -32,5 +33,5 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         diagnostics.error("platform-not-built", span, message, hint="choose another target: 'epg targets' lists them")
         diagnostics.stop_if_errors()
     names = PathNames(options.source_dir)
-    update_folder(options.output, outputs(request, app, names), sys.stdout if options.json else None)
+    update_folder(options.output, application_outputs(app, request.roots, names), sys.stdout if options.json else None)
     return 0

@@ -23,7 +23,8 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from epg.cli.output import update_folder
     from epg.emit.cmake import PathNames
     from epg.load.models import load_model
-    from epg.project import check_instances, check_name, model_outputs
+    from epg.emit.outputs import model_outputs
+    from epg.project import check_instances, check_name
 
     caller = Span(options.caller or "command line")
     check_name(options.name, caller, diagnostics)

@@ -1,0 +1,35 @@
+"""All generated files of a target or of a model, by name."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from epg.emit.application import emit_application
+from epg.emit.cmake import PathNames, application_cmake, model_cmake
+from epg.emit.description import describe
+from epg.emit.model import emit_model, model_build
+from epg.load.models.model import Model
+from epg.resolve.application import Application
+
+
+def application_outputs(app: Application, roots: Sequence[Path], names: PathNames) -> dict[str, str]:
+    """C, the model libraries, CMake and the description of ``app``; ``roots`` are the ``targets`` folders."""
+    files = emit_application(app, roots)
+    parts = [(app.model, f"{app.name}_model", app.parameters)]
+    if app.plant is not None:
+        parts.append((app.plant.model, f"{app.name}_plant", app.plant.parameters))
+    builds = []
+    for model, name, parameters in parts:
+        files |= emit_model(model, name, parameters)
+        builds.append((name, model_build(model, name, parameters)))
+    files[f"{app.name}.cmake"] = application_cmake(app, builds, sorted(files), names)
+    files[f"{app.name}.json"] = describe(app, names)
+    return files
+
+
+def model_outputs(model: Model, name: str, instances: int, names: PathNames) -> dict[str, str]:
+    """The library of a model alone, as ``epg_add_model`` makes it."""
+    files = emit_model(model, name, {}, instances)
+    files[f"{name}.cmake"] = model_cmake(name, model_build(model, name, {}), model.files, names)
+    return files

@@ -1,0 +1,24 @@
+/* The user's own main(): two targets, one of them run for a moment. */
+#include <stdio.h>
+#include <time.h>
+
+#include "left.h"
+#include "right.h"
+
+int main(void)
+{
+    if (!left_start()) {
+        return 1;
+    }
+    struct timespec delay = {.tv_nsec = 200000000};
+    nanosleep(&delay, NULL);
+    left_enable(true);
+    nanosleep(&delay, NULL);
+    epg_status_t status;
+    if (!left_status(&status)) {
+        return 2;
+    }
+    left_stop();
+    printf("cycles %u enabled %d\n", (unsigned)status.statistics.cycles, status.enabled);
+    return right_status(&status) ? 3 : 0; /* right was never started */
+}

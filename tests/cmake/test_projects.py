@@ -1,0 +1,187 @@
+"""Projects that use EPG as a user would."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from tests.cmake.project import CMAKE_DIR, ROOT, Project, compiled, snapshot
+
+
+@pytest.fixture
+def robot(tmp_path: Path) -> Project:
+    return Project(tmp_path, "robot")
+
+
+@pytest.mark.parametrize("generator", ["Ninja", "Unix Makefiles"])
+def test_configure_build_run(robot: Project, generator: str) -> None:
+    before = snapshot(robot.source)
+    robot.configure(generator=generator)
+    robot.build()
+    done = subprocess.run([robot.build_folder / "robot_host", "--duration", "0.5"], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert "500" in done.stdout
+    assert snapshot(robot.source) == before, "EPG wrote into the source tree"
+
+
+def test_a_build_without_a_change_compiles_nothing(robot: Project) -> None:
+    robot.configure()
+    robot.build()
+    assert compiled(robot.build()) == set()
+    robot.configure()
+    assert compiled(robot.build()) == set()
+
+
+def test_a_comment_in_the_tcf_compiles_nothing(robot: Project) -> None:
+    robot.configure()
+    robot.build()
+    robot.edit("robot.tcf", "# A motor", "# The motor\n# and its load: a motor")
+    output = robot.build()
+    assert "Re-running CMake" in output or "Configuring done" in output
+    assert compiled(output) == set()
+
+
+def test_a_changed_value_is_noticed_and_compiles_the_tables_only(robot: Project) -> None:
+    robot.configure()
+    robot.build()
+    robot.edit("robot.tcf", "counts_per_revolution: 4096", "counts_per_revolution: 2048")
+    assert "robot_app.c" in compiled(robot.build())
+    robot.edit("robot.tcf", "node: robot", "node: robot2")
+    assert compiled(robot.build()) == {"robot_app.c"}
+
+
+def test_a_changed_model_is_noticed(robot: Project) -> None:
+    robot.configure()
+    robot.build()
+    robot.edit("model/controller.c", "outputs->reset = 0.0", "outputs->reset = 1.0")
+    assert "controller.c" in compiled(robot.build())
+    robot.edit("model/model.yaml", "log: {unit: rad}", "log: {unit: deg}")
+    output = robot.build()
+    assert "Configuring done" in output
+
+
+def test_a_mistake_stops_the_build_with_its_position_and_mending_it_helps(robot: Project) -> None:
+    robot.configure()
+    robot.build()
+    robot.edit("bindings.yaml", "duty: motor", "duty: moter")
+    output = robot.build(check=False)
+    assert f"{robot.source}/bindings.yaml:4:17: error: there is no component 'moter' [unknown-component]\n" in output
+    assert "hint: did you mean 'motor'?" in output
+    assert "target 'robot' was not generated" in output
+    robot.edit("bindings.yaml", "duty: moter", "duty: motor")
+    robot.build()
+
+
+def test_a_mistake_in_the_first_configuration_leaves_nothing_half_written(robot: Project) -> None:
+    robot.edit("robot.tcf", "frequency: 20 kHz", "frequency: 20")
+    output = robot.fails_to_configure()
+    assert "robot.tcf:8:40: error: frequency without a unit [wrong-unit]" in output
+    assert output.count("CMake Error") == 1, output
+    assert not list((robot.build_folder / "epg").rglob("*.c"))
+
+
+def test_compile_commands_find_all_headers_right_after_configure(robot: Project) -> None:
+    robot.configure()
+    commands = json.loads((robot.build_folder / "compile_commands.json").read_text())
+    assert any(command["file"].endswith("robot_app.c") for command in commands)
+    for command in commands:
+        words = command["command"].replace("-o ", "-fsyntax-only -o ", 1)
+        done = subprocess.run(words, shell=True, cwd=command["directory"], capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+
+
+def test_output_is_the_same_in_another_folder(tmp_path: Path) -> None:
+    texts = []
+    for name in ("one", "a folder with blanks"):
+        project = Project(tmp_path / name, "robot", {"PYTHONHASHSEED": "1" if name == "one" else "2", "TZ": "Asia/Tokyo"})
+        project.configure()
+        texts.append(snapshot(project.build_folder / "epg" / "robot"))
+    assert texts[0] == texts[1]
+    project.build()
+
+
+@pytest.mark.parametrize("generator", ["Ninja", "Unix Makefiles"])
+def test_two_targets_own_main_and_strict_warnings(tmp_path: Path, generator: str) -> None:
+    project = Project(tmp_path, "own_main")
+    project.configure(f"-DEPG_PATH={ROOT}", generator=generator, epg_dir=False)
+    project.build()
+    done = subprocess.run([project.build_folder / "src" / "firmware"], capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert done.stdout.startswith("cycles ")
+    assert done.stdout.endswith("enabled 1\n")
+
+
+def test_settings_reach_the_generated_code(tmp_path: Path) -> None:
+    project = Project(tmp_path, "own_main")
+    project.configure(f"-DEPG_PATH={ROOT}", epg_dir=False)
+    text = (project.build_folder / "epg" / "left" / "left_app.c").read_text()
+    assert '.node = "left_node"' in text
+    assert '.name_space = "/lab"' in text
+    assert ".enable_at_start = false" in text
+
+
+def test_a_wrong_setting_names_the_cmakelists(tmp_path: Path) -> None:
+    project = Project(tmp_path, "own_main")
+    project.edit("src/CMakeLists.txt", "components.motor.invert=true", "components.motor.inverted=true")
+    project.edit("src/CMakeLists.txt", "foreach(side left right)", "foreach(side left)")
+    output = project.fails_to_configure(f"-DEPG_PATH={ROOT}", epg_dir=False)
+    assert f"{project.source}/src/CMakeLists.txt:" in output
+    assert "unknown key 'inverted'" in output
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("TCF robot.tcf ", "", "epg_add_target(robot): TCF is missing"),
+        ("MODEL model", "MODEL model PINS x", "epg_add_target(robot): unknown argument: PINS"),
+        ("BINDINGS bindings.yaml", "BINDINGS", "a keyword without a value: BINDINGS"),
+        ("BINDINGS bindings.yaml", "BINDINGS bindings.yaml PLANT plant", "PLANT needs PLANT_BINDINGS"),
+        ("LANGUAGES C", "LANGUAGES NONE", "EPG needs C: write project(robot LANGUAGES"),
+        ("epg_add_executable(robot_host EPG::robot)", "epg_add_executable(x EPG::other)", "call epg_add_target(other"),
+        ("epg_add_executable", "add_library(a INTERFACE)\nepg_add_target(a TCF x MODEL y BINDINGS z)\n#", "a target of this name exists"),
+    ],
+)
+def test_wrong_calls_say_what_to_write(robot: Project, old: str, new: str, message: str) -> None:
+    robot.edit("CMakeLists.txt", old, new)
+    assert message in " ".join(robot.fails_to_configure().split())
+
+
+def test_the_version_is_the_packages(robot: Project) -> None:
+    robot.edit("CMakeLists.txt", "find_package(EPG REQUIRED)", 'find_package(EPG REQUIRED)\nmessage(STATUS "is ${EPG_VERSION}")')
+    import epg
+
+    assert f"is {epg.__version__}\n" in robot.configure()
+    robot.edit("CMakeLists.txt", "find_package(EPG REQUIRED)", "find_package(EPG 99 REQUIRED)")
+    assert "compatible with requested version" in " ".join(robot.fails_to_configure().split())
+
+
+def test_add_subdirectory(robot: Project) -> None:
+    robot.edit("CMakeLists.txt", "find_package(EPG REQUIRED)", f'add_subdirectory("{ROOT}" epg_checkout)')
+    robot.configure(epg_dir=False)
+    robot.build()
+
+
+PICO_CONVENTIONS = """
+set(CMAKE_SYSTEM_NAME Linux)
+set(CMAKE_FIND_ROOT_PATH /nowhere)
+set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
+set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
+"""
+
+
+@pytest.mark.parametrize("where", ["before project()", "after project()"])
+def test_import_file_under_a_toolchain_that_confines_packages(robot: Project, where: str) -> None:
+    (robot.source / "toolchain.cmake").write_text(PICO_CONVENTIONS)
+    (robot.source / "epg_import.cmake").write_text((CMAKE_DIR / "epg_import.cmake").read_text())
+    robot.edit("CMakeLists.txt", "find_package(EPG REQUIRED)", "")
+    line = "project(robot LANGUAGES C)"
+    include = "include(epg_import.cmake)"
+    robot.edit("CMakeLists.txt", line, f"{include}\n{line}" if where.startswith("before") else f"{line}\n{include}")
+    robot.configure(
+        f"-DCMAKE_TOOLCHAIN_FILE={robot.source}/toolchain.cmake", f"-DEPG_PATH={ROOT}", epg_dir=False
+    )

@@ -1,0 +1,93 @@
+"""Every message EPG gives, to the letter.
+
+A file ``cases/<name>.case`` holds the files that are wrong and what EPG says about them::
+
+    $ epg check --tcf robot.tcf --model model --bindings bindings.yaml
+    --- robot.tcf
+    version: 1
+    ...
+    --- expected
+    robot.tcf:3:1: error: ...
+
+Files that a case does not mention are those of ``common/``; the command is the one above unless the first line gives
+another.  Below ``--- name <- edit`` stand changes to the common file, one ``old => new`` a line (``\\n`` is a line end).
+``EPG_UPDATE_GOLDEN=1`` rewrites what is expected: read the difference.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+from epg.cli.main import main
+
+HERE = Path(__file__).resolve().parent
+CASES = sorted((HERE / "cases").glob("*.case"))
+COMMAND = "check --tcf robot.tcf --model model --bindings bindings.yaml"
+
+
+def read_case(path: Path) -> tuple[str, dict[str, str], str]:
+    """Command, files and expected messages of a case."""
+    text = path.read_text(encoding="utf-8")
+    command = COMMAND
+    if text.startswith("$ epg "):
+        first, _, text = text.partition("\n")
+        command = first.removeprefix("$ epg ")
+    parts = re.split(r"^--- (.+)\n", text, flags=re.MULTILINE)
+    files = dict(zip(parts[1::2], parts[2::2]))
+    return command, files, files.pop("expected", "")
+
+
+def lay_out(folder: Path, files: dict[str, str]) -> None:
+    """The common files, and those of the case over them."""
+    shutil.copytree(HERE / "common", folder, dirs_exist_ok=True)
+    for name, text in files.items():
+        edited = name.removesuffix(" <- edit")
+        path = folder / edited
+        path.parent.mkdir(parents=True, exist_ok=True)
+        if edited != name:
+            source = path.read_text(encoding="utf-8")
+            for line in text.splitlines():
+                old, _, new = line.partition(" => ")
+                assert old in source, f"{old!r} is not in {path.name}"
+                source = source.replace(old, new.replace("\\n", "\n"), 1)
+            text = source
+        path.write_text(text, encoding="utf-8")
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda path: path.stem)
+def test_message(
+    case: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    command, files, expected = read_case(case)
+    lay_out(tmp_path, files)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("EPG_TARGETS_PATH", raising=False)
+    if (tmp_path / "targets").is_dir():
+        monkeypatch.setenv("EPG_TARGETS_PATH", "targets")
+    status = main(command.split())
+    output = capfd.readouterr()
+    assert "Traceback" not in output.err
+    if os.environ.get("EPG_UPDATE_GOLDEN"):
+        text = case.read_text(encoding="utf-8")
+        head = re.split(r"^--- expected\n", text, flags=re.MULTILINE)[0]
+        case.write_text(f"{head}--- expected\n{output.err}", encoding="utf-8")
+        expected = output.err
+    assert output.err == expected
+    assert status == (1 if ": error: " in expected else 0)
+    assert ": error: " in expected or ": warning: " in expected
+
+
+def test_every_kind_of_message_has_a_case() -> None:
+    """The ids in EPG's sources are those in the cases (modules of the simulation have tests of their own)."""
+    root = HERE.parent.parent / "epg"
+    ids = set()
+    for path in root.rglob("*.py"):
+        if "simulate" in path.parts:
+            continue
+        ids |= set(re.findall(r"""(?:error|warning)\(\s*["']([a-z0-9.]+(?:-[a-z0-9.]+)+)["']""", path.read_text(encoding="utf-8")))
+    shown = {found for case in CASES for found in re.findall(r"\[([a-z0-9.-]+)\]$", case.read_text(encoding="utf-8"), re.MULTILINE)}
+    assert sorted(ids - shown) == []
