@@ -16,10 +16,7 @@ _BLACK, _BLUE, _ORANGE, _GREY = "#000000", "#0072B2", "#D55E00", "#999999"
 def plot(trackings: Sequence[Tracking], path: Path, diagnostics: Diagnostics) -> bool:
     """Draws ``path``; False, with a warning that says what to install, without matplotlib."""
     try:
-        import matplotlib
-
-        matplotlib.use("Agg")
-        from matplotlib.figure import Figure
+        from matplotlib.figure import Figure  # not pyplot: no window system, no global state
     except ImportError as error:
         diagnostics.warning(
             "matplotlib-missing",
@@ -61,6 +58,6 @@ def _draw(tracking: Tracking, upper, lower) -> None:  # type: ignore[no-untyped-
         if begin > 0.0:
             label = "homing" if panel is upper else None
             panel.axvspan(0.0, begin, color=_GREY, alpha=0.15, linewidth=0.0, label=label)
-    upper.legend(loc="upper right", fontsize="small", ncols=4)
+    upper.legend(loc="upper right", fontsize="small", ncol=4)
     low, high = upper.get_ylim()
     upper.set_ylim(low, high + 0.22 * (high - low))  # room for the legend

@@ -99,7 +99,9 @@ def check(tracking: Tracking, results: Sequence[WindowResult]) -> list[Check]:
         if homing.position is not None:
             at = min(count, len(tracking.time) - 1)
             distance = abs(tracking.position[at] - tracking.setpoint[at]) if tracking.time else math.nan
-            checks.append(Check(f"{axis.name}: distance from zero after homing", distance, homing.position, axis.unit))
+            checks.append(
+                Check(f"{axis.name}: distance from setpoint after homing", distance, homing.position, axis.unit)
+            )
     return checks
 
 
