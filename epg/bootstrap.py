@@ -33,6 +33,7 @@ REQUIREMENTS = {
         "pytest": ("pytest", (8, 0)),
         "pytest_cmake": ("pytest-cmake", (1, 6)),
         "hypothesis": ("hypothesis", (6, 100)),
+        "hatchling": ("hatchling", (1, 24)),
         "matplotlib": ("matplotlib", (3, 5)),
         "yaml": ("PyYAML", (5, 4)),
         "jinja2": ("Jinja2", (3, 0)),

@@ -13,7 +13,6 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterable
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -21,10 +20,33 @@ from epg.diagnostics import Diagnostic, Diagnostics
 from epg.source import Span
 
 
+class _Lines:
+    """Lines of source files, each file read once per report."""
+
+    def __init__(self) -> None:
+        self.files: dict[str, list[str]] = {}
+
+    def line(self, file: str, number: int) -> str | None:
+        if file not in self.files:
+            self.files[file] = self._read(file)
+        lines = self.files[file]
+        return lines[number - 1] if 0 < number <= len(lines) else None
+
+    @staticmethod
+    def _read(file: str) -> list[str]:
+        try:
+            text = Path(file).read_bytes().decode("utf-8-sig", "replace")
+        except OSError:
+            return []
+        lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+        return ["".join(char if char.isprintable() or char == "\t" else "?" for char in line) for line in lines]
+
+
 def format_diagnostics(diagnostics: Diagnostics) -> str:
     """All diagnostics, in the order of files and lines, errors and warnings mixed as they stand."""
     ordered = sorted(diagnostics, key=lambda d: (d.span.file, d.span.line, d.span.column, d.id, d.message))
-    return "".join(_format(diagnostic) for diagnostic in ordered)
+    lines = _Lines()
+    return "".join(_format(diagnostic, lines) for diagnostic in ordered)
 
 
 def diagnostics_json(diagnostics: Iterable[Diagnostic]) -> list[dict[str, Any]]:
@@ -61,10 +83,10 @@ def _position(span: Span) -> dict[str, Any]:
     return {"file": span.file, "line": span.line, "column": span.column}
 
 
-def _format(d: Diagnostic) -> str:
-    lines = [f"{_place(d.span)}: {d.severity}: {d.message} [{d.id}]", *_excerpt(d.span)]
+def _format(d: Diagnostic, source: _Lines) -> str:
+    lines = [f"{_place(d.span)}: {d.severity}: {d.message} [{d.id}]", *_excerpt(d.span, source)]
     for note in d.notes:
-        lines += [f"{_place(note.span)}: note: {note.message}", *_excerpt(note.span)]
+        lines += [f"{_place(note.span)}: note: {note.message}", *_excerpt(note.span, source)]
     if d.hint:
         lines.append(f"hint: {d.hint}")
     return "\n".join(lines) + "\n"
@@ -77,9 +99,9 @@ def _place(span: Span) -> str:
     return f"{file}:{span.line}:{span.column}" if span.column else f"{file}:{span.line}"
 
 
-def _excerpt(span: Span) -> list[str]:
+def _excerpt(span: Span, source: _Lines) -> list[str]:
     """The line a span stands on, with a caret below it."""
-    text = span.text if span.text is not None else _line(span.file, span.line)
+    text = span.text if span.text is not None else source.line(span.file, span.line)
     if not span.line or not span.column or text is None:
         return []
     text = text.rstrip("\r\n")
@@ -95,18 +117,3 @@ def _excerpt(span: Span) -> list[str]:
     before = "".join("\t" if char == "\t" else " " for char in text[: start - first])
     length = max(1, min(end - start, len(text) - (start - first)))
     return [margin + text, blank + before + "^" + "~" * (length - 1)]
-
-
-def _line(file: str, number: int) -> str | None:
-    lines = _lines(file)
-    return lines[number - 1] if 0 < number <= len(lines) else None
-
-
-@lru_cache(maxsize=64)
-def _lines(file: str) -> tuple[str, ...]:
-    try:
-        text = Path(file).read_bytes().decode("utf-8-sig", "replace")
-    except OSError:
-        return ()
-    lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
-    return tuple("".join(char if char.isprintable() or char == "\t" else "?" for char in line) for line in lines)

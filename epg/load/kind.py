@@ -79,6 +79,11 @@ class Kind:
     folder: Path
     span: Span
 
+    def main_port(self, direction: str) -> KindPort | None:
+        """The port that is meant when a binding names a component only: the default one, or the only one."""
+        found = [port for port in self.ports if port.direction == direction and (port.default or len(self.ports) == 1)]
+        return found[0] if found else None
+
     @property
     def files(self) -> tuple[Path, ...]:
         """The files that describe and implement the kind."""

@@ -42,10 +42,11 @@ def _ends(components: Mapping[str, Component], direction: str) -> dict[str, tupl
     """References of a direction -> (words of the reference, the same with the words of its port and kind)."""
     result = {}
     for component in components.values():
-        ports = [port for port in component.kind.ports if port.direction == direction]
-        default = next((port for port in ports if port.default), ports[0] if ports else None)
-        for port in ports:
-            reference = component.name if port is default else f"{component.name}.{port.name}"
+        main = component.kind.main_port(direction)
+        for port in component.kind.ports:
+            if port.direction != direction:
+                continue
+            reference = component.name if port is main else f"{component.name}.{port.name}"
             more = _words(component.name) | _words(port.name) | _words(component.kind.name)
             result[reference] = (_words(reference), more)
     return result

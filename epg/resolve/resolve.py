@@ -52,7 +52,7 @@ def resolve(
     fail_safe = configuration.control.fail_safe
     used = {wire.component.name for wire in (*inputs, *outputs)} | {fail_safe}
     for component in configuration.components.values():
-        if component.name not in used:
+        if component.name not in used and diagnostics.error_count == errors:
             hint = "bind one of its ports, or remove it"
             diagnostics.warning(
                 "unused-component", component.span, f"component '{component.name}' is bound to nothing", hint=hint

@@ -129,15 +129,11 @@ def _possible(components: Iterable[Component], direction: str) -> list[str]:
     """References to all component ports of a direction, the short form for default ports."""
     result = []
     for component in components:
-        ports = [port for port in component.kind.ports if port.direction == direction]
-        default = _default(ports)
-        for port in ports:
-            result.append(component.name if port is default else f"{component.name}.{port.name}")
+        main = component.kind.main_port(direction)
+        for port in component.kind.ports:
+            if port.direction == direction:
+                result.append(component.name if port is main else f"{component.name}.{port.name}")
     return result
-
-
-def _default(ports: list[KindPort]) -> KindPort | None:
-    return next((port for port in ports if port.default), ports[0] if ports else None)
 
 
 def _end(
@@ -152,7 +148,7 @@ def _end(
         return None
     ports = {port.name: port for port in component.kind.ports}
     if binding.port is None:
-        default = _default([port for port in ports.values() if port.direction == direction])
+        default = component.kind.main_port(direction)
         if default is None:
             _wrong_direction(component, component.name, direction, possible, binding, diagnostics)
             return None

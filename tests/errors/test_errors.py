@@ -52,6 +52,7 @@ def lay_out(folder: Path, files: dict[str, str]) -> None:
             source = path.read_text(encoding="utf-8")
             for line in text.splitlines():
                 old, _, new = line.partition(" => ")
+                old = old.replace("\\n", "\n")
                 assert old in source, f"{old!r} is not in {path.name}"
                 source = source.replace(old, new.replace("\\n", "\n"), 1)
             text = source

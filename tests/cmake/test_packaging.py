@@ -1,0 +1,83 @@
+"""Wheels and editable installs carry the same files as the checkout, and CMake finds them."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from tests.cmake.project import ROOT, Project
+
+TREES = ("cmake", "targets", "schemas")
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """EPG's wheel, made of the checkout."""
+    folder = tmp_path_factory.mktemp("wheel")
+    code = (
+        "import sys; from hatchling.builders.wheel import WheelBuilder;"
+        "print(next(WheelBuilder(sys.argv[1]).build(directory=sys.argv[2], versions=['standard'])))"
+    )
+    subprocess.run([sys.executable, "-c", code, str(ROOT), str(folder)], check=True, capture_output=True)
+    (found,) = folder.glob("*.whl")
+    return found
+
+
+@pytest.fixture(scope="module")
+def prefix(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """An installation of the wheel, laid out as pip lays it out."""
+    folder = tmp_path_factory.mktemp("prefix")
+    site = folder / f"lib/python{sys.version_info[0]}.{sys.version_info[1]}/site-packages"
+    with zipfile.ZipFile(wheel) as archive:
+        for name in archive.namelist():
+            _, data, rest = name.partition(".data/data/")
+            target = folder / rest if data else site / name
+            if not name.endswith("/"):
+                target.parent.mkdir(parents=True, exist_ok=True)
+                target.write_bytes(archive.read(name))
+    return folder
+
+
+def test_the_wheel_holds_the_same_files_as_the_checkout(wheel: Path) -> None:
+    with zipfile.ZipFile(wheel) as archive:
+        names = set(archive.namelist())
+        for tree in TREES:
+            tracked = subprocess.run(["git", "ls-files", tree], cwd=ROOT, capture_output=True, text=True).stdout.split("\n")
+            files = [name for name in tracked if name and (ROOT / name).is_file()]
+            assert files or not (ROOT / ".git").exists()
+            for name in files:
+                assert archive.read(f"epg/_data/{name}") == (ROOT / name).read_bytes()
+    assert {"epg/__main__.py", "epg/emit/templates/app.c.j2", "epg/lock/generator.txt"} <= names
+    assert any(name.endswith(".data/data/share/EPG/cmake/EPGConfig.cmake") for name in names)
+
+
+def test_cmake_finds_a_wheel_by_its_prefix(prefix: Path, tmp_path: Path) -> None:
+    project = Project(tmp_path, "robot")
+    project.configure(f"-DCMAKE_PREFIX_PATH={prefix}", epg_dir=False)
+    project.build()
+
+
+def test_cmake_finds_a_wheel_by_the_command_line(prefix: Path, tmp_path: Path) -> None:
+    (site,) = prefix.glob("lib/*/site-packages")
+    done = subprocess.run([sys.executable, str(site / "epg"), "--cmake-dir"], capture_output=True, text=True, check=True)
+    folder = done.stdout.strip()
+    assert folder == (site / "epg/_data/cmake").as_posix()
+    Project(tmp_path, "robot").configure(f"-DEPG_DIR={folder}", epg_dir=False)
+
+
+def test_an_editable_install_leads_to_the_checkout(tmp_path: Path) -> None:
+    code = (
+        "import sys; from hatchling.builders.wheel import WheelBuilder;"
+        "print(next(WheelBuilder(sys.argv[1]).build(directory=sys.argv[2], versions=['editable'])))"
+    )
+    subprocess.run([sys.executable, "-c", code, str(ROOT), str(tmp_path)], check=True, capture_output=True)
+    (found,) = tmp_path.glob("*.whl")
+    with zipfile.ZipFile(found) as archive:
+        names = archive.namelist()
+        assert not [name for name in names if "_data/" in name.replace(".data/data", "")]
+        (config,) = [name for name in names if name.endswith("EPGConfig.cmake")]
+        assert f'include("{ROOT.as_posix()}/cmake/EPGConfig.cmake")' in archive.read(config).decode()
