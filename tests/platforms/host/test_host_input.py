@@ -58,7 +58,7 @@ def test_unknown_topic_lists_the_known_ones(motor: Program, tmp_path: Path) -> N
     assert run.status == 2
     assert run.stderr == (
         f"{tmp_path / 'setpoints.csv'}:2: error: unknown topic 'motor_setpiont'\n"
-        "  hint: the target subscribes to 'motor_setpoint', 'motor_enable', and has '$enable', '$pin:<number>' and "
+        "hint: the target subscribes to 'motor_setpoint', 'motor_enable', and has '$enable', '$pin:<number>' and "
         "'$stall'\n"
     )
 
@@ -126,7 +126,7 @@ def test_full_disk(motor: Program, option: str) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ([], "error: no --duration\n  hint: say how many seconds to run, for example --duration 10\n"),
+        ([], "error: no --duration\nhint: say how many seconds to run, for example --duration 10\n"),
         (["--duration"], "error: option --duration needs a value\n"),
         (["--duration", ""], "error: option --duration needs a value\n"),
         (["--duration", "long"], "error: --duration 'long' is no time in seconds above 0\n"),
@@ -134,9 +134,9 @@ def test_full_disk(motor: Program, option: str) -> None:
         (["--duration=-1"], "error: --duration '-1' is no time in seconds above 0\n"),
         (["--duration=nan"], "error: --duration 'nan' is no time in seconds above 0\n"),
         (["--quiet=1", "--duration=1"], "error: option --quiet takes no value\n"),
-        (["--duraton", "1"], "error: unknown option '--duraton'\n  hint: --help lists the options\n"),
-        (["--dur", "1"], "error: unknown option '--dur'\n  hint: --help lists the options\n"),
-        (["10"], "error: unknown option '10'\n  hint: --help lists the options\n"),
+        (["--duraton", "1"], "error: unknown option '--duraton'\nhint: --help lists the options\n"),
+        (["--dur", "1"], "error: unknown option '--dur'\nhint: --help lists the options\n"),
+        (["10"], "error: unknown option '10'\nhint: --help lists the options\n"),
     ],
 )
 def test_wrong_options(motor: Program, arguments: list[str], message: str) -> None:

@@ -106,6 +106,17 @@ def test_events_act_in_real_time(patient_motor: Program, tmp_path: Path) -> None
     assert run.statistics["setpoints_dropped"] == 1
 
 
+def test_age_of_setpoints_in_real_time(tmp_path: Path) -> None:
+    sources = [PROGRAMS / "motor.c", *platform_sources()]
+    defines = ["OVERRUN_LIMIT=0", "SETPOINT_TIMEOUT_NS=250000000"]
+    program = Program(compile_program(tmp_path / "motor", sources, defines=defines))
+    events = rows(*(f"{0.05 * k:.2f},motor_setpoint,1" for k in range(1, 9)))  # the last one at 0.4 s
+    run = program.run_good(tmp_path / "run", 1, events, "--realtime")
+    assert run.statistics["setpoint_timeouts"] == 1
+    seen = [time for time, setpoint in zip(run.trace["time"], run.trace["inputs.setpoint"]) if setpoint == 1.0]
+    assert 0.6 < seen[-1] < 1
+
+
 @pytest.mark.skipif(os.geteuid() != 0, reason="needs root, to run as a user without privileges")
 def test_user_without_privileges(patient_motor: Program) -> None:
     with tempfile.TemporaryDirectory() as name:

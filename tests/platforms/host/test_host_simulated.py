@@ -64,8 +64,9 @@ def test_setpoint_is_seen_by_the_first_cycle_at_or_after_its_time(
 
 
 def test_setpoint_at_the_end_or_later_does_nothing(motor: Program, tmp_path: Path) -> None:
-    events = rows("0.05,motor_setpoint,3", "7,$enable,0")
+    events = rows("0.05,motor_setpoint,nan", "7,$enable,0")
     run = motor.run_good(tmp_path, 0.05, events)
+    assert run.statistics["setpoints_dropped"] == 0
     assert set(run.trace["inputs.setpoint"]) == {0.25}
     assert run.statistics["enabled"] is True
 
@@ -175,6 +176,22 @@ def test_ticks_missed_at_the_very_end_are_counted(motor: Program, tmp_path: Path
     run = motor.run_good(tmp_path, 0.1, rows("0.09,$stall,1"))
     assert (run.statistics["cycles"], run.statistics["missed"]) == (91, 9)
     assert run.statistics["duration"] == 0.1
+    assert max(time for time, _, _ in run.topics) == 0.099
+
+
+def test_computation_time_leaves_out_the_plant(motor: Program, tmp_path: Path) -> None:
+    # Seven million steps of the plant, within one control cycle.
+    statistics = motor.run_good(tmp_path, 0.1, rows("0.05,$stall,1000")).statistics
+    assert statistics["computation_max"] < 0.5 * statistics["wall_time"]
+
+
+def test_age_of_setpoints(tmp_path: Path) -> None:
+    sources = [PROGRAMS / "motor.c", *platform_sources()]
+    program = Program(compile_program(tmp_path / "motor", sources, defines=["SETPOINT_TIMEOUT_NS=20000000"]))
+    run = program.run_good(tmp_path / "run", 0.2, rows("0.0405,motor_setpoint,1", "0.055,motor_setpoint,2"))
+    # 20 ms after its time, and not after that of the cycle that saw it first.
+    assert run.trace["inputs.setpoint"] == [0.25] * 41 + [1.0] * 14 + [2.0] * 21 + [0.0] * 124
+    assert run.statistics["setpoint_timeouts"] == 1
 
 
 def test_statistics(motor: Program, tmp_path: Path) -> None:
@@ -220,7 +237,7 @@ def test_simulated_time_needs_no_linux(tmp_path: Path) -> None:
     run = program.run(tmp_path / "real", 0.1, None, "--realtime")
     assert run.status == 1
     assert run.stderr == (
-        "error: real time on the host needs Linux\n  hint: leave out --realtime to run in simulated time\n"
+        "error: real time on the host needs Linux\nhint: leave out --realtime to run in simulated time\n"
     )
 
 

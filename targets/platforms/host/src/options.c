@@ -89,7 +89,7 @@ bool epg_host_read_options(int argc, char **argv, epg_host_options_t *options)
     for (int i = 1; i < argc; i++) {
         const option_t *option = find(known, sizeof known / sizeof known[0], argv[i]);
         if (option == NULL) {
-            fprintf(stderr, "error: unknown option '%s'\n  hint: --help lists the options\n", argv[i]);
+            fprintf(stderr, "error: unknown option '%s'\nhint: --help lists the options\n", argv[i]);
             return false;
         }
         if (!take(option, argc, argv, &i)) {
@@ -100,7 +100,7 @@ bool epg_host_read_options(int argc, char **argv, epg_host_options_t *options)
         return true;
     }
     if (duration == NULL) {
-        fputs("error: no --duration\n  hint: say how many seconds to run, for example --duration 10\n", stderr);
+        fputs("error: no --duration\nhint: say how many seconds to run, for example --duration 10\n", stderr);
         return false;
     }
     if (!epg_host_parse_time(duration, &options->duration_ns) || options->duration_ns == 0) {

@@ -119,7 +119,7 @@ static bool fail_topic(reader_t *reader, const char *topic)
     const epg_target_t *target = reader->target;
     fail(reader, "unknown topic '%s'", topic);
     if (reader->errors <= ERRORS_SHOWN) {
-        fputs("  hint: the target subscribes to ", stderr);
+        fputs("hint: the target subscribes to ", stderr);
         for (size_t i = 0; i < target->subscription_count; i++) {
             fprintf(stderr, "'%s', ", target->subscriptions[i].name);
         }

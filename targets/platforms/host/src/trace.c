@@ -28,7 +28,7 @@ bool epg_host_trace_start(epg_host_trace_t *trace, const epg_host_target_t *host
     if (trace->rows == NULL) {
         fprintf(stderr,
                 "error: not enough memory for a trace of %.0f MB\n"
-                "  hint: in real time the whole trace is kept in memory; choose a shorter --duration\n",
+                "hint: in real time the whole trace is kept in memory; choose a shorter --duration\n",
                 (double)rows * (double)row_size / 1e6);
         return false;
     }

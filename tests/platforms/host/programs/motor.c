@@ -21,6 +21,9 @@
 #ifndef OVERRUN_LIMIT
 #define OVERRUN_LIMIT 3
 #endif
+#ifndef SETPOINT_TIMEOUT_NS
+#define SETPOINT_TIMEOUT_NS 0
+#endif
 #ifndef ENABLE_AT_START
 #define ENABLE_AT_START true
 #endif
@@ -103,7 +106,8 @@ static bool fail_safe(void)
     return epg_port_input_read(FAIL_SAFE);
 }
 
-static const epg_setpoint_t setpoints[1] = {{.initial = 0.25, .action = EPG_TIMEOUT_HOLD}};
+static const epg_setpoint_t setpoints[1] = {
+    {.initial = 0.25, .timeout_ns = SETPOINT_TIMEOUT_NS, .action = EPG_TIMEOUT_ZERO}};
 static epg_setpoint_sample_t samples[1];
 static epg_setpoint_sample_t received[1];
 static epg_setpoint_state_t setpoint_states[1];

@@ -25,7 +25,7 @@ void epg_host_input_set(uint8_t pin, bool level);
 
 /** A signal that can be recorded at each control cycle. */
 typedef struct epg_host_signal {
-    const char *name;              /**< "inputs.position_pan", "plant.outputs.angle_pan" */
+    const char *name; /**< "inputs.position_pan", "plant.outputs.angle_pan" */
     const double *value;
 } epg_host_signal_t;
 
@@ -33,9 +33,9 @@ typedef struct epg_host_signal {
 typedef struct epg_host_plant {
     uint32_t steps_per_period;
     void (*init)(void);
-    void (*actuate)(void);         /**< PWM and pin levels to the plant's inputs; once per control period */
-    void (*step)(void);            /**< the plant moves on by one of its steps */
-    void (*sense)(void);           /**< plant outputs to encoder counts and pin levels; once per control period */
+    void (*actuate)(void); /**< PWM and pin levels to the plant's inputs; once per control period */
+    void (*step)(void);    /**< the plant moves on by one of its steps */
+    void (*sense)(void);   /**< plant outputs to encoder counts and pin levels; once per control period */
 } epg_host_plant_t;
 
 /** All the host needs to run one target.  `plant` is NULL when there is none: then sensors stand still. */
