@@ -34,6 +34,7 @@ REQUIREMENTS = {
         "pytest_cmake": ("pytest-cmake", (1, 6)),
         "hypothesis": ("hypothesis", (6, 100)),
         "hatchling": ("hatchling", (1, 24)),
+        "editables": ("editables", (0, 5)),
         "matplotlib": ("matplotlib", (3, 5)),
         "yaml": ("PyYAML", (5, 4)),
         "jinja2": ("Jinja2", (3, 0)),
