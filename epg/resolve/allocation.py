@@ -1,0 +1,233 @@
+"""Allocation: which pins, which peripheral and which settings each claim gets.
+
+Claims say a class of peripheral, pins and attributes; the chip's data say what implements the class and what it
+reaches.  What is wrong with one claim is reported first, then a search places all claims on each sort of peripheral,
+and if that is impossible, :mod:`epg.resolve.conflict` says which claims are in each other's way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from types import MappingProxyType
+
+from epg.diagnostics import Diagnostics, Note, did_you_mean
+from epg.load.hardware import Divider, Peripheral, ResourceClass, Target
+from epg.resolve.claims import Claim, ClaimKey
+from epg.resolve.conflict import Candidate, report_conflicts
+from epg.resolve.divider import Division, clock_range, divide, neighbours, show
+from epg.resolve.pins import Pins
+from epg.resolve.search import WHOLE, Demand, Place, find_places
+
+__all__ = ["Assignment", "allocate"]
+
+
+@dataclass(frozen=True)
+class Assignment:
+    """The hardware of one claim.
+
+    ``pins`` maps signals to the chip's numbers of pins, ``block`` and ``unit`` are the numbers of instance and slot
+    (unit 0 where all of the instance is taken), ``settings`` holds ``prescaler`` and ``top`` where there is a divider.
+    ``resource`` is what people call it: "PWM slice 1, channel A".
+    """
+
+    pins: Mapping[str, int]
+    block: int
+    unit: int
+    settings: Mapping[str, int]
+    resource: str
+    pins_are_real: bool = True
+    """False where EPG numbered the pins, as the target has none."""
+
+
+@dataclass(frozen=True)
+class _Placed:
+    """A claim that is right in itself."""
+
+    claim: Claim
+    resource_class: ResourceClass
+    pins: Mapping[str, int]
+    division: Division | None
+    places: frozenset[Place]
+
+
+def allocate(claims: Sequence[Claim], target: Target, diagnostics: Diagnostics) -> Mapping[ClaimKey, Assignment] | None:
+    """An assignment for each claim, or None after reporting everything that is in the way.
+
+    The same claims get the same hardware in every run.
+    """
+    errors = diagnostics.error_count
+    pins = Pins(target, claims, diagnostics)
+    checked = _check(claims, pins, target, diagnostics)
+    result: dict[ClaimKey, Assignment] = {}
+    for name, peripheral in target.soc.peripherals.items():
+        wanted = [placed for placed in checked if placed.resource_class.peripheral == name]
+        candidates = [_candidate(placed, peripheral) for placed in wanted]
+        places = find_places([candidate.demand for candidate in candidates], _costs(peripheral))
+        if places is None:
+            report_conflicts(candidates, peripheral, pins, diagnostics)
+            continue
+        for placed, place in zip(wanted, places):
+            result[placed.claim.key] = _assignment(placed, peripheral, place, target)
+    for placed in checked:
+        if placed.resource_class.peripheral is None:
+            result[placed.claim.key] = _pins_only(placed, target)
+    if diagnostics.error_count > errors:
+        return None
+    return MappingProxyType({claim.key: result[claim.key] for claim in claims})
+
+
+def _check(claims: Sequence[Claim], pins: Pins, target: Target, diagnostics: Diagnostics) -> list[_Placed]:
+    """The claims that are right in themselves; the others are reported."""
+    result: list[_Placed] = []
+    for claim in claims:
+        resource_class = _class(claim, target, diagnostics)
+        if resource_class is None:
+            continue
+        found = pins.check(claim, resource_class)
+        peripheral = target.soc.peripherals.get(resource_class.peripheral or "")
+        places: frozenset[Place] = frozenset()
+        if found is not None and peripheral is not None:
+            places = pins.places(claim, resource_class, peripheral, found)
+        errors = diagnostics.error_count
+        division = _division(claim, resource_class, peripheral, target, diagnostics)
+        if found is None or (peripheral is not None and not places) or diagnostics.error_count > errors:
+            continue
+        numbers = pins.numbers(claim, resource_class, found)
+        if numbers is not None:
+            result.append(_Placed(claim, resource_class, numbers, division, places))
+    return result
+
+
+def _class(claim: Claim, target: Target, diagnostics: Diagnostics) -> ResourceClass | None:
+    """What implements the claim on this target; reports classes and signals that do not exist."""
+    found = target.resource_class(claim.resource_class)
+    if found is None:
+        offered = [name for name in target.platform.classes if name in target.soc.classes]
+        message = f"{claim.user} needs a '{claim.resource_class}', which {target.name} does not offer"
+        hint = did_you_mean(claim.resource_class, offered, "it offers")
+        notes = [Note("claimed here", claim.stated_in)]
+        diagnostics.error("unknown-class", claim.span, message, hint=hint, notes=notes)
+        return None
+    unknown = [signal for signal in claim.signals if signal not in found.signals]
+    missing = [signal for signal in found.signals if signal not in claim.signals] if target.has_pins else []
+    for signal in unknown:
+        hint = did_you_mean(signal, found.signals, "signals")
+        message = f"a {found.title} has no signal '{signal}'"
+        diagnostics.error("unknown-name", claim.stated_in, message, hint=hint, notes=[Note("this class", found.span)])
+    for signal in missing:
+        message = f"the claim '{claim.name}' gives signal '{signal}' of a {found.title} no pin"
+        diagnostics.error("incomplete-claim", claim.stated_in, message, notes=[Note("this class", found.span)])
+    return None if unknown or missing else found
+
+
+def _incomplete(claim: Claim, resource_class: ResourceClass, diagnostics: Diagnostics) -> None:
+    attribute = resource_class.divider_from
+    message = f"the claim '{claim.name}' gives no '{attribute}', which a {resource_class.title} needs"
+    hint = f"add 'attributes: {{{attribute}: ...}}' with a parameter that has a value"
+    notes = [Note("this class", resource_class.span)]
+    diagnostics.error("incomplete-claim", claim.stated_in, message, hint=hint, notes=notes)
+
+
+def _division(
+    claim: Claim,
+    resource_class: ResourceClass,
+    peripheral: Peripheral | None,
+    target: Target,
+    diagnostics: Diagnostics,
+) -> Division | None:
+    """The setting of the divider; None without one, and after reporting a value that it cannot make."""
+    attribute = resource_class.divider_from
+    if peripheral is None or peripheral.divider is None or attribute is None:
+        return None
+    if attribute not in claim.attributes:
+        if claim.component:
+            _incomplete(claim, resource_class, diagnostics)
+        return None  # the control loop's period may be unknown as yet
+    stated, clock = claim.attributes[attribute], target.soc.clock
+    assert isinstance(stated.value, (int, float, Fraction))
+    value = Fraction(stated.value)
+    divider = Divider(peripheral.divider.prescaler, resource_class.counter or peripheral.divider.counter)
+    dimension = "frequency" if attribute == "frequency" else "time"
+    first, last = clock_range(divider)
+    clocks = (clock / value if attribute == "frequency" else clock * value) if value > 0 else Fraction(0)
+    what = f"{attribute} {show(value, dimension)} of {claim.user}"
+    speed = show(clock, "frequency")
+    if not first <= clocks <= last:
+        low, high = sorted(_written(n, attribute, clock) for n in (first, last))
+        if value > high and attribute == "period":
+            message = f"{what} is out of range: the longest possible on {target.name} is {show(high, dimension, -1)}"
+        else:
+            possible = f"{show(low, dimension, 1)} to {show(high, dimension, -1)}"
+            message = f"{what} is out of range: a {resource_class.title} on {target.name} does {possible}"
+        hint = f"a {peripheral.title} counts at most {divider.prescaler[1]} x {divider.counter[1]} clocks of {speed}"
+        diagnostics.error(f"{attribute}-out-of-range", stated.span, message, hint=hint, notes=stated.notes)
+        return None
+    found = divide(clocks, divider, resource_class.exact)
+    if found is None:
+        near = sorted(_written(n, attribute, clock) for n in neighbours(clocks, divider, resource_class.exact))
+        message = f"{what} is not possible: the clock of {speed} does not divide to it"
+        hint = f"nearest: {' and '.join(show(nearest, dimension) for nearest in near)}"
+        diagnostics.error(f"{attribute}-not-possible", stated.span, message, hint=hint, notes=stated.notes)
+    return found
+
+
+def _written(clocks: int, attribute: str, clock: Fraction) -> Fraction:
+    """A number of clocks as the attribute says it: in Hz or in s."""
+    return clock / clocks if attribute == "frequency" else clocks / clock
+
+
+def _candidate(placed: _Placed, peripheral: Peripheral) -> Candidate:
+    agreed = tuple(_agreed(placed, attribute) for attribute in peripheral.agree)
+    return Candidate(placed.claim, placed.resource_class, Demand(placed.places, agreed))
+
+
+def _agreed(placed: _Placed, attribute: str) -> Hashable:
+    """The value of an attribute that users of an instance have in common."""
+    if attribute in ("frequency", "period") and placed.division is not None:
+        return placed.division
+    if attribute in placed.resource_class.fixed:
+        fixed = placed.resource_class.fixed[attribute]
+        assert isinstance(fixed, Hashable)
+        return fixed
+    stated = placed.claim.attributes.get(attribute)
+    assert stated is None or isinstance(stated.value, Hashable)
+    return None if stated is None else stated.value
+
+
+def _costs(peripheral: Peripheral) -> list[int]:
+    """Who needs no pin gets an instance with few: they stay free for others."""
+    counts = [0] * len(peripheral.instances)
+    for (instance, _), pins in peripheral.pins.items():
+        counts[instance] += len(pins)
+    return counts
+
+
+def _assignment(placed: _Placed, peripheral: Peripheral, place: Place, target: Target) -> Assignment:
+    instance, slot = place
+    settings: dict[str, int] = {}
+    if placed.division is not None:
+        settings = {"prescaler": placed.division.prescaler, "top": placed.division.counter - 1}
+    whole = slot == WHOLE
+    return Assignment(
+        pins=placed.pins,
+        block=instance,
+        unit=0 if whole else slot,
+        settings=MappingProxyType(settings),
+        resource=peripheral.instance_title(instance) if whole else peripheral.slot_name(instance, slot),
+        pins_are_real=target.has_pins,
+    )
+
+
+def _pins_only(placed: _Placed, target: Target) -> Assignment:
+    numbers = list(placed.pins.values())
+    names = ", ".join(target.soc.pins[number] if target.has_pins else str(number) for number in numbers)
+    return Assignment(
+        pins=placed.pins,
+        block=0,
+        unit=numbers[0],
+        settings=MappingProxyType({}),
+        resource=f"{'pin' if target.has_pins else 'simulated pin'} {names}",
+        pins_are_real=target.has_pins,
+    )

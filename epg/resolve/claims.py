@@ -1,0 +1,108 @@
+"""What components and the control loop need of the hardware, as one list."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from types import MappingProxyType
+
+from epg.check.configuration import Component, Configuration
+from epg.diagnostics import Note
+from epg.load.hardware import Target
+from epg.load.kind import KindClaim
+from epg.source import Span
+
+ClaimKey = tuple[str, str]
+"""Name of the component and of the claim within its kind."""
+
+TICK: ClaimKey = ("", "tick")
+"""The claim of the control loop's timer, which belongs to no component."""
+
+
+@dataclass(frozen=True)
+class Stated:
+    """A value with the place it is written, and the files whose ``extends`` lead there."""
+
+    value: object
+    span: Span
+    origins: tuple[Span, ...] = ()
+
+    @property
+    def notes(self) -> list[Note]:
+        return [Note("extended from here", span) for span in self.origins]
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A use of one peripheral, or of pins alone.
+
+    ``signals`` maps the signals of the class to pins as written; it is empty where EPG numbers pins.  ``attributes``
+    are in base units (Hz, s).  ``component`` is empty for the control loop.
+    """
+
+    component: str
+    name: str
+    resource_class: str
+    signals: Mapping[str, Stated]
+    attributes: Mapping[str, Stated]
+    span: Span
+    stated_in: Span = field(default_factory=lambda: Span(""))
+    """Where a kind or platform makes the claim: for mistakes in its file."""
+
+    @property
+    def key(self) -> ClaimKey:
+        return self.component, self.name
+
+    @property
+    def user(self) -> str:
+        """What messages call the one that claims."""
+        return f"'{self.component}'" if self.component else "the control loop"
+
+
+def component_claims(configuration: Configuration) -> tuple[Claim, ...]:
+    """The claims of all components, in the order they are written."""
+    return tuple(_claims(configuration.components.values(), configuration.target.has_pins))
+
+
+def tick_claims(target: Target, period: Fraction | None, span: Span) -> tuple[Claim, ...]:
+    """The claim of the control loop, none where the platform times it without a peripheral.
+
+    ``period`` in seconds; None, when it is not known yet, still claims the peripheral.
+    """
+    if target.platform.tick is None:
+        return ()
+    attributes = {} if period is None else {"period": Stated(period, span)}
+    where = target.platform.node["tick"].span
+    return (Claim(*TICK, target.platform.tick, MappingProxyType({}), MappingProxyType(attributes), span, where),)
+
+
+def _claims(components: Iterable[Component], with_pins: bool) -> Iterable[Claim]:
+    for component in components:
+        for claim in component.kind.claims:
+            signals = {signal: _pin(component, pin) for signal, pin in claim.signals.items()} if with_pins else {}
+            yield Claim(
+                component=component.name,
+                name=claim.name,
+                resource_class=claim.resource_class,
+                signals=MappingProxyType(signals),
+                attributes=MappingProxyType(_attributes(component, claim)),
+                span=component.span,
+                stated_in=claim.span,
+            )
+
+
+def _pin(component: Component, pin: str) -> Stated:
+    node = component.node["pins"][pin]
+    return Stated(node.value, node.span, node.origins)
+
+
+def _attributes(component: Component, claim: KindClaim) -> dict[str, Stated]:
+    """The attributes that have a value; a default counts as written at the component's name."""
+    result: dict[str, Stated] = {}
+    for attribute, parameter in claim.attributes.items():
+        value, node = component.parameters.get(parameter), component.node.get(parameter)
+        if value is not None:
+            origins = node.origins if node else component.node.origins
+            result[attribute] = Stated(value, node.span if node else component.span, origins)
+    return result

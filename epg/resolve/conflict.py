@@ -1,0 +1,182 @@
+"""Says why claims cannot have their places together: the smallest sets of them that are in each other's way."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from epg.diagnostics import Diagnostics, Note
+from epg.load.hardware import Peripheral, ResourceClass, Target
+from epg.resolve.claims import Claim
+from epg.resolve.divider import show
+from epg.resolve.pins import Pins, pin_list
+from epg.resolve.search import Demand, find_places
+from epg.source import Span
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A claim on its way to a place."""
+
+    claim: Claim
+    resource_class: ResourceClass
+    demand: Demand
+
+
+def report_conflicts(
+    candidates: Sequence[Candidate], peripheral: Peripheral, pins: Pins, diagnostics: Diagnostics
+) -> None:
+    """One error for each set of claims that cannot be together; there is at least one such set."""
+    left = list(candidates)
+    while find_places([candidate.demand for candidate in left]) is None:
+        core = smallest_conflict(left)
+        alike = [candidate for candidate in left if candidate.demand == core[0].demand]
+        if all(candidate.demand == core[0].demand for candidate in core):
+            _too_many(alike, len(core) - 1, peripheral, pins.target, diagnostics)
+            left = [candidate for candidate in left if candidate not in alike]
+            continue
+        others = [candidate for candidate in left if candidate is not core[-1]]
+        if len(core) == 2 and all(_bound_by_pin(candidate) for candidate in core):
+            _two(core[0], core[1], peripheral, _pins_hint(core[1], others, peripheral, pins), diagnostics)
+        else:
+            _several(core, peripheral, pins.target, diagnostics)
+        left = others
+
+
+def smallest_conflict(candidates: Sequence[Candidate]) -> list[Candidate]:
+    """Claims that cannot be together although they could without any one of them."""
+    core = list(candidates)
+    for candidate in candidates:
+        rest = [other for other in core if other is not candidate]
+        if find_places([other.demand for other in rest]) is None:
+            core = rest
+    return core
+
+
+def _bound_by_pin(candidate: Candidate) -> bool:
+    """Whether a pin decides which slot a claim gets."""
+    return "slot" in candidate.resource_class.signals.values()
+
+
+def _pins_hint(moved: Candidate, others: Sequence[Candidate], peripheral: Peripheral, pins: Pins) -> str:
+    """The free pins on which ``moved`` would be in nobody's way; empty when there are none."""
+    if len(moved.claim.signals) != 1:
+        return f"move {moved.claim.user} to other pins"
+    signal = next(iter(moved.claim.signals))
+    demands: list[Demand] = []
+    for other in others:  # without those that are in each other's way
+        if find_places([*demands, other.demand]) is not None:
+            demands.append(other.demand)
+    good = [
+        pin
+        for pin in pins.usable(moved.resource_class, signal)
+        if find_places([*demands, _moved(moved, signal, pin, peripheral, pins)]) is not None
+    ]
+    return f"move {moved.claim.user} to a free pin: {pin_list(good)}" if good else ""
+
+
+def _moved(candidate: Candidate, signal: str, pin: str, peripheral: Peripheral, pins: Pins) -> Demand:
+    return Demand(pins.reachable(candidate.resource_class, peripheral, {signal: pin}), candidate.demand.agree)
+
+
+def _two(first: Candidate, second: Candidate, peripheral: Peripheral, hint: str, diagnostics: Diagnostics) -> None:
+    """Two claims whose pins lead to the same slot, or to one instance on which they disagree."""
+    where = _common_name(first, second, peripheral)
+    one_slot = first.demand.places == second.demand.places and len(first.demand.places) == 1
+    differing = None if one_slot else _difference(first, second, peripheral)
+    if differing is None:
+        stated = next(iter(second.claim.signals.values()))
+        message = f"{where} is used by {first.claim.user} already"
+        notes = [Note("used here", next(iter(first.claim.signals.values())).span), *stated.notes]
+        diagnostics.error(f"{peripheral.name}-used-twice", stated.span, message, hint=hint, notes=notes)
+        return
+    attribute, one, other = differing
+    users = f"{first.claim.user} and {second.claim.user}"
+    message = f"{users} share {where}, which has one {attribute}, not {one} and {other}"
+    notes = [Note(f"{one} is asked for here", _attribute_span(first, attribute)), *_extending(second, attribute)]
+    id = f"{peripheral.name}-{attribute}-conflict"
+    hint = f"write the same {attribute} for both" + (f", or {hint}" if hint else "")
+    diagnostics.error(id, _attribute_span(second, attribute), message, hint=hint, notes=notes)
+
+
+def _too_many(
+    alike: Sequence[Candidate], possible: int, peripheral: Peripheral, target: Target, diagnostics: Diagnostics
+) -> None:
+    """More equal claims than there are places."""
+    title = alike[0].resource_class.title
+    users = ", ".join(candidate.claim.user for candidate in alike)
+    message = f"{len(alike)} {title}s are asked for, {target.name} has {possible} ({_extent(peripheral)})"
+    hint = f"remove {len(alike) - possible} of {users}"
+    notes = [Note(f"{candidate.claim.user} is one of them", candidate.claim.span) for candidate in alike[:-1]]
+    diagnostics.error("too-many", alike[-1].claim.span, message, hint=hint, notes=notes)
+
+
+def _several(core: Sequence[Candidate], peripheral: Peripheral, target: Target, diagnostics: Diagnostics) -> None:
+    """Different claims of which each could have a place without the others."""
+    last = core[-1]
+    others = ", ".join(candidate.claim.user for candidate in core[:-1])
+    needs = f"needs all of a {peripheral.title}" if last.resource_class.whole else f"is a {last.resource_class.title}"
+    extent = f"{target.name} has {_extent(peripheral)}"
+    message = f"no {peripheral.title} is left for {last.claim.user}, which {needs}: {extent}"
+    agreed = [name for name in peripheral.agree if len({_shown(candidate, name) for candidate in core}) > 1]
+    reason = f"; users of one {peripheral.title} have one {' and '.join(agreed)}" if agreed else ""
+    hint = f"the others are {others}{reason}"
+    notes = [
+        Note(f"{candidate.claim.user} is a {candidate.resource_class.title}", candidate.claim.span)
+        for candidate in core[:-1]
+    ]
+    diagnostics.error("too-many", last.claim.span, message, hint=hint, notes=notes)
+
+
+def _extent(peripheral: Peripheral) -> str:
+    """How much there is: ``2 PIO blocks with 4 state machines each``."""
+    count, slots = len(peripheral.instances), len(peripheral.slots)
+    instances = f"{count} {peripheral.title}s" if count > 1 else f"1 {peripheral.title}"
+    if slots == 1:
+        return instances
+    return f"{instances} with {slots} {peripheral.slot_title}s" + (" each" if count > 1 else "")
+
+
+def _common_name(first: Candidate, second: Candidate, peripheral: Peripheral) -> str:
+    """The slot or instance that both are bound to."""
+    common = first.demand.places & second.demand.places
+    if len(common) == 1 and first.demand.places == second.demand.places:
+        instance, slot = next(iter(common))
+        return peripheral.slot_name(instance, slot) if slot >= 0 else peripheral.instance_title(instance)
+    instances = {instance for instance, _ in first.demand.places | second.demand.places}
+    if len(instances) == 1:
+        return peripheral.instance_title(next(iter(instances)))
+    return f"one {peripheral.title}"
+
+
+def _difference(first: Candidate, second: Candidate, peripheral: Peripheral) -> tuple[str, str, str] | None:
+    """The attribute on which two claims disagree with both values, or None if they agree."""
+    one, other = first.demand.agree, second.demand.agree
+    assert isinstance(one, tuple) and isinstance(other, tuple)
+    for attribute, a, b in zip(peripheral.agree, one, other):
+        if a != b:
+            return attribute, _shown(first, attribute), _shown(second, attribute)
+    return None
+
+
+def _shown(candidate: Candidate, attribute: str) -> str:
+    """The value of an attribute as people write it."""
+    divider = candidate.resource_class.divider_from
+    if attribute in ("frequency", "period") and divider is not None:
+        attribute = divider
+    stated = candidate.claim.attributes.get(attribute)
+    value = stated.value if stated is not None else candidate.resource_class.fixed.get(attribute, "none")
+    if attribute in ("frequency", "period") and isinstance(value, (int, float, Fraction)):
+        return show(value, "frequency" if attribute == "frequency" else "time")
+    return str(value)
+
+
+def _attribute_span(candidate: Candidate, attribute: str) -> Span:
+    stated = candidate.claim.attributes.get(attribute)
+    return stated.span if stated is not None else candidate.claim.span
+
+
+def _extending(candidate: Candidate, attribute: str) -> list[Note]:
+    stated = candidate.claim.attributes.get(attribute)
+    return stated.notes if stated is not None else []

@@ -1,0 +1,210 @@
+"""Pins: which of them exist, are free, and reach what is claimed."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from types import MappingProxyType
+
+from epg.diagnostics import Diagnostics, Note
+from epg.load.hardware import Peripheral, ResourceClass, Target
+from epg.resolve.claims import Claim, Stated
+from epg.resolve.search import WHOLE, Place
+from epg.source import Span
+
+
+@dataclass(frozen=True)
+class PinUser:
+    """Who has a pin, and where that is written."""
+
+    name: str
+    span: Span
+
+
+class Pins:
+    """The pins of one target while claims are checked; those of claims that came before are taken."""
+
+    def __init__(self, target: Target, claims: Iterable[Claim], diagnostics: Diagnostics) -> None:
+        """``claims`` are all there are, so that hints name only pins that stay free."""
+        self.target = target
+        self.diagnostics = diagnostics
+        self.taken: dict[str, PinUser] = {}
+        self.wanted = {target.board.pin_name(str(s.value)) for claim in claims for s in claim.signals.values()}
+        self.numbered = 0  # pins that EPG numbered
+
+    def check(self, claim: Claim, resource_class: ResourceClass) -> Mapping[str, str] | None:
+        """Signal -> pin of the chip, or None after reporting pins that do not exist or are not free."""
+        result: dict[str, str] = {}
+        for signal, stated in claim.signals.items():
+            pin = self.target.board.pin_name(str(stated.value))
+            if self._exists(pin, stated) and self._is_free(pin, stated, claim, signal, resource_class):
+                result[signal] = pin
+        return result if len(result) == len(claim.signals) else None
+
+    def numbers(self, claim: Claim, resource_class: ResourceClass, pins: Mapping[str, str]) -> Mapping[str, int] | None:
+        """Signal -> number of its pin in C, None when none is left; in the order of claims where users name no pins."""
+        soc = self.target.soc
+        if self.target.has_pins:
+            return MappingProxyType({signal: soc.pins.index(pin) for signal, pin in pins.items()})
+        result = {signal: self.numbered + number for number, signal in enumerate(resource_class.signals)}
+        self.numbered += len(result)
+        if self.numbered > soc.automatic_pins:
+            message = f"{self.target.name} has no pin left for {claim.user}: it has {soc.automatic_pins}"
+            self.diagnostics.error("too-many", claim.span, message, hint="remove components")
+            return None
+        return MappingProxyType(result)
+
+    def places(
+        self, claim: Claim, resource_class: ResourceClass, peripheral: Peripheral, pins: Mapping[str, str]
+    ) -> frozenset[Place]:
+        """Where ``claim`` can go with its pins; empty after reporting why nowhere."""
+        neighbours = [pins[signal] for signal in resource_class.neighbours if signal in pins]
+        if len(neighbours) == 2 and not self._are_neighbours(*neighbours):
+            self._report_neighbours(claim, resource_class, neighbours)
+            return frozenset()
+        found = self.reachable(resource_class, peripheral, pins)
+        if not found:
+            self._report_unreachable(claim, resource_class, peripheral, pins)
+        return found
+
+    def reachable(
+        self, resource_class: ResourceClass, peripheral: Peripheral, pins: Mapping[str, str]
+    ) -> frozenset[Place]:
+        """The places whose pins include ``pins``."""
+        return frozenset(
+            place
+            for place in all_places(resource_class, peripheral)
+            if all(pin in self._reached(resource_class, peripheral, signal, place) for signal, pin in pins.items())
+        )
+
+    def usable(self, resource_class: ResourceClass, signal: str) -> list[str]:
+        """Free pins that a signal of a class can have, in the chip's order."""
+        board = self.target.board
+        free = set(board.pins) | {pin for pin, at in board.onboard.items() if resource_class.name in at.classes}
+        free -= set(self.taken) | self.wanted
+        return [pin for pin in self.target.soc.pins if pin in free and self._can_reach(resource_class, signal, pin)]
+
+    def _exists(self, pin: str, stated: Stated) -> bool:
+        board, soc = self.target.board, self.target.soc
+        if pin in board.reserved:
+            message = f"pin {pin} of {board.name} is reserved: {board.reserved[pin]}"
+            hint = f"pins of {board.name}: {pin_list(board.pins)}"
+            self.diagnostics.error("pin-reserved", stated.span, message, hint=hint, notes=stated.notes)
+            return False
+        if pin in board.pins or pin in board.onboard:
+            return True
+        what = "is not broken out" if pin in soc.pins else "does not exist"
+        message = f"pin {stated.value} {what} on {board.name}"
+        hint = f"pins of {board.name}: {pin_list(board.pins)}"
+        self.diagnostics.error("pin-unknown", stated.span, message, hint=hint, notes=stated.notes)
+        return False
+
+    def _is_free(self, pin: str, stated: Stated, claim: Claim, signal: str, resource_class: ResourceClass) -> bool:
+        onboard = self.target.board.onboard.get(pin)
+        if onboard and resource_class.name not in onboard.classes:
+            message = f"pin {pin} is wired to {onboard.title}, it can be no {resource_class.title}"
+            hint = self._free_hint(resource_class, signal)
+            self.diagnostics.error("pin-cannot-reach", stated.span, message, hint=hint, notes=stated.notes)
+            return False
+        other = self.taken.get(pin)
+        if other is None:
+            self.taken[pin] = PinUser(claim.user, stated.span)
+            return True
+        whose = "by this component" if other.name == claim.user else f"by {other.name}"
+        message = f"pin {pin} is used {whose} already"
+        notes = [Note("used here", other.span), *stated.notes]
+        self.diagnostics.error(
+            "pin-used-twice", stated.span, message, hint=self._free_hint(resource_class, signal), notes=notes
+        )
+        return False
+
+    def _free_hint(self, resource_class: ResourceClass, signal: str) -> str:
+        free = self.usable(resource_class, signal)
+        if not free:
+            return f"no pin is left for a {resource_class.title}"
+        return f"free pins for a {resource_class.title}: {pin_list(free)}"
+
+    def _peripheral(self, resource_class: ResourceClass) -> Peripheral | None:
+        name = resource_class.peripheral
+        return None if name is None else self.target.soc.peripherals[name]
+
+    def _reached(
+        self, resource_class: ResourceClass, peripheral: Peripheral, signal: str, place: Place
+    ) -> Sequence[str]:
+        """The pins that ``signal`` has in ``place``."""
+        how = resource_class.signals.get(signal, "any")
+        if how == "any":
+            return self.target.soc.pins
+        slot = place[1] if how == "slot" else peripheral.slots.index(how)
+        return peripheral.pins.get((place[0], slot), ())
+
+    def _can_reach(self, resource_class: ResourceClass, signal: str, pin: str) -> bool:
+        peripheral = self._peripheral(resource_class)
+        return peripheral is None or bool(self.reachable(resource_class, peripheral, {signal: pin}))
+
+    def _are_neighbours(self, one: str, other: str) -> bool:
+        pins = self.target.soc.pins
+        return abs(pins.index(one) - pins.index(other)) == 1
+
+    def _report_neighbours(self, claim: Claim, resource_class: ResourceClass, pins: Sequence[str]) -> None:
+        first, second = (claim.signals[signal] for signal in resource_class.neighbours)
+        names = " and ".join(resource_class.neighbours)
+        message = f"pins {pins[0]} and {pins[1]} are no neighbours, as {names} of a {resource_class.title} must be"
+        order = self.target.soc.pins
+        free = {*self.usable(resource_class, resource_class.neighbours[0]), *pins}
+        pairs = [pair for pair in pairwise(order) if free.issuperset(pair)]
+        pairs.sort(key=lambda pair: pins[0] not in pair)  # those with the first pin come first
+        shown = ", ".join(f"{one} and {other}" for one, other in pairs[:8])
+        hint = f"free pairs: {shown}" if pairs else "no pair of neighbours is free"
+        notes = [Note(f"{resource_class.neighbours[0]} is written here", first.span), *second.notes]
+        self.diagnostics.error("pins-not-neighbouring", second.span, message, hint=hint, notes=notes)
+
+    def _report_unreachable(
+        self, claim: Claim, resource_class: ResourceClass, peripheral: Peripheral, pins: Mapping[str, str]
+    ) -> None:
+        """A pin that reaches nothing, or pins of which each reaches something but not the same."""
+        alone = [signal for signal, pin in pins.items() if not self._can_reach(resource_class, signal, pin)]
+        for signal in alone:
+            stated = claim.signals[signal]
+            message = (
+                f"pin {pins[signal]} cannot be '{signal}' of a {resource_class.title}: no {peripheral.title} reaches it"
+            )
+            hint = self._free_hint(resource_class, signal)
+            self.diagnostics.error("pin-cannot-reach", stated.span, message, hint=hint, notes=stated.notes)
+        if alone:
+            return
+        *others, last = claim.signals.values()
+        message = f"no {peripheral.title} reaches pins {', '.join(pins.values())} together"
+        sets = [
+            " and ".join(self._reached(resource_class, peripheral, signal, place)[0] for signal in pins)
+            for place in all_places(resource_class, peripheral)
+            if all(self._reached(resource_class, peripheral, signal, place) for signal in pins)
+        ]
+        hint = f"for example: {', '.join(dict.fromkeys(sets))}" if sets else ""
+        notes = [*(Note("together with this pin", stated.span) for stated in others), *last.notes]
+        self.diagnostics.error("pin-cannot-reach", last.span, message, hint=hint, notes=notes)
+
+
+def all_places(resource_class: ResourceClass, peripheral: Peripheral) -> list[Place]:
+    """Every place that a class can take of its peripheral, whatever the pins."""
+    names = resource_class.instances or peripheral.instances
+    slots = [WHOLE] if resource_class.whole else list(range(len(peripheral.slots)))
+    return [(peripheral.instances.index(name), slot) for name in names for slot in slots]
+
+
+def pin_list(pins: Iterable[str]) -> str:
+    """Pins for people, ranges shortened: ``0-3, 6, PA0-PA15``."""
+    parts: list[list[str]] = []
+    for pin in pins:
+        if parts and _follows(parts[-1][-1], pin):
+            parts[-1].append(pin)
+        else:
+            parts.append([pin])
+    return ", ".join(f"{run[0]}-{run[-1]}" if len(run) > 2 else ", ".join(run) for run in parts)
+
+
+def _follows(one: str, other: str) -> bool:
+    first, second = re.fullmatch(r"(\D*)(\d+)", one), re.fullmatch(r"(\D*)(\d+)", other)
+    return bool(first and second and first[1] == second[1] and int(second[2]) == int(first[2]) + 1)

@@ -1,0 +1,286 @@
+"""Search for a place for every demand on one sort of peripheral.
+
+A peripheral has instances with slots.  A demand takes one of the places it can use: a slot of an instance, or the
+whole instance.  All users of an instance must agree on their attributes.  Taking the first place that is free would
+refuse wirings that are possible, so this searches: the most constrained demand first, with checks of what remains
+after each step.
+
+Refusing must be fast too.  Demands that are equal form a group, instances and slots that the groups see alike are
+interchangeable, and a state of the search is what is left once names are taken away: how many of each group remain,
+how many slots of each sort are used.  States that were refused once are remembered, so nothing is refused twice under
+another name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterator, Sequence
+from dataclasses import dataclass
+
+WHOLE = -1
+"""In place of a slot: all of an instance."""
+
+Place = tuple[int, int]
+"""Instance and slot, both counted from 0; or instance and :data:`WHOLE`."""
+
+
+@dataclass(frozen=True)
+class Demand:
+    """One user: the places it can have, and what the other users of its instance must agree on."""
+
+    places: frozenset[Place]
+    agree: Hashable = None
+
+
+@dataclass(frozen=True)
+class _Group:
+    """Equal demands, by their places in the input; ``whole`` if each takes an instance."""
+
+    agree: int
+    members: tuple[int, ...]
+    whole: bool
+
+
+@dataclass(frozen=True)
+class _Sort:
+    """Slots of an instance that all groups see alike."""
+
+    groups: frozenset[int]
+    slots: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class _Instance:
+    """What the groups see of an instance; instances of one ``profile`` are interchangeable while equally used."""
+
+    index: int
+    profile: int
+    sorts: tuple[_Sort, ...]
+    whole: frozenset[int]
+    pressure: int  # how many demands could use it
+    cost: int
+
+
+@dataclass(frozen=True)
+class _Use:
+    """How an instance is used: slots per sort, and the agreement of its users (-1: there are none)."""
+
+    used: tuple[int, ...]
+    agree: int
+
+
+_Move = tuple[int, int, int]  # group, instance (as a position in the list), sort or WHOLE
+_State = tuple[tuple[int, ...], tuple[_Use, ...]]  # how many of each group remain; the use of each instance
+
+
+def find_places(demands: Sequence[Demand], costs: Sequence[int] = ()) -> tuple[Place, ...] | None:
+    """A place for each demand, in their order, or None if there is no way.
+
+    ``costs``: what it costs to use an instance; of instances that are equal otherwise the cheapest is taken.
+    """
+    problem = _Problem(demands, costs)
+    moves = problem.solve()
+    return None if moves is None else problem.places(moves)
+
+
+class _Problem:
+    def __init__(self, demands: Sequence[Demand], costs: Sequence[int]) -> None:
+        self.count = len(demands)
+        self.groups = _groups(demands)
+        self.instances = _instances(demands, self.groups, costs)
+        self.slots = max((sum(len(sort.slots) for sort in i.sorts) for i in self.instances), default=0)
+
+    def solve(self) -> list[_Move] | None:
+        """Depth-first search; without recursion, as there can be hundreds of demands."""
+        remaining = tuple(len(group.members) for group in self.groups)
+        state: _State = remaining, tuple(_Use((0,) * len(i.sorts), -1) for i in self.instances)
+        if not self._hopeful(state):
+            return None
+        refused: set[Hashable] = set()
+        path: list[_Move] = []
+        stack: list[tuple[_State, Iterator[_Move]]] = [(state, self._moves(state))]
+        while stack:
+            state, moves = stack[-1]
+            if not any(state[0]):
+                return path
+            for move in moves:
+                after = self._after(state, move)
+                if self._key(after) not in refused and self._hopeful(after):
+                    path.append(move)
+                    stack.append((after, self._moves(after)))
+                    break
+            else:
+                refused.add(self._key(state))
+                stack.pop()
+                if path:
+                    path.pop()
+        return None
+
+    def places(self, moves: Sequence[_Move]) -> tuple[Place, ...]:
+        """Concrete places: members of a group, slots of a sort and equal instances in rising order."""
+        waiting = [list(group.members) for group in self.groups]
+        free = {(n, s): list(sort.slots) for n, i in enumerate(self.instances) for s, sort in enumerate(i.sorts)}
+        result: list[Place] = [(0, 0)] * self.count
+        for group, position, sort in sorted(moves, key=lambda move: (self.instances[move[1]].index, move[2], move[0])):
+            slot = WHOLE if sort == WHOLE else free[position, sort].pop(0)
+            result[waiting[group].pop(0)] = (self.instances[position].index, slot)
+        return tuple(result)
+
+    def _moves(self, state: _State) -> Iterator[_Move]:
+        """All that can be done for the most constrained group, best first."""
+        remaining, uses = state
+        options = {number: list(self._options(number, uses)) for number, count in enumerate(remaining) if count}
+        if not options:
+            return iter(())
+        tightest = min(options, key=lambda number: (len(options[number]), -remaining[number], number))
+        return iter(sorted(options[tightest], key=lambda move: self._rank(move, uses)))
+
+    def _rank(self, move: _Move, uses: Sequence[_Use]) -> tuple[int, ...]:
+        """Instances in use first, then those that others need least."""
+        instance = self.instances[move[1]]
+        return int(uses[move[1]].agree < 0), instance.pressure, instance.cost, instance.index, move[2]
+
+    def _options(self, number: int, uses: Sequence[_Use]) -> Iterator[_Move]:
+        """Moves of a group, one for each set of interchangeable instances."""
+        group = self.groups[number]
+        seen: set[tuple[int, _Use]] = set()
+        for position, (instance, use) in enumerate(zip(self.instances, uses)):
+            if (instance.profile, use) in seen or use.agree not in (-1, group.agree):
+                continue
+            seen.add((instance.profile, use))
+            if number in instance.whole and use.agree < 0:
+                yield number, position, WHOLE
+            for sort, (slots, used) in enumerate(zip(instance.sorts, use.used)):
+                if number in slots.groups and used < len(slots.slots):
+                    yield number, position, sort
+
+    def _after(self, state: _State, move: _Move) -> _State:
+        remaining, uses = state
+        number, position, sort = move
+        used = uses[position].used
+        if sort == WHOLE:
+            used = tuple(len(slots.slots) for slots in self.instances[position].sorts)
+        else:
+            used = (*used[:sort], used[sort] + 1, *used[sort + 1 :])
+        left = (*remaining[:number], remaining[number] - 1, *remaining[number + 1 :])
+        new = _Use(used, self.groups[number].agree)
+        return left, (*uses[:position], new, *uses[position + 1 :])
+
+    def _key(self, state: _State) -> Hashable:
+        """The state without names of instances."""
+        remaining, uses = state
+        used = sorted((i.profile, use.used, use.agree) for i, use in zip(self.instances, uses))
+        return remaining, tuple(used)
+
+    def _hopeful(self, state: _State) -> bool:
+        """False when what remains cannot fit, by counting."""
+        return self._enough_instances(state) and self._enough_places(state)
+
+    def _enough_instances(self, state: _State) -> bool:
+        """Demands that agree on something fill up the instances that have it; the rest of each needs unused ones."""
+        remaining, uses = state
+        empty = sum(use.agree < 0 for use in uses)
+        needed = 0
+        slots_needed: dict[int, int] = {}
+        for group, count in zip(self.groups, remaining):
+            if group.whole:
+                needed += count
+            elif count:
+                slots_needed[group.agree] = slots_needed.get(group.agree, 0) + count
+        for agree, count in slots_needed.items():
+            for instance, use in zip(self.instances, uses):
+                if use.agree == agree:
+                    count -= sum(len(sort.slots) for sort in instance.sorts) - sum(use.used)
+            needed += -(-max(0, count) // self.slots) if self.slots else 0
+        return needed <= empty
+
+    def _enough_places(self, state: _State) -> bool:
+        """A flow from groups to free places, leaving aside what the users of an unused instance must agree on."""
+        remaining, uses = state
+        capacity: dict[tuple[int, int], int] = {}
+        reach: list[list[tuple[int, int]]] = [[] for _ in self.groups]
+        for position, (instance, use) in enumerate(zip(self.instances, uses)):
+            for sort, (slots, used) in enumerate(zip(instance.sorts, use.used)):
+                if used < len(slots.slots):
+                    capacity[position, sort] = len(slots.slots) - used
+                    for number in slots.groups:
+                        if remaining[number] and use.agree in (-1, self.groups[number].agree):
+                            reach[number].append((position, sort))
+            if use.agree < 0 and instance.whole:
+                capacity[position, WHOLE] = 1
+                for number in instance.whole:
+                    if remaining[number]:
+                        reach[number].append((position, WHOLE))
+        taken: dict[tuple[int, int], dict[int, int]] = {place: {} for place in capacity}
+        return all(
+            _route(number, reach, capacity, taken) for number, count in enumerate(remaining) for _ in range(count)
+        )
+
+
+def _route(
+    group: int,
+    reach: Sequence[Sequence[tuple[int, int]]],
+    capacity: dict[tuple[int, int], int],
+    taken: dict[tuple[int, int], dict[int, int]],
+) -> bool:
+    """Finds room for one more of ``group``, moving others if need be (an augmenting path, breadth first)."""
+    came_from: dict[tuple[int, int], int] = {}
+    place_of: dict[int, tuple[int, int]] = {}
+    queue = [group]
+    for current in queue:
+        for place in reach[current]:
+            if place in came_from:
+                continue
+            came_from[place] = current
+            if sum(taken[place].values()) < capacity[place]:
+                while True:
+                    taker = came_from[place]
+                    taken[place][taker] = taken[place].get(taker, 0) + 1
+                    if taker == group:
+                        return True
+                    place = place_of[taker]
+                    taken[place][taker] -= 1
+            for other, count in taken[place].items():
+                if count and other not in place_of and other != group:
+                    place_of[other] = place
+                    queue.append(other)
+    return False
+
+
+def _groups(demands: Sequence[Demand]) -> tuple[_Group, ...]:
+    members: dict[Demand, list[int]] = {}
+    for index, demand in enumerate(demands):
+        members.setdefault(demand, []).append(index)
+    agreements: dict[Hashable, int] = {}
+    for demand in members:
+        agreements.setdefault(demand.agree, len(agreements))
+    return tuple(
+        _Group(
+            agree=agreements[demand.agree],
+            members=tuple(indices),
+            whole=bool(demand.places) and all(slot == WHOLE for _, slot in demand.places),
+        )
+        for demand, indices in members.items()
+    )
+
+
+def _instances(demands: Sequence[Demand], groups: Sequence[_Group], costs: Sequence[int]) -> tuple[_Instance, ...]:
+    """The instances that any group can use, the cheapest first."""
+    seen: dict[int, dict[int, set[int]]] = {}  # instance -> slot -> groups
+    for number, group in enumerate(groups):
+        for index, slot in demands[group.members[0]].places:
+            seen.setdefault(index, {}).setdefault(slot, set()).add(number)
+    profiles: dict[Hashable, int] = {}
+    result: list[_Instance] = []
+    for index in sorted(seen):
+        by_groups: dict[frozenset[int], list[int]] = {}
+        for slot in sorted(slot for slot in seen[index] if slot != WHOLE):
+            by_groups.setdefault(frozenset(seen[index][slot]), []).append(slot)
+        ordered = sorted(by_groups.items(), key=lambda item: sorted(item[0]))
+        sorts = tuple(_Sort(numbers, tuple(slots)) for numbers, slots in ordered)
+        whole = frozenset(seen[index].get(WHOLE, ()))
+        alike = (tuple((sort.groups, len(sort.slots)) for sort in sorts), whole)
+        users = {number for numbers in seen[index].values() for number in numbers}
+        pressure = sum(len(groups[number].members) for number in users)
+        cost = costs[index] if index < len(costs) else 0
+        result.append(_Instance(index, profiles.setdefault(alike, len(profiles)), sorts, whole, pressure, cost))
+    return tuple(sorted(result, key=lambda instance: (instance.cost, instance.index)))
