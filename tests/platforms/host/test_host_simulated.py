@@ -210,6 +210,11 @@ def test_statistics(motor: Program, tmp_path: Path) -> None:
     assert statistics["lateness_histogram"] == [{"below": 1e-06, "count": 500}]
 
 
+def test_times_are_rounded_to_nanoseconds(motor: Program, tmp_path: Path) -> None:
+    # 1.001 * 1e9 is a little less than 1001000000 in doubles.
+    assert motor.run_good(tmp_path, 1.001).statistics["duration"] == 1.001
+
+
 def test_long_traces_are_written_piece_by_piece(motor: Program, tmp_path: Path) -> None:
     trace = motor.run_good(tmp_path, 5.0005).trace
     assert [round(time * 1000) for time in trace["time"]] == list(range(5001))
