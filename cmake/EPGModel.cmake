@@ -48,7 +48,7 @@ function(_epg_model_library name output)
   if(exported)
     # The exported files: their own include path, their symbols renamed, and their warnings nobody's business.
     add_library(${name}_export OBJECT EXCLUDE_FROM_ALL ${exported})
-    target_include_directories(${name}_export PRIVATE ${EPG_${name}_INCLUDES} "${output}")
+    target_include_directories(${name}_export PRIVATE ${EPG_${name}_INCLUDES} "${output}" "${output}/${name}_headers")
     target_compile_options(${name}_export PRIVATE
       $<IF:$<BOOL:${MSVC}>,/w,-w> $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<NOT:$<BOOL:${MSVC}>>>:-fno-exceptions>)
     if(EPG_${name}_FORCED_HEADER)

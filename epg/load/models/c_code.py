@@ -21,6 +21,7 @@ KEYWORDS = frozenset(
     try typename using virtual""".split()
 )
 
+_LONGEST_HEAD = 2000  # characters of a declaration before its body that are looked at
 _IDENTIFIER = re.compile(r"[A-Za-z_]\w*")
 _MACRO = re.compile(r"^[ \t]*#[ \t]*define[ \t]+([A-Za-z_]\w*)(\([^)\n]*\))?[ \t]*((?:\\\n|[^\n])*)", re.MULTILINE)
 _INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*(?:"([^"\n]+)"|<([^>\n]+)>)', re.MULTILINE)
@@ -85,7 +86,8 @@ class Code:
     variables: tuple[Variable, ...]
     macros: tuple[Macro, ...]
     includes: tuple[Include, ...]
-    identifiers: frozenset[str]
+    identifiers: frozenset[str]  # all
+    used: frozenset[str]  # in bodies of functions and definitions of variables: what a linker would look for
 
     def body(self, function: Function) -> str:
         """The body of ``function`` with comments and strings blanked."""
@@ -103,14 +105,18 @@ def parse_code(file: SourceFile) -> Code:
     functions: list[Function] = []
     variables: list[Variable] = []
     for start, body_start, end in _top_level(file.code):
-        head = file.code[start : body_start if body_start >= 0 else end]
-        if re.match(r"\s*typedef\b", head):
+        head_end = body_start if body_start >= 0 else end
+        if re.match(r"\s*typedef\b", file.code[start : start + _LONGEST_HEAD]):
             continue
+        start = max(start, head_end - _LONGEST_HEAD)
+        head = file.code[start:head_end]
         matched = _FUNCTION_HEAD.search(head) if body_start >= 0 else None
         if matched and not re.search(r"=\s*$|\b(struct|union|enum|class|namespace)\s+\w*\s*$", head):
             functions.append(_function(head, matched, start, body_start, end))
         elif "(" not in head.split("=")[0]:
             variables.extend(_variables(file.code[start:end], start))
+    used = [file.code[function.body_start : function.body_end] for function in functions]
+    used += [f"{variable.type} {variable.dimensions} {variable.initializer}" for variable in variables]
     return Code(
         file,
         tuple(functions),
@@ -118,6 +124,7 @@ def parse_code(file: SourceFile) -> Code:
         tuple(Macro(m[1], m[2] or "", m[3].strip(), m.start(1)) for m in _MACRO.finditer(file.without_comments)),
         tuple(_includes(file)),
         frozenset(_IDENTIFIER.findall(file.without_comments)) - KEYWORDS,
+        frozenset(_IDENTIFIER.findall(" ".join(used))) - KEYWORDS,
     )
 
 
@@ -185,7 +192,7 @@ def _top_level(code: str) -> Iterator[tuple[int, int, int]]:
         symbol, at = match[0], match.start()
         if symbol == "{":
             if depth == 0:
-                head = code[start:at]
+                head = code[max(start, at - _LONGEST_HEAD) : at]
                 if re.search(r'\bextern\s*"[^"]*"\s*$|\bnamespace(?:\s+\w+)?\s*$', head):
                     start = at + 1
                     continue
@@ -197,12 +204,12 @@ def _top_level(code: str) -> Iterator[tuple[int, int, int]]:
                 continue
             depth -= 1
             if depth == 0:
-                head = code[start:body_start]
+                head = code[max(start, body_start - _LONGEST_HEAD) : body_start]
                 if not re.search(r"=\s*$|\b(?:struct|union|enum|class)\b[^()]*$", head):
                     yield start, body_start, at + 1
                     start, body_start = at + 1, -1
         elif depth == 0:
-            is_body = body_start >= 0 and not re.search(r"=\s*$", code[start:body_start])
+            is_body = body_start >= 0 and not re.search(r"=\s*$", code[max(start, body_start - 80) : body_start])
             yield start, body_start if is_body else -1, at
             start, body_start = at + 1, -1
 

@@ -61,4 +61,11 @@ class Model:
     files: tuple[Path, ...]
     span: Span
     details: object = field(default=None, repr=False)
-    """What only the importer's own emitter needs: sources, prefixes, class name."""
+    """What only the importer's own emitter needs: sources, prefixes, class name; see ``details.py``."""
+    finish_time: float | None = None
+    """Where the experiment in 20-sim ends, in seconds.  Nothing ends there on a target."""
+
+    @property
+    def instantiable(self) -> bool:
+        """Whether there can be several instances: exports as C functions keep their state in global variables."""
+        return bool(getattr(self.details, "instantiable", False))

@@ -1,0 +1,55 @@
+"""What to compile for a model's library."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from epg.emit.model.copies import copies
+from epg.load.models.details import CFunctionExport, CppClassExport, HandWritten
+from epg.load.models.model import Model
+
+
+@dataclass(frozen=True)
+class ModelBuild:
+    """Files are relative to the folder of the generated files unless they are paths.
+
+    ``generated`` is compiled with the project's options.  ``exported_generated`` and ``exported`` are the model's own
+    code: without warnings, as C11 or C++17, with ``-ffp-contract=off``, with ``include_dirs`` as their private include
+    path, followed by the generated folder and its ``<name>_headers``, and with ``forced_header`` included first.
+    """
+
+    generated: tuple[str, ...]
+    exported_generated: tuple[str, ...]
+    exported: tuple[Path, ...]
+    include_dirs: tuple[Path, ...]
+    forced_header: str | None
+    language: str  # "c" or "c++"
+
+
+def model_build(model: Model, name: str, parameters: Mapping[str, float] | None = None) -> ModelBuild:
+    """How to compile what ``emit_model(model, name, parameters)`` gives."""
+    edited = copies(model, name, dict(parameters or {}))
+    suffix = "cpp" if model.language == "c++" else "c"
+    own = [f"{name}_export.{suffix}"]
+    exported: tuple[Path, ...] = ()
+    directories: tuple[Path, ...] = ()
+    forced: str | None = None
+    details = model.details
+    if isinstance(details, CFunctionExport):
+        exported = tuple(
+            code.file.path for code in details.linked.units if f"{name}_{code.file.path.name}" not in edited
+        )
+        own += sorted(edited)
+        directories = details.linked.include_dirs
+        forced = f"{name}_names.h"
+    elif isinstance(details, CppClassExport):
+        directories = details.linked.include_dirs
+    elif isinstance(details, HandWritten):
+        directories = (*details.include_dirs, *sorted({source.parent for source in details.sources}))
+        directories = tuple(dict.fromkeys(directories))
+        if model.language == "c":
+            exported = details.sources
+            forced = f"{name}_names.h"
+    return ModelBuild((f"{name}.c",), tuple(own), exported, directories, forced, model.language)

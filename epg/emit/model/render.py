@@ -1,0 +1,159 @@
+"""The templates of a model's library, filled."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import jinja2
+
+from epg.emit.model.copies import copies
+from epg.emit.model.tokens_code import helper_texts, tokens_code
+from epg.emit.text import Code, comment, environment
+from epg.load.models.details import CFunctionExport, CppClassExport, HandWritten, TokensExport
+from epg.load.models.link import Linked
+from epg.load.models.model import Model, Parameter, Port
+
+
+def render(model: Model, name: str, values: Mapping[str, float], instances: int) -> dict[str, str]:
+    """All files that are made from templates."""
+    common: dict[str, Any] = {
+        "model": model,
+        "name": Code(name),
+        "instances": instances,
+        "parameters": list(zip(parameter_constants(name, model.parameters), model.parameters)),
+        "e": model.details,
+        "hand_written": isinstance(model.details, HandWritten),
+        "about": _about(model),
+    }
+    env = _environment()
+    files = {
+        f"{name}.h": env.get_template("header.h.j2").render(common),
+        f"{name}.c": env.get_template("wrapper.c.j2").render(common),
+        f"{name}_export.h": env.get_template("export.h.j2").render(common),
+    }
+    details = model.details
+    if isinstance(details, CFunctionExport):
+        files[f"{name}_export.c"] = env.get_template("c_function.c.j2").render(common | _c_function(model, details))
+        files[f"{name}_names.h"] = env.get_template("names.h.j2").render(common, renames=details.renames)
+    elif isinstance(details, CppClassExport):
+        context = common | _cpp_class(model, details, name, values)
+        files[f"{name}_export.cpp"] = env.get_template("cpp_class.cpp.j2").render(context)
+    elif isinstance(details, TokensExport):
+        context = common | tokens_code(model, details, values) | {"helpers": helper_texts(details.functions)}
+        files[f"{name}_export.c"] = env.get_template("tokens.c.j2").render(context)
+    elif isinstance(details, HandWritten):
+        context = common | {
+            "values": [values.get(parameter.name, parameter.value) for parameter in model.parameters],
+            "sources": [_include_name(path, details.include_dirs) for path in details.sources],
+        }
+        suffix = "cpp" if model.language == "c++" else "c"
+        files[f"{name}_export.{suffix}"] = env.get_template("hand_written.j2").render(context)
+        if model.language == "c":
+            files[f"{name}_names.h"] = env.get_template("names.h.j2").render(common, renames=details.renames)
+    else:
+        raise TypeError(f"no template for {type(details).__name__}")
+    return files
+
+
+def parameter_constants(name: str, parameters: Sequence[Parameter]) -> list[str]:
+    """Enumerators: ``PAN_PID1_KP``.  Parameters that differ in case only keep theirs: ``PAN_Kp``, ``PAN_KP``."""
+    upper = [f"{name}_{parameter.identifier}".upper() for parameter in parameters]
+    reserved = {f"{name}_{word}".upper() for word in ("h", "step_size", "instances", "parameters", "export_h", "names_h")}
+    result: list[str] = []
+    for constant, parameter in zip(upper, parameters, strict=True):
+        unique = constant if upper.count(constant) == 1 else f"{name.upper()}_{parameter.identifier}"
+        while unique in reserved or unique in result:
+            unique += "_"
+        result.append(unique)
+    return result
+
+
+@cache
+def _environment() -> jinja2.Environment:
+    env = environment([Path(__file__).resolve().parent / "templates"])
+    env.filters["code"] = Code
+    env.filters["told"] = _told
+    env.filters["last_name"] = lambda text: str(text).rpartition("::")[2].removeprefix("struct ")
+    return env
+
+
+def _about(model: Model) -> str:
+    if not model.method:
+        return "A model written by hand."
+    methods = {"RungeKutta2": "Runge Kutta 2", "RungeKutta4": "Runge Kutta 4"}
+    return f"Integration method: {methods.get(model.method, model.method)}."
+
+
+def _told(item: Port | Parameter) -> Code:
+    """A port or parameter as its comment names it: ``in {rad}``."""
+    unit = f" {{{item.unit}}}" if item.unit else ""
+    kind = f", {item.type}" if isinstance(item, Port) and item.type != "real" else ""
+    told = f": {item.description}" if isinstance(item, Port) and item.description else ""
+    value = f" = {item.value!r}" if isinstance(item, Parameter) else ""
+    return comment(f"{item.name}{unit}{kind}{value}{told}")
+
+
+def _c_function(model: Model, details: CFunctionExport) -> dict[str, Any]:
+    declared = {variable.name for variable in details.variables}
+    states = [array for array in (details.states, details.rates) if array] if details.state_count else []
+    elements = [element.array for element in (*details.inputs, *details.outputs)]
+    wanted = {*states, *elements, *([details.parameters] if model.parameters else [])}
+    if details.instance_type:
+        # arrays are members of the instance: xx_P is a macro for model_instance->P there
+        members = [name for name, _ in details.memory]
+        return {
+            "entries": _entries(details),
+            "pointers": (),
+            "unsized": (),
+            "time": Code("models[index].time"),
+            "states": [Code(f"models[index].{member}") for member in ("s", "R") if states and member in members],
+            "parameter_array": Code("models[index].P"),
+        }
+    return {
+        "entries": _entries(details),
+        "pointers": sorted(wanted & set(details.pointers)),
+        "unsized": sorted(wanted - set(details.pointers) - declared),
+        "time": Code(details.time if details.time in declared else "0.0"),
+        "states": [Code(array) for array in states],
+        "parameter_array": Code(details.parameters),
+    }
+
+
+def _entries(details: CFunctionExport) -> list[Any]:
+    entries = [
+        details.model_initialize,
+        details.initialize,
+        details.calculate,
+        details.terminate,
+        details.calculate_static,
+    ]
+    return [entry for entry in entries if entry is not None and entry.name]
+
+
+def _cpp_class(model: Model, details: CppClassExport, name: str, values: Mapping[str, float]) -> dict[str, Any]:
+    edited = copies(model, name, values)
+    sources = []
+    for code in details.linked.units:
+        copy = f"{name}_{code.file.path.name}"
+        sources.append(copy if copy in edited else _include_name(code.file.path, details.linked.include_dirs))
+    return {"sources": sources, "system_headers": _system_headers(details.linked), "prefix": details.parameters[:-1]}
+
+
+def _include_name(path: Path, folders: Sequence[Path]) -> str:
+    """The shortest name under which the include path finds ``path``, and finds no other file."""
+    names = [path.relative_to(folder).as_posix() for folder in folders if path.is_relative_to(folder)]
+    names = sorted(names, key=len) or [path.name]
+    for name in names:
+        first = next((folder / name for folder in folders if (folder / name).is_file()), path)
+        if first == path:
+            return name
+    return names[-1]
+
+
+def _system_headers(linked: Linked) -> list[str]:
+    names = {include.name for code in linked.all for include in code.includes if include.system}
+    return sorted(name for name in names if re.fullmatch(r"[\w./+-]+", name))

@@ -1,0 +1,242 @@
+"""C code for a model that is given by its tokens alone.
+
+The equations stay as 20-sim writes them, but for the names of their arrays and system variables, which become members
+of the model's instance.  The helper functions are EPG's own; they follow the definitions of the SIDOPS+ language and
+give bit for bit what the functions of 20-sim's C templates give for arguments in range.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from types import SimpleNamespace
+from typing import Any
+
+from epg.emit.text import Code, double
+from epg.load.models.assignments import assignments, exact_number
+from epg.load.models.details import TokensExport
+from epg.load.models.model import Model
+from epg.load.models.tokens import Tokens
+from epg.load.models.tokens_model import CODE
+
+_ARRAYS = {
+    "XX_VARIABLE_ARRAY_NAME": ("V", "variables"),
+    "XX_PARAMETER_ARRAY_NAME": ("P", "parameters"),
+    "XX_INITIAL_VALUE_ARRAY_NAME": ("I", "initial_values"),
+    "XX_CONSTANT_ARRAY_NAME": ("C", "constants"),
+    "XX_STATE_ARRAY_NAME": ("s", "states"),
+    "XX_RATE_ARRAY_NAME": ("R", "rates"),
+    "XX_UNNAMED_ARRAY_NAME": ("U", "unnamed"),
+    "XX_FAVORITE_PARS_ARRAY_NAME": ("F", "favorite_parameters"),
+    "XX_FAVORITE_VARS_ARRAY_NAME": ("f", "favorite_variables"),
+}
+_SCALARS = {
+    "step_size": "step_size",
+    "start_time": "start_time",
+    "finish_time": "finish_time",
+    "steps": "steps",
+    "major": "major",
+    "stop_simulation": "stop",
+    "stop_run": "stop",
+}
+
+
+def tokens_code(model: Model, details: TokensExport, values: Mapping[str, float]) -> dict[str, Any]:
+    """What the template of a tokens model needs: code blocks, sizes of arrays, times."""
+    tokens = details.tokens
+    names = _names(tokens, details.functions)
+    blocks = {token: Code(_block(tokens, token, names, model, values)) for token in CODE}
+    counts = SimpleNamespace(
+        constants=tokens.count("NUMBER_CONSTANTS"),
+        parameters=tokens.count("NUMBER_PARAMETERS"),
+        initial_values=tokens.count("NUMBER_INITIAL_VALUES"),
+        variables=tokens.count("NUMBER_VARIABLES"),
+        states=tokens.count("NUMBER_STATES"),
+        unnamed=tokens.count("NUMBER_UNNAMED"),
+        favorite_parameters=tokens.count("NUMBER_FAVORITE_PARAMETERS"),
+        favorite_variables=tokens.count("NUMBER_FAVORITE_VARIABLES"),
+        delays=tokens.count("NUMBEROF_DELAYFUNCTION"),
+        initials=tokens.count("NUMBEROF_INITIALFUNCTION"),
+    )
+    start = exact_number(tokens.trimmed("START_TIME")) or Fraction(0)
+    finish = exact_number(tokens.trimmed("FINISH_TIME")) or Fraction(0)
+    # 4.5 added the four slopes of Runge Kutta 4 in another order
+    old = re.match(r"4\.[0-5]\b", model.version) is not None
+    return {
+        "code": blocks,
+        "e": SimpleNamespace(counts=counts, start_time=start, finish_time=finish, old_runge_kutta=old),
+    }
+
+
+def _names(tokens: Tokens, functions: Sequence[str]) -> dict[str, str]:
+    """Identifiers in the equations and what they become."""
+    prefix = tokens.trimmed("VARPREFIX")
+    names = {}
+    for token, (default, member) in _ARRAYS.items():
+        names[prefix + (tokens.trimmed(token) or default)] = f"self->{member}"
+    for word, member in _SCALARS.items():
+        names[prefix + word] = f"self->{member}"
+    names[prefix + (tokens.trimmed("XX_TIME") or "time")] = "self->time"
+    names[prefix + (tokens.trimmed("XX_INITIALIZE") or "initialize")] = "self->initialize"
+    names["XXTRUE"], names["XXFALSE"] = "1", "0"
+    names["XXDouble"], names["XXInteger"], names["XXBoolean"] = "double", "int", "char"
+    function_prefix = tokens.trimmed("FUNCTIONPREFIX") or "XX"
+    for function in functions:
+        for before in {function_prefix, "XX"}:
+            names[before + function] = _helper_name(function)
+    return names
+
+
+def _block(tokens: Tokens, token: str, names: Mapping[str, str], model: Model, values: Mapping[str, float]) -> str:
+    """One token as C code, indented as a body, with parameters replaced."""
+    file = tokens.code(token)
+    text = file.text
+    if token == "INITIALIZE_PARAMETERS":
+        by_index = {parameter.index: parameter for parameter in model.parameters}
+        for line in reversed(list(assignments(file))):
+            parameter = by_index.get(line.index)
+            if parameter is not None and parameter.name in values:
+                text = text[: line.value_start] + str(double(values[parameter.name])) + text[line.value_end :]
+            elif parameter is None:
+                # a string, which lives in no double here: only dll() functions read it, and they are refused
+                text = text[: line.value_start] + "0.0" + text[line.value_end :]
+    pieces = re.split(r"(/\*.*?\*/|//[^\n]*)", text, flags=re.DOTALL)
+    for position, piece in enumerate(pieces):
+        if position % 2 == 0:
+            piece = re.sub(r"(?<![\w.>])[A-Za-z_]\w*", lambda match: names.get(match[0], match[0]), piece)
+            for function in ("delay", "initial_value", "stop_simulation", "random"):
+                piece = re.sub(rf"\bsidops_{function}\s*\(\s*", f"sidops_{function}(self, ", piece)
+            pieces[position] = piece
+    lines = [line.rstrip().expandtabs(4) for line in "".join(pieces).strip("\n").split("\n")]
+    while lines and not lines[0].strip():
+        lines.pop(0)
+    if lines:
+        lines[0] = "    " + lines[0].strip()
+    return "\n".join(lines)
+
+
+def _helper_name(function: str) -> str:
+    return "sidops_" + re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", function).lower()
+
+
+def helper_texts(functions: Sequence[str]) -> list[str]:
+    """The C functions behind ``functions``, in the order they need."""
+    return [_HELPERS[function].strip("\n") for function in sorted(functions)]
+
+
+def _simple(function: str, expression: str, arguments: str = "double x") -> str:
+    return f"static double {_helper_name(function)}({arguments})\n{{\n    return {expression};\n}}"
+
+
+def _bits(function: str, expression: str, arguments: str = "int a, int b") -> str:
+    return f"static int {_helper_name(function)}({arguments})\n{{\n    return {expression};\n}}"
+
+
+_SHIFT = "bits > 0 ? (int)((unsigned)value {up} bits) : value {down} -bits"
+
+_HELPERS: dict[str, str] = {
+    "Absolute": _simple("Absolute", "fabs(x)"),
+    "ArcCosineHyperbolic": _simple("ArcCosineHyperbolic", "log(x + sqrt(x * x - 1.0))"),
+    "ArcSineHyperbolic": _simple("ArcSineHyperbolic", "log(x + sqrt(x * x + 1.0))"),
+    "ArcTangentHyperbolic": _simple("ArcTangentHyperbolic", "0.5 * log((1.0 + x) / (1.0 - x))"),
+    "Exponent2": _simple("Exponent2", "exp(x * 0.6931471805599453)"),
+    "Exponent10": _simple("Exponent10", "exp(x * 2.3025850929940457)"),
+    "Logarithm2": _simple("Logarithm2", "log(x) * 1.4426950408889634"),
+    "Logarithm10": _simple("Logarithm10", "log10(x)"),
+    "Pow2": _simple("Pow2", "x * x"),
+    "Power": _simple("Power", "pow(x, exponent)", "double x, double exponent"),
+    "IntegerDivide": _simple("IntegerDivide", "(double)(int)(a / b)", "double a, double b"),
+    "IntegerModulo": _simple("IntegerModulo", "a - (int)(a / b) * b", "double a, double b"),
+    "Ramp": _simple("Ramp", "time < start ? 0.0 : time - start", "double start, double time"),
+    "Step": _simple("Step", "time < start ? 0.0 : 1.0", "double start, double time"),
+    "Sign": _simple("Sign", "x < 0.0 ? -1.0 : (x == 0.0 ? 0.0 : 1.0)"),
+    "Xor": _simple("Xor", "(a != 0.0) != (b != 0.0)", "double a, double b"),
+    "Impulse": """
+static double sidops_impulse(double start, double duration, double time, double step)
+{
+    if (step <= 0.0 || duration <= 0.0 || time < start || time > start + duration) {
+        return 0.0;
+    }
+    return step < duration ? 1.0 / duration : 1.0 / step;
+}
+""",
+    "Round": """
+/* to the nearest whole number, halves away from zero */
+static double sidops_round(double x)
+{
+    if (fabs(x - (int)x) < 0.5) {
+        return (double)(int)x;
+    }
+    return x >= 0.0 ? ceil(x) : floor(x);
+}
+""",
+    "Random": """
+/* uniform between -range and range: 31 bits of a xorshift generator (G. Marsaglia, J. Stat. Software 8(14), 2003) */
+static double sidops_random(model_t *self, double range)
+{
+    uint32_t x = self->random_state;
+    x ^= x << 13;
+    x ^= x >> 17;
+    x ^= x << 5;
+    self->random_state = x;
+    return range * 2.0 * ((double)(x >> 1) / 2147483647.0 - 0.5);
+}
+""",
+    "Delay": """
+/* the value of `x` one step ago, at first `initial` */
+static double sidops_delay(model_t *self, double x, double initial, int id)
+{
+    const double value = self->initialize ? initial : self->delayed[id];
+
+    if (self->major) {
+        self->delay_inputs[id] = x;
+    }
+    return value;
+}
+""",
+    "InitialValue": """
+/* the value of `x` at the start */
+static double sidops_initial_value(model_t *self, double x, int id)
+{
+    if (self->initialize) {
+        self->first_values[id] = x;
+    }
+    return self->first_values[id];
+}
+""",
+    "StopSimulation": """
+static int sidops_stop_simulation(model_t *self, const char *message, int id)
+{
+    (void)message;
+    (void)id;
+    self->stop = true;
+    return 0;
+}
+""",
+    "Warning": """
+static int sidops_warning(const char *message, int id)
+{
+    (void)message;
+    (void)id;
+    return 0;
+}
+""",
+    "BitAnd": _bits("BitAnd", "a & b"),
+    "BitOr": _bits("BitOr", "a | b"),
+    "BitXor": _bits("BitXor", "a ^ b"),
+    "BitInv": _bits("BitInv", "~a", "int a"),
+    "BitCmp": _bits("BitCmp", "bits < 32 ? ~a & (int)((1u << bits) - 1u) : ~a", "int a, int bits"),
+    "BitGet": _bits("BitGet", "(a >> (position - 1)) & 1", "int a, int position"),
+    "BitSet": _bits("BitSet", "a | (int)(1u << (position - 1))", "int a, int position"),
+    "BitClear": _bits("BitClear", "a & ~(int)(1u << (position - 1))", "int a, int position"),
+    "BitShift": _bits("BitShift", _SHIFT.format(up="<<", down=">>"), "int value, int bits"),
+    "BitShiftRight": _bits("BitShiftRight", "bits > 0 ? value >> bits : (int)((unsigned)value << -bits)", "int value, int bits"),
+    "SwapBytes": """
+static int sidops_swap_bytes(int value)
+{
+    const uint32_t x = (uint32_t)value;
+    return (int)(x << 24 | (x & 0xFF00u) << 8 | (x >> 8 & 0xFF00u) | x >> 24);
+}
+""",
+}

@@ -1,0 +1,10 @@
+"""Models: exports of 20-sim and controllers written by hand.
+
+>>> # model = load_model(Path("model"), diagnostics)
+>>> # [port.name for port in model.inputs]
+"""
+
+from epg.load.models.model import Model, Parameter, Port
+from epg.load.models.recognise import load_model
+
+__all__ = ["Model", "Parameter", "Port", "load_model"]

@@ -1,0 +1,143 @@
+"""The lines of generated code that carry the model's data: array elements with their 20-sim names.
+
+``xx_V[7] = u[0];  /* in {rad} */`` and ``xx_P[1] = 2.6;  /* PID1\\kp {} */`` look alike in every target and version of
+20-sim; renaming prefixes and reformatting leave them recognisable.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+
+from epg.load.models.source_file import SourceFile
+from epg.source import Span
+
+_ASSIGNMENT = re.compile(r"(?<![\w.>])((?:[A-Za-z_]\w*->)?[A-Za-z_]\w*)\s*\[\s*(\d+)\s*\]\s*=(?!=)\s*([^;{}]*?)\s*;")
+_ELEMENT = re.compile(r"(?<![\w.>])([A-Za-z_]\w*)\s*\[\s*(\d+)\s*\]")
+_COMMENT = re.compile(r"[ \t]*(?:/\*[ \t]*(.*?)[ \t]*\*/|//[ \t]*(.*?)[ \t]*$)", re.MULTILINE)
+_NAME_UNIT = re.compile(r"(.*?)(?:\s*\{([^{}]*)\})?", re.DOTALL)
+_NUMBER = re.compile(r"[-+]?\s*(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d{1,3})?")
+_STRING = re.compile(r'"((?:\\.|[^"\\])*)"')
+
+
+@dataclass(frozen=True)
+class Assignment:
+    """``array[index] = value;  /* name {unit} */``; ``name`` is empty where there is no comment."""
+
+    array: str
+    index: int
+    value: str
+    name: str
+    unit: str
+    start: int
+    value_start: int
+    value_end: int
+    span: Span
+
+
+@dataclass(frozen=True)
+class PortLine:
+    """A port: ``array[array_index]`` holds its value, ``index`` is the position in ``u`` or ``y``."""
+
+    name: str
+    unit: str
+    index: int
+    array: str
+    array_index: int
+    span: Span
+
+
+def assignments(file: SourceFile, start: int = 0, end: int | None = None) -> Iterator[Assignment]:
+    """All assignments of a value to an array element with a literal index, in order."""
+    code = file.code
+    for match in _ASSIGNMENT.finditer(code, start, len(code) if end is None else end):
+        comment = _COMMENT.match(file.text, match.end())
+        name, unit = split_name((comment[1] or comment[2] or "") if comment else "")
+        yield Assignment(
+            match[1],
+            int(match[2]),
+            file.text[match.start(3) : match.end(3)],
+            name,
+            unit,
+            match.start(),
+            match.start(3),
+            match.end(3),
+            file.span(match.start(), match.end()),
+        )
+
+
+def input_lines(file: SourceFile, vector: str, start: int = 0, end: int | None = None) -> list[PortLine]:
+    """The lines ``array[i] = u[k];``; ``vector`` is what ``u`` is called."""
+    result = []
+    for line in assignments(file, start, end):
+        elements = [match for match in _ELEMENT.finditer(line.value) if match[1] == vector]
+        if len(elements) == 1 and line.array != vector:
+            result.append(PortLine(line.name, line.unit, int(elements[0][2]), line.array, line.index, line.span))
+    return result
+
+
+def output_lines(file: SourceFile, vector: str, start: int = 0, end: int | None = None) -> list[PortLine]:
+    """The lines ``y[k] = array[i];``; ``vector`` is what ``y`` is called."""
+    result = []
+    for line in assignments(file, start, end):
+        elements = list(_ELEMENT.finditer(line.value))
+        if line.array == vector and len(elements) == 1:
+            element = elements[0]
+            result.append(PortLine(line.name, line.unit, line.index, element[1], int(element[2]), line.span))
+    return result
+
+
+def split_name(comment: str) -> tuple[str, str]:
+    """Name and unit of a comment: ``PID1\\tauD {s}`` gives ``("PID1\\tauD", "s")``."""
+    match = _NAME_UNIT.fullmatch(comment.strip())
+    assert match is not None
+    return match[1].strip(), (match[2] or "").strip()
+
+
+def listed_names(file: SourceFile, kind: str) -> list[tuple[str, Span]]:
+    """Names in the list ``xx_<kind>_names[]``, which exports carry inside a comment."""
+    for match in re.finditer(rf"{kind}_names\w*\s*\[\s*\]\s*=\s*\{{(.*?)(?:\bNULL\b|\}})", file.text, re.DOTALL):
+        names = [
+            (re.sub(r"\\(.)", r"\1", string[1]), file.span(match.start(1) + string.start(), match.start(1) + string.end()))
+            for string in _STRING.finditer(match[1])
+        ]
+        if names:
+            return names
+    return []
+
+
+def exact_number(text: str) -> Fraction | None:
+    """The value of a literal, exact; also ``1.0 / 1000.0``, a cast or a truth value.  None for anything else."""
+    text = re.sub(r"\(\s*(?:XX|YY)?[A-Za-z]\w*\s*\)", "", text.strip())
+    while text.startswith("(") and text.endswith(")"):
+        text = text[1:-1].strip()
+    if re.fullmatch(r"(?:\w*TRUE|true)", text):
+        return Fraction(1)
+    if re.fullmatch(r"(?:\w*FALSE|false)", text):
+        return Fraction(0)
+    numerator, slash, denominator = text.partition("/")
+    value = _literal(numerator)
+    if value is None or not slash:
+        return value
+    divisor = _literal(denominator)
+    return value / divisor if divisor else None
+
+
+def number(text: str) -> float | None:
+    """The value of a literal as a double; None for anything else."""
+    value = exact_number(text)
+    if value is None:
+        return None
+    try:
+        return float(value)
+    except OverflowError:
+        return None
+
+
+def _literal(text: str) -> Fraction | None:
+    text = text.strip()
+    if re.fullmatch(r".*[\d.][fFlL]", text):
+        text = text[:-1]
+    return Fraction(re.sub(r"\s", "", text)) if len(text) <= 400 and _NUMBER.fullmatch(text) else None

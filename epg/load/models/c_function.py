@@ -1,0 +1,409 @@
+"""Import of 20-sim's C function target (4.5 to 5.1) and of the C sources of its FMU target.
+
+The entry points are recognised by the middle of their name (``...InitializeSubmodel...``), which survives the prefix and
+suffix changes people make to link two models; prefix and suffix are read off the variable that holds the step size.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from fractions import Fraction
+from pathlib import Path
+
+from epg.diagnostics import Diagnostics
+from epg.load.models import details
+from epg.load.models.assignments import (
+    PortLine,
+    assignments,
+    exact_number,
+    input_lines,
+    listed_names,
+    output_lines,
+)
+from epg.load.models.c_code import Code, Function, Variable, integer_value, parse_code
+from epg.load.models.features import check_features, check_method, check_tokens
+from epg.load.models.link import Linked, link, source_files
+from epg.load.models.metadata import Metadata, cross_check, find_metadata
+from epg.load.models.model import Model
+from epg.load.models.ports import check_identifiers, make_parameters, make_ports
+from epg.load.models.source_file import SourceFile, read_source
+from epg.source import Span
+
+SUFFIXES = (".c",)
+_ENTRY = re.compile(r"\w*?(Initialize|Calculate|Terminate)Submodel\w*")
+_METHODS = re.compile(r"(Discrete|Euler|RungeKutta2|RungeKutta4|MeBDFi|VodeAdams|BDF|AdamsBashford2?|Vode\w*)")
+_MEMORY_COUNTS = ("constants_count", "parameter_count", "initialvalue_count", "variable_count", "state_count", "state_count")
+_BASE_TYPES = {"double", "float", "int", "char", "short", "long", "unsigned", "signed char", "unsigned char", "bool"}
+
+
+def entry_points(code: Code) -> dict[str, Function]:
+    """The functions ``Initialize``, ``Calculate`` and ``Terminate`` of a submodel that ``code`` defines."""
+    found: dict[str, Function] = {}
+    for function in code.functions:
+        match = _ENTRY.fullmatch(function.name)
+        if match and not function.owner:
+            found.setdefault(match[1], function)
+    return found
+
+
+def is_c_function(code: Code) -> bool:
+    return {"Initialize", "Calculate"} <= entry_points(code).keys()
+
+
+def load_c_function(main: Code, diagnostics: Diagnostics) -> Model | None:
+    """The model whose entry points ``main`` defines, or None after reporting why it cannot be used."""
+    before = diagnostics.error_count
+    linked = link(main, SUFFIXES, diagnostics)
+    if linked is None:
+        return None
+    return _Importer(linked, diagnostics).load() if diagnostics.error_count == before else None
+
+
+class _Importer:
+    def __init__(self, linked: Linked, diagnostics: Diagnostics) -> None:
+        self.linked = linked
+        self.diagnostics = diagnostics
+        self.main = linked.main
+        self.file = linked.main.file
+        self.entries = entry_points(linked.main)
+        self.whole = self.file.span(self.entries["Calculate"].start, self.entries["Calculate"].start + 1)
+        self.macros = linked.macros()
+        self.variables = {v.name: (c, v) for c in linked.units for v in c.variables if not v.static}
+        self.metadata: Metadata = find_metadata(self.file.path, self._name(), diagnostics)
+        self.instance_type = self._instance_type()
+
+    def load(self) -> Model | None:
+        before = self.diagnostics.error_count
+        initialize = self._model_initialize()
+        roots = [*self.entries.values(), *self._static(), *([initialize] if initialize else [])]
+        step = self._step()
+        method, method_code, method_at = self._method()
+        check_method(method, self.diagnostics, method_code, method_at)
+        check_features(self.linked, roots, "", self.diagnostics)
+        inputs_lines, outputs_lines = self._port_lines(roots)
+        names = {kind: listed_names(self.file, kind) for kind in ("input", "output")}
+        for kind, lines in (("input", inputs_lines), ("output", outputs_lines)):
+            token_names = self.metadata.tokens.names(kind.upper()) if self.metadata.tokens else []
+            if len(names[kind]) != len(lines) and len(token_names) == len(lines):
+                names[kind] = [(name, self.whole) for name in token_names]
+        configuration = self.metadata.configuration
+        ports = [
+            make_ports(
+                lines, kind, names[kind], configuration, self.diagnostics, self.whole, self._stated_count(f"number_of_{kind}s")
+            )
+            for kind, lines in (("input", inputs_lines), ("output", outputs_lines))
+        ]
+        for group in ports:
+            check_identifiers(group, self.diagnostics)
+        if step is None or self.diagnostics.error_count > before:
+            return None
+        parameter_array = self._array("P")
+        lines = [
+            (code, line)
+            for code, function in self.linked.reachable(roots)
+            for line in assignments(code.file, function.body_start, function.body_end)
+            if line.array in (parameter_array, f"model_instance->{parameter_array}")
+        ]
+        token_parameters = self.metadata.tokens.names("PARAMETER") if self.metadata.tokens else []
+        listed = [name for code in self.linked.units for name, _ in listed_names(code.file, "parameter")]
+        parameters, places = make_parameters([line for _, line in lines], listed or token_parameters, ())
+        holders = {id(line): code.file.path for code, line in lines}
+        elements = tuple(
+            tuple(details.Element(line.array, line.array_index) for line in sorted(group, key=lambda line: line.index))
+            if self._vectorless()
+            else ()
+            for group in (inputs_lines, outputs_lines)
+        )
+        finish = self._scalar("finish_time") if not self.instance_type else self.metadata.finish
+        model = Model(
+            name=self._name(),
+            origin="20-sim C function",
+            language="c",
+            version=self._version(),
+            method=method,
+            step=step,
+            inputs=ports[0],
+            outputs=ports[1],
+            parameters=parameters,
+            directory=self.file.path.parent,
+            files=tuple(sorted({code.file.path for code in self.linked.all} | set(self.metadata.files))),
+            span=self.whole,
+            details=details.CFunctionExport(
+                linked=self.linked,
+                real=self._base_type("XXDouble") or "double",
+                initialize=self._entry(self.entries["Initialize"]),
+                calculate=self._entry(self.entries["Calculate"]),
+                terminate=self._entry(self.entries["Terminate"]) if "Terminate" in self.entries else details.EntryPoint("", ()),
+                calculate_static=next((self._entry(f) for f in self._static()), None),
+                model_initialize=self._entry(initialize) if initialize else None,
+                inputs=elements[0],
+                outputs=elements[1],
+                parameters=parameter_array if self._exists(parameter_array) else "",
+                states=self._array("s") if self._exists(self._array("s")) else "",
+                rates=self._array("R") if self._exists(self._array("R")) else "",
+                state_count=self._state_count(),
+                pointers=tuple(sorted(n for n, (_, v) in self.variables.items() if v.pointer)),
+                time=self._variable_name("time"),
+                stop=self._variable_name("stop_simulation"),
+                variables=self._globals(),
+                places=tuple(
+                    tuple(details.Place(holders[id(line)], line.value_start, line.value_end) for line in group)
+                    for group in places
+                ),
+                instance_type=self.instance_type,
+                instance_header=self._instance_header(),
+                memory=self._memory(),
+                renames=self._renames(),
+            ),
+            finish_time=float(finish) if finish is not None else None,
+        )
+        mine = self.diagnostics.error_count
+        if self.metadata.tokens and cross_check(model, self._prefix(), self.metadata, self.diagnostics):
+            check_tokens(self.metadata.tokens, self.diagnostics)
+        return model if self.diagnostics.error_count == mine else None
+
+    # names ----------------------------------------------------------------------------------------------------------
+
+    def _name(self) -> str:
+        for code in (self.main, *self.linked.units, *self.linked.headers):
+            match = re.search(r"^\s*\*\s*subm:[ \t]*(\S[^\n]*?)[ \t]*$", code.file.text[:4000], re.MULTILINE)
+            if match:
+                return match[1]
+        return self.file.path.parent.name
+
+    def _version(self) -> str:
+        for code in (self.main, *self.linked.units, *self.linked.headers):
+            match = re.search(r"^\s*\*\s*build:[ \t]*([\d.]+)", code.file.text[:4000], re.MULTILINE)
+            if match:
+                return match[1]
+        return self.metadata.version
+
+    def _step_name(self) -> str:
+        """What the variable (or macro) with the step size is called: it shows the prefix and suffix of all names."""
+        candidates = [name for name in self.variables if "step_size" in name]
+        candidates += [macro for macro in self.macros if "step_size" in macro]
+        used = self.main.identifiers
+        candidates.sort(key=lambda name: (name not in used, name not in self.variables, len(name), name))
+        return candidates[0] if candidates else "xx_step_size"
+
+    def _prefix(self) -> str:
+        return self._step_name().partition("step_size")[0]
+
+    def _suffix(self) -> str:
+        return self._step_name().partition("step_size")[2]
+
+    def _array(self, letter: str) -> str:
+        names = (f"{self._prefix()}{letter}{self._suffix()}", f"{self._prefix()}{letter}")
+        return next((name for name in names if self._exists(name)), names[0])
+
+    def _exists(self, name: str) -> bool:
+        return name in self.variables or name in self.macros
+
+    def _variable_name(self, word: str) -> str:
+        names = (f"{self._prefix()}{word}{self._suffix()}", f"{self._prefix()}{word}", f"xx_{word}")
+        return next((name for name in names if name in self.variables), "")
+
+    # entry points ---------------------------------------------------------------------------------------------------
+
+    def _instance_type(self) -> str:
+        parameters = self.entries["Calculate"].parameters
+        match = re.match(r"(?:struct\s+)?(\w*ModelInstance\w*)\s*\*", parameters)
+        return match[1] if match else ""
+
+    def _entry(self, function: Function) -> details.EntryPoint:
+        body = self.main.body(function) if function in self.main.functions else ""
+        arguments: list[str] = []
+        for parameter in function.parameters.split(","):
+            name = re.sub(r"\[.*", "", parameter).strip()
+            name = name.split("*")[-1].split()[-1] if name.split() else ""
+            if not name or name == "void":
+                continue
+            if self.instance_type and self.instance_type in parameter:
+                arguments.append("instance")
+            elif "*" in parameter or "[" in parameter:
+                passed = [match[1] for match in re.finditer(rf"(\w+)\s*\(\s*{re.escape(name)}\s*\)", body)]
+                is_output = any("Output" in called for called in passed) or name.startswith("y")
+                arguments.append("y" if is_output and "y" not in arguments else "u" if "u" not in arguments else "y")
+            elif "time" in arguments or "step" in arguments:
+                arguments.append("next_time")
+            else:
+                sets_step = re.search(rf"\b{re.escape(self._step_name())}\s*=\s*{re.escape(name)}\s*;", body)
+                arguments.append("step" if sets_step else "time")
+        return details.EntryPoint(function.name, tuple(arguments), self._base_type(function.result) or "void")
+
+    def _instance_header(self) -> str:
+        for code in self.linked.headers:
+            if self.instance_type and re.search(rf"\}}\s*{self.instance_type}\s*;", code.file.code):
+                return code.file.path.name
+        return ""
+
+    def _memory(self) -> tuple[tuple[str, str], ...]:
+        """Pointers of the instance and their offsets, in the order in which the FMI functions lay them out."""
+        if not self.instance_type:
+            return ()
+        text = "".join(code.file.code for code in self.linked.headers)
+        pointers = set(re.findall(r"\w+\s*\*\s*([CPIVsR])\s*;", text))
+        counts = []
+        result = []
+        for letter, word in zip("CPIVsR", _MEMORY_COUNTS, strict=True):
+            macro = next((name for name in sorted(self.macros) if re.fullmatch(rf"\w*?(?<![a-z]){word}\w*", name)), "")
+            if letter in pointers:
+                result.append((letter, " + ".join(counts) or "0"))
+                counts.append(macro or "0")
+        return tuple(result)
+
+    def _static(self) -> list[Function]:
+        """The function that computes the static equations, as Initialize calls it."""
+        called = {name for name, _ in self.main.calls(self.entries["Initialize"])}
+        return [f for _, f in self.linked.functions() if f.name in called and "CalculateStatic" in f.name][:1]
+
+    def _model_initialize(self) -> Function | None:
+        """The function that sets the parameters, where Initialize leaves calling it to the FMI functions."""
+        initialize = [self.entries["Initialize"]]
+        name = re.compile(r"\w*?ModelInitialize(?!_)\w*")
+        if any(name.fullmatch(function.name) for _, function in self.linked.reachable(initialize)):
+            return None
+        found = [function for _, function in self.linked.functions() if name.fullmatch(function.name)]
+        return found[0] if found else None
+
+    # values ---------------------------------------------------------------------------------------------------------
+
+    def _scalar(self, word: str) -> Fraction | None:
+        """The first value of the variable ``<prefix><word><suffix>``, or what the FMI functions set it to."""
+        place = self._scalar_place(word)
+        return exact_number(place[1]) if place else None
+
+    def _scalar_place(self, word: str) -> tuple[Span, str] | None:
+        name = self._variable_name(word)
+        if name:
+            code, variable = self.variables[name]
+            if variable.initializer:
+                return code.file.span(variable.start, variable.start + len(name)), variable.initializer
+        pattern = re.compile(rf"(?<!\w)(?:\w+->)?\w*{word}\w*\s*=\s*([^=;]+);")
+        for file in [code.file for code in self.linked.units] + self._fmi_files():
+            for match in pattern.finditer(file.code):
+                if exact_number(match[1]) is not None:
+                    return file.span(match.start(), match.end()), match[1]
+        return None
+
+    def _fmi_files(self) -> list[SourceFile]:
+        paths = [p for p in source_files(self.file.path.parent, SUFFIXES, 0) if p.name.lower().startswith("fmi")]
+        files = [read_source(path, Diagnostics()) for path in paths]
+        return [file for file in files if file is not None]
+
+    def _step(self) -> Fraction | None:
+        place = self._scalar_place("step_size")
+        value = exact_number(place[1]) if place else None
+        if value is None or value <= 0:
+            span = place[0] if place else self.whole
+            message = f"the step size '{place[1]}' is no positive number" if place else "the model has no step size"
+            self.diagnostics.error("model-step", span, message, hint=f"the sources set it as '{self._step_name()} = 0.001;'")
+            return None
+        return value
+
+    def _stated_count(self, word: str) -> int | None:
+        for name, (_, variable) in sorted(self.variables.items()):
+            if word in name:
+                return integer_value(variable.initializer, self.macros)
+        return None
+
+    def _method(self) -> tuple[str, Code, int]:
+        for name, start in self.main.calls(self.entries["Calculate"]):
+            if "Step" in name:
+                match = _METHODS.search(name)
+                return match[1] if match else name.partition("Step")[0].removeprefix("XX"), self.main, start
+        for code in self.linked.all:
+            for macro in code.macros:
+                if macro.name.endswith("_METHOD"):
+                    return macro.name.removesuffix("_METHOD"), code, macro.start
+        return "", self.main, self.entries["Calculate"].start
+
+    def _state_count(self) -> int:
+        found = self.variables.get(self._array("s"))
+        if found and found[1].dimensions:
+            return integer_value(found[1].dimensions.strip("[] "), self.macros) or 0
+        for name in ("STATE_SIZE", "state_count", "states_size"):
+            for macro, value in sorted(self.macros.items()):
+                if name in macro and "dep" not in macro:
+                    return integer_value(value, self.macros) or 0
+        return self.metadata.tokens.count("NUMBER_STATES") if self.metadata.tokens else 0
+
+    def _base_type(self, word: str) -> str:
+        types: dict[str, str] = {}
+        for code in self.linked.all:
+            for match in re.finditer(r"\btypedef\s+([\w ]+?)\s+(\w+)\s*;", code.file.code):
+                types[match[2]] = match[1].removeprefix("const ")
+        for _ in range(4):
+            if word in _BASE_TYPES:
+                return word
+            word = types.get(word, "")
+        return ""
+
+    def _globals(self) -> tuple[details.GlobalVariable, ...]:
+        result = []
+        for name, (_, variable) in sorted(self.variables.items()):
+            base = self._base_type(variable.type)
+            if not base or variable.constant or variable.pointer or self.instance_type:
+                continue
+            if variable.dimensions:
+                count = _elements(variable, self.macros)
+                if count and not variable.initializer:
+                    result.append(details.GlobalVariable(name, base, count, ""))
+                continue
+            value = exact_number(variable.initializer or "0")
+            if value is not None:
+                result.append(details.GlobalVariable(name, base, 0, _value(value, base)))
+        return tuple(result)
+
+    def _renames(self) -> tuple[str, ...]:
+        names = {f.name for code in self.linked.units for f in code.functions if not f.static and not f.owner}
+        return tuple(sorted((names | set(self.variables)) - self.linked.macro_names()))
+
+    # ports ----------------------------------------------------------------------------------------------------------
+
+    def _vectorless(self) -> bool:
+        return not {"u", "y"} & {a for f in self.entries.values() for a in self._entry(f).arguments}
+
+    def _port_lines(self, roots: Iterable[Function]) -> tuple[list[PortLine], list[PortLine]]:
+        inputs: list[PortLine] = []
+        outputs: list[PortLine] = []
+        if self._vectorless():
+            found = self.metadata.port_elements(self._fmi_array())
+            if found is None:
+                self.diagnostics.error(
+                    "model-ports",
+                    self.whole,
+                    "these are the C sources of an FMU, and nothing beside them names its ports",
+                    hint="copy tokens.xml, ModelConfiguration.xml or modelDescription.xml into the folder too",
+                )
+                return [], []
+            return found
+        for code, function in self.linked.reachable(roots):
+            for parameter in function.parameters.split(","):
+                match = re.search(r"(?:\*\s*|\s)(\w+)\s*(?:\[\s*\])?\s*$", parameter)
+                if match and ("*" in parameter or "[" in parameter):
+                    inputs += input_lines(code.file, match[1], function.body_start, function.body_end)
+                    outputs += output_lines(code.file, match[1], function.body_start, function.body_end)
+        return inputs, outputs
+
+    def _fmi_array(self) -> str:
+        """The memory that value references count in."""
+        return "MEMORY" if self.instance_type else next((n for n in self.variables if n.endswith("MEMORY")), "xx_MEMORY")
+
+
+def _elements(variable: Variable, macros: dict[str, str]) -> int:
+    total = 1
+    for size in re.findall(r"\[([^\]]*)\]", variable.dimensions):
+        total *= integer_value(size, macros) or 0
+    return total
+
+
+def _value(value: Fraction, base: str) -> str:
+    return repr(float(value)) if base in ("double", "float") else str(int(value))
+
+
+def read_c_file(path: Path, diagnostics: Diagnostics) -> Code | None:
+    """The parsed file, or None after reporting why it cannot be read."""
+    file = read_source(path, diagnostics)
+    return parse_code(file) if file else None

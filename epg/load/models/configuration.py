@@ -1,0 +1,132 @@
+"""``ModelConfiguration.xml`` and an FMU's ``modelDescription.xml``: types, sizes and descriptions of ports.
+
+Both list variables in the order of their declaration, which is not the order of ``u[]`` and ``y[]``: use by name only.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from epg.diagnostics import Diagnostics
+from epg.load.models.xml_file import Element, load_xml
+from epg.source import Span
+
+
+@dataclass(frozen=True)
+class ConfiguredPort:
+    """A port as these files describe it.  ``array`` is empty for an FMU, ``index`` then is the value reference."""
+
+    name: str
+    direction: str  # "input" or "output"
+    type: str  # "real", "integer" or "boolean"
+    unit: str
+    description: str
+    rows: int
+    columns: int
+    array: str
+    index: int
+    span: Span
+
+
+@dataclass(frozen=True)
+class Configuration:
+    path: Path
+    name: str
+    step: str
+    step_span: Span
+    finish: str
+    ports: tuple[ConfiguredPort, ...]
+
+    def port(self, direction: str, name: str) -> ConfiguredPort | None:
+        return next((port for port in self.ports if port.direction == direction and port.name == name), None)
+
+
+def find_configuration(directory: Path) -> Path | None:
+    """The configuration beside the sources: ``ModelConfiguration.xml``, ``*.mcf``, ``config/*.xxsim``."""
+    for folder in (directory, directory / "config"):
+        try:
+            files = sorted(entry for entry in folder.iterdir() if entry.is_file())
+        except OSError:
+            continue
+        for file in files:
+            if file.name.lower() == "modelconfiguration.xml" or file.suffix.lower() in (".mcf", ".xxsim"):
+                return file
+    return None
+
+
+def load_configuration(path: Path, diagnostics: Diagnostics) -> Configuration | None:
+    """The configuration in ``path``, or None after a warning."""
+    root = load_xml(path, diagnostics, required=False)
+    if root is None or root.name != "modelConfiguration":
+        return None
+    variables = root.find("modelVariables")
+    ports = [_port(element) for element in (variables.children if variables else [])]
+    step = root.find("run", "stepSize")
+    return Configuration(
+        path,
+        root.text_of("general", "name"),
+        root.text_of("run", "stepSize"),
+        step.span if step else root.span,
+        root.text_of("run", "finishTime"),
+        tuple(port for port in ports if port is not None),
+    )
+
+
+def load_model_description(path: Path, diagnostics: Diagnostics) -> Configuration | None:
+    """The ports of an FMU 1.0 or 2.0, or None after a warning."""
+    root = load_xml(path, diagnostics, required=False)
+    if root is None or root.name != "fmiModelDescription":
+        return None
+    variables = root.find("ModelVariables")
+    experiment = root.find("DefaultExperiment")
+    ports = []
+    for element in variables.children if variables else []:
+        direction = element.attributes.get("causality", "")
+        reference = element.attributes.get("valueReference", "")
+        if direction not in ("input", "output") or not reference.isdigit():
+            continue
+        kind = element.children[0].name.lower() if element.children else "real"
+        unit = element.children[0].attributes.get("unit", "") if element.children else ""
+        name = element.attributes.get("name", "")
+        description = element.attributes.get("description", "")
+        ports.append(
+            ConfiguredPort(name, direction, _type(kind), unit, description, 1, 1, "", int(reference), element.span)
+        )
+    attributes = experiment.attributes if experiment else {}
+    return Configuration(
+        path,
+        root.attributes.get("modelName", ""),
+        attributes.get("stepSize", ""),
+        experiment.span if experiment else root.span,
+        attributes.get("stopTime", ""),
+        tuple(ports),
+    )
+
+
+def _port(element: Element) -> ConfiguredPort | None:
+    direction = element.text_of("kind")
+    if element.name != "modelVariable" or direction not in ("input", "output"):
+        return None
+    index = element.text_of("storage", "index")
+    return ConfiguredPort(
+        element.text_of("name"),
+        direction,
+        _type(element.text_of("type")),
+        element.text_of("physical", "unit", "name"),
+        element.text_of("description"),
+        _positive(element.text_of("size", "rows")),
+        _positive(element.text_of("size", "columns")),
+        element.text_of("storage", "name"),
+        int(index) if index.isdigit() and len(index) < 9 else -1,
+        element.span,
+    )
+
+
+def _type(word: str) -> str:
+    return word if word in ("integer", "boolean") else "real"
+
+
+def _positive(text: str) -> int:
+    return int(text) if re.fullmatch(r"[1-9]\d{0,5}", text) else 1

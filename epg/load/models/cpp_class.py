@@ -1,0 +1,194 @@
+"""Import of 20-sim's C++ class target: ``<Sub>.cpp``, ``<Sub>.h`` and ``common/``."""
+
+from __future__ import annotations
+
+import re
+from fractions import Fraction
+
+from epg.diagnostics import Diagnostics
+from epg.load.models import details
+from epg.load.models.assignments import Assignment, assignments, exact_number, input_lines, output_lines
+from epg.load.models.c_code import Code, Function, integer_value
+from epg.load.models.features import FIXED_STEP_METHODS, check_features, check_method, check_tokens
+from epg.load.models.link import Linked, link
+from epg.load.models.metadata import cross_check, find_metadata
+from epg.load.models.model import Model, Port
+from epg.load.models.ports import check_identifiers, make_parameters, make_ports
+from epg.source import Span
+
+SUFFIXES = (".cpp", ".cc", ".cxx")
+_NEEDED = {"CopyInputsToVariables", "Initialize", "Calculate"}
+
+
+def submodel_classes(code: Code) -> list[str]:
+    """Names of the classes in ``code`` that have the methods of a 20-sim submodel."""
+    methods: dict[str, set[str]] = {}
+    for function in code.functions:
+        if function.owner:
+            methods.setdefault(function.owner, set()).add(function.name)
+    found = [
+        owner
+        for owner, names in sorted(methods.items())
+        if {"Initialize", "Calculate"} <= names and names & {"CopyInputsToVariables", "CopyVariablesToOutputs"}
+    ]
+    return found
+
+
+def load_cpp_class(main: Code, diagnostics: Diagnostics) -> Model | None:
+    """The model whose class ``main`` defines, or None after reporting why it cannot be used."""
+    before = diagnostics.error_count
+    linked = link(main, SUFFIXES, diagnostics)
+    if linked is None or diagnostics.error_count > before:
+        return None
+    return _Importer(linked, submodel_classes(main)[0], diagnostics).load()
+
+
+class _Importer:
+    def __init__(self, linked: Linked, class_name: str, diagnostics: Diagnostics) -> None:
+        self.linked = linked
+        self.class_name = class_name
+        self.diagnostics = diagnostics
+        self.main = linked.main
+        self.file = linked.main.file
+        self.methods = {f.name: f for f in self.main.functions if f.owner == class_name}
+        at = self.methods["Calculate"].start
+        self.whole = self.file.span(at, at + len(class_name) + len("::Calculate"))
+        self.metadata = find_metadata(self.file.path, class_name, diagnostics)
+
+    def load(self) -> Model | None:
+        before = self.diagnostics.error_count
+        step = self._step()
+        method, method_code, method_at = self._method()
+        check_method(method, self.diagnostics, method_code, method_at)
+        roots = list(self.methods.values())
+        roots += [f for _, f in self.linked.functions() if f.owner == method and f.name in ("Initialize", "Step")]
+        check_features(self.linked, roots, method, self.diagnostics)
+        ports = [self._ports("input"), self._ports("output")]
+        if step is None or self.diagnostics.error_count > before:
+            return None
+        array = self._parameter_array()
+        body = self.methods["Initialize"]
+        lines = [
+            line for line in assignments(self.file, body.body_start, body.body_end) if line.array == array
+        ]
+        tokens = self.metadata.tokens
+        names = tokens.names("PARAMETER") if tokens else []
+        parameters, places = make_parameters(lines, names if len(names) == self._count("parameters") else [], ())
+        finish = self._number("finish_time")
+        model = Model(
+            name=self.class_name,
+            origin="20-sim C++ class",
+            language="c++",
+            version=self._version(),
+            method=method,
+            step=step,
+            inputs=ports[0],
+            outputs=ports[1],
+            parameters=parameters,
+            directory=self.file.path.parent,
+            files=tuple(sorted({code.file.path for code in self.linked.all} | set(self.metadata.files))),
+            span=self.whole,
+            details=details.CppClassExport(
+                linked=self.linked,
+                class_name=self.class_name,
+                real=self._real_type(),
+                methods=frozenset(self.methods),
+                members=frozenset(self._members()),
+                state_count=self._count("states"),
+                parameters=array,
+                states=self._prefix() + "s",
+                rates=self._prefix() + "R",
+                places=tuple(tuple(self._place(line) for line in group) for group in places),
+            ),
+            finish_time=float(finish) if finish is not None else None,
+        )
+        if tokens and cross_check(model, self._prefix(), self.metadata, self.diagnostics):
+            check_tokens(tokens, self.diagnostics)
+        return model if self.diagnostics.error_count == before else None
+
+    def _place(self, line: Assignment) -> details.Place:
+        return details.Place(self.file.path, line.value_start, line.value_end)
+
+    def _version(self) -> str:
+        for code in (self.main, *self.linked.units, *self.linked.headers):
+            match = re.search(r"^\s*\*\s*build:[ \t]*([\d.]+)", code.file.text[:4000], re.MULTILINE)
+            if match:
+                return match[1]
+        return self.metadata.version
+
+    def _prefix(self) -> str:
+        match = re.search(r"\b(\w*?)step_size\s*=", self.file.code)
+        return match[1] if match else "m_"
+
+    def _parameter_array(self) -> str:
+        return self._prefix() + "P"
+
+    def _place_of(self, word: str) -> tuple[Span, str] | None:
+        match = re.search(rf"\b{re.escape(self._prefix())}{word}\s*=\s*([^=;]+);", self.file.code)
+        return (self.file.span(match.start(), match.end()), match[1].strip()) if match else None
+
+    def _number(self, word: str) -> Fraction | None:
+        place = self._place_of(word)
+        return exact_number(place[1]) if place else None
+
+    def _step(self) -> Fraction | None:
+        place = self._place_of("step_size")
+        value = exact_number(place[1]) if place else None
+        if value is None or value <= 0:
+            span = place[0] if place else self.whole
+            message = f"the step size '{place[1]}' is no positive number" if place else "the model has no step size"
+            hint = f"{self.class_name}::Reset() sets it as 'm_step_size = 0.001;'"
+            self.diagnostics.error("model-step", span, message, hint=hint)
+            return None
+        return value
+
+    def _count(self, what: str) -> int:
+        place = self._place_of(f"number_{what}")
+        return (integer_value(place[1], self.linked.macros()) or 0) if place else 0
+
+    def _method(self) -> tuple[str, Code, int]:
+        """The type of the member whose ``Step()`` Calculate calls."""
+        body = self.methods["Calculate"]
+        match = re.search(r"\b(\w+)\s*(?:\.|->)\s*Step\s*\(", self.main.body(body))
+        if match:
+            member = re.escape(match[1])
+            for code in (*self.linked.headers, self.main):
+                declared = re.search(rf"\b(\w+)\s*\*?\s+\*?{member}\s*;", code.file.code)
+                if declared:
+                    return declared[1], code, declared.start(1)
+        for method in FIXED_STEP_METHODS:
+            called = re.search(rf"\b{method}\w*Step\s*\(", self.main.body(body))
+            if called:
+                return method, self.main, body.body_start + called.start()
+        return "", self.main, body.start
+
+    def _ports(self, direction: str) -> tuple[Port, ...]:
+        functions: list[tuple[Function, str]] = []
+        for function in self.methods.values():
+            for parameter in function.parameters.split(","):
+                match = re.search(r"\*\s*(\w+)\s*$", parameter)
+                if match:
+                    functions.append((function, match[1]))
+        read = input_lines if direction == "input" else output_lines
+        lines = [
+            line for function, name in functions for line in read(self.file, name, function.body_start, function.body_end)
+        ]
+        tokens = self.metadata.tokens
+        names = [(name, tokens.span(f"{direction.upper()}_NAMES3")) for name in tokens.names(direction.upper())] if tokens else []
+        stated = self._place_of(f"number_of_{direction}s") or self._place_of(f"number_{direction}s")
+        count = integer_value(stated[1], {}) if stated else None
+        ports = make_ports(lines, direction, names, self.metadata.configuration, self.diagnostics, self.whole, count)
+        check_identifiers(ports, self.diagnostics)
+        return ports
+
+    def _members(self) -> set[str]:
+        """Data members of the class and its bases, as far as the wrapper asks for them."""
+        wanted = {self._prefix() + word for word in ("stop_run", "stop_simulation", "finish_time", "time")}
+        return {name for code in self.linked.headers for name in wanted if re.search(rf"\b{name}\s*;", code.file.code)}
+
+    def _real_type(self) -> str:
+        for code in self.linked.headers:
+            match = re.search(r"\btypedef\s+([\w ]+?)\s+XXDouble\s*;", code.file.code)
+            if match:
+                return match[1]
+        return "double"

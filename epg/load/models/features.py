@@ -1,0 +1,246 @@
+"""What a model does that a target cannot run, found in the code that runs and not in what merely lies beside it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+
+from epg.diagnostics import Diagnostics, Note
+from epg.load.models.c_code import KEYWORDS, Code, Function
+from epg.load.models.link import Linked
+from epg.load.models.tokens import Tokens
+
+FIXED_STEP_METHODS = ("Discrete", "Euler", "RungeKutta2", "RungeKutta4")
+
+_STUBS = {
+    "Data": "data()",
+    "Table": "table()",
+    "TimeDelay": "tdelay()",
+    "FrequencyEvent": "frequencyevent()",
+    "FrequencyEvent1": "frequencyevent()",
+    "Event": "event()",
+    "EventUp": "eventup()",
+    "EventDown": "eventdown()",
+    "TimeEvent": "timeevent()",
+}
+_STUB_NAME = re.compile(rf"(?:XX|YY|[A-Z]\w*?_?)?({'|'.join(sorted(_STUBS, key=len, reverse=True))})(?=[a-z_]|$)")
+_TRIVIAL_BODY = re.compile(r"\s*(?:return\s*\(?\s*(?:0(?:\.0*)?|XXFALSE|false)\s*\)?\s*;\s*)?")
+_DIRECTIVE = re.compile(r"^[ \t]*#[ \t]*(warning|error)\b[ \t]*([^\n]*)", re.MULTILINE)
+
+_HEAP = frozenset("malloc calloc realloc free strdup aligned_alloc".split())
+_FILES = frozenset(
+    """fopen freopen fclose fread fwrite fscanf fgets fputs fputc fgetc getc putc fprintf fflush fseek ftell rewind feof
+    remove rename tmpfile open read write close popen system socket""".split()
+)
+_PRINTS = frozenset("printf puts putchar".split())
+_CLOCKS = frozenset("time clock difftime gettimeofday clock_gettime".split())
+_LIBRARY = frozenset(
+    """acos asin atan atan2 ceil cos cosh exp fabs floor fmod frexp ldexp log log10 modf pow sin sinh sqrt tan tanh cbrt
+    exp2 expm1 log1p log2 hypot round trunc lround llround rint lrint nearbyint fmin fmax fdim copysign fma asinh acosh
+    atanh erf erfc tgamma lgamma isnan isinf isfinite isnormal signbit nextafter remainder scalbn logb ilogb
+    memcpy memset memmove memcmp memchr strlen strcmp strncmp strcpy strncpy strcat strncat strchr strrchr strstr strtol
+    strtoul strtod sprintf snprintf vsnprintf sscanf atoi atof atol abs labs llabs div rand srand qsort bsearch
+    exit abort assert defined offsetof va_start va_end va_arg static_assert""".split()
+)
+_LIBRARY_ALL = _LIBRARY | {f"{name}f" for name in _LIBRARY} | _HEAP | _FILES | _PRINTS | _CLOCKS
+
+
+def check_method(method: str, diagnostics: Diagnostics, code: Code, start: int) -> None:
+    """Reports an integration method that needs a variable step or that EPG does not know."""
+    if method in FIXED_STEP_METHODS:
+        return
+    span = code.file.span(start, start + max(1, len(method)))
+    diagnostics.error(
+        "model-variable-step",
+        span,
+        f"integration method '{method}' has no fixed step" if method else "the model has no integration method",
+        hint="choose Discrete, Euler, Runge Kutta 2 or Runge Kutta 4 in 20-sim and export again",
+    )
+
+
+def check_tokens(tokens: Tokens, diagnostics: Diagnostics) -> None:
+    """Reports what the counts in ``tokens.xml`` say about equations that need a solver."""
+    for name, id, what, hint in (
+        ("NUMBER_DEPSTATES", "model-dependent-states", "dependent states", _DEPENDENT_HINT),
+        ("NUMBER_ALGLOOPS", "model-algebraic-loop", "algebraic loops", _LOOP_HINT),
+        ("NUMBER_CONSTRAINTS", "model-constraint", "constraints", _CONSTRAINT_HINT),
+    ):
+        count = tokens.count(name)
+        if count:
+            message = f"the model has {what} ({name} is {count}), which exported code does not solve"
+            diagnostics.error(id, tokens.span(name), message, hint=hint)
+
+
+_DEPENDENT_HINT = "remove the dependency in 20-sim, for example by merging masses that are coupled rigidly"
+_LOOP_HINT = "break the loop in 20-sim, for example with a delay or a state"
+_CONSTRAINT_HINT = "replace constraint() by an explicit equation in 20-sim"
+
+
+def check_features(linked: Linked, roots: Sequence[Function], method_class: str, diagnostics: Diagnostics) -> None:
+    """Reports everything in the code reachable from ``roots`` that cannot run, or that a user should know of."""
+    reachable = linked.reachable(roots)
+    _check_directives(linked, reachable, diagnostics)
+    _check_solver_arrays(linked, diagnostics)
+    known = _known_names(linked)
+    stubs = {
+        function.name: (code, function)
+        for code, function in reachable
+        if _STUB_NAME.match(function.name) and _TRIVIAL_BODY.fullmatch(code.body(function)) and function.result != "void"
+    }
+    told: set[str] = set()
+    for code, function in reachable:
+        for name, start in code.calls(function):
+            _check_declared(name, start, code, linked, told, diagnostics)
+            _check_call(name, start, code, stubs, known, told, diagnostics)
+        if function.owner and not _may_allocate(function):
+            for match in re.finditer(r"\bnew\b", code.body(function)):
+                start = function.body_start + match.start()
+                message = "memory is allocated while the model runs"
+                diagnostics.error("model-heap", code.file.span(start, start + 3), message, hint=_HEAP_HINT)
+    for code in linked.headers:
+        for match in re.finditer(r"\btypedef\s+(float)\s+\w*Double\b", code.file.code):
+            diagnostics.warning(
+                "model-single-precision",
+                code.file.span(match.start(1), match.end(1)),
+                "XXDouble is float: the model computes in single precision, and its results differ from 20-sim's",
+                hint="make it double",
+            )
+
+
+def _check_declared(
+    name: str, start: int, code: Code, linked: Linked, told: set[str], diagnostics: Diagnostics
+) -> None:
+    """Reports a call of a function of another C file that no header declares: C would take it to return int."""
+    if code.file.path.suffix != ".c" or name in told or not any(
+        f.name == name for unit in linked.units if unit is not code for f in unit.functions if not f.static
+    ):
+        return
+    if any(f.name == name for f in code.functions) or any(name in header.identifiers for header in linked.headers):
+        return
+    if re.search(rf"\b{name}\s*\([^;{{}}]*\)\s*;", "".join(_outside_bodies(code))):
+        return
+    told.add(name)
+    span = code.file.span(start, start + len(name))
+    message = f"'{name}' is called, but no header declares it"
+    diagnostics.error("model-undeclared", span, message, hint="include the header that declares it, as 20-sim exports it")
+
+
+def _outside_bodies(code: Code) -> Iterable[str]:
+    at = 0
+    for function in code.functions:
+        yield code.file.code[at : function.body_start]
+        at = function.body_end
+    yield code.file.code[at:]
+
+
+_HEAP_HINT = "targets have no heap after start: use arrays of fixed size"
+
+
+def _may_allocate(function: Function) -> bool:
+    return function.name.lstrip("~") == function.owner or function.name == "Initialize"
+
+
+def _check_call(
+    name: str,
+    start: int,
+    code: Code,
+    stubs: dict[str, tuple[Code, Function]],
+    known: set[str],
+    told: set[str],
+    diagnostics: Diagnostics,
+) -> None:
+    span = code.file.span(start, start + len(name))
+    if name in stubs:
+        holder, stub = stubs[name]
+        match = _STUB_NAME.match(name)
+        what = _STUBS[match[1]] if match else name
+        note = Note("it does nothing and returns 0 here", holder.file.span(stub.start, stub.start + len(name)))
+        hint = f"write the body of '{name}', or avoid {what} in the model"
+        diagnostics.error("model-stub", span, f"the model uses {what}, which exports leave empty", hint=hint, notes=[note])
+        return
+    if name in known or name in told:
+        return
+    if name in _HEAP:
+        diagnostics.error("model-heap", span, f"the model calls {name}()", hint=_HEAP_HINT)
+    elif name in _FILES:
+        message = f"the model calls {name}(): there are no files on a target"
+        diagnostics.error("model-file-use", span, message, hint="replace tables in files by equations or parameters in 20-sim")
+    elif name in _PRINTS:
+        message = f"the model calls {name}(): its output goes nowhere on a target"
+        diagnostics.warning("model-prints", span, message, hint="remove it, or bind an output port to a topic")
+    elif name in ("rand", "srand"):
+        diagnostics.warning(
+            "model-random",
+            span,
+            f"the model uses {name}(), whose numbers differ from one C library to the next",
+            hint="feed noise in through an input port if results shall be the same on host and target",
+        )
+    elif name in _CLOCKS:
+        message = f"the model reads the computer's clock ({name}()), which targets do not have"
+        diagnostics.warning("model-real-time", span, message, hint="use 'time' instead of 'realtime' in 20-sim")
+    elif name not in _LIBRARY_ALL:
+        told.add(name)
+        if re.match(r"XX|YY", name) or name.endswith("Submodel"):
+            message = f"'{name}' is called, but no file of the export defines it"
+            hint = "are all files there, and renamed in the same way? else export again"
+            diagnostics.error("model-incomplete", span, message, hint=hint)
+        else:
+            message = f"'{name}' is called, but it is no part of the export: dll() functions run inside 20-sim only"
+            diagnostics.error("model-dll", span, message, hint="put a source file that defines it into the model's folder")
+
+
+def _known_names(linked: Linked) -> set[str]:
+    """Names that are something else than calls into the unknown: functions, types, macros, methods."""
+    known = {function.name for _, function in linked.functions()} | {function.owner for _, function in linked.functions()}
+    known |= linked.macro_names() | KEYWORDS
+    for code in linked.all:
+        known |= set(re.findall(r"\btypedef\b[^;]*?\b(\w+)\s*;", code.file.code))
+        known |= set(re.findall(r"\}\s*(\w+)\s*;", code.file.code))
+        known |= set(re.findall(r"\b(?:class|struct|union|enum)\s+(\w+)", code.file.code))
+        if code.file.path.suffix.lower() != ".c":
+            inline = r"\b(\w+)\s*\([^;{}()]*\)\s*(?:const\s*)?(?::[^{};]*)?\{"
+            known |= set(re.findall(inline, code.file.code))
+    return known
+
+
+def _check_directives(linked: Linked, reachable: Iterable[tuple[Code, Function]], diagnostics: Diagnostics) -> None:
+    """Reports ``#warning`` and ``#error`` texts of 20-sim's templates that stand in code that runs, or outside of functions."""
+    running = {(code.file.path, function.start) for code, function in reachable}
+    for code in linked.all:
+        for match in _DIRECTIVE.finditer(code.file.without_comments):
+            holder = next((f for f in code.functions if f.body_start <= match.start() < f.body_end), None)
+            if holder is not None and (code.file.path, holder.start) not in running:
+                continue
+            text = code.file.text[match.start(2) : match.end(2)].strip().strip('"')
+            span = code.file.span(match.start(1), match.end(2))
+            folded = text.casefold()
+            if "dependent state" in folded:
+                diagnostics.error("model-dependent-states", span, _solver("dependent states"), hint=_DEPENDENT_HINT)
+            elif "algebraic loop" in folded:
+                diagnostics.error("model-algebraic-loop", span, _solver("algebraic loops"), hint=_LOOP_HINT)
+            elif "constraint" in folded:
+                diagnostics.error("model-constraint", span, _solver("constraints"), hint=_CONSTRAINT_HINT)
+            elif "not yet implemented" not in folded and match[1] == "warning" and text:
+                diagnostics.warning("model-warning", span, f"the export warns: {text[:200]}")
+
+
+def _solver(what: str) -> str:
+    return f"the model has {what}, which exported code does not solve"
+
+
+_SOLVER_ARRAYS = (
+    ("rS", "model-dependent-states", "dependent states", _DEPENDENT_HINT),
+    ("aA", "model-algebraic-loop", "algebraic loops or constraints", _LOOP_HINT),
+)
+
+
+def _check_solver_arrays(linked: Linked, diagnostics: Diagnostics) -> None:
+    """Reports arrays that only exist where equations need a solver: ``xx_S``, ``xx_r``, ``xx_A``, ``xx_a``."""
+    for letters, id, what, hint in _SOLVER_ARRAYS:
+        for code in linked.units:
+            pattern = re.compile(rf"(?<![\w.])(?:\w+->)?(?:xx_|m_)[{letters}](?=\s*\[\s*\d+\s*\]\s*=[^=])")
+            match = pattern.search(code.file.code)
+            if match:
+                span = code.file.span(match.start(), match.end())
+                diagnostics.error(id, span, _solver(what), hint=hint)
+                break

@@ -1,0 +1,365 @@
+"""``model.yaml``: a controller written by hand, with its ports, step size and functions.
+
+The whole file is checked here, by the same rules as ``schemas/model.schema.json`` states for editors.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from fractions import Fraction
+from pathlib import Path
+
+from epg.diagnostics import Diagnostics, did_you_mean
+from epg.load.models import details
+from epg.load.models.c_code import parse_code
+from epg.load.models.identifiers import RESERVED, to_identifier
+from epg.load.models.link import source_files
+from epg.load.models.model import Model, Parameter, Port
+from epg.load.models.ports import check_identifiers
+from epg.load.models.source_file import read_source
+from epg.load.yaml_file import load_yaml
+from epg.quantity import QuantityError, parse_quantity
+from epg.source import Node, Span
+
+FILE_NAME = "model.yaml"
+VERSION = 1
+
+_KEYS = {
+    "version": "number",
+    "name": "identifier",
+    "description": "text",
+    "step": "quantity",
+    "language": "word",
+    "sources": "list",
+    "include_dirs": "list",
+    "header": "text",
+    "style": "word",
+    "instance": "type",
+    "types": "map",
+    "functions": "map",
+    "inputs": "map",
+    "outputs": "map",
+    "parameters": "map",
+}
+_REQUIRED = ("version", "step", "sources", "header", "functions", "outputs")
+_FUNCTIONS = ("init", "step", "terminate", "stopped", "finite")
+_PORT_KEYS = ("unit", "type", "description")
+_PARAMETER_KEYS = ("value", "unit", "member", "description")
+_TYPE = re.compile(r"(?:struct )?[A-Za-z_]\w*(?:::[A-Za-z_]\w*)*")
+_IDENTIFIER = re.compile(r"[A-Za-z_]\w{0,62}")
+_SUFFIXES = {"c": (".c",), "c++": (".cpp", ".cc", ".cxx")}
+
+
+def load_hand_written(path: Path, diagnostics: Diagnostics) -> Model | None:
+    """The model that ``path`` describes, or None after reporting everything that is wrong with it."""
+    before = diagnostics.error_count
+    node = load_yaml(path, diagnostics)
+    if node is None:
+        return None
+    reader = _Reader(path, node, diagnostics)
+    model = reader.load()
+    return model if diagnostics.error_count == before else None
+
+
+class _Reader:
+    def __init__(self, path: Path, node: Node, diagnostics: Diagnostics) -> None:
+        self.path = path
+        self.node = node
+        self.diagnostics = diagnostics
+
+    def load(self) -> Model | None:
+        if not self.node.is_mapping:
+            self._error("wrong-type", self.node.span, "a model.yaml is a map (key: value)", "it begins with 'version: 1'")
+            return None
+        if not self._version():
+            return None
+        self._known_keys(self.node, tuple(_KEYS), "")
+        for key in _REQUIRED:
+            if key not in self.node:
+                self._error("missing-key", Span(str(self.path), 1, 1, 2), f"'{key}' is missing", "")
+        language = self._choice("language", ("c", "c++"), "c")
+        style = self._choice("style", ("struct", "arrays"), "struct")
+        step = self._step()
+        functions = self._functions(language)
+        inputs, outputs = self._ports("inputs"), self._ports("outputs")
+        instance = self._type(self.node.get("instance"), "instance")
+        types = self._types(style)
+        parameters, members = self._parameters(instance)
+        sources = self._files("sources", _SUFFIXES[language])
+        directories = self._files("include_dirs", ()) or (self.path.parent,)
+        header = self._header(directories)
+        if step is None or functions is None or not sources:
+            return None
+        read = {file for file in sources if file.is_file()}
+        headers = [file for folder in directories for file in source_files(folder, (".h", ".hpp", ".hh"), 0)]
+        return Model(
+            name=self._text("name") or self.path.parent.resolve().name,
+            origin="hand-written",
+            language=language,
+            version="",
+            method="",
+            step=step,
+            inputs=inputs,
+            outputs=outputs,
+            parameters=parameters,
+            directory=self.path.parent,
+            files=tuple(sorted({self.path, *read, *headers})),
+            span=self.node.span,
+            details=details.HandWritten(
+                style=style,
+                header=header,
+                sources=sources,
+                include_dirs=directories,
+                instance=instance,
+                inputs_type=types[0],
+                outputs_type=types[1],
+                init=functions.get("init", ""),
+                step=functions["step"],
+                terminate=functions.get("terminate", ""),
+                stopped=functions.get("stopped", ""),
+                finite=functions.get("finite", ""),
+                members=members,
+                renames=self._renames(sources) if language == "c" else (),
+                system_headers=self._system_headers([*sources, *headers]) if language == "c++" else (),
+            ),
+        )
+
+    # single keys ----------------------------------------------------------------------------------------------------
+
+    def _version(self) -> bool:
+        node = self.node.get("version")
+        if node is None or node.value == VERSION and not isinstance(node.value, bool):
+            return True
+        if isinstance(node.value, int) and not isinstance(node.value, bool) and node.value > VERSION:
+            message = f"version {node.value} is newer than this EPG, which reads version {VERSION}"
+            self._error("newer-version", node.span, message, "install a newer EPG")
+        else:
+            self._error("wrong-value", node.span, f"expected version {VERSION}", f"write 'version: {VERSION}'")
+        return False
+
+    def _step(self) -> Fraction | None:
+        node = self.node.get("step")
+        if node is None:
+            return None
+        try:
+            value = parse_quantity(node.value, "time")
+        except QuantityError as problem:
+            self._error("wrong-unit" if "unit" in str(problem) else "wrong-quantity", node.span, str(problem), problem.hint)
+            return None
+        if value <= 0:
+            self._error("out-of-range", node.span, "the step must be more than 0", "write for example '1 ms'")
+            return None
+        return Fraction(value)
+
+    def _text(self, key: str) -> str:
+        node = self.node.get(key)
+        if node is None:
+            return ""
+        if not isinstance(node.value, str) or not node.value.strip():
+            self._error("wrong-type", node.span, f"'{key}' must be text", "")
+            return ""
+        return node.value
+
+    def _choice(self, key: str, choices: tuple[str, ...], default: str) -> str:
+        node = self.node.get(key)
+        if node is None:
+            return default
+        if node.value not in choices:
+            hint = did_you_mean(str(node.value), choices)
+            self._error("wrong-value", node.span, f"'{node.value}' is not possible here", hint)
+            return default
+        return str(node.value)
+
+    def _type(self, node: Node | None, key: str) -> str:
+        if node is None:
+            return ""
+        if not isinstance(node.value, str) or not _TYPE.fullmatch(node.value):
+            self._error("wrong-value", node.span, f"'{key}' must name a type of the header", "such as pid_t")
+            return ""
+        return node.value
+
+    def _types(self, style: str) -> tuple[str, str]:
+        node = self.node.get("types")
+        if style == "arrays":
+            if node is not None:
+                span = self.node.key_span("types")
+                self._error("unknown-key", span, "'types' has no meaning with 'style: arrays'", "remove it")
+            return "", ""
+        if node is None or not node.is_mapping:
+            span = node.span if node else Span(str(self.path), 1, 1, 2)
+            hint = "with 'style: struct', write for example 'types: {inputs: pid_inputs_t, outputs: pid_outputs_t}'"
+            self._error("missing-key" if node is None else "wrong-type", span, "'types' must name the structs", hint)
+            return "", ""
+        self._known_keys(node, ("inputs", "outputs"), " in 'types'")
+        for key in ("inputs", "outputs"):
+            if key not in node and not (key == "inputs" and not self._has_inputs()):
+                self._error("missing-key", node.span, f"'{key}' is missing in 'types'", "name the struct in the header")
+        return self._type(node.get("inputs"), "inputs"), self._type(node.get("outputs"), "outputs")
+
+    def _has_inputs(self) -> bool:
+        node = self.node.get("inputs")
+        return node is not None and any(True for _ in node.items())
+
+    def _functions(self, language: str) -> Mapping[str, str] | None:
+        node = self.node.get("functions")
+        if node is None:
+            return None
+        if not node.is_mapping:
+            self._error("wrong-type", node.span, "'functions' is a map", "write for example {init: pid_init, step: pid_step}")
+            return None
+        self._known_keys(node, _FUNCTIONS, " in 'functions'")
+        if "step" not in node:
+            self._error("missing-key", node.span, "'step' is missing in 'functions'", "name the function that makes one step")
+        result: dict[str, str] = {}
+        for key, value in node.items():
+            pattern = _TYPE if language == "c++" else _IDENTIFIER
+            if not isinstance(value.value, str) or not pattern.fullmatch(value.value):
+                self._error("wrong-value", value.span, f"'{key}' must name a function of the header", "")
+            elif key in _FUNCTIONS:
+                result[key] = value.value
+        return result if "step" in result else None
+
+    # ports and parameters -------------------------------------------------------------------------------------------
+
+    def _ports(self, key: str) -> tuple[Port, ...]:
+        node = self.node.get(key)
+        if node is None or node.value is None:
+            return ()
+        direction = key.removesuffix("s")
+        if not node.is_mapping:
+            self._error("wrong-type", node.span, f"'{key}' is a map of ports", "write for example {position: {unit: rad}}")
+            return ()
+        ports = []
+        for index, (name, value) in enumerate(node.items()):
+            span = node.key_span(name)
+            if not _IDENTIFIER.fullmatch(name) or name in RESERVED:
+                self._error("invalid-name", span, f"'{name}' is no C identifier", "it names a member of the struct")
+            if value.value is not None and not value.is_mapping:
+                self._error("wrong-type", value.span, f"port '{name}' is a map", "write {} or {unit: rad}")
+                continue
+            self._known_keys(value, _PORT_KEYS, f" of port '{name}'")
+            kind = value.get("type")
+            if kind is not None and kind.value not in ("real", "integer", "boolean"):
+                hint = did_you_mean(str(kind.value), ("real", "integer", "boolean"))
+                self._error("wrong-value", kind.span, f"'{kind.value}' is no type of a port", hint)
+                kind = None
+            ports.append(
+                Port(
+                    name,
+                    to_identifier(name),
+                    direction,
+                    self._word(value, "unit"),
+                    str(kind.value) if kind else "real",
+                    index,
+                    span,
+                    self._word(value, "description"),
+                )
+            )
+        check_identifiers(ports, self.diagnostics)
+        return tuple(ports)
+
+    def _parameters(self, instance: str) -> tuple[tuple[Parameter, ...], tuple[str, ...]]:
+        node = self.node.get("parameters")
+        if node is None or node.value is None:
+            return (), ()
+        if not node.is_mapping:
+            self._error("wrong-type", node.span, "'parameters' is a map", "write for example {kp: {value: 2.0}}")
+            return (), ()
+        parameters: list[Parameter] = []
+        members: list[str] = []
+        for index, (name, value) in enumerate(node.items()):
+            span = node.key_span(name)
+            number = value if not value.is_mapping else value.get("value")
+            if value.is_mapping:
+                self._known_keys(value, _PARAMETER_KEYS, f" of parameter '{name}'")
+            if number is None or isinstance(number.value, bool) or not isinstance(number.value, (int, float)):
+                where = number.span if number else span
+                self._error("wrong-type", where, f"parameter '{name}' needs a number", "write for example {value: 2.0}")
+                continue
+            member = self._word(value, "member") or name
+            if not re.fullmatch(r"[A-Za-z_]\w*(?:(?:\.|\[\d+\])\w*)*", member):
+                what = "member of the instance" if instance else "variable of the header"
+                self._error("invalid-name", span, f"'{member}' is no {what}", "set 'member'")
+                continue
+            identifier = to_identifier(name)
+            if any(known.identifier == identifier for known in parameters):
+                self._error("invalid-name", span, f"'{name}' becomes the C identifier of another parameter", "rename it")
+            parameters.append(Parameter(name, identifier, float(number.value), self._word(value, "unit"), index, span))
+            members.append(member)
+        return tuple(parameters), tuple(members)
+
+    def _word(self, node: Node, key: str) -> str:
+        found = node.get(key)
+        if found is None or found.value is None:
+            return ""
+        if not isinstance(found.value, str):
+            self._error("wrong-type", found.span, f"'{key}' must be text", "put it into quotes")
+            return ""
+        return found.value
+
+    # files ----------------------------------------------------------------------------------------------------------
+
+    def _files(self, key: str, suffixes: tuple[str, ...]) -> tuple[Path, ...]:
+        node = self.node.get(key)
+        if node is None:
+            return ()
+        if not node.is_sequence or not node.elements():
+            self._error("wrong-type", node.span, f"'{key}' must be a list", "write for example [pid.c]")
+            return ()
+        result: list[Path] = []
+        for element in node.elements():
+            if not isinstance(element.value, str) or not element.value:
+                self._error("wrong-type", element.span, "expected the name of a file or folder", "")
+                continue
+            path = self.path.parent / element.value
+            if suffixes and path.suffix.lower() not in suffixes:
+                hint = f"sources of this language end in {', '.join(suffixes)}; 'language' is c or c++"
+                self._error("wrong-value", element.span, f"'{element.value}' has another suffix", hint)
+            elif not (path.is_file() if suffixes else path.is_dir()):
+                folder = path.parent if path.parent.is_dir() else self.path.parent
+                known = [entry.name for entry in sorted(folder.iterdir()) if not suffixes or entry.suffix in suffixes]
+                message = f"there is no {'file' if suffixes else 'folder'} '{element.value}'"
+                self._error("file-not-found", element.span, message, did_you_mean(element.value, known, "in that folder"))
+            else:
+                result.append(path)
+        return tuple(dict.fromkeys(result))
+
+    def _header(self, directories: tuple[Path, ...]) -> str:
+        name = self._text("header")
+        if name and not any((folder / name).is_file() for folder in directories):
+            node = self.node["header"]
+            known = [entry.name for folder in directories for entry in source_files(folder, (".h", ".hpp", ".hh"), 0)]
+            self._error("file-not-found", node.span, f"there is no header '{name}'", did_you_mean(name, known, "headers"))
+        if re.search(r'["\\\n]', name):
+            self._error("invalid-name", self.node["header"].span, f"'{name}' is no name of a header", "use '/' in paths")
+        return name
+
+    def _renames(self, sources: tuple[Path, ...]) -> tuple[str, ...]:
+        names: set[str] = set()
+        macros: set[str] = set()
+        for path in sources:
+            file = read_source(path, self.diagnostics)
+            if file is None:
+                continue
+            code = parse_code(file)
+            names |= {item.name for item in (*code.functions, *code.variables) if not item.static}
+            macros |= {macro.name for macro in code.macros}
+        return tuple(sorted(names - macros))
+
+    def _system_headers(self, files: list[Path]) -> tuple[str, ...]:
+        names: set[str] = set()
+        for path in files:
+            file = read_source(path, self.diagnostics)
+            if file is not None:
+                names |= {include.name for include in parse_code(file).includes if include.system}
+        return tuple(sorted(names))
+
+    def _known_keys(self, node: Node, keys: tuple[str, ...], where: str) -> None:
+        for key, _ in node.items():
+            if key not in keys:
+                hint = did_you_mean(key, keys, "known keys")
+                self._error("unknown-key", node.key_span(key), f"unknown key '{key}'{where}", hint)
+
+    def _error(self, id: str, span: Span, message: str, hint: str) -> None:
+        self.diagnostics.error(id, span, message, hint=hint)

@@ -1,0 +1,51 @@
+"""C identifiers for names of a model.
+
+>>> to_identifier("PID1\\\\kp"), to_identifier("p.e"), to_identifier("double"), to_identifier("2nd stage")
+('PID1_kp', 'p_e', 'double_', '_2nd_stage')
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+
+_C11 = """auto break case char const continue default do double else enum extern float for goto if inline int long
+register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while""".split()
+_CPP = """alignas alignof and and_eq asm bitand bitor bool catch char16_t char32_t char8_t class compl concept
+const_cast consteval constexpr constinit co_await co_return co_yield decltype delete dynamic_cast explicit export
+false friend mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected public
+reinterpret_cast requires static_assert static_cast template this thread_local throw true try typeid typename
+using virtual wchar_t xor xor_eq""".split()
+_MACROS = "NULL EOF errno stdin stdout stderr assert unix linux i386 INFINITY NAN HUGE_VAL RAND_MAX".split()
+
+RESERVED = frozenset(_C11) | frozenset(_CPP) | frozenset(_MACROS)
+"""Words that are no member of a struct in C11 or C++20, or macros of C libraries and common compilers."""
+
+
+def to_identifier(name: str) -> str:
+    """The C identifier for a name: other characters become ``_``, a reserved word gets ``_`` at its end."""
+    identifier = re.sub(r"_+", "_", re.sub(r"[^A-Za-z0-9_]", "_", name)) if not _is_identifier(name) else name
+    if not identifier or identifier[0].isdigit():
+        identifier = f"_{identifier}"
+    if re.match(r"__|_[A-Z]", identifier):  # reserved for the compiler
+        identifier = "x" + identifier
+    return f"{identifier}_" if identifier in RESERVED else identifier
+
+
+def unique_identifiers(names: Iterable[str]) -> list[str]:
+    """Identifiers for ``names`` in order; the second and later ones of a collision get a number."""
+    used: set[str] = set()
+    result: list[str] = []
+    for name in names:
+        identifier = first = to_identifier(name)
+        count = 1
+        while identifier in used:
+            count += 1
+            identifier = f"{first}_{count}"
+        used.add(identifier)
+        result.append(identifier)
+    return result
+
+
+def _is_identifier(name: str) -> bool:
+    return re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", name) is not None

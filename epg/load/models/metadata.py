@@ -1,0 +1,179 @@
+"""Metadata beside the sources, and what it says differently.
+
+The sources are the truth, as developers rename prefixes in them and export again without these files.  A difference is
+a warning that names both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+
+from epg.diagnostics import Diagnostics, Note
+from epg.load.models.assignments import PortLine, exact_number, input_lines, output_lines
+from epg.load.models.configuration import (
+    Configuration,
+    find_configuration,
+    load_configuration,
+    load_model_description,
+)
+from epg.load.models.model import Model, Port
+from epg.load.models.tokens import Tokens, is_tokens_file, load_tokens
+from epg.source import Span
+
+
+@dataclass(frozen=True)
+class Metadata:
+    """What was found beside a model's sources."""
+
+    tokens: Tokens | None
+    configuration: Configuration | None
+    description: Configuration | None
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        return tuple(item.path for item in (self.tokens, self.configuration, self.description) if item is not None)
+
+    @property
+    def version(self) -> str:
+        return self.tokens.trimmed("GENERATION_BUILD") if self.tokens else ""
+
+    @property
+    def finish(self) -> Fraction | None:
+        """The end of the experiment, from whatever states it."""
+        texts = [item.finish for item in (self.configuration, self.description) if item]
+        texts += [self.tokens.trimmed("FINISH_TIME")] if self.tokens else []
+        return next((value for value in map(exact_number, texts) if value is not None), None)
+
+    def port_elements(self, memory: str) -> tuple[list[PortLine], list[PortLine]] | None:
+        """For an FMU: the array element of each port.  ``memory`` is the array that value references count in."""
+        if self.tokens and {"INPUT_TO_VARIABLE_EQUATIONS", "VARIABLE_TO_OUTPUT_EQUATIONS"} <= self.tokens.values.keys():
+            return (
+                input_lines(self.tokens.code("INPUT_TO_VARIABLE_EQUATIONS"), "u"),
+                output_lines(self.tokens.code("VARIABLE_TO_OUTPUT_EQUATIONS"), "y"),
+            )
+        source = self.configuration or self.description
+        if source is None:
+            return None
+        result: tuple[list[PortLine], list[PortLine]] = ([], [])
+        for direction, lines in zip(("input", "output"), result, strict=True):
+            ports = sorted((port for port in source.ports if port.direction == direction), key=lambda port: port.name)
+            for position, port in enumerate(ports):
+                array = port.array or memory
+                lines.append(PortLine(port.name, port.unit, position, array, port.index, port.span))
+        return result
+
+
+def find_metadata(main: Path, name: str, diagnostics: Diagnostics) -> Metadata:
+    """The metadata beside the source file ``main`` of the model called ``name``; unreadable files give a warning."""
+    directory = main.parent
+    folders = [directory, directory.parent] if directory.name.lower() in ("src", "source", "sources") else [directory]
+    tokens: Tokens | None = None
+    for folder in folders:
+        files = [entry for entry in _entries(folder) if is_tokens_file(entry)]
+        own = [file for file in files if file.stem.casefold() == f"{main.stem}_tokens".casefold()]
+        candidates = own or [file for file in files if file.stem.casefold() == "tokens"] or files
+        loaded = [load_tokens(file, diagnostics, required=False) for file in candidates]
+        good = [item for item in loaded if item is not None]
+        if good:
+            tokens = next((item for item in good if item.trimmed("SUBMODEL_NAME") == name), good[0])
+            break
+    path = next((found for found in map(find_configuration, folders) if found), None)
+    described = next((f / "modelDescription.xml" for f in folders if (f / "modelDescription.xml").is_file()), None)
+    return Metadata(
+        tokens,
+        load_configuration(path, diagnostics) if path else None,
+        load_model_description(described, diagnostics) if described else None,
+    )
+
+
+def _entries(folder: Path) -> list[Path]:
+    try:
+        return sorted(entry for entry in folder.iterdir() if entry.is_file())
+    except OSError:
+        return []
+
+
+def cross_check(model: Model, prefix: str, metadata: Metadata, diagnostics: Diagnostics) -> bool:
+    """Warns of every difference between ``model`` and its metadata; whether the tokens are of this very model."""
+    same = True
+    tokens, configuration = metadata.tokens, metadata.configuration
+    if tokens:
+        same = _check_names(model, tokens, diagnostics)
+        method = tokens.trimmed("INTEGRATION_METHOD_NAME")
+        if method and method != model.method:
+            text = f"integration method '{method}', the sources '{model.method}'"
+            same &= _differs(tokens.path, tokens.span("INTEGRATION_METHOD_NAME"), text, model.span, diagnostics)
+        step = tokens.trimmed("TIME_STEP_SIZE")
+        if step and exact_number(step) != model.step:
+            text = f"step size {step} s, the sources {float(model.step)!r} s"
+            same &= _differs(tokens.path, tokens.span("TIME_STEP_SIZE"), text, model.span, diagnostics)
+        if "VARPREFIX" in tokens.values and tokens.trimmed("VARPREFIX") != prefix:
+            text = f"prefix '{tokens.trimmed('VARPREFIX')}', the sources '{prefix}'"
+            _differs(tokens.path, tokens.span("VARPREFIX"), text, model.span, diagnostics)
+        if tokens.trimmed("SUBMODEL_NAME") not in ("", model.name):
+            text = f"submodel '{tokens.trimmed('SUBMODEL_NAME')}', the sources '{model.name}'"
+            _differs(tokens.path, tokens.span("SUBMODEL_NAME"), text, model.span, diagnostics)
+    if configuration:
+        if exact_number(configuration.step) not in (None, model.step):
+            text = f"step size {configuration.step} s, the sources {float(model.step)!r} s"
+            _differs(configuration.path, configuration.step_span, text, model.span, diagnostics)
+        for direction, ports in (("input", model.inputs), ("output", model.outputs)):
+            _check_configured(configuration, direction, ports, model.span, diagnostics)
+    return same
+
+
+def _check_names(model: Model, tokens: Tokens, diagnostics: Diagnostics) -> bool:
+    same = True
+    for kind, names in (
+        ("INPUT", [port.name for port in model.inputs]),
+        ("OUTPUT", [port.name for port in model.outputs]),
+    ):
+        if f"{kind}_NAMES3" not in tokens.values and f"{kind}_NAMES" not in tokens.values:
+            continue
+        told = [name for name in tokens.names(kind) if name]
+        if told == names:
+            continue
+        word = f"{kind.lower()}s"
+        if sorted(told) == sorted(names):
+            text = f"{word} in the order {_listed(told)}, the sources in the order {_listed(names)}"
+        else:
+            text = f"{word} {_listed(told)}, the sources {_listed(names)}"
+        token = f"{kind}_NAMES3" if f"{kind}_NAMES3" in tokens.values else f"{kind}_NAMES"
+        same &= _differs(tokens.path, tokens.span(token), text, model.span, diagnostics)
+    told = [name for name in tokens.names("PARAMETER") if name]
+    known = [parameter.name for parameter in model.parameters]
+    missing = [name for name in known if name not in told]
+    if told and missing:
+        text = f"no parameter '{missing[0]}', which the sources have"
+        same &= _differs(tokens.path, tokens.span("PARAMETER_NAMES3"), text, model.span, diagnostics)
+    return same
+
+
+def _check_configured(
+    configuration: Configuration, direction: str, ports: Sequence[Port], sources: Span, diagnostics: Diagnostics
+) -> None:
+    told = {port.name: port for port in configuration.ports if port.direction == direction}
+    names = {port.name for port in ports}
+    for name in sorted(names - told.keys()):
+        span = Span(str(configuration.path), 1, 1, 2)
+        _differs(configuration.path, span, f"no {direction} '{name}', the sources do", sources, diagnostics)
+    for name in sorted(told.keys() - names):
+        _differs(configuration.path, told[name].span, f"the {direction} '{name}', the sources do not", sources, diagnostics)
+
+
+def _differs(file: Path, span: Span, text: str, sources: Span, diagnostics: Diagnostics) -> bool:
+    diagnostics.warning(
+        "stale-metadata",
+        span,
+        f"'{file.name}' has {text}",
+        hint="the sources are used; export the model again to make both agree",
+        notes=[Note("the sources", sources)],
+    )
+    return False
+
+
+def _listed(names: Sequence[str]) -> str:
+    return ", ".join(names) if names else "(none)"

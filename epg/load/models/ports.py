@@ -1,0 +1,125 @@
+"""Ports and parameters as :class:`~epg.load.models.model.Model` wants them, from what sources and metadata say."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from epg.diagnostics import Diagnostics, Note
+from epg.load.models.assignments import Assignment, PortLine, number
+from epg.load.models.configuration import Configuration
+from epg.load.models.identifiers import to_identifier, unique_identifiers
+from epg.load.models.model import Parameter, Port
+from epg.source import Span
+
+
+def make_ports(
+    lines: Iterable[PortLine],
+    direction: str,
+    names: Sequence[tuple[str, Span]],
+    configuration: Configuration | None,
+    diagnostics: Diagnostics,
+    whole: Span,
+    expected: int | None = None,
+) -> tuple[Port, ...]:
+    """The ports in the order of their index, after checking that none is missing or twice.
+
+    ``names`` are used for lines without a comment (by index); ``expected`` is the number the sources state.
+    """
+    by_index: dict[int, PortLine] = {}
+    for line in lines:
+        by_index.setdefault(line.index, line)
+    count = max(by_index, default=-1) + 1 if expected is None else expected
+    vector = "u" if direction == "input" else "y"
+    missing = [index for index in range(count) if index not in by_index]
+    surplus = sorted(index for index in by_index if index >= count)
+    if missing or surplus:
+        listed = ", ".join(f"{vector}[{index}]" for index in (missing or surplus)[:8])
+        what = f"no line connects {listed} to the model" if missing else f"there are lines for {listed} beyond that"
+        diagnostics.error(
+            "model-ports",
+            whole,
+            f"the model has {count} {direction}{'' if count == 1 else 's'}, but {what}",
+            hint="export the model again, or undo the edit of its generated code",
+        )
+        return ()
+    ports = []
+    for index in range(count):
+        line = by_index[index]
+        name, span = line.name, line.span
+        if not name and len(names) == count:
+            name = names[index][0]
+        if not name:
+            name = f"{vector}{index}"
+            diagnostics.warning(
+                "model-port-unnamed",
+                span,
+                f"the comment with the name of {vector}[{index}] is missing: the port is called '{name}'",
+                hint="keep the comments 20-sim writes behind these lines, or tokens.xml",
+            )
+        configured = configuration.port(direction, name) if configuration else None
+        ports.append(
+            Port(
+                name,
+                to_identifier(name),
+                direction,
+                line.unit or (configured.unit if configured else ""),
+                configured.type if configured else "real",
+                index,
+                span,
+                configured.description if configured else "",
+            )
+        )
+    return tuple(ports)
+
+
+def check_identifiers(ports: Sequence[Port], diagnostics: Diagnostics) -> None:
+    """Reports two ports of one direction whose names become the same C identifier, or that are named alike."""
+    first: dict[str, Port] = {}
+    for port in ports:
+        other = first.setdefault(port.identifier, port)
+        if other is port:
+            continue
+        same = other.name == port.name
+        diagnostics.error(
+            "model-port-collision",
+            port.span,
+            f"{port.direction} '{port.name}' exists twice"
+            if same
+            else f"{port.direction}s '{other.name}' and '{port.name}' have the same C identifier '{port.identifier}'",
+            hint="rename one of them in 20-sim",
+            notes=[Note(f"'{other.name}' is here", other.span)],
+        )
+
+
+def make_parameters(
+    lines: Sequence[Assignment], names: Sequence[str], units: Sequence[str]
+) -> tuple[tuple[Parameter, ...], tuple[tuple[Assignment, ...], ...]]:
+    """The parameters with a number, by index, and for each all lines that set it.
+
+    Parameters that hold a string (names of files and dynamic libraries) are left out.
+    """
+    by_index: dict[int, list[Assignment]] = {}
+    for line in lines:
+        if number(line.value) is not None:
+            by_index.setdefault(line.index, []).append(line)
+    chosen = [by_index[index][-1] for index in sorted(by_index)]
+    titles = [_title(line, names) for line in chosen]
+    seen: dict[str, int] = {}
+    for position, title in enumerate(titles):
+        seen[title] = seen.get(title, 0) + 1
+        if seen[title] > 1:
+            titles[position] = f"{title}#{seen[title]}"
+    identifiers = unique_identifiers(titles)
+    parameters = []
+    for line, title, identifier in zip(chosen, titles, identifiers, strict=True):
+        value = number(line.value)
+        assert value is not None
+        unit = line.unit or (units[line.index] if line.index < len(units) else "")
+        parameters.append(Parameter(title, identifier, value, unit, line.index, line.span))
+    return tuple(parameters), tuple(tuple(by_index[line.index]) for line in chosen)
+
+
+def _title(line: Assignment, names: Sequence[str]) -> str:
+    if line.name:
+        return line.name
+    return names[line.index] if line.index < len(names) and names[line.index] else f"P{line.index}"

@@ -1,0 +1,168 @@
+"""Which kind of model lies in a folder, and where."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from epg.diagnostics import Diagnostics
+from epg.load.models import c_function, cpp_class, hand_written
+from epg.load.models.c_code import Code, parse_code
+from epg.load.models.link import is_program, source_files
+from epg.load.models.model import Model
+from epg.load.models.source_file import read_any_text, read_source
+from epg.load.models.tokens import is_tokens_file, load_tokens
+from epg.load.models.tokens_model import load_tokens_model
+from epg.source import Span
+
+LOOKED_FOR = (
+    "a model is a folder with an export of 20-sim (xxsubmod.c and the files beside it, <Submodel>.cpp with common/, "
+    "or tokens.xml) or with a model.yaml"
+)
+_MAX_FILES = 400
+_Loader = Callable[[Diagnostics], "Model | None"]
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A model that was found; ``file`` is what to name to choose it."""
+
+    file: Path
+    load: _Loader
+
+
+def load_model(path: Path, diagnostics: Diagnostics, wanted_by: Span | None = None) -> Model | None:
+    """The model in the folder (or file) ``path``, or None after reporting why there is none.
+
+    ``wanted_by`` is where the path is written; problems with the path as a whole are reported there.  Looks one folder
+    further down where ``path`` itself holds none.
+    """
+    whole = wanted_by or Span(str(path))
+    try:
+        exists, is_file = path.exists(), path.is_file()
+    except (OSError, ValueError):
+        exists, is_file = False, False
+    if not exists:
+        diagnostics.error("model-not-found", whole, f"there is no folder '{path}'", hint=_near(path))
+        return None
+    if is_file:
+        return _load_file(path, whole, diagnostics)
+    try:
+        entries = sorted(path.iterdir())
+    except OSError as error:
+        message = f"cannot read the folder '{path.name}': {error.strerror or error}"
+        diagnostics.error("model-unreadable", whole, message, hint="check its permissions")
+        return None
+    if not entries:
+        diagnostics.error("model-not-recognised", whole, f"the folder '{path.name}' is empty", hint=LOOKED_FOR)
+        return None
+    for folders in ([path], [entry for entry in entries if _is_searched(entry)]):
+        candidates = _candidates(folders)
+        if len(candidates) == 1:
+            return candidates[0].load(diagnostics)
+        if candidates:
+            names = ", ".join(sorted(candidate.file.relative_to(path).as_posix() for candidate in candidates)[:8])
+            message = f"the folder '{path.name}' holds {len(candidates)} models"
+            diagnostics.error("model-ambiguous", whole, message, hint=f"name one of them: {names}")
+            return None
+    message = f"no model was recognised in the folder '{path.name}'"
+    diagnostics.error("model-not-recognised", whole, message, hint=LOOKED_FOR + _found(path))
+    return None
+
+
+def _is_searched(entry: Path) -> bool:
+    return entry.is_dir() and not entry.name.startswith(".") and entry.name.lower() not in ("project", "build", "binaries")
+
+
+def _candidates(folders: list[Path]) -> list[Candidate]:
+    """Models in ``folders``, of the first kind of which there is any: written by hand, sources, tokens."""
+    for find in (_hand_written, _sources, _tokens):
+        found = [candidate for folder in folders for candidate in find(folder)]
+        if found:
+            return found
+    return []
+
+
+def _hand_written(folder: Path) -> list[Candidate]:
+    path = folder / hand_written.FILE_NAME
+    return [_hand_written_candidate(path)] if path.is_file() else []
+
+
+def _hand_written_candidate(path: Path) -> Candidate:
+    return Candidate(path, lambda diagnostics: hand_written.load_hand_written(path, diagnostics))
+
+
+def _sources(folder: Path) -> list[Candidate]:
+    files = [f for f in source_files(folder, (*c_function.SUFFIXES, *cpp_class.SUFFIXES), 0) if not is_program(f)]
+    found = []
+    for file in files[:_MAX_FILES]:
+        candidate = _source_candidate(file, Diagnostics())
+        if candidate is not None:
+            found.append(candidate)
+    return found
+
+
+def _source_candidate(path: Path, diagnostics: Diagnostics) -> Candidate | None:
+    file = read_source(path, diagnostics)
+    if file is None or "Calculate" not in file.text:
+        return None
+    code: Code = parse_code(file)
+    if path.suffix.lower() in c_function.SUFFIXES:
+        if c_function.is_c_function(code):
+            return Candidate(path, lambda report: c_function.load_c_function(code, report))
+        return None
+    if cpp_class.submodel_classes(code):
+        return Candidate(path, lambda report: cpp_class.load_cpp_class(code, report))
+    return None
+
+
+def _tokens(folder: Path) -> list[Candidate]:
+    files = [f for f in source_files(folder, (".xml",), 0) if is_tokens_file(f)]
+    return [_tokens_candidate(file) for file in files]
+
+
+def _tokens_candidate(path: Path) -> Candidate:
+    def load(diagnostics: Diagnostics) -> Model | None:
+        tokens = load_tokens(path, diagnostics, required=True)
+        return load_tokens_model(tokens, diagnostics) if tokens else None
+
+    return Candidate(path, load)
+
+
+def _load_file(path: Path, whole: Span, diagnostics: Diagnostics) -> Model | None:
+    suffix = path.suffix.lower()
+    if suffix == ".xml":
+        return _tokens_candidate(path).load(diagnostics)
+    if suffix in (".yaml", ".yml"):
+        return hand_written.load_hand_written(path, diagnostics)
+    if suffix in (*c_function.SUFFIXES, *cpp_class.SUFFIXES):
+        before = diagnostics.error_count
+        candidate = _source_candidate(path, diagnostics)
+        if candidate is not None:
+            return candidate.load(diagnostics)
+        if diagnostics.error_count > before:
+            return None
+    elif suffix not in (".h", ".hpp") and read_any_text(path, diagnostics, whole) is None:
+        return None
+    message = f"'{path.name}' is no model"
+    hint = "name the folder, or the file with the submodel's functions (xxsubmod.c, <Submodel>.cpp), tokens.xml or model.yaml"
+    diagnostics.error("model-not-recognised", whole, message, hint=hint)
+    return None
+
+
+def _near(path: Path) -> str:
+    try:
+        folders = sorted(entry.name for entry in path.parent.iterdir() if _is_searched(entry))
+    except (OSError, ValueError):
+        return "the folder above it does not exist either"
+    return f"folders beside it: {', '.join(folders[:12])}" if folders else ""
+
+
+def _found(path: Path) -> str:
+    names = [entry.name for entry in source_files(path, (".c", ".cpp", ".xml", ".h", ".emx", ".fmu"), 1)]
+    if any(name.lower().endswith(".emx") for name in names):
+        return "; generate code from the .emx in 20-sim (Tools > Real Time Toolbox > C-Code Generation) and name that folder"
+    if any(name.lower().endswith(".fmu") for name in names):
+        return "; unpack the .fmu (it is a zip file) and name its folder 'sources'"
+    return f"; found were {', '.join(names[:6])}" if names else ""

@@ -1,0 +1,101 @@
+"""``tokens.xml``: every value and equation 20-sim fills into its templates, by name.
+
+Lists (``INPUT_NAMES3``, ``INPUT_UNITS``) hold one entry per line, an empty line where there is none.  ``*_NAMES3`` are
+the bare names; ``*_NAMES`` are C strings and serve as a second source where an old version lacks the former.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from epg.diagnostics import Diagnostics
+from epg.load.models.source_file import SourceFile
+from epg.load.models.xml_file import load_xml
+from epg.source import Span
+
+_STRING = re.compile(r'"((?:\\.|[^"\\])*)"')
+_CDATA = "<![CDATA["
+
+
+@dataclass(frozen=True)
+class Token:
+    value: str
+    span: Span
+
+
+@dataclass(frozen=True)
+class Tokens:
+    """The tokens of one export."""
+
+    path: Path
+    values: dict[str, Token]
+
+    def get(self, name: str, default: str = "") -> str:
+        token = self.values.get(name)
+        return token.value if token else default
+
+    def trimmed(self, name: str) -> str:
+        return self.get(name).strip()
+
+    def count(self, name: str) -> int:
+        """The number in token ``name``; 0 when there is none."""
+        text = self.trimmed(name)
+        return int(text) if re.fullmatch(r"\d{1,9}", text) else 0
+
+    def span(self, name: str) -> Span:
+        token = self.values.get(name)
+        return token.span if token else Span(str(self.path), 1, 1, 2)
+
+    def names(self, kind: str) -> list[str]:
+        """Names of ``kind`` ("INPUT", "PARAMETER", ...) in the order of their array."""
+        if f"{kind}_NAMES3" in self.values:
+            return [name.strip() for name in self._lines(f"{kind}_NAMES3")]
+        return [re.sub(r"\\(.)", r"\1", match[1]) for match in _STRING.finditer(self.get(f"{kind}_NAMES"))]
+
+    def units(self, kind: str, count: int) -> list[str]:
+        """Units of ``kind``, empty strings where there are none; always ``count`` of them."""
+        units = [unit.strip() for unit in self._lines(f"{kind}_UNITS")]
+        return (units + [""] * count)[:count]
+
+    def _lines(self, name: str) -> list[str]:
+        text = self.get(name)
+        if text.endswith("\n"):
+            text = text[:-1]
+        elif not text:
+            return []
+        return text.split("\n")
+
+    def code(self, name: str) -> SourceFile:
+        """A token that holds code, padded so that positions in it are positions in ``tokens.xml``."""
+        token = self.values.get(name)
+        if token is None:
+            return SourceFile(self.path, "")
+        lead = "\n" * max(0, token.span.line - 1) + " " * max(0, token.span.column - 1)
+        return SourceFile(self.path, lead + token.value)
+
+
+def is_tokens_file(path: Path) -> bool:
+    """Whether a file is named as 20-sim names tokens files: ``tokens.xml``, ``Controller_tokens.xml``."""
+    return path.suffix.lower() == ".xml" and path.stem.lower().endswith("tokens")
+
+
+def load_tokens(path: Path, diagnostics: Diagnostics, *, required: bool) -> Tokens | None:
+    """The tokens in ``path``, or None after reporting what is wrong (as a warning unless ``required``)."""
+    root = load_xml(path, diagnostics, required=required)
+    if root is None:
+        return None
+    if root.name != "tokens":
+        report = diagnostics.error if required else diagnostics.warning
+        message = f"this is no tokens file of 20-sim: its root is <{root.name}>"
+        report("model-xml", root.span, message, hint="the root of a tokens file is <tokens>")
+        return None
+    values: dict[str, Token] = {}
+    for element in root.children:
+        name = element.attributes.get("name", "")
+        if element.name == "token" and name:
+            line, column = element.span.line, element.span.column
+            column += len(f'<token name="{name}">{_CDATA}')
+            values[name] = Token(element.text, Span(element.span.file, line, column, column + 1))
+    return Tokens(path, values)

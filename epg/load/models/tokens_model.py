@@ -1,0 +1,173 @@
+"""Import of ``tokens.xml`` alone: it holds all equations, so EPG's own template can make the model's code of it."""
+
+from __future__ import annotations
+
+import re
+
+from epg.diagnostics import Diagnostics, did_you_mean
+from epg.load.models import details
+from epg.load.models.assignments import assignments, exact_number, input_lines, output_lines
+from epg.load.models.c_code import KEYWORDS
+from epg.load.models.features import FIXED_STEP_METHODS, check_tokens
+from epg.load.models.model import Model
+from epg.load.models.ports import check_identifiers, make_parameters, make_ports
+from epg.load.models.tokens import Tokens
+from epg.source import Span
+
+EQUATIONS = (
+    "INITIAL_EQUATIONS",
+    "STATIC_EQUATIONS",
+    "INPUT_EQUATIONS",
+    "DYNAMIC_EQUATIONS",
+    "OUTPUT_EQUATIONS",
+    "FINAL_EQUATIONS",
+)
+CODE = (
+    "INITIALIZE_CONSTANTS",
+    "INITIALIZE_PARAMETERS",
+    "INITIALIZE_INITIAL_VALUES",
+    "INITIALIZE_STATES",
+    "INPUT_TO_VARIABLE_EQUATIONS",
+    "VARIABLE_TO_OUTPUT_EQUATIONS",
+    *EQUATIONS,
+)
+
+#: functions of <math.h> that equations call directly
+MATH = frozenset("acos asin atan atan2 ceil cos cosh exp fabs floor fmod log log10 pow sin sinh sqrt tan tanh".split())
+
+#: helper functions that EPG's template provides, by their name without prefix
+HELPERS = frozenset(
+    """Absolute ArcCosineHyperbolic ArcSineHyperbolic ArcTangentHyperbolic BitAnd BitClear BitCmp BitGet BitInv BitOr
+    BitSet BitShift BitShiftRight BitXor Delay Exponent10 Exponent2 Impulse InitialValue IntegerDivide IntegerModulo
+    Logarithm10 Logarithm2 Pow2 Power Ramp Random Round Sign Step StopSimulation SwapBytes Warning Xor""".split()
+)
+
+_STUBS = {
+    "Data": "data()",
+    "Table": "table()",
+    "TimeDelay": "tdelay()",
+    "FrequencyEvent": "frequencyevent()",
+    "FrequencyEvent1": "frequencyevent()",
+    "Event": "event()",
+    "EventUp": "eventup()",
+    "EventDown": "eventdown()",
+    "TimeEvent": "timeevent()",
+}
+_EXPORT_HINT = "export the model with the C function or the C++ class target, and use its sources"
+
+
+def load_tokens_model(tokens: Tokens, diagnostics: Diagnostics) -> Model | None:
+    """The model that ``tokens`` hold, or None after reporting why it cannot be used."""
+    before = diagnostics.error_count
+    whole = tokens.span("SUBMODEL_NAME")
+    missing = [name for name in (*CODE, "TIME_STEP_SIZE", "INTEGRATION_METHOD_NAME") if name not in tokens.values]
+    if missing:
+        span = Span(str(tokens.path), 1, 1, 2)
+        message = f"token '{missing[0]}' is missing: '{tokens.path.name}' alone is no model"
+        diagnostics.error("model-tokens", span, message, hint="export the model again")
+        return None
+    check_tokens(tokens, diagnostics)
+    _check_method(tokens, diagnostics)
+    helpers = _check_calls(tokens, diagnostics)
+    if tokens.count("NUMBER_MATRICES"):
+        message = "the model uses matrices, which EPG does not build from tokens"
+        diagnostics.error("model-tokens", tokens.span("NUMBER_MATRICES"), message, hint=_EXPORT_HINT)
+    if tokens.trimmed("FLOATPOSTFIX") in ("f", "F"):
+        message = "the tokens were made for single precision"
+        diagnostics.warning("model-single-precision", tokens.span("FLOATPOSTFIX"), message, hint=_EXPORT_HINT)
+    step = exact_number(tokens.trimmed("TIME_STEP_SIZE"))
+    if step is None or step <= 0:
+        message = f"the step size '{tokens.trimmed('TIME_STEP_SIZE')}' is no positive number"
+        diagnostics.error("model-step", tokens.span("TIME_STEP_SIZE"), message, hint="export the model again")
+    ports = []
+    for kind, token, vector in (
+        ("input", "INPUT_TO_VARIABLE_EQUATIONS", "u"),
+        ("output", "VARIABLE_TO_OUTPUT_EQUATIONS", "y"),
+    ):
+        read = input_lines if kind == "input" else output_lines
+        names = [(name, tokens.span(f"{kind.upper()}_NAMES3")) for name in tokens.names(kind.upper())]
+        count = tokens.count(f"NUMBER_{kind.upper()}S")
+        lines = read(tokens.code(token), vector)
+        group = make_ports(lines, kind, names, None, diagnostics, tokens.span(token), count)
+        check_identifiers(group, diagnostics)
+        ports.append(group)
+    if diagnostics.error_count > before or step is None:
+        return None
+    array = tokens.trimmed("VARPREFIX") + (tokens.trimmed("XX_PARAMETER_ARRAY_NAME") or "P")
+    lines_of_parameters = [line for line in assignments(tokens.code("INITIALIZE_PARAMETERS")) if line.array == array]
+    names_of_parameters = tokens.names("PARAMETER")
+    units = tokens.units("PARAMETER", len(names_of_parameters))
+    parameters, _ = make_parameters(lines_of_parameters, names_of_parameters, units)
+    finish = exact_number(tokens.trimmed("FINISH_TIME"))
+    return Model(
+        name=tokens.trimmed("SUBMODEL_NAME") or tokens.trimmed("MODEL_NAME") or tokens.path.parent.name,
+        origin="20-sim tokens",
+        language="c",
+        version=tokens.trimmed("GENERATION_BUILD"),
+        method=tokens.trimmed("INTEGRATION_METHOD_NAME"),
+        step=step,
+        inputs=ports[0],
+        outputs=ports[1],
+        parameters=parameters,
+        directory=tokens.path.parent,
+        files=(tokens.path,),
+        span=whole,
+        details=details.TokensExport(tokens, helpers),
+        finish_time=float(finish) if finish is not None else None,
+    )
+
+
+def _check_method(tokens: Tokens, diagnostics: Diagnostics) -> None:
+    method = tokens.trimmed("INTEGRATION_METHOD_NAME")
+    if method not in FIXED_STEP_METHODS:
+        diagnostics.error(
+            "model-variable-step",
+            tokens.span("INTEGRATION_METHOD_NAME"),
+            f"integration method '{method}' has no fixed step",
+            hint="choose Discrete, Euler, Runge Kutta 2 or Runge Kutta 4 in 20-sim and export again",
+        )
+
+
+def _comments_closed(text: str) -> bool:
+    """Whether no comment of a token runs on into the code behind it."""
+    opened = 0
+    for match in re.finditer(r"/\*.*?(\*/|\Z)", text, re.DOTALL):
+        opened += not match[1]
+    return not opened and not re.search(r"//[^\n]*\Z", text)
+
+
+def _check_calls(tokens: Tokens, diagnostics: Diagnostics) -> tuple[str, ...]:
+    """The helper functions the equations call; reports those that are stubs, clocks, ``dll()`` or unknown."""
+    prefix = tokens.trimmed("FUNCTIONPREFIX") or "XX"
+    helpers: set[str] = set()
+    for token in CODE:
+        file = tokens.code(token)
+        if "#" in file.without_comments or file.code.count("{") != file.code.count("}") or not _comments_closed(file.text):
+            message = f"token '{token}' holds something else than equations"
+            diagnostics.error("model-tokens", tokens.span(token), message, hint="export the model again")
+        for match in re.finditer(r"(?<![\w>.])([A-Za-z_]\w*)\s*\(", file.code):
+            name = match[1]
+            if name in KEYWORDS or name in MATH:
+                continue
+            bare = re.sub(rf"^(?:{re.escape(prefix)}|XX)", "", name)
+            span = file.span(match.start(1), match.end(1))
+            if bare != name and bare in HELPERS:
+                helpers.add(bare)
+            elif bare != name and bare in _STUBS:
+                message = f"the model uses {_STUBS[bare]}, which exports leave empty"
+                diagnostics.error("model-stub", span, message, hint=f"avoid {_STUBS[bare]} in the model")
+            elif bare == "RealTime":
+                message = "the model reads the computer's clock, which targets do not have"
+                diagnostics.error("model-real-time", span, message, hint="use 'time' instead of 'realtime' in 20-sim")
+            elif bare == "String2Double":
+                continue
+            elif bare != name:
+                message = f"'{name}' is no function that EPG knows for tokens"
+                diagnostics.error("model-tokens", span, message, hint=did_you_mean(bare, HELPERS) or _EXPORT_HINT)
+            else:
+                message = f"'{name}' is called, but it is no part of the export: dll() functions run inside 20-sim only"
+                diagnostics.error("model-dll", span, message, hint="avoid dll() in the model")
+    if "Random" in helpers:
+        message = "the model uses random numbers: they repeat from start to start, and differ from 20-sim's"
+        diagnostics.warning("model-random", tokens.span("SUBMODEL_NAME"), message, hint="feed noise in through an input port")
+    return tuple(sorted(helpers))
