@@ -1,4 +1,4 @@
-"""The C tests: each ``TEST(name)`` of ``c/*_tests.c`` is one test here, under Address- and UndefinedBehaviorSanitizer."""
+"""The C tests: each ``TEST(name)`` of ``c/*_tests.c`` is a test here, under Address- and UndefinedBehaviorSanitizer."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from .program import SOURCES, compile_program, run_program, runtime_sources, names_in
+from .program import SOURCES, compile_program, names_in, run_program, runtime_sources
 
 HELPERS = [SOURCES / "fake_port.c", SOURCES / "fake_application.c", SOURCES / "motor.c"]
 PROGRAMS = sorted(SOURCES.glob("*_tests.c"))

@@ -1,0 +1,174 @@
+/**
+ * @file
+ * Code that the kinds' templates gave, against the host's simulated peripherals.
+ *
+ * `generated.h` is rendered by test_templates.py from the components it names: for each of them what its macros give,
+ * as functions <component>_<macro>.
+ */
+#include <math.h>
+
+#include "check.h"
+#include "epg/control.h"
+#include "epg/host.h"
+
+static epg_control_t app_control;
+
+#include "generated.h"
+
+static const double pi = 3.14159265358979323846;
+
+static void begin(void)
+{
+    memset(&app_control, 0, sizeof app_control);
+    start_all();
+    safe_all();
+}
+
+/** Position that an encoder shows when its load stands at `angle`. */
+#define POSITION(encoder, angle) (encoder##_plant_write_position(angle), encoder##_sample(), encoder##_read_position())
+
+TEST(span_gives_radians_at_the_load)
+{
+    begin();
+    for (int i = -100; i <= 100; i++) {
+        const double angle = 0.1 * i;
+        const double position = POSITION(encoder_span, angle);
+        CHECK(position <= angle + 1e-12 && angle - position < pi / 1112.0);
+    }
+    CHECK(fabs(POSITION(encoder_span, pi * (1.0 + 1e-12)) - pi) < 1e-12);
+}
+
+TEST(inverted_span_counts_backwards_and_reads_the_same_angle)
+{
+    begin();
+    const double last = POSITION(encoder_inverted, 1.0);
+    CHECK(fabs(last - 1.0) < pi / 1112.0);
+    CHECK(encoder_inverted.counts < 0);
+    CHECK(fabs(POSITION(encoder_inverted, -2.0) + 2.0) < pi / 1112.0);
+}
+
+TEST(counts_per_revolution_and_gear)
+{
+    begin();
+    CHECK(encoder_gear_config.rad_per_count == 2.0 * pi / (4096.0 * 5625.0 / 361.0));
+    /* 1000 revolutions of a wheel, 63822.7 counts each: the ratio is exact, so nothing adds up. */
+    const double angle = 2000.0 * pi;
+    CHECK(fabs(POSITION(encoder_gear, angle) - angle) < 1.01 * 2.0 * pi / 63822.0);
+    CHECK_EQUAL(encoder_gear.counts, 63822714);
+}
+
+TEST(pins_and_pull_up_are_handed_on)
+{
+    CHECK_EQUAL(encoder_gear_config.decoder.pin_a, 14);
+    CHECK_EQUAL(encoder_gear_config.decoder.pin_b, 15);
+    CHECK_EQUAL(encoder_gear_config.decoder.block, 1);
+    CHECK_EQUAL(encoder_gear_config.decoder.unit, 2);
+    CHECK(encoder_gear_config.decoder.pull_up);
+    CHECK(!encoder_span_config.decoder.pull_up);
+}
+
+TEST(reset_loads_the_preset_in_the_next_cycle)
+{
+    begin();
+    POSITION(encoder_preset, 2.0);
+    encoder_preset_write_reset(1.0);
+    CHECK(fabs(encoder_preset_read_position() - 2.0) < 0.01);
+    CHECK(fabs(POSITION(encoder_preset, 2.0) - pi / 2.0) < 1e-12);
+    CHECK(fabs(POSITION(encoder_preset, 2.5) - pi / 2.0 - 0.5) < 0.01);
+    safe_all();
+    CHECK(fabs(POSITION(encoder_preset, 2.5) - pi / 2.0 - 0.5) < 0.01);
+}
+
+TEST(bridge_drives_the_plant_with_the_duty_written)
+{
+    begin();
+    CHECK_EQUAL(bridge_plant_read_duty(), 0.0);
+    bridge_write_duty(0.25 + 0.25); /* an expression */
+    CHECK_EQUAL(bridge_plant_read_duty(), 0.5);
+    bridge_write_duty(-0.25);
+    CHECK_EQUAL(bridge_plant_read_duty(), -1563.0 / 6250.0);
+    CHECK(epg_host_output(8) && !epg_host_output(7));
+    CHECK_EQUAL(app_control.statistics.clamped, 0);
+    bridge_write_duty(-1.0);
+    CHECK_EQUAL(bridge_plant_read_duty(), -0.96);
+    CHECK_EQUAL(app_control.statistics.clamped, 1);
+    safe_all();
+    CHECK_EQUAL(bridge_plant_read_duty(), 0.0);
+}
+
+TEST(inverted_bridge_is_wired_the_other_way_and_moves_the_plant_the_same)
+{
+    begin();
+    bridge_inverted_write_duty(0.5);
+    CHECK(epg_host_output(6) && !epg_host_output(5));
+    CHECK_EQUAL(bridge_inverted_plant_read_duty(), 0.5);
+    bridge_inverted_write_duty(-0.5);
+    CHECK_EQUAL(bridge_inverted_plant_read_duty(), -0.5);
+}
+
+TEST(pwm_drives_the_plant_with_the_duty_written)
+{
+    begin();
+    CHECK_EQUAL(servo_plant_read_duty(), 0.08);
+    servo_write_duty(0.5);
+    CHECK_EQUAL(servo_plant_read_duty(), 0.5);
+    servo_write_duty(0.95);
+    CHECK_EQUAL(servo_plant_read_duty(), 0.9);
+    CHECK_EQUAL(app_control.statistics.clamped, 1);
+    lamp_write_duty(0.2);
+    CHECK_EQUAL(epg_host_pwm_duty(7), 0.8); /* the pin's level */
+    CHECK(fabs(lamp_plant_read_duty() - 0.2) < 1e-15);
+}
+
+TEST(digital_input_from_the_plant)
+{
+    begin();
+    CHECK_EQUAL(button_read_level(), 1.0); /* pulled up, nothing drives it */
+    button_plant_write_level(0.25 + 0.25);
+    CHECK_EQUAL(button_read_level(), 0.0);
+    button_plant_write_level(0.6);
+    CHECK_EQUAL(button_read_level(), 1.0);
+    gate_plant_write_level(1.0);
+    CHECK_EQUAL(gate_read_level(), 1.0);
+    gate_plant_write_level(0.0);
+    CHECK_EQUAL(gate_read_level(), 0.0);
+}
+
+TEST(digital_output_to_the_plant)
+{
+    begin();
+    CHECK_EQUAL(valve_plant_read_level(), 0.0);
+    CHECK_EQUAL(brake_plant_read_level(), 1.0);
+    CHECK(!epg_host_output(18)); /* on is low */
+    valve_write_level(1.0);
+    brake_write_level(0.0);
+    CHECK_EQUAL(valve_plant_read_level(), 1.0);
+    CHECK_EQUAL(brake_plant_read_level(), 0.0);
+    safe_all();
+    CHECK_EQUAL(valve_plant_read_level(), 0.0);
+    CHECK_EQUAL(brake_plant_read_level(), 1.0);
+}
+
+TEST(topics_and_constant)
+{
+    epg_setpoint_state_t states[4] = {[3] = {.value = 1.5}};
+    const epg_application_t application = {.setpoint_states = states};
+    app_control.application = &application;
+    CHECK_EQUAL(subscriber_read_value(), 1.5);
+
+    double values[3] = {1.0, 2.0, 3.0};
+    publisher_monitor_value(values, 7.0 * 2.0);
+    CHECK_EQUAL(values[2], 14.0);
+    publisher_monitor_value(values, NAN);
+    CHECK_EQUAL(values[2], 14.0);
+    CHECK_EQUAL(values[1], 2.0);
+
+    CHECK_EQUAL(number_read_value(), 0.1);
+}
+
+RUN(ENTRY(span_gives_radians_at_the_load), ENTRY(inverted_span_counts_backwards_and_reads_the_same_angle),
+    ENTRY(counts_per_revolution_and_gear), ENTRY(pins_and_pull_up_are_handed_on),
+    ENTRY(reset_loads_the_preset_in_the_next_cycle), ENTRY(bridge_drives_the_plant_with_the_duty_written),
+    ENTRY(inverted_bridge_is_wired_the_other_way_and_moves_the_plant_the_same),
+    ENTRY(pwm_drives_the_plant_with_the_duty_written), ENTRY(digital_input_from_the_plant),
+    ENTRY(digital_output_to_the_plant), ENTRY(topics_and_constant))

@@ -1,0 +1,117 @@
+/*
+ * The exchange of targets/runtime/src/exchange.c for the model checker spin: one writer, one reader, every
+ * interleaving of their loads and stores.
+ *
+ * A value is two words that are copied one after the other, so that a torn value can be seen.  Each statement of a
+ * process touches one shared word, as the C code does; what stands in d_step with it is bookkeeping for assertions.
+ * Sequential interleaving is what C11 promises here: the control words are sequentially consistent atomics, and the
+ * assertion `unshared` shows that the plain words are free of data races.
+ *
+ * Neither process has a loop or a wait inside one operation, and spin reports a state in which one cannot go on as
+ * an invalid end state: both sides are wait-free, in at most eight steps.
+ *
+ * BROKEN_... leave out one rule of the algorithm each; spin must refuse all of them.  WITHOUT_UNSHARED leaves out
+ * the assertion `unshared`, which most of them hit first, so that the assertions on values are seen to work as well.
+ */
+#ifdef WITHOUT_UNSHARED
+#define UNSHARED true
+#else
+#define UNSHARED (being_read != being_written)
+#endif
+#ifndef WRITES
+#define WRITES 6
+#endif
+#ifndef READS
+#define READS 5
+#endif
+#define NONE 4
+
+byte first[4];
+byte second[4];
+bit latest;
+bit reading;
+bit slot[2];
+bool written;
+
+byte finished;          /* newest value whose write has returned */
+byte being_written = NONE;
+byte being_read = NONE;
+
+active proctype writer()
+{
+    byte value = 1;
+    bit pair;
+    bit index;
+    do
+    :: value <= WRITES ->
+#ifdef BROKEN_IGNORES_THE_READER
+        pair = 1 - latest;
+#else
+        pair = 1 - reading;
+#endif
+#ifdef BROKEN_ONE_SLOT_PER_PAIR
+        index = 0;
+#else
+        index = 1 - slot[pair];
+#endif
+#ifdef BROKEN_SLOT_BEFORE_DATA
+        slot[pair] = index;
+#endif
+        d_step { being_written = 2 * pair + index; first[2 * pair + index] = value; }
+        d_step {
+            assert(UNSHARED); /* unshared */
+            second[2 * pair + index] = value;
+            being_written = NONE;
+        }
+#ifdef BROKEN_PAIR_BEFORE_SLOT
+        latest = pair;
+        slot[pair] = index;
+#else
+        slot[pair] = index;
+        latest = pair;
+#endif
+        d_step { written = true; finished = value; }
+        value++
+    :: else -> break
+    od
+}
+
+active proctype reader()
+{
+    byte count;
+    byte before;
+    byte expected;
+    byte one;
+    byte two;
+    bit pair;
+    bit index;
+    do
+    :: count < READS ->
+        expected = finished;
+        if
+        :: !written ->
+            assert(expected == 0) /* empty only before the first write has returned */
+        :: else ->
+            pair = latest;
+#ifdef BROKEN_ANNOUNCES_LATE
+            index = slot[pair];
+            reading = pair;
+#else
+            reading = pair;
+            index = slot[pair];
+#endif
+            d_step { being_read = 2 * pair + index; one = first[2 * pair + index]; }
+            d_step {
+                assert(UNSHARED); /* unshared */
+                two = second[2 * pair + index];
+                being_read = NONE;
+            }
+            assert(one == two);      /* coherent: never half of one value and half of another */
+            assert(one >= expected); /* fresh: never older than the newest write that had returned */
+            assert(one >= before);   /* in order: never older than the value read before */
+            before = one
+        fi;
+        count++
+    :: else -> break
+    od
+}

@@ -1,0 +1,196 @@
+"""The exchange proven: every interleaving by the model checker spin, real threads by ThreadSanitizer and by counting.
+
+Each check is also shown to fail: broken variants of the model, and of ``exchange.c`` itself, must be refused.
+"""
+
+from __future__ import annotations
+
+import platform
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from .program import RUNTIME, SOURCES, THREAD_SANITIZER, compile_program, run_program
+
+MODEL = Path(__file__).resolve().parent / "exchange.pml"
+EXCHANGE = RUNTIME / "src" / "exchange.c"
+SECONDS = "2"
+
+BROKEN_MODELS = {
+    "BROKEN_IGNORES_THE_READER",
+    "BROKEN_ONE_SLOT_PER_PAIR",
+    "BROKEN_SLOT_BEFORE_DATA",
+    "BROKEN_PAIR_BEFORE_SLOT",
+    "BROKEN_ANNOUNCES_LATE",
+}
+
+needs_spin = pytest.mark.skipif(shutil.which("spin") is None, reason="spin is not installed: apt install spin")
+
+
+def spin(folder: Path, *defines: str) -> str:
+    """What the verifier made of the model prints, after a search of its whole state space."""
+    options = [f"-D{define}" for define in defines]
+    subprocess.run(["spin", "-a", *options, str(MODEL)], cwd=folder, check=True, capture_output=True)
+    # -DSAFETY: assertions and end states only; nothing is approximated (no -DBITSTATE).
+    subprocess.run(["gcc", "-O2", "-w", "-DSAFETY", "-o", "pan", "pan.c"], cwd=folder, check=True, capture_output=True)
+    return subprocess.run(["./pan", "-m100000"], cwd=folder, check=False, capture_output=True, text=True).stdout
+
+
+@needs_spin
+def test_spin_finds_nothing_wrong_in_any_interleaving(tmp_path: Path) -> None:
+    report = spin(tmp_path)
+    assert "errors: 0" in report, report
+    assert "max search depth too small" not in report
+    assert "Search not completed" not in report
+    assert re.search(r"assertion violations\s+\+", report)
+    assert re.search(r"invalid end states\s+\+", report)
+    states = re.search(r"(\d+) states, stored", report)
+    assert states is not None
+    assert int(states[1]) > 10_000
+
+
+@needs_spin
+@pytest.mark.parametrize("broken", sorted(BROKEN_MODELS))
+def test_spin_refuses_a_broken_model(tmp_path: Path, broken: str) -> None:
+    report = spin(tmp_path, broken)
+    assert "assertion violated" in report, report
+
+
+@needs_spin
+@pytest.mark.parametrize(
+    ("broken", "assertion"),
+    [
+        ("BROKEN_IGNORES_THE_READER", "one==two"),
+        ("BROKEN_ONE_SLOT_PER_PAIR", "one==two"),
+        ("BROKEN_SLOT_BEFORE_DATA", "one==two"),
+        ("BROKEN_ANNOUNCES_LATE", "one==two"),
+        ("BROKEN_PAIR_BEFORE_SLOT", "one>="),
+    ],
+)
+def test_spin_sees_the_wrong_value_itself(tmp_path: Path, broken: str, assertion: str) -> None:
+    assert f"assertion violated ({assertion}" in spin(tmp_path, broken, "WITHOUT_UNSHARED")
+
+
+def test_all_broken_models_are_tried() -> None:
+    assert set(re.findall(r"#ifdef (BROKEN_\w+)", MODEL.read_text())) == BROKEN_MODELS
+
+
+def test_model_and_code_have_the_same_statements() -> None:
+    """Loads and stores of control words, in their order, are those of the C functions."""
+
+    code = EXCHANGE.read_text()
+    write = code[code.index("void epg_exchange_write") : code.index("bool epg_exchange_read")]
+    read = code[code.index("bool epg_exchange_read") :]
+    in_code = r"&exchange->(\w+)|(memcpy)"
+    assert ["".join(match) for match in re.findall(in_code, write)] == [
+        "reading",
+        "slot",
+        "memcpy",
+        "slot",
+        "latest",
+        "written",
+    ]
+    assert ["".join(match) for match in re.findall(in_code, read)] == ["written", "latest", "reading", "slot", "memcpy"]
+
+    model = _without_broken(MODEL.read_text())
+    shared = r"\b(reading|latest|written|slot)\b(?=[ ;\[])|(second)\["
+    writer = model[model.index("proctype writer") : model.index("proctype reader")]
+    reader = model[model.index("proctype reader") :]
+    assert ["".join(match) for match in re.findall(shared, writer)] == [
+        "reading",
+        "slot",
+        "second",
+        "slot",
+        "latest",
+        "written",
+    ]
+    assert ["".join(match) for match in re.findall(shared, reader)] == [
+        "written",
+        "latest",
+        "reading",
+        "slot",
+        "second",
+    ]
+
+
+def _without_broken(model: str) -> str:
+    """The model as the preprocessor leaves it when nothing is defined."""
+    done = subprocess.run(["gcc", "-E", "-P", "-xc", "-"], input=model, capture_output=True, text=True, check=True)
+    return done.stdout
+
+
+def mutated(folder: Path, old: str, new: str) -> Path:
+    """A copy of ``exchange.c`` in which ``old``, which occurs once, is ``new``."""
+    code = EXCHANGE.read_text()
+    assert code.count(old) == 1, old
+    path = folder / "exchange.c"
+    path.write_text(code.replace(old, new))
+    return path
+
+
+IGNORES_THE_READER = (
+    "pair = 1U - atomic_load(&exchange->reading)",
+    "pair = 1U - atomic_load(&exchange->latest)",
+)
+ONE_SLOT_PER_PAIR = ("index = 1U - atomic_load(&exchange->slot[pair])", "index = 0U")
+_COPY = "    memcpy(slot(exchange, pair, index), value, exchange->size);\n"
+_SLOT = "    atomic_store(&exchange->slot[pair], index);\n"
+SLOT_BEFORE_DATA = (_COPY + _SLOT, _SLOT + _COPY)
+RELAXED = (
+    "atomic_store(&exchange->slot[pair], index)",
+    "atomic_store_explicit(&exchange->slot[pair], index, memory_order_relaxed)",
+)
+MUTATIONS = {
+    "ignores_the_reader": IGNORES_THE_READER,
+    "one_slot_per_pair": ONE_SLOT_PER_PAIR,
+    "slot_before_data": SLOT_BEFORE_DATA,
+}
+
+
+def counted(folder: Path, exchange: Path) -> tuple[int, str]:
+    program = compile_program(folder / "stress", [SOURCES / "stress.c", exchange], options=["-O2"])
+    done = run_program([program, SECONDS])
+    return done.returncode, done.stdout + done.stderr
+
+
+def test_two_threads_see_no_torn_disordered_or_stale_value(tmp_path: Path) -> None:
+    status, report = counted(tmp_path, EXCHANGE)
+    assert status == 0, report
+    numbers = dict(re.findall(r"(\w+) (\d+)", report))
+    assert int(numbers["writes"]) > 10_000
+    assert int(numbers["changes"]) > 1_000, "the threads hardly met"
+
+
+@pytest.mark.parametrize("mutation", sorted(MUTATIONS))
+def test_two_threads_see_a_broken_exchange(tmp_path: Path, mutation: str) -> None:
+    status, report = counted(tmp_path, mutated(tmp_path, *MUTATIONS[mutation]))
+    assert status == 1, report
+
+
+def under_thread_sanitizer(folder: Path, exchange: Path) -> tuple[int, str]:
+    """Exit status and report; 66 when ThreadSanitizer found something."""
+    options = ["-O1", *THREAD_SANITIZER]
+    program = compile_program(
+        folder / "races", [SOURCES / "stress.c", exchange], options=options, defines=["RACES_ONLY"]
+    )
+    done = run_program([program, SECONDS])
+    if "unexpected memory mapping" in done.stderr:
+        # Address-space layout randomisation beyond what this ThreadSanitizer knows.
+        done = run_program(["setarch", platform.machine(), "-R", program, SECONDS])
+    return done.returncode, done.stdout + done.stderr
+
+
+def test_thread_sanitizer_finds_no_race(tmp_path: Path) -> None:
+    status, report = under_thread_sanitizer(tmp_path, EXCHANGE)
+    assert status == 0, report
+
+
+@pytest.mark.parametrize("mutation", [*sorted(MUTATIONS), "relaxed"])
+def test_thread_sanitizer_finds_the_race_of_a_broken_exchange(tmp_path: Path, mutation: str) -> None:
+    change = RELAXED if mutation == "relaxed" else MUTATIONS[mutation]
+    status, report = under_thread_sanitizer(tmp_path, mutated(tmp_path, *change))
+    assert status == 66, report
+    assert "data race" in report

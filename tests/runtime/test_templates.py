@@ -1,0 +1,201 @@
+"""The kinds' code templates: rendered as the generator does, compiled, and run against simulated peripherals."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from epg.check.compose import typed_parameters
+from epg.diagnostics import Diagnostics
+from epg.emit.text import Code, environment, identifier
+from epg.load.catalog import Catalog, load_catalog
+from epg.load.yaml_file import parse_yaml
+
+from .program import COMPONENTS, ROOT, SOURCES, compile_program, names_in, run_program, runtime_sources
+
+TARGETS = ROOT / "targets"
+HOST = TARGETS / "platforms" / "host"
+HARNESS = SOURCES / "templates.c"
+PWM = {"prescaler": 1, "top": 6249}
+
+
+def claim(pins: Mapping[str, int], block: int = 0, unit: int = 0, **settings: int) -> SimpleNamespace:
+    return SimpleNamespace(pins=dict(pins), block=block, unit=unit, settings=settings)
+
+
+def bridge_claims(value: int, a: int, b: int, unit: int) -> dict[str, Any]:
+    return {
+        "pwm": claim({"value": value}, 0, unit, **PWM),
+        "direction_a": claim({"value": a}),
+        "direction_b": claim({"value": b}),
+    }
+
+
+@dataclass(frozen=True)
+class Component:
+    """A component as its ``.tcf`` writes it, and the hardware it got."""
+
+    name: str
+    text: str
+    claims: Mapping[str, Any] = field(default_factory=dict)
+    slot: int | None = None
+
+
+COMPONENTS_TRIED = [
+    Component(
+        "encoder_span",
+        "{kind: quadrature_encoder, span: {counts: 1112, angle: 180 deg}}",
+        {"encoder": claim({"a": 10, "b": 11}, 0, 0)},
+    ),
+    Component(
+        "encoder_inverted",
+        "{kind: quadrature_encoder, span: {counts: 1112, angle: 180 deg}, invert: true}",
+        {"encoder": claim({"a": 12, "b": 13}, 0, 1)},
+    ),
+    Component(
+        "encoder_gear",
+        "{kind: quadrature_encoder, counts_per_revolution: 4096, gear: 5625/361, pull_up: true}",
+        {"encoder": claim({"a": 14, "b": 15}, 1, 2)},
+    ),
+    Component(
+        "encoder_preset",
+        "{kind: quadrature_encoder, counts_per_revolution: 4096, preset: 90 deg}",
+        {"encoder": claim({"a": 20, "b": 21}, 1, 3)},
+    ),
+    Component("bridge", "{kind: pwm_h_bridge, frequency: 20 kHz, max_duty: 0.96}", bridge_claims(2, 7, 8, 1)),
+    Component("bridge_inverted", "{kind: pwm_h_bridge, frequency: 20 kHz, invert: true}", bridge_claims(4, 5, 6, 2)),
+    Component(
+        "servo",
+        "{kind: pwm, frequency: 20 kHz, max_duty: 0.9, safe_duty: 0.08}",
+        {"pwm": claim({"value": 0}, 0, 5, **PWM)},
+    ),
+    Component("lamp", "{kind: pwm, frequency: 20 kHz, invert: true}", {"pwm": claim({"value": 1}, 0, 7, **PWM)}),
+    Component("button", "{kind: digital_input, pull: up}", {"level": claim({"value": 16})}),
+    Component("gate", "{kind: digital_input, invert: true}", {"level": claim({"value": 22})}),
+    Component("valve", "{kind: digital_output}", {"level": claim({"value": 17})}),
+    Component("brake", "{kind: digital_output, invert: true, safe: true}", {"level": claim({"value": 18})}),
+    Component("subscriber", "{kind: ros_subscriber, topic: a}", slot=3),
+    Component("publisher", "{kind: ros_publisher, topic: b}", slot=2),
+    Component(
+        "number",
+        "{kind: constant, value: 0.1}",
+    ),
+]
+
+
+@pytest.fixture(scope="session")
+def catalog() -> Catalog:
+    diagnostics = Diagnostics()
+    loaded = load_catalog([TARGETS], diagnostics)
+    assert diagnostics.error_count == 0
+    return loaded
+
+
+class Renderer:
+    """The macros of a kind for one component, as :mod:`epg.emit.application` calls them."""
+
+    def __init__(self, catalog: Catalog, component: Component) -> None:
+        diagnostics = Diagnostics()
+        node = parse_yaml(component.text, "component.yaml", diagnostics)
+        assert node is not None
+        kind = catalog.find_kind(str(node["kind"].value))
+        assert kind is not None
+        parameters = typed_parameters(kind, node, diagnostics)
+        assert diagnostics.error_count == 0
+        self.kind = kind
+        self.view = SimpleNamespace(
+            name=component.name,
+            symbol=identifier(component.name),
+            parameters=parameters,
+            claims=component.claims,
+            slot=component.slot,
+            application=Code("app"),
+        )
+        env = environment([TARGETS])
+        template = env.get_template(f"components/{kind.name}/code.c.j2")
+        self.module = template.make_module({"pi": env.globals["pi"]})
+
+    def has(self, macro: str) -> bool:
+        return hasattr(self.module, macro)
+
+    def render(self, macro: str, *arguments: object) -> str:
+        return str(getattr(self.module, macro)(self.view, *arguments)).strip()
+
+    def functions(self) -> str:
+        """All its macros as C functions."""
+        name = self.view.name
+        lines = [self.render("globals")] if self.has("globals") else []
+        for macro in ("start", "sample", "safe"):
+            body = self.render(macro) if self.has(macro) else ""
+            lines.append(f"static inline void {name}_{macro}(void)\n{{\n{body}\n}}")
+        value = Code("value")
+        for port in self.kind.ports:
+            published = self.kind.communication == "publish"
+            write = "monitor" if published else "write"
+            argument = "double *values, double value" if published else "double value"
+            if port.direction == "source":
+                text = self.render("read", port.name)
+                lines.append(f"static inline double {name}_read_{port.name}(void)\n{{\nreturn {text};\n}}")
+            else:
+                text = self.render("write", port.name, value)
+                lines.append(f"static inline void {name}_{write}_{port.name}({argument})\n{{\n{text}\n}}")
+            if port.direction == "source" and self.has("plant_write"):
+                text = self.render("plant_write", port.name, value)
+                lines.append(f"static inline void {name}_plant_write_{port.name}(double value)\n{{\n{text}\n}}")
+            if port.direction == "sink" and port.actuator and self.has("plant_read"):
+                text = self.render("plant_read", port.name)
+                lines.append(f"static inline double {name}_plant_read_{port.name}(void)\n{{\nreturn 1.0 * {text};\n}}")
+        return "\n".join(lines)
+
+
+def header(renderers: list[Renderer]) -> str:
+    """``generated.h``: drivers, all components, and the functions that start and make safe all of them."""
+    includes = sorted({header for renderer in renderers for header in renderer.kind.headers})
+    lines = [f'#include "{include}"' for include in includes]
+    lines += [renderer.functions() for renderer in renderers]
+    for macro in ("start", "safe"):
+        calls = "\n".join(f"{renderer.view.name}_{macro}();" for renderer in renderers)
+        lines.append(f"static void {macro}_all(void)\n{{\n{calls}\n}}")
+    return "\n".join(lines) + "\n"
+
+
+@pytest.fixture(scope="session")
+def program(catalog: Catalog, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("templates")
+    renderers = [Renderer(catalog, component) for component in COMPONENTS_TRIED]
+    (folder / "generated.h").write_text(header(renderers))
+    sources = [HARNESS, HOST / "src" / "port.c", HOST / "src" / "clock.c", *runtime_sources()]
+    return compile_program(folder / "templates", sources, includes=[folder, HOST / "include", HOST / "src"])
+
+
+@pytest.mark.parametrize("name", names_in(HARNESS))
+def test_generated_code(program: Path, name: str) -> None:
+    done = run_program([program, name])
+    assert done.returncode == 0, done.stderr
+
+
+def test_every_kind_is_tried(catalog: Catalog) -> None:
+    kinds = {path.parent.name for path in COMPONENTS.glob("*/component.yaml")}
+    assert {Renderer(catalog, component).kind.name for component in COMPONENTS_TRIED} == kinds
+
+
+def test_generated_code_reads_well(catalog: Catalog) -> None:
+    """The generated block of an encoder, as a user finds it."""
+    assert Renderer(catalog, COMPONENTS_TRIED[2]).render("globals") == (
+        "static const epg_quadrature_encoder_config_t encoder_gear_config = {\n"
+        "    .decoder = {.pin_a = 14,\n"
+        "                .pin_b = 15,\n"
+        "                .block = 1,\n"
+        "                .unit = 2,\n"
+        "                .pull_up = true},\n"
+        "    .rad_per_count = 9.844747812030515e-05,"
+        " /* one revolution: 4096.0 counts of the motor, gear 5625/361 */\n"
+        "    .preset = 0.0,\n"
+        "};\n"
+        "static epg_quadrature_encoder_t encoder_gear;"
+    )
