@@ -25,10 +25,10 @@ const XXDouble c_delta = 1.0e-7;
 void RELbot_Control::CopyInputsToVariables (XXDouble *u)
 {
 	/* copy the input vector to the input variables */
-	m_V[12] = u[0];		/* PosLeft {rad} */
-	m_V[13] = u[1];		/* PosRight {rad} */
-	m_V[14] = u[2];		/* SetPosLeft {rad} */
-	m_V[15] = u[3];		/* SetPosRight {rad} */
+	m_V[14] = u[0];		/* PosLeft {rad} */
+	m_V[15] = u[1];		/* PosRight {rad} */
+	m_V[16] = u[2];		/* SetPosLeft {rad} */
+	m_V[17] = u[3];		/* SetPosRight {rad} */
 
 }
 
@@ -36,8 +36,10 @@ void RELbot_Control::CopyInputsToVariables (XXDouble *u)
 void RELbot_Control::CopyVariablesToOutputs (XXDouble *y)
 {
 	/* copy the output variables to the output vector */
-	y[0] = 	m_V[10];		/* SteerLeft */
-	y[1] = 	m_V[11];		/* SteerRight */
+	y[0] = 	m_V[10];		/* LogLeft {rad} */
+	y[1] = 	m_V[11];		/* LogRight {rad} */
+	y[2] = 	m_V[12];		/* SteerLeft */
+	y[3] = 	m_V[13];		/* SteerRight */
 
 }
 
@@ -46,7 +48,7 @@ RELbot_Control::RELbot_Control(void)
 	m_number_constants = 0;
 	m_number_parameters = 10;
 	m_number_initialvalues = 4;
-	m_number_variables = 16;
+	m_number_variables = 18;
 	m_number_states = 4;
 	m_number_rates = 4;
 	m_number_matrices = 0;
@@ -56,7 +58,7 @@ RELbot_Control::RELbot_Control(void)
 	m_C = new XXDouble[0 + 1];
 	m_P = new XXDouble[10 + 1];
 	m_I = new XXDouble[4 + 1];
-	m_V = new XXDouble[16 + 1];
+	m_V = new XXDouble[18 + 1];
 	m_s = new XXDouble[4 + 1];
 	m_R = new XXDouble[4 + 1];
 	m_U = new XXDouble[0 + 1];
@@ -79,7 +81,7 @@ void RELbot_Control::Reset(XXDouble starttime)
 	memset(m_C, 0, (0 + 1) * sizeof(XXDouble));
 	memset(m_P, 0, (10 + 1) * sizeof(XXDouble));
 	memset(m_I, 0, (4 + 1) * sizeof(XXDouble));
-	memset(m_V, 0, (16 + 1) * sizeof(XXDouble));
+	memset(m_V, 0, (18 + 1) * sizeof(XXDouble));
 	memset(m_s, 0, (4 + 1) * sizeof(XXDouble));
 	memset(m_R, 0, (4 + 1) * sizeof(XXDouble));
 	memset(m_U, 0, (0 + 1) * sizeof(XXDouble));
@@ -243,7 +245,7 @@ void RELbot_Control::CalculateInput (void)
 void RELbot_Control::CalculateDynamic (void)
 {
 	/* PID_Left\error = SetPosLeft - PosLeft; */
-	m_V[0] = m_V[14] - m_V[12];
+	m_V[0] = m_V[16] - m_V[14];
 
 	/* PID_Left\pdout = PID_Left\pdstate + PID_Left\kp * PID_Left\error / PID_Left\beta; */
 	m_V[2] = m_s[0] + m_P[0] * m_V[0] / m_P[2];
@@ -282,7 +284,7 @@ void RELbot_Control::CalculateDynamic (void)
 	);
 
 	/* PID_Right\error = SetPosRight - PosRight; */
-	m_V[5] = m_V[15] - m_V[13];
+	m_V[5] = m_V[17] - m_V[15];
 
 	/* PID_Right\pdout = PID_Right\pdstate + PID_Right\kp * PID_Right\error / PID_Right\beta; */
 	m_V[7] = m_s[2] + m_P[5] * m_V[5] / m_P[7];
@@ -328,10 +330,16 @@ void RELbot_Control::CalculateDynamic (void)
 void RELbot_Control::CalculateOutput (void)
 {
 	/* SteerLeft = PID_Left\output; */
-	m_V[10] = m_V[1];
+	m_V[12] = m_V[1];
 
 	/* SteerRight = PID_Right\output; */
-	m_V[11] = m_V[6];
+	m_V[13] = m_V[6];
+
+	/* LogLeft = PosLeft; */
+	m_V[10] = m_V[14];
+
+	/* LogRight = PosRight; */
+	m_V[11] = m_V[15];
 
 }
 

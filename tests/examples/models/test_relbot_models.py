@@ -48,9 +48,9 @@ def profile(time: float) -> float:
 
 def test_wheels_follow(tmp_path: Path) -> None:
     control, plant = library(RELBOT / "model", tmp_path), library(RELBOT / "plant", tmp_path)
-    measured, duty = (ctypes.c_double * 4)(), (ctypes.c_double * 2)()
+    measured, steer = (ctypes.c_double * 4)(), (ctypes.c_double * 4)()
     drive, outputs = (ctypes.c_double * 2)(), (ctypes.c_double * 5)()
-    control.initialize(measured, duty)
+    control.initialize(measured, steer)
     plant.initialize(drive, outputs)
     sent = 0.0
     errors: list[float] = []
@@ -61,9 +61,10 @@ def test_wheels_follow(tmp_path: Path) -> None:
         if cycle % 2 == 0:
             counts = [math.floor(angle * COUNTS_PER_RADIAN) / COUNTS_PER_RADIAN for angle in outputs[:2]]
             measured[:] = [*counts, sent, -sent / 2]
-            control.calculate(measured, duty)
-            assert all(abs(value) <= 1.0 for value in duty)
-        drive[:] = [round(value * 6250) / 6250 for value in duty]
+            control.calculate(measured, steer)
+            assert list(steer[:2]) == counts, "logged positions"
+            assert all(abs(value) <= 1.0 for value in steer[2:])
+        drive[:] = [round(value * 6250) / 6250 for value in steer[2:]]
         for _ in range(10):
             plant.calculate(drive, outputs)
         errors.append(outputs[0] - profile(time + 0.001))

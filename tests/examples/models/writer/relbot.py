@@ -14,6 +14,8 @@ inputs
     SetPosLeft {rad}
     SetPosRight {rad}
 outputs
+    LogLeft {rad}
+    LogRight {rad}
     SteerLeft
     SteerRight
 parameters
@@ -30,6 +32,8 @@ dynamic
 output
     SteerLeft = PID_Left\output
     SteerRight = PID_Right\output
+    LogLeft = PosLeft
+    LogRight = PosRight
 """
 
 _PARAMETERS = r"""@\kp = 2.0 {}
