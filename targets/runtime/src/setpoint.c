@@ -58,8 +58,10 @@ static bool too_old(const epg_setpoint_t *setpoint, const epg_setpoint_state_t *
            now_ns - state->fresh_ns > setpoint->timeout_ns;
 }
 
-static double limited(double value, double target, double largest)
+/** `target`, or as near to it as one period allows. */
+static double limited(const epg_application_t *application, const epg_setpoint_t *setpoint, double value, double target)
 {
+    const double largest = setpoint->rate_limit * ((double)application->period_ns * 1e-9);
     const double change = target - value;
     if (change > largest) {
         return value + largest;
@@ -72,7 +74,6 @@ static double limited(double value, double target, double largest)
 
 bool epg_setpoints_update(const epg_application_t *application, uint64_t now_ns, epg_statistics_t *statistics)
 {
-    const double period = (double)application->period_ns * 1e-9;
     bool valid = true;
     for (size_t i = 0; i < application->setpoint_count; i++) {
         const epg_setpoint_t *setpoint = &application->setpoints[i];
@@ -87,8 +88,8 @@ bool epg_setpoints_update(const epg_application_t *application, uint64_t now_ns,
         if (state->timed_out && setpoint->action == EPG_TIMEOUT_DISABLE) {
             valid = false;
         }
-        state->value = setpoint->rate_limit > 0.0 ? limited(state->value, state->target, setpoint->rate_limit * period)
-                                                  : state->target;
+        state->value =
+            setpoint->rate_limit > 0.0 ? limited(application, setpoint, state->value, state->target) : state->target;
     }
     return valid;
 }

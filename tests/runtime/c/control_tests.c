@@ -123,6 +123,7 @@ TEST(start_again_starts_afresh)
     double value;
     CHECK(!epg_control_status(&fake.control, &status));
     CHECK(!epg_control_monitor(&fake.control, &value));
+    CHECK_EQUAL(fake.application.monitor_values[0], 0.0);
     fake_cycle();
     CHECK(fake_status().enabled);
     CHECK_EQUAL(fake.input, 0.0);
@@ -293,6 +294,8 @@ TEST(input_not_finite_in_the_first_cycle)
     fake.sensor = NAN;
     fake_cycle();
     CHECK_EQUAL(fake.inits, 0);
+    double value;
+    CHECK(!epg_control_monitor(&fake.control, &value));
     check_latched(EPG_FAULT_NOT_FINITE);
 }
 
