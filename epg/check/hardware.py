@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.load.hardware import Target
-from epg.load.items import integer_range, map_of, pin_names
+from epg.load.items import integer_range, map_of, pin_list, pin_names
 from epg.quantity import QuantityError, parse_quantity
 from epg.source import Node, Span
 
@@ -88,7 +88,7 @@ def check_target(target: Target, diagnostics: Diagnostics) -> bool:
     return diagnostics.error_count == errors
 
 
-def _peripheral(name: str, node: Node, pins: Iterable[str], diagnostics: Diagnostics) -> None:
+def _peripheral(name: str, node: Node, pins: Sequence[str], diagnostics: Diagnostics) -> None:
     instances = _listed(node["instances"])
     slots = [""]
     if "slots" in node:
@@ -101,7 +101,6 @@ def _peripheral(name: str, node: Node, pins: Iterable[str], diagnostics: Diagnos
         slots = _listed(stated[0])
     for key in ("prescaler", "counter"):
         _range(node.get("divider", key), diagnostics)
-    known = set(pins)
     for instance, reached in map_of(node, "pins").items():
         if instance not in instances:
             span = node["pins"].key_span(instance)
@@ -112,8 +111,8 @@ def _peripheral(name: str, node: Node, pins: Iterable[str], diagnostics: Diagnos
                 hint = did_you_mean(slot, slots, "slots")
                 diagnostics.error("unknown-name", reached.key_span(slot), f"'{name}' has no slot '{slot}'", hint=hint)
             for pin in listed.elements():
-                if str(pin.value) not in known:
-                    hint = did_you_mean(str(pin.value), known, "pins")
+                if str(pin.value) not in pins:
+                    hint = f"it has {pin_list(pins)}" if pins else ""
                     diagnostics.error("unknown-name", pin.span, f"this chip has no pin '{pin.value}'", hint=hint)
     if "frequency" in _listed(node.get("agree")) and "divider" not in node:
         diagnostics.error("unknown-name", node.key_span("agree"), f"'{name}' has no divider that sets a frequency")
@@ -179,7 +178,7 @@ def _range(node: Node | None, diagnostics: Diagnostics) -> None:
 
 
 def _no_pin(name: str, span: Span, target: Target, diagnostics: Diagnostics) -> None:
-    hint = did_you_mean(name, target.soc.pins, "pins")
+    hint = f"it has {pin_list(target.soc.pins)}"
     notes = [Note("this chip", target.soc.span)]
     diagnostics.error("unknown-name", span, f"{target.soc.title} has no pin '{name}'", hint=hint, notes=notes)
 

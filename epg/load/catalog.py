@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TypeVar
 
-from epg.diagnostics import Diagnostics, Note, did_you_mean
+from epg.diagnostics import Diagnostics, did_you_mean
 from epg.load.hardware import Board, Platform, Soc, Target, make_board, make_platform, make_soc
 from epg.load.kind import Kind, KindPort, make_kind
 from epg.load.yaml_file import load_yaml
@@ -153,10 +153,9 @@ class Catalog:
         if node is None or not self.check.file(sort, node, name, self._diagnostics):
             return None
         if len(paths) > 1:
-            message = f"this {sort} '{name}' replaces another one of that name"
-            notes = [Note("the other one", Span(str(paths[1]), 1, 1, 2))]
+            message = f"{sort} '{name}' stands in {len(paths)} targets folders, of which this one is used"
             hint = "rename its folder to have both"
-            self._diagnostics.warning("shadowed-item", node[_NAME_KEYS[sort]].span, message, hint=hint, notes=notes)
+            self._diagnostics.warning("shadowed-item", node[_NAME_KEYS[sort]].span, message, hint=hint)
         return make(node, paths[0].parent)
 
 

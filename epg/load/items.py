@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 
 from epg.source import Node
 
@@ -50,6 +51,22 @@ def pin_names(node: Node | None) -> tuple[str, ...]:
             raise ValueError(f"'{text}' is no range of pins")
         names.extend(f"{prefix}{number}" for number in range(first, last + 1))
     return tuple(names)
+
+
+def pin_list(pins: Iterable[str]) -> str:
+    """Pins for people, ranges shortened: ``0-3, 6, PA0-PA15``."""
+    parts: list[list[str]] = []
+    for pin in pins:
+        if parts and _follows(parts[-1][-1], pin):
+            parts[-1].append(pin)
+        else:
+            parts.append([pin])
+    return ", ".join(f"{run[0]}-{run[-1]}" if len(run) > 2 else ", ".join(run) for run in parts)
+
+
+def _follows(one: str, other: str) -> bool:
+    first, second = re.fullmatch(r"(\D*)(\d+)", one), re.fullmatch(r"(\D*)(\d+)", other)
+    return bool(first and second and first[1] == second[1] and int(second[2]) == int(first[2]) + 1)
 
 
 def integer_range(node: Node) -> tuple[int, int]:

@@ -22,6 +22,8 @@ from epg.resolve.search import WHOLE, Demand, Place, find_places
 
 __all__ = ["Assignment", "allocate"]
 
+_MANY = 12  # digits, to tell apart values that are close to each other
+
 
 @dataclass(frozen=True)
 class Assignment:
@@ -167,8 +169,9 @@ def _division(
     found = divide(clocks, divider, resource_class.exact)
     if found is None:
         near = sorted(_written(n, attribute, clock) for n in neighbours(clocks, divider, resource_class.exact))
+        what = f"{attribute} {show(value, dimension, digits=_MANY)} of {claim.user}"
         message = f"{what} is not possible: the clock of {speed} does not divide to it"
-        hint = f"nearest: {' and '.join(show(nearest, dimension) for nearest in near)}"
+        hint = f"nearest: {' and '.join(show(nearest, dimension, digits=_MANY) for nearest in near)}"
         diagnostics.error(f"{attribute}-not-possible", stated.span, message, hint=hint, notes=stated.notes)
     return found
 

@@ -8,9 +8,10 @@ from fractions import Fraction
 
 from epg.diagnostics import Diagnostics, Note
 from epg.load.hardware import Peripheral, ResourceClass, Target
+from epg.load.items import pin_list
 from epg.resolve.claims import Claim
 from epg.resolve.divider import show
-from epg.resolve.pins import Pins, pin_list
+from epg.resolve.pins import Pins
 from epg.resolve.search import Demand, find_places
 from epg.source import Span
 
@@ -119,7 +120,8 @@ def _several(core: Sequence[Candidate], peripheral: Peripheral, target: Target, 
     needs = f"needs all of a {peripheral.title}" if last.resource_class.whole else f"is a {last.resource_class.title}"
     extent = f"{target.name} has {_extent(peripheral)}"
     message = f"no {peripheral.title} is left for {last.claim.user}, which {needs}: {extent}"
-    agreed = [name for name in peripheral.agree if len({_shown(candidate, name) for candidate in core}) > 1]
+    slots = [candidate for candidate in core if not candidate.resource_class.whole]
+    agreed = [name for name in peripheral.agree if len({_shown(candidate, name) for candidate in slots}) > 1]
     reason = f"; users of one {peripheral.title} have one {' and '.join(agreed)}" if agreed else ""
     hint = f"the others are {others}{reason}"
     notes = [

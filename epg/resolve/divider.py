@@ -60,20 +60,20 @@ def neighbours(clocks: Fraction, divider: Divider, exact: bool) -> tuple[int, in
     return below, above
 
 
-def show(value: Fraction | float, dimension: str, rounding: int = 0) -> str:
-    """A time in s or a frequency in Hz as people write it, six digits: ``20 kHz``, ``133.693 ms``.
+def show(value: Fraction | float, dimension: str, rounding: int = 0, digits: int = 6) -> str:
+    """A time in s or a frequency in Hz as people write it: ``20 kHz``, ``133.693 ms``.
 
-    ``rounding`` -1 never shows more than ``value``, 1 never less.
+    ``digits`` is how many are shown; ``rounding`` -1 never shows more than ``value``, 1 never less.
     """
     value = Fraction(value)
     units = [unit for unit in units_of(dimension) if unit != "min"]
     unit = next((unit for unit in reversed(units) if Fraction(UNITS[unit][1]) <= value), units[0])
     number = value / Fraction(UNITS[unit][1])
-    digits = max(0, 6 - len(str(math.floor(number))))
-    scaled = number * 10**digits
+    places = max(0, digits - len(str(math.floor(number))))
+    scaled = number * 10**places
     whole = round(scaled) if rounding == 0 else math.floor(scaled) if rounding < 0 else math.ceil(scaled)
-    text = str(whole // 10**digits)
-    rest = f"{whole % 10**digits:0{digits}d}".rstrip("0") if digits else ""
+    text = str(whole // 10**places)
+    rest = f"{whole % 10**places:0{places}d}".rstrip("0") if places else ""
     return f"{text}.{rest} {unit}" if rest else f"{text} {unit}"
 
 

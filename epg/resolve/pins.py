@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -10,6 +9,7 @@ from types import MappingProxyType
 
 from epg.diagnostics import Diagnostics, Note
 from epg.load.hardware import Peripheral, ResourceClass, Target
+from epg.load.items import pin_list
 from epg.resolve.claims import Claim, Stated
 from epg.resolve.search import WHOLE, Place
 from epg.source import Span
@@ -192,19 +192,3 @@ def all_places(resource_class: ResourceClass, peripheral: Peripheral) -> list[Pl
     names = resource_class.instances or peripheral.instances
     slots = [WHOLE] if resource_class.whole else list(range(len(peripheral.slots)))
     return [(peripheral.instances.index(name), slot) for name in names for slot in slots]
-
-
-def pin_list(pins: Iterable[str]) -> str:
-    """Pins for people, ranges shortened: ``0-3, 6, PA0-PA15``."""
-    parts: list[list[str]] = []
-    for pin in pins:
-        if parts and _follows(parts[-1][-1], pin):
-            parts[-1].append(pin)
-        else:
-            parts.append([pin])
-    return ", ".join(f"{run[0]}-{run[-1]}" if len(run) > 2 else ", ".join(run) for run in parts)
-
-
-def _follows(one: str, other: str) -> bool:
-    first, second = re.fullmatch(r"(\D*)(\d+)", one), re.fullmatch(r"(\D*)(\d+)", other)
-    return bool(first and second and first[1] == second[1] and int(second[2]) == int(first[2]) + 1)

@@ -1,0 +1,140 @@
+"""The search against brute force, on what a greedy choice refuses, and against the clock."""
+
+from __future__ import annotations
+
+import itertools
+import random
+import time
+from collections.abc import Iterator, Sequence
+
+import pytest
+from epg.resolve.search import WHOLE, Demand, Place, find_places
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+
+def fits(demands: Sequence[Demand], places: Sequence[Place]) -> bool:
+    """Whether these places are one for each demand, with no two users in each other's way: the definition."""
+    if any(place not in demand.places for demand, place in zip(demands, places)):
+        return False
+    for (one, (instance, slot)), (other, (instance2, slot2)) in itertools.combinations(zip(demands, places), 2):
+        if instance == instance2 and (slot == slot2 or WHOLE in (slot, slot2) or one.agree != other.agree):
+            return False
+    return True
+
+
+def brute_force(demands: Sequence[Demand]) -> bool:
+    """Whether any choice of places fits, by trying each of them, depth first."""
+
+    def extend(chosen: list[Place]) -> bool:
+        if len(chosen) == len(demands):
+            return True
+        return any(
+            fits(demands[: len(chosen) + 1], [*chosen, place]) and extend([*chosen, place])
+            for place in sorted(demands[len(chosen)].places)
+        )
+
+    return extend([])
+
+
+def greedy(demands: Sequence[Demand]) -> bool:
+    """Whether taking the first free place for one demand after another works."""
+    chosen: list[Place] = []
+    for number, demand in enumerate(demands):
+        free = [p for p in sorted(demand.places) if fits(demands[: number + 1], [*chosen, p])]
+        if not free:
+            return False
+        chosen.append(free[0])
+    return True
+
+
+@st.composite
+def problems(draw: st.DrawFn) -> list[Demand]:
+    """Small peripherals on which demands take any mixture of slots, or whole instances."""
+    instances, slots = draw(st.integers(1, 4)), draw(st.integers(1, 3))
+    single = st.tuples(st.integers(0, instances - 1), st.integers(0, slots - 1))
+    whole = st.tuples(st.integers(0, instances - 1), st.just(WHOLE))
+    demand = st.builds(
+        Demand,
+        places=st.one_of(
+            st.frozensets(single, min_size=1),
+            st.frozensets(whole, min_size=1),
+            st.just(frozenset(itertools.product(range(instances), range(slots)))),
+        ),
+        agree=st.integers(0, 2),
+    )
+    return draw(st.lists(demand, max_size=7))
+
+
+@settings(max_examples=500, deadline=None)
+@given(problems())
+@example([Demand(frozenset({(0, 0), (1, 0)})), Demand(frozenset({(0, WHOLE)}))])
+def test_it_finds_a_way_exactly_when_there_is_one(demands: list[Demand]) -> None:
+    found = find_places(demands)
+    assert (found is not None) == brute_force(demands)
+    assert found is None or fits(demands, found)
+
+
+@settings(max_examples=100, deadline=None)
+@given(problems(), st.randoms(use_true_random=False))
+def test_the_order_of_demands_does_not_decide(demands: list[Demand], order: random.Random) -> None:
+    shuffled = list(demands)
+    order.shuffle(shuffled)
+    assert (find_places(shuffled) is None) == (find_places(demands) is None)
+
+
+def test_what_a_greedy_choice_refuses_is_accepted() -> None:
+    """A timer with a choice of two, then one that has none: taking the first free one fails."""
+    demands = [Demand(frozenset({(0, 0), (1, 0)})), Demand(frozenset({(0, 0)}))]
+    assert not greedy(demands)
+    assert find_places(demands) == ((1, 0), (0, 0))
+
+
+def test_agreeing_users_share_an_instance_although_another_is_free() -> None:
+    """Three programs on two blocks fit only if both of one program take the same block."""
+    anywhere = frozenset(itertools.product(range(2), range(2)))
+    demands = [Demand(anywhere, "x"), Demand(anywhere, "y"), Demand(anywhere, "x"), Demand(anywhere, "y")]
+    found = find_places(demands)
+    assert found is not None and fits(demands, found)
+    assert found[0][0] == found[2][0] != found[1][0]
+
+
+def test_the_cheapest_of_equal_instances_is_taken() -> None:
+    anywhere = Demand(frozenset((instance, WHOLE) for instance in range(4)))
+    assert find_places([anywhere], [4, 2, 0, 4]) == ((2, WHOLE),)
+
+
+def test_hundreds_of_demands_do_not_end_the_recursion() -> None:
+    anywhere = frozenset((0, slot) for slot in range(256))
+    assert find_places([Demand(anywhere)] * 256) == tuple((0, slot) for slot in range(256))
+    assert find_places([Demand(anywhere)] * 257) is None
+
+
+def hard_problems() -> Iterator[tuple[str, list[Demand]]]:
+    """30 claims that fail by one, in the ways that cost a plain search the most."""
+    everywhere = frozenset(itertools.product(range(7), range(4)))
+    yield "one too many, all equal", [Demand(everywhere)] * 29 + [Demand(frozenset({(0, 0)}))]
+    blocks = frozenset(itertools.product(range(8), range(4)))
+    yield "nine programs for eight blocks", [Demand(blocks, number % 9) for number in range(30)]
+    yield "ten groups of three with a full block each", [Demand(blocks, number // 3) for number in range(30)]
+    wholes = frozenset((instance, WHOLE) for instance in range(15))
+    slots = frozenset(itertools.product(range(15), range(2)))
+    yield "whole instances and slots", [Demand(wholes)] * 5 + [Demand(slots)] * 21 + [Demand(slots, 1)] * 4
+    halves = [frozenset((i, s) for i in range(15) if i % 2 == odd for s in range(2)) for odd in (0, 1)]
+    yield "two halves", [Demand(halves[1])] * 15 + [Demand(halves[0], number) for number in range(15)]
+    pairs = [frozenset({(i, 0), (i, 1), ((i + 1) % 10, 0), ((i + 1) % 10, 1)}) for i in range(10)]
+    yield "a ring of pairs", [Demand(pairs[number % 10], number // 10) for number in range(30)]
+
+
+@pytest.mark.parametrize("demands", [p for _, p in hard_problems()], ids=[name for name, _ in hard_problems()])
+def test_refusing_thirty_claims_is_fast(demands: list[Demand]) -> None:
+    """Less than 50 ms (the best of five runs, as the machine has other work)."""
+    assert len(demands) == 30
+    assert find_places(demands) is None
+    assert min(_seconds(demands) for _ in range(5)) < 0.050
+
+
+def _seconds(demands: list[Demand]) -> float:
+    start = time.perf_counter()
+    find_places(demands)
+    return time.perf_counter() - start
