@@ -135,8 +135,11 @@ class Emitter:
         return Code(str(function(self.views[component.name], *arguments)).strip("\n"))
 
     def _expression(self, component: ResolvedComponent, macro: str, *arguments: object) -> Code:
-        code = Code(self._macro(component, macro, *arguments).strip())
-        if not code:
+        return Code(" ".join(self._statement(component, macro, *arguments).split()))
+
+    def _statement(self, component: ResolvedComponent, macro: str, *arguments: object) -> Code:
+        code = self._macro(component, macro, *arguments)
+        if not code.strip():
             raise LookupError(f"kind '{component.kind.name}' has no macro '{macro}' for {arguments}")
         return code
 
@@ -157,7 +160,7 @@ class Emitter:
     def _output(self, wire: Wire) -> OutputView:
         value = Code(f"{self.prefix}_outputs.{identifier(wire.port.identifier)}")
         value = self._converted(value, wire.steps)
-        statement = self._expression(wire.component, "write", wire.component_port.name, value)
+        statement = self._statement(wire.component, "write", wire.component_port.name, value)
         return OutputView(wire.port.name, _reference(wire), _indented(statement))
 
     def _plant_input(self, wire: Wire) -> InputView:
@@ -168,7 +171,7 @@ class Emitter:
     def _plant_output(self, wire: Wire) -> OutputView:
         value = Code(f"outputs.{identifier(wire.port.identifier)}")
         value = self._converted(value, wire.steps)
-        statement = self._expression(wire.component, "plant_write", wire.component_port.name, value)
+        statement = self._statement(wire.component, "plant_write", wire.component_port.name, value)
         return OutputView(wire.port.name, _reference(wire), _indented(statement))
 
     def _converted(self, value: Code, steps: Sequence[Step]) -> Code:
