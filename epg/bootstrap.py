@@ -155,7 +155,7 @@ def _install(group: str, folder: Path, missing: list[str]) -> None:
 
 def _remedy(missing: list[str], reason: str) -> str:
     names = " ".join(missing)
-    debian = " ".join("python3-" + name.lower() for name in missing)
+    debian = " ".join("python3-" + name.lower().replace("pyyaml", "yaml") for name in missing)
     return (
         f"EPG needs {', '.join(missing)} for {sys.executable}: {reason}\n"
         f"hint: one of\n"

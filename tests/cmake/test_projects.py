@@ -78,7 +78,7 @@ def test_a_mistake_stops_the_build_with_its_position_and_mending_it_helps(robot:
 def test_a_mistake_in_the_first_configuration_leaves_nothing_half_written(robot: Project) -> None:
     robot.edit("robot.tcf", "frequency: 20 kHz", "frequency: 20")
     output = robot.fails_to_configure()
-    assert "robot.tcf:8:40: error: frequency without a unit [wrong-unit]" in output
+    assert "robot.tcf:8:42: error: frequency without a unit [wrong-unit]" in output
     assert output.count("CMake Error") == 1, output
     assert not list((robot.build_folder / "epg").rglob("*.c"))
 

@@ -1,0 +1,120 @@
+"""EPG in a Python that lacks its packages: installs them once, whole, into its cache, or says what to do."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import venv
+from pathlib import Path
+
+import pytest
+from epg import bootstrap
+
+from tests.cmake.project import ROOT, Project
+
+EPG = [str(ROOT / "epg" / "__main__.py"), "targets"]
+
+
+@pytest.fixture(scope="module")
+def bare_python(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A virtual environment with pip and nothing else."""
+    folder = tmp_path_factory.mktemp("venv")
+    venv.EnvBuilder(with_pip=True, symlinks=os.name != "nt").create(folder)
+    return folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
+
+
+def run(python: Path | str, cache: Path, *arguments: str, **variables: str) -> subprocess.CompletedProcess[str]:
+    environment = {k: v for k, v in os.environ.items() if not k.startswith("PYTHON")} | {"EPG_CACHE": str(cache)} | variables
+    return subprocess.run([str(python), *arguments], capture_output=True, text=True, env=environment)
+
+
+def test_packages_are_installed_once_and_found_again(bare_python: Path, tmp_path: Path) -> None:
+    first = run(bare_python, tmp_path, *EPG)
+    assert first.returncode == 0, first.stderr
+    assert f"EPG: installing Jinja2, PyYAML, jsonschema for {bare_python} into {tmp_path}" in first.stderr
+    assert "host" in first.stdout
+    folders = [path.name for path in tmp_path.iterdir()]
+    assert len(folders) == 1
+    assert folders[0].startswith("python-generator-")
+    second = run(bare_python, tmp_path, *EPG)
+    assert (second.returncode, second.stderr) == (0, "")
+    assert second.stdout == first.stdout
+
+
+def test_two_at_once_leave_one_complete_folder(bare_python: Path, tmp_path: Path) -> None:
+    environment = {k: v for k, v in os.environ.items() if not k.startswith("PYTHON")} | {"EPG_CACHE": str(tmp_path)}
+    both = [
+        subprocess.Popen([str(bare_python), *EPG], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, env=environment)
+        for _ in range(2)
+    ]
+    outputs = [process.communicate()[0].decode() for process in both]
+    assert [process.returncode for process in both] == [0, 0], outputs
+    assert len(list(tmp_path.iterdir())) == 1
+
+
+def test_turned_off_it_names_what_is_missing(bare_python: Path, tmp_path: Path) -> None:
+    done = run(bare_python, tmp_path, *EPG, EPG_NO_INSTALL="1")
+    assert done.returncode == 4
+    assert f"EPG needs Jinja2, PyYAML, jsonschema for {bare_python}: installing them is turned off" in done.stderr
+    assert f"{bare_python} -m pip install Jinja2 PyYAML jsonschema" in done.stderr
+    assert "apt install python3-jinja2 python3-pyyaml python3-jsonschema".replace("pyyaml", "yaml") in done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_without_pip_it_names_what_is_missing(tmp_path: Path) -> None:
+    folder = tmp_path / "venv"
+    venv.EnvBuilder(with_pip=False, symlinks=os.name != "nt").create(folder)
+    python = folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
+    done = run(python, tmp_path / "cache", *EPG)
+    assert done.returncode == 4
+    assert "this Python has no pip to install them with" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_a_failed_installation_leaves_nothing_behind(bare_python: Path, tmp_path: Path) -> None:
+    done = run(bare_python, tmp_path, *EPG, PIP_INDEX_URL="http://127.0.0.1:9/", PIP_EXTRA_INDEX_URL="", PIP_RETRIES="0", PIP_NO_CACHE_DIR="1")
+    if done.returncode == 0:
+        pytest.skip("pip finds packages without an index here")
+    assert done.returncode == 4
+    assert "pip could not install them" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_cache_that_cannot_be_written(bare_python: Path, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    done = run(bare_python, tmp_path / "file" / "cache", *EPG)
+    assert done.returncode == 4
+    assert "EPG's cache cannot be written" in done.stderr
+
+
+def test_cmake_with_a_bare_python(bare_python: Path, tmp_path: Path) -> None:
+    cache = {"EPG_CACHE": str(tmp_path / "cache")}
+    project = Project(tmp_path / "on", "robot", cache)
+    output = project.configure(f"-DPython3_EXECUTABLE={bare_python}")
+    assert "EPG: installing" in output
+    off = Project(tmp_path / "off", "robot", {"EPG_CACHE": str(tmp_path / "other")})
+    output = off.fails_to_configure(f"-DPython3_EXECUTABLE={bare_python}", "-DEPG_INSTALL_PYTHON_PACKAGES=OFF")
+    assert "installing them is turned off" in output
+    assert not (tmp_path / "other").exists()
+
+
+@pytest.mark.parametrize("group", sorted(bootstrap.REQUIREMENTS))
+def test_every_lock_file_pins_all_its_packages_by_hash(group: str) -> None:
+    text = (bootstrap.LOCKS / f"{group}.txt").read_text()
+    entries = [entry for entry in text.replace("\\\n", " ").splitlines() if entry and not entry.startswith("#")]
+    assert entries
+    for entry in entries:
+        assert "==" in entry
+        assert "--hash=sha256:" in entry
+    names = {entry.split("==")[0].casefold() for entry in entries}
+    assert {name.casefold() for name, _ in bootstrap.REQUIREMENTS[group].values()} <= names
+
+
+def test_the_oldest_versions_are_those_of_the_package() -> None:
+    text = (ROOT / "pyproject.toml").read_text()
+    for module, (name, oldest) in bootstrap.REQUIREMENTS["generator"].items():
+        assert module
+        assert f'"{name.lower()}>={".".join(map(str, oldest))}"' in text
+    assert sys.version_info >= (3, 10)
