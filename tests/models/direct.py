@@ -28,10 +28,16 @@ extern double {variable}time{suffix};
 void {function}InitializeSubmodel{suffix}(double *u, double *y, double t);
 void {function}CalculateSubmodel{suffix}(double *u, double *y, double t);
 void {function}TerminateSubmodel{suffix}(double *u, double *y, double t);
-{_main(inputs, outputs, steps,
-       f"{function}InitializeSubmodel{suffix}(u, y, 0.0);",
-       f"{function}CalculateSubmodel{suffix}(u, y, {time});",
-       f"{function}TerminateSubmodel{suffix}(u, y, {time});")}
+{
+        _main(
+            inputs,
+            outputs,
+            steps,
+            f"{function}InitializeSubmodel{suffix}(u, y, 0.0);",
+            f"{function}CalculateSubmodel{suffix}(u, y, {time});",
+            f"{function}TerminateSubmodel{suffix}(u, y, {time});",
+        )
+    }
 """
     return _run_c(text, sources, includes, folder)
 
@@ -42,17 +48,24 @@ def run_cpp_class(folder_of_model: Path, name: str, folder: Path, counts: tuple[
 #include <stddef.h>
 #include "{name}.h"
 static {name} model;
-{_main(counts[0], counts[1], steps,
-       "model.SetFinishTime(0.0); model.Initialize(u, y, 0.0);",
-       "model.Calculate(u, y);",
-       "model.Terminate(u, y);")}
+{
+        _main(
+            counts[0],
+            counts[1],
+            steps,
+            "model.SetFinishTime(0.0); model.Initialize(u, y, 0.0);",
+            "model.Calculate(u, y);",
+            "model.Terminate(u, y);",
+        )
+    }
 """
     folder.mkdir(parents=True, exist_ok=True)
     main = folder / "direct.cpp"
     main.write_text(text, encoding="utf-8")
     sources = [main, folder_of_model / f"{name}.cpp", *sorted((folder_of_model / "common").glob("*.cpp"))]
     objects = [
-        compile_file(source, folder / f"direct_{i}.o", ["-w", f"-I{folder_of_model}"], "c++") for i, source in enumerate(sources)
+        compile_file(source, folder / f"direct_{i}.o", ["-w", f"-I{folder_of_model}"], "c++")
+        for i, source in enumerate(sources)
     ]
     return run([str(link(objects, folder / "direct", True))])
 
@@ -99,7 +112,7 @@ int main(void)
     return 0;
 }}
 """
-    files = [path for path in sorted(sources.glob("*.c"))]
+    files = sorted(sources.glob("*.c"))
     return _run_c(text, files, [sources], folder, ["-DNO_FUNCTION_PREFIX"])
 
 

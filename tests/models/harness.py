@@ -20,7 +20,7 @@ from epg.load.models import Model, load_model
 
 MODELS = Path(__file__).resolve().parent
 HAVE_COMPILER = shutil.which("gcc") is not None and shutil.which("g++") is not None
-STRICT = "-Wall -Wextra -Wconversion -Wdouble-promotion -Wshadow -Wstrict-prototypes -Wmissing-prototypes -Werror".split()
+STRICT = ["-Wall", "-Wextra", "-Wconversion", "-Wdouble-promotion", "-Wshadow", "-Wmissing-prototypes", "-Werror"]
 COMMON = ["-O1", "-ffp-contract=off"]
 
 #: inputs of step k: a sequence that leaves no bit pattern out of play for long
@@ -91,9 +91,16 @@ def build(
         path.write_text(text, encoding="utf-8")
     made = model_build(model, name, parameters)
     objects = [
-        compile_file(output / file, output / f"{file}.o", [*STRICT, *options, f"-I{output}"], "c") for file in made.generated
+        compile_file(output / file, output / f"{file}.o", [*STRICT, *options, f"-I{output}"], "c")
+        for file in made.generated
     ]
-    private = ["-w", *options, *(f"-I{directory}" for directory in made.include_dirs), f"-I{output}", f"-I{output}/{name}_headers"]
+    private = [
+        "-w",
+        *options,
+        *(f"-I{directory}" for directory in made.include_dirs),
+        f"-I{output}",
+        f"-I{output}/{name}_headers",
+    ]
     if made.forced_header:
         private += ["-include", str(output / made.forced_header)]
     own = [(output / file, output / f"{file}.o") for file in made.exported_generated]

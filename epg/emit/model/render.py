@@ -62,7 +62,9 @@ def render(model: Model, name: str, values: Mapping[str, float], instances: int)
 def parameter_constants(name: str, parameters: Sequence[Parameter]) -> list[str]:
     """Enumerators: ``PAN_PID1_KP``.  Parameters that differ in case only keep theirs: ``PAN_Kp``, ``PAN_KP``."""
     upper = [f"{name}_{parameter.identifier}".upper() for parameter in parameters]
-    reserved = {f"{name}_{word}".upper() for word in ("h", "step_size", "instances", "parameters", "export_h", "names_h")}
+    reserved = {
+        f"{name}_{word}".upper() for word in ("h", "step_size", "instances", "parameters", "export_h", "names_h")
+    }
     result: list[str] = []
     for constant, parameter in zip(upper, parameters, strict=True):
         unique = constant if upper.count(constant) == 1 else f"{name.upper()}_{parameter.identifier}"

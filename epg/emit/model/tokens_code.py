@@ -231,7 +231,9 @@ static int sidops_warning(const char *message, int id)
     "BitSet": _bits("BitSet", "a | (int)(1u << (position - 1))", "int a, int position"),
     "BitClear": _bits("BitClear", "a & ~(int)(1u << (position - 1))", "int a, int position"),
     "BitShift": _bits("BitShift", _SHIFT.format(up="<<", down=">>"), "int value, int bits"),
-    "BitShiftRight": _bits("BitShiftRight", "bits > 0 ? value >> bits : (int)((unsigned)value << -bits)", "int value, int bits"),
+    "BitShiftRight": _bits(
+        "BitShiftRight", "bits > 0 ? value >> bits : (int)((unsigned)value << -bits)", "int value, int bits"
+    ),
     "SwapBytes": """
 static int sidops_swap_bytes(int value)
 {

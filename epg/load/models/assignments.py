@@ -100,7 +100,10 @@ def listed_names(file: SourceFile, kind: str) -> list[tuple[str, Span]]:
     """Names in the list ``xx_<kind>_names[]``, which exports carry inside a comment."""
     for match in re.finditer(rf"{kind}_names\w*\s*\[\s*\]\s*=\s*\{{(.*?)(?:\bNULL\b|\}})", file.text, re.DOTALL):
         names = [
-            (re.sub(r"\\(.)", r"\1", string[1]), file.span(match.start(1) + string.start(), match.start(1) + string.end()))
+            (
+                re.sub(r"\\(.)", r"\1", string[1]),
+                file.span(match.start(1) + string.start(), match.start(1) + string.end()),
+            )
             for string in _STRING.finditer(match[1])
         ]
         if names:

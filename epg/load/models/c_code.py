@@ -12,13 +12,16 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
+from epg.load.models.identifiers import words
 from epg.load.models.source_file import SourceFile
 
-KEYWORDS = frozenset(
-    """auto break case char const continue default do double else enum extern float for goto if inline int long register
-    restrict return short signed sizeof static struct switch typedef union unsigned void volatile while bool catch class
-    delete explicit false friend mutable namespace new nullptr operator private protected public template this throw true
-    try typename using virtual""".split()
+KEYWORDS = words(
+    """
+    auto break case char const continue default do double else enum extern float for goto if inline int long
+    register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while
+    bool catch class delete explicit false friend mutable namespace new nullptr operator private protected
+    public template this throw true try typename using virtual
+    """
 )
 
 _LONGEST_HEAD = 2000  # characters of a declaration before its body that are looked at
@@ -131,7 +134,9 @@ def parse_code(file: SourceFile) -> Code:
 def integer_value(expression: str, macros: Mapping[str, str]) -> int | None:
     """The value of a size such as ``xx_states_size`` or ``0 + 6 + 1``; None if it is not that simple."""
     for _ in range(8):
-        replaced = _IDENTIFIER.sub(lambda match: f"({macros[match[0]]})" if match[0] in macros else match[0], expression)
+        replaced = _IDENTIFIER.sub(
+            lambda match: f"({macros[match[0]]})" if match[0] in macros else match[0], expression
+        )
         if replaced == expression:
             break
         expression = replaced

@@ -1,7 +1,7 @@
 """Import of 20-sim's C function target (4.5 to 5.1) and of the C sources of its FMU target.
 
-The entry points are recognised by the middle of their name (``...InitializeSubmodel...``), which survives the prefix and
-suffix changes people make to link two models; prefix and suffix are read off the variable that holds the step size.
+The entry points are recognised by the middle of their name (``...InitializeSubmodel...``), which survives the changes
+of prefix and suffix people make to link two models; both are read off the variable that holds the step size.
 """
 
 from __future__ import annotations
@@ -33,7 +33,14 @@ from epg.source import Span
 SUFFIXES = (".c",)
 _ENTRY = re.compile(r"\w*?(Initialize|Calculate|Terminate)Submodel\w*")
 _METHODS = re.compile(r"(Discrete|Euler|RungeKutta2|RungeKutta4|MeBDFi|VodeAdams|BDF|AdamsBashford2?|Vode\w*)")
-_MEMORY_COUNTS = ("constants_count", "parameter_count", "initialvalue_count", "variable_count", "state_count", "state_count")
+_MEMORY_COUNTS = (
+    "constants_count",
+    "parameter_count",
+    "initialvalue_count",
+    "variable_count",
+    "state_count",
+    "state_count",
+)
 _BASE_TYPES = {"double", "float", "int", "char", "short", "long", "unsigned", "signed char", "unsigned char", "bool"}
 
 
@@ -90,7 +97,13 @@ class _Importer:
         configuration = self.metadata.configuration
         ports = [
             make_ports(
-                lines, kind, names[kind], configuration, self.diagnostics, self.whole, self._stated_count(f"number_of_{kind}s")
+                lines,
+                kind,
+                names[kind],
+                configuration,
+                self.diagnostics,
+                self.whole,
+                self._stated_count(f"number_of_{kind}s"),
             )
             for kind, lines in (("input", inputs_lines), ("output", outputs_lines))
         ]
@@ -99,7 +112,7 @@ class _Importer:
         if step is None or self.diagnostics.error_count > before:
             return None
         parameter_array = self._array("P")
-        lines = [
+        settings = [
             (code, line)
             for code, function in self.linked.reachable(roots)
             for line in assignments(code.file, function.body_start, function.body_end)
@@ -107,8 +120,8 @@ class _Importer:
         ]
         token_parameters = self.metadata.tokens.names("PARAMETER") if self.metadata.tokens else []
         listed = [name for code in self.linked.units for name, _ in listed_names(code.file, "parameter")]
-        parameters, places = make_parameters([line for _, line in lines], listed or token_parameters, ())
-        holders = {id(line): code.file.path for code, line in lines}
+        parameters, places = make_parameters([line for _, line in settings], listed or token_parameters, ())
+        holders = {id(line): code.file.path for code, line in settings}
         elements = tuple(
             tuple(details.Element(line.array, line.array_index) for line in sorted(group, key=lambda line: line.index))
             if self._vectorless()
@@ -134,7 +147,9 @@ class _Importer:
                 real=self._base_type("XXDouble") or "double",
                 initialize=self._entry(self.entries["Initialize"]),
                 calculate=self._entry(self.entries["Calculate"]),
-                terminate=self._entry(self.entries["Terminate"]) if "Terminate" in self.entries else details.EntryPoint("", ()),
+                terminate=self._entry(self.entries["Terminate"])
+                if "Terminate" in self.entries
+                else details.EntryPoint("", ()),
                 calculate_static=next((self._entry(f) for f in self._static()), None),
                 model_initialize=self._entry(initialize) if initialize else None,
                 inputs=elements[0],
@@ -244,8 +259,8 @@ class _Importer:
             return ()
         text = "".join(code.file.code for code in self.linked.headers)
         pointers = set(re.findall(r"\w+\s*\*\s*([CPIVsR])\s*;", text))
-        counts = []
-        result = []
+        counts: list[str] = []
+        result: list[tuple[str, str]] = []
         for letter, word in zip("CPIVsR", _MEMORY_COUNTS, strict=True):
             macro = next((name for name in sorted(self.macros) if re.fullmatch(rf"\w*?(?<![a-z]){word}\w*", name)), "")
             if letter in pointers:
@@ -298,7 +313,9 @@ class _Importer:
         if value is None or value <= 0:
             span = place[0] if place else self.whole
             message = f"the step size '{place[1]}' is no positive number" if place else "the model has no step size"
-            self.diagnostics.error("model-step", span, message, hint=f"the sources set it as '{self._step_name()} = 0.001;'")
+            self.diagnostics.error(
+                "model-step", span, message, hint=f"the sources set it as '{self._step_name()} = 0.001;'"
+            )
             return None
         return value
 
@@ -389,7 +406,9 @@ class _Importer:
 
     def _fmi_array(self) -> str:
         """The memory that value references count in."""
-        return "MEMORY" if self.instance_type else next((n for n in self.variables if n.endswith("MEMORY")), "xx_MEMORY")
+        return (
+            "MEMORY" if self.instance_type else next((n for n in self.variables if n.endswith("MEMORY")), "xx_MEMORY")
+        )
 
 
 def _elements(variable: Variable, macros: dict[str, str]) -> int:

@@ -68,9 +68,7 @@ class _Importer:
             return None
         array = self._parameter_array()
         body = self.methods["Initialize"]
-        lines = [
-            line for line in assignments(self.file, body.body_start, body.body_end) if line.array == array
-        ]
+        lines = [line for line in assignments(self.file, body.body_start, body.body_end) if line.array == array]
         tokens = self.metadata.tokens
         names = tokens.names("PARAMETER") if tokens else []
         parameters, places = make_parameters(lines, names if len(names) == self._count("parameters") else [], ())
@@ -171,10 +169,16 @@ class _Importer:
                     functions.append((function, match[1]))
         read = input_lines if direction == "input" else output_lines
         lines = [
-            line for function, name in functions for line in read(self.file, name, function.body_start, function.body_end)
+            line
+            for function, name in functions
+            for line in read(self.file, name, function.body_start, function.body_end)
         ]
         tokens = self.metadata.tokens
-        names = [(name, tokens.span(f"{direction.upper()}_NAMES3")) for name in tokens.names(direction.upper())] if tokens else []
+        names = (
+            [(name, tokens.span(f"{direction.upper()}_NAMES3")) for name in tokens.names(direction.upper())]
+            if tokens
+            else []
+        )
         stated = self._place_of(f"number_of_{direction}s") or self._place_of(f"number_{direction}s")
         count = integer_value(stated[1], {}) if stated else None
         ports = make_ports(lines, direction, names, self.metadata.configuration, self.diagnostics, self.whole, count)

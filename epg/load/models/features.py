@@ -7,12 +7,13 @@ from collections.abc import Iterable, Sequence
 
 from epg.diagnostics import Diagnostics, Note
 from epg.load.models.c_code import KEYWORDS, Code, Function
+from epg.load.models.identifiers import words
 from epg.load.models.link import Linked
 from epg.load.models.tokens import Tokens
 
 FIXED_STEP_METHODS = ("Discrete", "Euler", "RungeKutta2", "RungeKutta4")
 
-_STUBS = {
+STUBS = {
     "Data": "data()",
     "Table": "table()",
     "TimeDelay": "tdelay()",
@@ -23,24 +24,28 @@ _STUBS = {
     "EventDown": "eventdown()",
     "TimeEvent": "timeevent()",
 }
-_STUB_NAME = re.compile(rf"(?:XX|YY|[A-Z]\w*?_?)?({'|'.join(sorted(_STUBS, key=len, reverse=True))})(?=[a-z_]|$)")
+_STUB_NAME = re.compile(rf"(?:XX|YY|[A-Z]\w*?_?)?({'|'.join(sorted(STUBS, key=len, reverse=True))})(?=[a-z_]|$)")
 _TRIVIAL_BODY = re.compile(r"\s*(?:return\s*\(?\s*(?:0(?:\.0*)?|XXFALSE|false)\s*\)?\s*;\s*)?")
 _DIRECTIVE = re.compile(r"^[ \t]*#[ \t]*(warning|error)\b[ \t]*([^\n]*)", re.MULTILINE)
 
-_HEAP = frozenset("malloc calloc realloc free strdup aligned_alloc".split())
-_FILES = frozenset(
-    """fopen freopen fclose fread fwrite fscanf fgets fputs fputc fgetc getc putc fprintf fflush fseek ftell rewind feof
-    remove rename tmpfile open read write close popen system socket""".split()
+_HEAP = words("malloc calloc realloc free strdup aligned_alloc")
+_FILES = words(
+    """
+    fopen freopen fclose fread fwrite fscanf fgets fputs fputc fgetc getc putc fprintf fflush fseek ftell rewind
+    feof remove rename tmpfile open read write close popen system socket
+    """
 )
-_PRINTS = frozenset("printf puts putchar".split())
-_CLOCKS = frozenset("time clock difftime gettimeofday clock_gettime".split())
-_LIBRARY = frozenset(
-    """acos asin atan atan2 ceil cos cosh exp fabs floor fmod frexp ldexp log log10 modf pow sin sinh sqrt tan tanh cbrt
-    exp2 expm1 log1p log2 hypot round trunc lround llround rint lrint nearbyint fmin fmax fdim copysign fma asinh acosh
-    atanh erf erfc tgamma lgamma isnan isinf isfinite isnormal signbit nextafter remainder scalbn logb ilogb
-    memcpy memset memmove memcmp memchr strlen strcmp strncmp strcpy strncpy strcat strncat strchr strrchr strstr strtol
-    strtoul strtod sprintf snprintf vsnprintf sscanf atoi atof atol abs labs llabs div rand srand qsort bsearch
-    exit abort assert defined offsetof va_start va_end va_arg static_assert""".split()
+_PRINTS = words("printf puts putchar")
+_CLOCKS = words("time clock difftime gettimeofday clock_gettime")
+_LIBRARY = words(
+    """
+    acos asin atan atan2 ceil cos cosh exp fabs floor fmod frexp ldexp log log10 modf pow sin sinh sqrt tan tanh
+    cbrt exp2 expm1 log1p log2 hypot round trunc lround llround rint lrint nearbyint fmin fmax fdim copysign fma
+    asinh acosh atanh erf erfc tgamma lgamma isnan isinf isfinite isnormal signbit nextafter remainder scalbn
+    logb ilogb memcpy memset memmove memcmp memchr strlen strcmp strncmp strcpy strncpy strcat strncat strchr
+    strrchr strstr strtol strtoul strtod sprintf snprintf vsnprintf sscanf atoi atof atol abs labs llabs div
+    rand srand qsort bsearch exit abort assert defined offsetof va_start va_end va_arg static_assert
+    """
 )
 _LIBRARY_ALL = _LIBRARY | {f"{name}f" for name in _LIBRARY} | _HEAP | _FILES | _PRINTS | _CLOCKS
 
@@ -85,7 +90,9 @@ def check_features(linked: Linked, roots: Sequence[Function], method_class: str,
     stubs = {
         function.name: (code, function)
         for code, function in reachable
-        if _STUB_NAME.match(function.name) and _TRIVIAL_BODY.fullmatch(code.body(function)) and function.result != "void"
+        if _STUB_NAME.match(function.name)
+        and _TRIVIAL_BODY.fullmatch(code.body(function))
+        and function.result != "void"
     }
     told: set[str] = set()
     for code, function in reachable:
@@ -111,8 +118,10 @@ def _check_declared(
     name: str, start: int, code: Code, linked: Linked, told: set[str], diagnostics: Diagnostics
 ) -> None:
     """Reports a call of a function of another C file that no header declares: C would take it to return int."""
-    if code.file.path.suffix != ".c" or name in told or not any(
-        f.name == name for unit in linked.units if unit is not code for f in unit.functions if not f.static
+    if (
+        code.file.path.suffix != ".c"
+        or name in told
+        or not any(f.name == name for unit in linked.units if unit is not code for f in unit.functions if not f.static)
     ):
         return
     if any(f.name == name for f in code.functions) or any(name in header.identifiers for header in linked.headers):
@@ -122,7 +131,9 @@ def _check_declared(
     told.add(name)
     span = code.file.span(start, start + len(name))
     message = f"'{name}' is called, but no header declares it"
-    diagnostics.error("model-undeclared", span, message, hint="include the header that declares it, as 20-sim exports it")
+    diagnostics.error(
+        "model-undeclared", span, message, hint="include the header that declares it, as 20-sim exports it"
+    )
 
 
 def _outside_bodies(code: Code) -> Iterable[str]:
@@ -153,10 +164,12 @@ def _check_call(
     if name in stubs:
         holder, stub = stubs[name]
         match = _STUB_NAME.match(name)
-        what = _STUBS[match[1]] if match else name
+        what = STUBS[match[1]] if match else name
         note = Note("it does nothing and returns 0 here", holder.file.span(stub.start, stub.start + len(name)))
         hint = f"write the body of '{name}', or avoid {what} in the model"
-        diagnostics.error("model-stub", span, f"the model uses {what}, which exports leave empty", hint=hint, notes=[note])
+        diagnostics.error(
+            "model-stub", span, f"the model uses {what}, which exports leave empty", hint=hint, notes=[note]
+        )
         return
     if name in known or name in told:
         return
@@ -164,7 +177,9 @@ def _check_call(
         diagnostics.error("model-heap", span, f"the model calls {name}()", hint=_HEAP_HINT)
     elif name in _FILES:
         message = f"the model calls {name}(): there are no files on a target"
-        diagnostics.error("model-file-use", span, message, hint="replace tables in files by equations or parameters in 20-sim")
+        diagnostics.error(
+            "model-file-use", span, message, hint="replace tables in files by equations or parameters in 20-sim"
+        )
     elif name in _PRINTS:
         message = f"the model calls {name}(): its output goes nowhere on a target"
         diagnostics.warning("model-prints", span, message, hint="remove it, or bind an output port to a topic")
@@ -186,12 +201,16 @@ def _check_call(
             diagnostics.error("model-incomplete", span, message, hint=hint)
         else:
             message = f"'{name}' is called, but it is no part of the export: dll() functions run inside 20-sim only"
-            diagnostics.error("model-dll", span, message, hint="put a source file that defines it into the model's folder")
+            diagnostics.error(
+                "model-dll", span, message, hint="put a source file that defines it into the model's folder"
+            )
 
 
 def _known_names(linked: Linked) -> set[str]:
     """Names that are something else than calls into the unknown: functions, types, macros, methods."""
-    known = {function.name for _, function in linked.functions()} | {function.owner for _, function in linked.functions()}
+    known = {function.name for _, function in linked.functions()} | {
+        function.owner for _, function in linked.functions()
+    }
     known |= linked.macro_names() | KEYWORDS
     for code in linked.all:
         known |= set(re.findall(r"\btypedef\b[^;]*?\b(\w+)\s*;", code.file.code))
@@ -204,7 +223,7 @@ def _known_names(linked: Linked) -> set[str]:
 
 
 def _check_directives(linked: Linked, reachable: Iterable[tuple[Code, Function]], diagnostics: Diagnostics) -> None:
-    """Reports ``#warning`` and ``#error`` texts of 20-sim's templates that stand in code that runs, or outside of functions."""
+    """Reports ``#warning`` and ``#error`` texts of 20-sim's templates in code that runs, or outside of functions."""
     running = {(code.file.path, function.start) for code, function in reachable}
     for code in linked.all:
         for match in _DIRECTIVE.finditer(code.file.without_comments):

@@ -70,7 +70,9 @@ class _Reader:
 
     def load(self) -> Model | None:
         if not self.node.is_mapping:
-            self._error("wrong-type", self.node.span, "a model.yaml is a map (key: value)", "it begins with 'version: 1'")
+            self._error(
+                "wrong-type", self.node.span, "a model.yaml is a map (key: value)", "it begins with 'version: 1'"
+            )
             return None
         if not self._version():
             return None
@@ -129,7 +131,7 @@ class _Reader:
 
     def _version(self) -> bool:
         node = self.node.get("version")
-        if node is None or node.value == VERSION and not isinstance(node.value, bool):
+        if node is None or (node.value == VERSION and not isinstance(node.value, bool)):
             return True
         if isinstance(node.value, int) and not isinstance(node.value, bool) and node.value > VERSION:
             message = f"version {node.value} is newer than this EPG, which reads version {VERSION}"
@@ -145,7 +147,9 @@ class _Reader:
         try:
             value = parse_quantity(node.value, "time")
         except QuantityError as problem:
-            self._error("wrong-unit" if "unit" in str(problem) else "wrong-quantity", node.span, str(problem), problem.hint)
+            self._error(
+                "wrong-unit" if "unit" in str(problem) else "wrong-quantity", node.span, str(problem), problem.hint
+            )
             return None
         if value <= 0:
             self._error("out-of-range", node.span, "the step must be more than 0", "write for example '1 ms'")
@@ -206,11 +210,15 @@ class _Reader:
         if node is None:
             return None
         if not node.is_mapping:
-            self._error("wrong-type", node.span, "'functions' is a map", "write for example {init: pid_init, step: pid_step}")
+            self._error(
+                "wrong-type", node.span, "'functions' is a map", "write for example {init: pid_init, step: pid_step}"
+            )
             return None
         self._known_keys(node, _FUNCTIONS, " in 'functions'")
         if "step" not in node:
-            self._error("missing-key", node.span, "'step' is missing in 'functions'", "name the function that makes one step")
+            self._error(
+                "missing-key", node.span, "'step' is missing in 'functions'", "name the function that makes one step"
+            )
         result: dict[str, str] = {}
         for key, value in node.items():
             pattern = _TYPE if language == "c++" else _IDENTIFIER
@@ -228,7 +236,9 @@ class _Reader:
             return ()
         direction = key.removesuffix("s")
         if not node.is_mapping:
-            self._error("wrong-type", node.span, f"'{key}' is a map of ports", "write for example {position: {unit: rad}}")
+            self._error(
+                "wrong-type", node.span, f"'{key}' is a map of ports", "write for example {position: {unit: rad}}"
+            )
             return ()
         ports = []
         for index, (name, value) in enumerate(node.items()):
@@ -284,7 +294,9 @@ class _Reader:
                 continue
             identifier = to_identifier(name)
             if any(known.identifier == identifier for known in parameters):
-                self._error("invalid-name", span, f"'{name}' becomes the C identifier of another parameter", "rename it")
+                self._error(
+                    "invalid-name", span, f"'{name}' becomes the C identifier of another parameter", "rename it"
+                )
             parameters.append(Parameter(name, identifier, float(number.value), self._word(value, "unit"), index, span))
             members.append(member)
         return tuple(parameters), tuple(members)
@@ -320,7 +332,9 @@ class _Reader:
                 folder = path.parent if path.parent.is_dir() else self.path.parent
                 known = [entry.name for entry in sorted(folder.iterdir()) if not suffixes or entry.suffix in suffixes]
                 message = f"there is no {'file' if suffixes else 'folder'} '{element.value}'"
-                self._error("file-not-found", element.span, message, did_you_mean(element.value, known, "in that folder"))
+                self._error(
+                    "file-not-found", element.span, message, did_you_mean(element.value, known, "in that folder")
+                )
             else:
                 result.append(path)
         return tuple(dict.fromkeys(result))
@@ -330,9 +344,13 @@ class _Reader:
         if name and not any((folder / name).is_file() for folder in directories):
             node = self.node["header"]
             known = [entry.name for folder in directories for entry in source_files(folder, (".h", ".hpp", ".hh"), 0)]
-            self._error("file-not-found", node.span, f"there is no header '{name}'", did_you_mean(name, known, "headers"))
+            self._error(
+                "file-not-found", node.span, f"there is no header '{name}'", did_you_mean(name, known, "headers")
+            )
         if re.search(r'["\\\n]', name):
-            self._error("invalid-name", self.node["header"].span, f"'{name}' is no name of a header", "use '/' in paths")
+            self._error(
+                "invalid-name", self.node["header"].span, f"'{name}' is no name of a header", "use '/' in paths"
+            )
         return name
 
     def _renames(self, sources: tuple[Path, ...]) -> tuple[str, ...]:
@@ -343,7 +361,8 @@ class _Reader:
             if file is None:
                 continue
             code = parse_code(file)
-            names |= {item.name for item in (*code.functions, *code.variables) if not item.static}
+            names |= {function.name for function in code.functions if not function.static}
+            names |= {variable.name for variable in code.variables if not variable.static}
             macros |= {macro.name for macro in code.macros}
         return tuple(sorted(names - macros))
 

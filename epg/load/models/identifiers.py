@@ -9,16 +9,30 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-_C11 = """auto break case char const continue default do double else enum extern float for goto if inline int long
-register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while""".split()
-_CPP = """alignas alignof and and_eq asm bitand bitor bool catch char16_t char32_t char8_t class compl concept
-const_cast consteval constexpr constinit co_await co_return co_yield decltype delete dynamic_cast explicit export
-false friend mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected public
-reinterpret_cast requires static_assert static_cast template this thread_local throw true try typeid typename
-using virtual wchar_t xor xor_eq""".split()
-_MACROS = "NULL EOF errno stdin stdout stderr assert unix linux i386 INFINITY NAN HUGE_VAL RAND_MAX".split()
 
-RESERVED = frozenset(_C11) | frozenset(_CPP) | frozenset(_MACROS)
+def words(text: str) -> frozenset[str]:
+    """The words of a text: a readable way to write a set of many."""
+    return frozenset(text.split())
+
+
+_C11 = words(
+    """
+    auto break case char const continue default do double else enum extern float for goto if inline int long
+    register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while
+    """
+)
+_CPP = words(
+    """
+    alignas alignof and and_eq asm bitand bitor bool catch char16_t char32_t char8_t class compl concept
+    const_cast consteval constexpr constinit co_await co_return co_yield decltype delete dynamic_cast explicit
+    export false friend mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected
+    public reinterpret_cast requires static_assert static_cast template this thread_local throw true try typeid
+    typename using virtual wchar_t xor xor_eq
+    """
+)
+_MACROS = words("NULL EOF errno stdin stdout stderr assert unix linux i386 INFINITY NAN HUGE_VAL RAND_MAX")
+
+RESERVED = _C11 | _CPP | _MACROS
 """Words that are no member of a struct in C11 or C++20, or macros of C libraries and common compilers."""
 
 

@@ -125,7 +125,9 @@ def link(main: Code, suffixes: Iterable[str], diagnostics: Diagnostics) -> Linke
         good &= _collect_headers(unit, search, headers, shims, diagnostics)
         names = set(unit.used)
         for header in headers.values():
-            names |= {word for macro in header.macros if macro.name in names for word in _IDENTIFIER.findall(macro.value)}
+            names |= {
+                word for macro in header.macros if macro.name in names for word in _IDENTIFIER.findall(macro.value)
+            }
             if header.file.path.stem == unit.file.path.stem and unit.file.path.suffix != ".c":
                 names |= header.identifiers  # types of a class's members
         for name in sorted(names - done):
@@ -149,7 +151,9 @@ def link(main: Code, suffixes: Iterable[str], diagnostics: Diagnostics) -> Linke
     if not good:
         return None
     rest = sorted(units[1:], key=lambda code: str(code.file.path))
-    directories = dict.fromkeys([directory, *(path.parent for path in headers), *(code.file.path.parent for code in rest)])
+    directories = dict.fromkeys(
+        [directory, *(path.parent for path in headers), *(code.file.path.parent for code in rest)]
+    )
     return Linked(
         (main, *rest),
         tuple(headers[path] for path in sorted(headers)),
@@ -183,10 +187,9 @@ def _definitions(pool: Iterable[Code]) -> Mapping[str, list[Code]]:
 
 
 def _definition_span(code: Code, name: str) -> Span:
-    for item in (*code.functions, *code.variables):
-        if item.name == name:
-            return code.file.span(item.start, item.start + len(name))
-    return code.file.span(0)
+    places = [function.start for function in code.functions if function.name == name]
+    places += [variable.start for variable in code.variables if variable.name == name]
+    return code.file.span(places[0], places[0] + len(name)) if places else code.file.span(0)
 
 
 def _choose(holders: list[Code], main: Path) -> Code | None:

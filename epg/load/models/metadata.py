@@ -161,7 +161,9 @@ def _check_configured(
         span = Span(str(configuration.path), 1, 1, 2)
         _differs(configuration.path, span, f"no {direction} '{name}', the sources do", sources, diagnostics)
     for name in sorted(told.keys() - names):
-        _differs(configuration.path, told[name].span, f"the {direction} '{name}', the sources do not", sources, diagnostics)
+        _differs(
+            configuration.path, told[name].span, f"the {direction} '{name}', the sources do not", sources, diagnostics
+        )
 
 
 def _differs(file: Path, span: Span, text: str, sources: Span, diagnostics: Diagnostics) -> bool:

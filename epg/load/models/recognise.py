@@ -72,7 +72,9 @@ def load_model(path: Path, diagnostics: Diagnostics, wanted_by: Span | None = No
 
 
 def _is_searched(entry: Path) -> bool:
-    return entry.is_dir() and not entry.name.startswith(".") and entry.name.lower() not in ("project", "build", "binaries")
+    return (
+        entry.is_dir() and not entry.name.startswith(".") and entry.name.lower() not in ("project", "build", "binaries")
+    )
 
 
 def _candidates(folders: list[Path]) -> list[Candidate]:
@@ -146,7 +148,7 @@ def _load_file(path: Path, whole: Span, diagnostics: Diagnostics) -> Model | Non
     elif suffix not in (".h", ".hpp") and read_any_text(path, diagnostics, whole) is None:
         return None
     message = f"'{path.name}' is no model"
-    hint = "name the folder, or the file with the submodel's functions (xxsubmod.c, <Submodel>.cpp), tokens.xml or model.yaml"
+    hint = "name the folder, or the submodel's file (xxsubmod.c, <Submodel>.cpp, tokens.xml, model.yaml)"
     diagnostics.error("model-not-recognised", whole, message, hint=hint)
     return None
 
@@ -162,7 +164,8 @@ def _near(path: Path) -> str:
 def _found(path: Path) -> str:
     names = [entry.name for entry in source_files(path, (".c", ".cpp", ".xml", ".h", ".emx", ".fmu"), 1)]
     if any(name.lower().endswith(".emx") for name in names):
-        return "; generate code from the .emx in 20-sim (Tools > Real Time Toolbox > C-Code Generation) and name that folder"
+        menu = "Tools > Real Time Toolbox > C-Code Generation"
+        return f"; generate code from the .emx in 20-sim ({menu}) and name that folder"
     if any(name.lower().endswith(".fmu") for name in names):
         return "; unpack the .fmu (it is a zip file) and name its folder 'sources'"
     return f"; found were {', '.join(names[:6])}" if names else ""

@@ -8,7 +8,8 @@ from epg.diagnostics import Diagnostics, did_you_mean
 from epg.load.models import details
 from epg.load.models.assignments import assignments, exact_number, input_lines, output_lines
 from epg.load.models.c_code import KEYWORDS
-from epg.load.models.features import FIXED_STEP_METHODS, check_tokens
+from epg.load.models.features import FIXED_STEP_METHODS, STUBS, check_tokens
+from epg.load.models.identifiers import words
 from epg.load.models.model import Model
 from epg.load.models.ports import check_identifiers, make_parameters, make_ports
 from epg.load.models.tokens import Tokens
@@ -33,26 +34,22 @@ CODE = (
 )
 
 #: functions of <math.h> that equations call directly
-MATH = frozenset("acos asin atan atan2 ceil cos cosh exp fabs floor fmod log log10 pow sin sinh sqrt tan tanh".split())
-
-#: helper functions that EPG's template provides, by their name without prefix
-HELPERS = frozenset(
-    """Absolute ArcCosineHyperbolic ArcSineHyperbolic ArcTangentHyperbolic BitAnd BitClear BitCmp BitGet BitInv BitOr
-    BitSet BitShift BitShiftRight BitXor Delay Exponent10 Exponent2 Impulse InitialValue IntegerDivide IntegerModulo
-    Logarithm10 Logarithm2 Pow2 Power Ramp Random Round Sign Step StopSimulation SwapBytes Warning Xor""".split()
+MATH = words(
+    """
+    acos asin atan atan2 ceil cos cosh exp fabs floor fmod log log10 pow sin sinh sqrt tan tanh
+    """
 )
 
-_STUBS = {
-    "Data": "data()",
-    "Table": "table()",
-    "TimeDelay": "tdelay()",
-    "FrequencyEvent": "frequencyevent()",
-    "FrequencyEvent1": "frequencyevent()",
-    "Event": "event()",
-    "EventUp": "eventup()",
-    "EventDown": "eventdown()",
-    "TimeEvent": "timeevent()",
-}
+#: helper functions that EPG's template provides, by their name without prefix
+HELPERS = words(
+    """
+    Absolute ArcCosineHyperbolic ArcSineHyperbolic ArcTangentHyperbolic BitAnd BitClear BitCmp BitGet BitInv
+    BitOr BitSet BitShift BitShiftRight BitXor Delay Exponent10 Exponent2 Impulse InitialValue IntegerDivide
+    IntegerModulo Logarithm10 Logarithm2 Pow2 Power Ramp Random Round Sign Step StopSimulation SwapBytes Warning
+    Xor
+    """
+)
+
 _EXPORT_HINT = "export the model with the C function or the C++ class target, and use its sources"
 
 
@@ -142,7 +139,11 @@ def _check_calls(tokens: Tokens, diagnostics: Diagnostics) -> tuple[str, ...]:
     helpers: set[str] = set()
     for token in CODE:
         file = tokens.code(token)
-        if "#" in file.without_comments or file.code.count("{") != file.code.count("}") or not _comments_closed(file.text):
+        if (
+            "#" in file.without_comments
+            or file.code.count("{") != file.code.count("}")
+            or not _comments_closed(file.text)
+        ):
             message = f"token '{token}' holds something else than equations"
             diagnostics.error("model-tokens", tokens.span(token), message, hint="export the model again")
         for match in re.finditer(r"(?<![\w>.])([A-Za-z_]\w*)\s*\(", file.code):
@@ -153,9 +154,9 @@ def _check_calls(tokens: Tokens, diagnostics: Diagnostics) -> tuple[str, ...]:
             span = file.span(match.start(1), match.end(1))
             if bare != name and bare in HELPERS:
                 helpers.add(bare)
-            elif bare != name and bare in _STUBS:
-                message = f"the model uses {_STUBS[bare]}, which exports leave empty"
-                diagnostics.error("model-stub", span, message, hint=f"avoid {_STUBS[bare]} in the model")
+            elif bare != name and bare in STUBS:
+                message = f"the model uses {STUBS[bare]}, which exports leave empty"
+                diagnostics.error("model-stub", span, message, hint=f"avoid {STUBS[bare]} in the model")
             elif bare == "RealTime":
                 message = "the model reads the computer's clock, which targets do not have"
                 diagnostics.error("model-real-time", span, message, hint="use 'time' instead of 'realtime' in 20-sim")
@@ -169,5 +170,7 @@ def _check_calls(tokens: Tokens, diagnostics: Diagnostics) -> tuple[str, ...]:
                 diagnostics.error("model-dll", span, message, hint="avoid dll() in the model")
     if "Random" in helpers:
         message = "the model uses random numbers: they repeat from start to start, and differ from 20-sim's"
-        diagnostics.warning("model-random", tokens.span("SUBMODEL_NAME"), message, hint="feed noise in through an input port")
+        diagnostics.warning(
+            "model-random", tokens.span("SUBMODEL_NAME"), message, hint="feed noise in through an input port"
+        )
     return tuple(sorted(helpers))
