@@ -178,14 +178,20 @@ static void watch_bridge(void)
     last_direction = now;
 }
 
+static void watch_coasting(void)
+{
+    CHECK_EQUAL(direction(), 0);
+}
+
 static void begin_bridge(bool invert, double max_duty)
 {
     fake_port_reset();
     last_direction = 0;
-    fake_port.on_write = watch_bridge;
+    fake_port.on_write = watch_coasting;
     bridge_config.invert = invert;
     bridge_config.max_duty = max_duty;
     epg_pwm_h_bridge_start(&bridge, &bridge_config);
+    fake_port.on_write = watch_bridge;
 }
 
 static bool drive(double duty)
@@ -199,6 +205,15 @@ TEST(bridge_starts_coasting)
     CHECK_EQUAL(fake_port.tops[3], 6249);
     CHECK_EQUAL(fake_port.levels[3], 0);
     CHECK_EQUAL(direction(), 0);
+}
+
+TEST(bridge_started_again_drives_again)
+{
+    begin_bridge(false, 0.9);
+    drive(0.5);
+    begin_bridge(false, 0.9);
+    drive(0.5);
+    CHECK_EQUAL(direction(), 1);
 }
 
 TEST(bridge_sign_gives_the_direction)
@@ -317,6 +332,10 @@ TEST(pwm_limits_and_says_so)
     epg_pwm_start(&pwm);
     CHECK(!epg_pwm_write(&pwm, 0.5));
     CHECK_EQUAL(fake_port.levels[2], 500);
+    CHECK(!epg_pwm_write(&pwm, 0.5006));
+    CHECK_EQUAL(fake_port.levels[2], 501);
+    CHECK(!epg_pwm_write(&pwm, 0.5004));
+    CHECK_EQUAL(fake_port.levels[2], 500);
     CHECK(!epg_pwm_write(&pwm, 0.8));
     CHECK_EQUAL(fake_port.levels[2], 800);
     CHECK(epg_pwm_write(&pwm, 0.81));
@@ -409,10 +428,11 @@ RUN(ENTRY(encoder_starts_at_zero_wherever_the_decoder_stands), ENTRY(encoder_wra
     ENTRY(encoder_counts_beyond_32_bits), ENTRY(encoder_reset_is_visible_in_the_next_cycle_only),
     ENTRY(encoder_reset_loses_no_counts), ENTRY(encoder_reset_acts_on_a_rising_edge_only),
     ENTRY(encoder_reset_by_nan_does_nothing), ENTRY(encoder_first_high_signal_after_withholding_is_an_edge),
-    ENTRY(encoder_of_simulated_edges), ENTRY(bridge_starts_coasting), ENTRY(bridge_sign_gives_the_direction),
-    ENTRY(bridge_inverted), ENTRY(bridge_limits_and_says_so), ENTRY(bridge_coasts_on_a_duty_that_is_not_finite),
-    ENTRY(bridge_coasts_below_half_a_clock), ENTRY(bridge_never_drives_the_wrong_way),
-    ENTRY(bridge_leaves_the_direction_alone_while_the_sign_stays), ENTRY(bridge_safe_writes_every_signal),
-    ENTRY(pwm_starts_safe), ENTRY(pwm_limits_and_says_so), ENTRY(pwm_is_safe_on_a_duty_that_is_not_finite),
-    ENTRY(pwm_inverted_is_the_complement), ENTRY(pwm_of_the_longest_period), ENTRY(digital_input_levels),
-    ENTRY(digital_output_levels), ENTRY(publisher_keeps_the_last_finite_value))
+    ENTRY(encoder_of_simulated_edges), ENTRY(bridge_starts_coasting), ENTRY(bridge_started_again_drives_again),
+    ENTRY(bridge_sign_gives_the_direction), ENTRY(bridge_inverted), ENTRY(bridge_limits_and_says_so),
+    ENTRY(bridge_coasts_on_a_duty_that_is_not_finite), ENTRY(bridge_coasts_below_half_a_clock),
+    ENTRY(bridge_never_drives_the_wrong_way), ENTRY(bridge_leaves_the_direction_alone_while_the_sign_stays),
+    ENTRY(bridge_safe_writes_every_signal), ENTRY(pwm_starts_safe), ENTRY(pwm_limits_and_says_so),
+    ENTRY(pwm_is_safe_on_a_duty_that_is_not_finite), ENTRY(pwm_inverted_is_the_complement),
+    ENTRY(pwm_of_the_longest_period), ENTRY(digital_input_levels), ENTRY(digital_output_levels),
+    ENTRY(publisher_keeps_the_last_finite_value))

@@ -52,6 +52,7 @@ static void start(void)
 {
     epg_quadrature_encoder_start(&encoder, &encoder_config);
     epg_pwm_h_bridge_start(&bridge, &bridge_config);
+    epg_port_input_start(PIN_FAIL_SAFE, EPG_PULL_DOWN);
 }
 
 static void read_inputs(void)

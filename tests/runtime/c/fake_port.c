@@ -4,7 +4,7 @@
  */
 #include "fake_port.h"
 
-#include <stddef.h>
+#include "check.h"
 
 fake_port_t fake_port;
 
@@ -28,16 +28,18 @@ uint64_t epg_port_time_ns(void)
 
 void epg_port_quadrature_start(const epg_port_quadrature_t *decoder)
 {
-    (void)decoder;
+    fake_port.decoders_started[decoder->unit] = true;
 }
 
 uint32_t epg_port_quadrature_count(const epg_port_quadrature_t *decoder)
 {
+    CHECK(fake_port.decoders_started[decoder->unit]);
     return fake_port.counts[decoder->unit];
 }
 
 void epg_port_pwm_start(const epg_port_pwm_t *pwm)
 {
+    fake_port.pwms_started[pwm->unit] = true;
     fake_port.tops[pwm->unit] = pwm->top;
     fake_port.levels[pwm->unit] = 0;
     written();
@@ -45,28 +47,34 @@ void epg_port_pwm_start(const epg_port_pwm_t *pwm)
 
 void epg_port_pwm_write(const epg_port_pwm_t *pwm, uint32_t level)
 {
+    CHECK(fake_port.pwms_started[pwm->unit]);
+    CHECK(level <= fake_port.tops[pwm->unit] + 1U);
     fake_port.levels[pwm->unit] = level;
     written();
 }
 
 void epg_port_output_start(uint8_t pin, bool level)
 {
+    fake_port.outputs_started[pin] = true;
     fake_port.outputs[pin] = level;
     written();
 }
 
 void epg_port_output_write(uint8_t pin, bool level)
 {
+    CHECK(fake_port.outputs_started[pin]);
     fake_port.outputs[pin] = level;
     written();
 }
 
 void epg_port_input_start(uint8_t pin, epg_port_pull_t pull)
 {
+    fake_port.inputs_started[pin] = true;
     fake_port.pulls[pin] = pull;
 }
 
 bool epg_port_input_read(uint8_t pin)
 {
+    CHECK(fake_port.inputs_started[pin]);
     return fake_port.inputs[pin];
 }

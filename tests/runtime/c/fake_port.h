@@ -1,6 +1,6 @@
 /**
  * @file
- * A port layer whose clock and signals a test sets and sees.
+ * A port layer whose clock and signals a test sets and sees.  Using a peripheral that was not started fails the test.
  */
 #ifndef FAKE_PORT_H
 #define FAKE_PORT_H
@@ -17,6 +17,10 @@ typedef struct fake_port {
     bool outputs[FAKE_PINS];
     bool inputs[FAKE_PINS];
     epg_port_pull_t pulls[FAKE_PINS];
+    bool decoders_started[FAKE_UNITS];
+    bool pwms_started[FAKE_UNITS];
+    bool outputs_started[FAKE_PINS];
+    bool inputs_started[FAKE_PINS];
     unsigned int writes;    /**< of PWM levels and pins */
     void (*on_write)(void); /**< called after each of them: nothing happens unseen */
 } fake_port_t;

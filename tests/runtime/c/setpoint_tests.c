@@ -262,11 +262,13 @@ TEST(a_sample_younger_than_the_cycle_is_fresh)
 TEST(equal_values_are_fresh_ones)
 {
     begin((epg_setpoint_t){.timeout_ns = TIMEOUT_NS, .action = EPG_TIMEOUT_DISABLE});
-    for (int i = 0; i < 20; i++) {
+    for (int i = 0; i < 21; i++) {
         fake_receive(0, 5.0);
         fake_cycles(5);
     }
     CHECK(fake_status().enabled);
+    fake_cycles(10);
+    CHECK(!fake_status().enabled);
 }
 
 TEST(one_setpoint_going_on_does_not_keep_another_fresh)
