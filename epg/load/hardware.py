@@ -121,7 +121,7 @@ class Board:
         """The chip's name of a pin that is written as people do: ``GP10`` is ``10``, ``LED`` is ``25``."""
         if written in self.names:
             return self.names[written]
-        for prefix in self.prefixes:
+        for prefix in sorted(self.prefixes, key=len, reverse=True):  # GPIO before GP
             if written.startswith(prefix) and written != prefix:
                 return written[len(prefix) :]
         return written

@@ -8,9 +8,10 @@ import time
 from collections.abc import Iterator, Sequence
 
 import pytest
-from epg.resolve.search import WHOLE, Demand, Place, find_places
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+
+from epg.resolve.search import WHOLE, Demand, Place, find_places
 
 
 def fits(demands: Sequence[Demand], places: Sequence[Place]) -> bool:
