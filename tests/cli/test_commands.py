@@ -1,0 +1,223 @@
+"""The subcommands as a user calls them."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+from epg.cli.main import COMMANDS, main
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+JIWY = ROOT / "examples" / "jiwy"
+FILES = ["--tcf", "rpi_pico2_freertos_jiwy", "--model", str(JIWY / "model"), "--bindings", str(JIWY / "jiwy.bindings.yaml")]
+
+
+@pytest.fixture
+def robot(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The files of the tests of messages, in the current folder."""
+    shutil.copytree(ROOT / "tests/errors/common", tmp_path, dirs_exist_ok=True)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_without_a_command_help_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([]) == 2
+    assert "explain" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_has_help(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([command, "--help"]) == 0
+    assert "usage: epg" in capsys.readouterr().out
+
+
+def test_a_wrong_command_line_is_status_2(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["chekc"]) == 2
+    assert main(["generate"]) == 2
+    assert main(["check"]) == 2
+    assert "Traceback" not in capsys.readouterr().err
+
+
+def test_a_bug_is_status_3_and_says_so(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    import epg.cli.targets
+
+    def fail(*_: object) -> int:
+        raise KeyError("a bug")
+
+    monkeypatch.setattr(epg.cli.targets, "run", fail)
+    assert main(["targets"]) == 3
+    assert "this is a bug in EPG" in capsys.readouterr().err
+
+
+def test_the_cmake_folder(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["--cmake-dir"]) == 0
+    assert capsys.readouterr().out == f"{(ROOT / 'cmake').as_posix()}\n"
+
+
+def test_check_alone_and_together(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", "robot.tcf"]) == 0
+    assert main(["check", "--tcf", "robot.tcf", "--model", "model", "--bindings", "bindings.yaml"]) == 0
+    assert main(["check", *FILES]) == 0
+    assert capsys.readouterr().out == "no errors\n" * 3
+
+
+def test_all_predefined_configurations_are_right(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["targets", "--json"]) == 0
+    names = json.loads(capsys.readouterr().out)["tcf"]
+    complete = [name for name in names if name.startswith(("host_", "rpi_pico2_f", "rpi_pico2_b", "rpi_pico_f", "rpi_pico_b"))]
+    assert len(complete) >= 7
+    assert main(["check", *complete]) == 0
+
+
+def test_check_as_json(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", "robot.tcf", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out) == {"diagnostics": []}
+    (robot / "robot.tcf").write_text("version: 1\n")
+    assert main(["check", "robot.tcf", "--json"]) == 1
+    found = json.loads(capsys.readouterr().out)["diagnostics"]
+    assert {d["id"] for d in found} == {"missing-key"}
+    assert found[0]["file"] == "robot.tcf"
+
+
+def test_ports(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["ports", "model"]) == 0
+    assert "input   setpoint  rad   real" in capsys.readouterr().out
+    assert main(["ports", str(JIWY / "model"), "--json"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert data["name"] == "JIWY_Control"
+    assert data["step"] == 0.001
+    assert [port["name"] for port in data["inputs"]] == ["position_pan", "position_tilt", "setpoint_pan", "setpoint_tilt"]
+    assert {"name": "Pan\\PID\\kp", "value": 2.6, "unit": ""} in data["parameters"]
+
+
+def test_targets(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["targets"]) == 0
+    text = capsys.readouterr().out
+    assert "rpi_pico2_freertos " in text
+    assert "host_jiwy.tcf" in text
+    assert main(["targets", "--kinds"]) == 0
+    assert "position (source, rad), reset (sink)" in capsys.readouterr().out
+
+
+def test_explain_shows_the_whole_way(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["explain", "position_pan", "--name", "jiwy", *FILES]) == 0
+    text = capsys.readouterr().out
+    assert text.startswith("jiwy (rpi_pico2_freertos)\n")
+    for words in (
+        "position_pan [rad], real",
+        "JIWY_Control: u[0]",
+        "jiwy_inputs.position_pan",
+        "encoder_pan.position [rad]",
+        "quadrature_encoder, EPG:robots/jiwy/rpi_pico_jiwy.tcf:",
+        "PIO block 0, state machine 0",
+        "GPIO 10",
+        "GPIO 11",
+        "jiwy_encoder_pan",
+    ):
+        assert words in text
+
+
+def test_explain_a_component_as_json(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["explain", "encoder_pan", "--json", *FILES]) == 0
+    wires = json.loads(capsys.readouterr().out)
+    assert [(wire["port"], wire["direction"]) for wire in wires] == [("position_pan", "input"), ("encoder_reset_pan", "output")]
+    assert wires[0]["resources"]["pins"] == {"a": 10, "b": 11}
+
+
+def test_explain_shows_conversions(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = (robot / "bindings.yaml").read_text()
+    (robot / "bindings.yaml").write_text(text.replace("angle: encoder", "angle: {from: encoder, unit: deg, limits: [-90, 90]}"))
+    files = ["--tcf", "robot.tcf", "--model", "model", "--bindings", "bindings.yaml"]
+    assert main(["explain", "angle", *files]) == 0
+    shown = capsys.readouterr().out
+    assert "value * 57.29577951308232" in shown
+    assert "rad -> deg" in shown
+    assert "limited to [-90.0, 90.0]" in shown
+
+
+def test_explain_reads_a_build_folder(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["explain", "angle", "--build", "."]) == 1
+    assert "there is no generated target here" in capsys.readouterr().err
+    (robot / "host.tcf").write_text((robot / "robot.tcf").read_text().replace("rpi_pico_bare_metal", "host"))
+    arguments = ["--tcf", "host.tcf", "--model", "model", "--bindings", "bindings.yaml", "--output", "build/epg/robot"]
+    assert main(["generate", "robot", *arguments]) == 0
+    assert main(["explain", "angle"]) == 0
+    assert "robot (host)" in capsys.readouterr().out
+    assert main(["explain", "angel"]) == 1
+    assert "did you mean 'angle'?" in capsys.readouterr().err
+
+
+def test_generate_says_what_it_wrote(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (robot / "host.tcf").write_text((robot / "robot.tcf").read_text().replace("rpi_pico_bare_metal", "host"))
+    arguments = ["generate", "robot", "--tcf", "host.tcf", "--model", "model", "--bindings", "bindings.yaml", "--output", "out", "--json"]
+    assert main(arguments) == 0
+    first = json.loads(capsys.readouterr().out)
+    assert set(first["written"]) == set(first["files"]) >= {"robot.h", "robot_app.c", "robot.cmake", "robot.json"}
+    assert main(arguments) == 0
+    assert json.loads(capsys.readouterr().out)["written"] == []
+
+
+def test_bind_writes_what_matches_and_comments_the_rest(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["bind", "model", "robot.tcf"]) == 0
+    text = capsys.readouterr().out
+    assert text == (
+        "version: 1\n"
+        "model: Controller\n"
+        "inputs:\n"
+        "  # angle:    # no name matches; possible: button, encoder, target\n"
+        "  # go:    # no name matches; possible: button, encoder, target\n"
+        "  # setpoint:    # no name matches; possible: button, encoder, target\n"
+        "outputs:\n"
+        "  duty: motor\n"
+        "  # log:    # no name matches; possible: encoder.reset, motor, position\n"
+        "  reset: encoder.reset\n"
+    )
+    assert main(["bind", str(JIWY / "model"), "host_jiwy"]) == 0
+    assert "  encoder_reset_pan: encoder_pan.reset\n" in capsys.readouterr().out
+
+
+def test_bind_does_not_overwrite(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    before = (robot / "bindings.yaml").read_text()
+    assert main(["bind", "model", "robot.tcf", "-o", "bindings.yaml"]) == 1
+    assert "--update" in capsys.readouterr().err
+    assert (robot / "bindings.yaml").read_text() == before
+
+
+UPDATES = {
+    "block": (
+        "version: 1\nmodel: Controller   # mine\ninputs:\n  # the load\n  angle: encoder   # rad\n  old:\n    from: button\n"
+        "    scale: 2\n  setpoint: target\noutputs:\n  log: position\n  gone: motor\n",
+        "version: 1\nmodel: Controller   # mine\ninputs:\n  # the load\n  angle: encoder   # rad\n  # old:   # no longer a port of the model\n"
+        "  #   from: button\n  #   scale: 2\n  setpoint: target\n  # go:    # no name matches; possible: button, encoder, target\n"
+        "outputs:\n  log: position\n  # gone: motor   # no longer a port of the model\n  duty: motor\n  reset: encoder.reset\n",
+    ),
+    "flow": (
+        "version: 1\nmodel: Controller\ninputs: {angle: encoder, go: button, setpoint: target}\n"
+        "outputs: {log: [position], gone: {to: motor, scale: 2}}\n# the end\n",
+        "version: 1\nmodel: Controller\ninputs: {angle: encoder, go: button, setpoint: target}\n"
+        "outputs:\n  log: [position]\n  # gone: {to: motor, scale: 2}   # no longer a port of the model\n  duty: motor\n  reset: encoder.reset\n# the end\n",
+    ),
+}
+
+
+@pytest.mark.parametrize("style", UPDATES)
+def test_bind_update_keeps_everything_else(robot: Path, style: str, capsys: pytest.CaptureFixture[str]) -> None:
+    before, after = UPDATES[style]
+    (robot / "bindings.yaml").write_text(before)
+    arguments = ["bind", "model", "robot.tcf", "-o", "bindings.yaml", "--update"]
+    assert main(arguments) == 0
+    assert (robot / "bindings.yaml").read_text() == after
+    text = capsys.readouterr().out
+    assert "added:   duty\nadded:   reset\n" in text
+    assert "removed: gone\n" in text
+    assert main(arguments) == 0
+    assert (robot / "bindings.yaml").read_text() == after, "a second update changes nothing"
+
+
+def test_bind_update_on_a_complete_file(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    before = (robot / "bindings.yaml").read_bytes()
+    assert main(["bind", "model", "robot.tcf", "-o", "bindings.yaml", "--update"]) == 0
+    assert capsys.readouterr().out == "all ports of the model are bound\n"
+    assert (robot / "bindings.yaml").read_bytes() == before
