@@ -27,7 +27,8 @@ class EpgBuildHook(BuildHookInterface):
         forwarder = root / "cmake/forwarder"
         config = (forwarder / "EPGConfig.cmake").read_text(encoding="utf-8")
         if version == "editable":
-            config = f'# Leads to the checkout of an editable install.\ninclude("{(root / "cmake").as_posix()}/EPGConfig.cmake")\n'
+            checkout = (root / "cmake" / "EPGConfig.cmake").as_posix()
+            config = f'# Leads to the checkout of an editable install.\ninclude("{checkout}")\n'
         else:
             for name in DATA:
                 build_data["force_include"][str(root / name)] = f"epg/_data/{name}"

@@ -10,7 +10,7 @@ if not __package__:  # started by its path: the package's parent takes the place
 
     sys.path[0] = dirname(dirname(abspath(__file__)))
 
-from epg.cli.main import main  # noqa: E402
+from epg.cli.main import main
 
 if __name__ == "__main__":
     sys.exit(main())

@@ -48,9 +48,7 @@ class Request:
 
 def load_configuration(request: Request, catalog: Catalog, diagnostics: Diagnostics) -> Configuration | None:
     """The checked configuration of ``request.tcf`` with its settings."""
-    chain = load_tcf_chain(
-        request.tcf, request.roots, diagnostics, beside=request.beside, wanted_by=request.caller
-    )
+    chain = load_tcf_chain(request.tcf, request.roots, diagnostics, beside=request.beside, wanted_by=request.caller)
     settings = settings_node(request.settings, diagnostics)
     if not chain:
         return None

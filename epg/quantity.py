@@ -93,7 +93,7 @@ def dimension_of(unit: str) -> str | None:
 
 
 def conversion_factor(source: str, target: str) -> float:
-    """What a number in ``source`` is multiplied with to be in ``target``.  Raises ValueError if they do not go together."""
+    """What a number in ``source`` is multiplied with to be in ``target``.  Raises ValueError for other dimensions."""
     source_dimension, source_factor = UNITS[normal_unit(source)]
     target_dimension, target_factor = UNITS[normal_unit(target)]
     if source_dimension != target_dimension:
@@ -129,7 +129,9 @@ def parse_quantity(value: object, dimension: str) -> Fraction | float:
         return parse_ratio(value)
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         common = {"time": "ms", "frequency": "kHz"}.get(dimension, units[len(units) // 2])
-        raise QuantityError(f"{dimension} without a unit", f"write for example '{value} {common}'; units: {', '.join(units)}")
+        raise QuantityError(
+            f"{dimension} without a unit", f"write for example '{value} {common}'; units: {', '.join(units)}"
+        )
     if not isinstance(value, str):
         raise QuantityError(f"this is no {dimension}", example)
     match = _QUANTITY.fullmatch(value.strip())

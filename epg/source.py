@@ -41,7 +41,7 @@ class Node:
     in, so that a message about an inherited value can say who inherits it.
     """
 
-    value: Scalar | tuple["Node", ...] | Mapping[str, "Node"]
+    value: Scalar | tuple[Node, ...] | Mapping[str, Node]
     span: Span
     keys: Mapping[str, Span] = field(default_factory=lambda: MappingProxyType({}))
     origins: tuple[Span, ...] = ()

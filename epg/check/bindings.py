@@ -95,7 +95,9 @@ def conversion_of(node: Node, diagnostics: Diagnostics) -> Conversion:
     if limits is not None:
         low, high = (_float(element) for element in limits.elements())
         if low >= high:
-            diagnostics.error("wrong-value", limits.span, f"limits [{low:g}, {high:g}] leave no range", hint="write [lowest, highest]")
+            diagnostics.error(
+                "wrong-value", limits.span, f"limits [{low:g}, {high:g}] leave no range", hint="write [lowest, highest]"
+            )
         pair = (low, high)
     span = next((part.span for part in (scale, offset, limits, unit) if part is not None), None)
     return Conversion(
@@ -111,9 +113,7 @@ def _inputs(node: Node, diagnostics: Diagnostics) -> list[tuple[str, tuple[Span,
     section = node.get("inputs")
     if section is None:
         return []
-    return [
-        (name, (section.key_span(name), _binding(value, "from", diagnostics))) for name, value in section.items()
-    ]
+    return [(name, (section.key_span(name), _binding(value, "from", diagnostics))) for name, value in section.items()]
 
 
 def _outputs(node: Node, diagnostics: Diagnostics) -> list[tuple[str, tuple[Span, tuple[Binding, ...]]]]:

@@ -117,7 +117,12 @@ def check_configuration(
 def version_problem(node: Node, diagnostics: Diagnostics) -> None:
     """Reports a file format that is newer than this EPG."""
     version = node.get("version")
-    if version is not None and isinstance(version.value, int) and not isinstance(version.value, bool) and version.value > 1:
+    if (
+        version is not None
+        and isinstance(version.value, int)
+        and not isinstance(version.value, bool)
+        and version.value > 1
+    ):
         diagnostics.error(
             "newer-version",
             version.span,
@@ -126,9 +131,7 @@ def version_problem(node: Node, diagnostics: Diagnostics) -> None:
         )
 
 
-def _components(
-    root: Node, target: Target | None, catalog: Catalog, diagnostics: Diagnostics
-) -> dict[str, Component]:
+def _components(root: Node, target: Target | None, catalog: Catalog, diagnostics: Diagnostics) -> dict[str, Component]:
     section = root["components"]
     result: dict[str, Component] = {}
     folded: dict[str, str] = {}
@@ -183,7 +186,11 @@ def _control(node: Node, components: Mapping[str, Component], diagnostics: Diagn
 def _fail_safe(node: Node, components: Mapping[str, Component], diagnostics: Diagnostics) -> None:
     """A fail-safe input is a component with a boolean source."""
     name = str(node.value)
-    able = [c.name for c in components.values() if any(p.direction == "source" and p.type == "boolean" for p in c.kind.ports)]
+    able = [
+        c.name
+        for c in components.values()
+        if any(p.direction == "source" and p.type == "boolean" for p in c.kind.ports)
+    ]
     if name not in components:
         hint = did_you_mean(name, able, "digital inputs")
         diagnostics.error("unknown-component", node.span, f"there is no component '{name}'", hint=hint)

@@ -148,7 +148,9 @@ def _fitting_alternative(error: Any) -> list[Any]:
 
 def _type_hint(value: object, wanted: list[str]) -> str:
     if "boolean" in wanted and isinstance(value, str) and value.casefold() in ("on", "off", "yes", "no", "y", "n"):
-        return f"YAML 1.2 has only true and false: write {'true' if value.casefold() in ('on', 'yes', 'y') else 'false'}"
+        return (
+            f"YAML 1.2 has only true and false: write {'true' if value.casefold() in ('on', 'yes', 'y') else 'false'}"
+        )
     if isinstance(value, str) and {"number", "integer"} & set(wanted):
         try:
             float(value.replace("_", ""))

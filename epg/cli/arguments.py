@@ -13,12 +13,23 @@ from epg.source import Span
 
 def add_target_arguments(parser: argparse.ArgumentParser, *, required: bool) -> None:
     """The files that make a target, and what is set on top of them."""
-    parser.add_argument("--tcf", required=required, metavar="FILE", help="target configuration: a file, or one of EPG's by name")
+    parser.add_argument(
+        "--tcf", required=required, metavar="FILE", help="target configuration: a file, or one of EPG's by name"
+    )
     parser.add_argument("--model", required=required, type=Path, metavar="FOLDER", help="folder of the model")
-    parser.add_argument("--bindings", required=required, type=Path, metavar="FILE", help="bindings of the model's ports")
+    parser.add_argument(
+        "--bindings", required=required, type=Path, metavar="FILE", help="bindings of the model's ports"
+    )
     parser.add_argument("--plant", type=Path, metavar="FOLDER", help="model of the plant (host)")
     parser.add_argument("--plant-bindings", type=Path, metavar="FILE", help="bindings of the plant's ports")
-    parser.add_argument("--set", action="append", default=[], dest="settings", metavar="KEY.KEY=VALUE", help="replaces a value of the .tcf")
+    parser.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        dest="settings",
+        metavar="KEY.KEY=VALUE",
+        help="replaces a value of the .tcf",
+    )
     parser.add_argument("--node", help="name of the ROS 2 node, instead of the .tcf's")
     parser.add_argument("--namespace", help="namespace of the ROS 2 node, instead of the .tcf's")
     parser.add_argument("--caller", metavar="CMAKELISTS", help=argparse.SUPPRESS)

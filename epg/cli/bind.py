@@ -17,7 +17,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("model", type=Path, metavar="MODEL", help="folder of the model")
     parser.add_argument("tcf", metavar="TCF", help="target configuration: a file, or one of EPG's by name")
     parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="bindings to write; default: standard output")
-    parser.add_argument("--update", action="store_true", help="keep what FILE says; add new ports, comment removed ones out")
+    parser.add_argument(
+        "--update", action="store_true", help="keep what FILE says; add new ports, comment removed ones out"
+    )
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
@@ -47,7 +49,9 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         if change.text != text:
             options.output.write_text(change.text, encoding="utf-8", newline="")
         if options.json:
-            sys.stdout.write(to_json({"added": list(change.added), "removed": list(change.removed), "open": list(change.open)}))
+            sys.stdout.write(
+                to_json({"added": list(change.added), "removed": list(change.removed), "open": list(change.open)})
+            )
         else:
             _print_changes(change.added, change.removed, change.open)
         return 0
@@ -79,5 +83,3 @@ def _print_changes(added: Iterable[str], removed: Iterable[str], left: Iterable[
         print(f"to bind: {name}")
     if not (added or removed or left):
         print("all ports of the model are bound")
-
-

@@ -16,7 +16,9 @@ from epg.source import Span
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("port", help="port of the model, or a component")
-    parser.add_argument("--build", type=Path, metavar="PATH", help="a <name>.json, or a folder to look for one; default: here")
+    parser.add_argument(
+        "--build", type=Path, metavar="PATH", help="a <name>.json, or a folder to look for one; default: here"
+    )
     parser.add_argument("--name", default="target", help="name of the target, with --tcf")
     add_target_arguments(parser, required=False)
 
@@ -58,7 +60,11 @@ def _from_files(options: argparse.Namespace, diagnostics: Diagnostics) -> dict[s
 
 def _from_build(path: Path, diagnostics: Diagnostics) -> list[dict[str, Any]]:
     """The descriptions of the generated targets below ``path``."""
-    files = [path] if path.is_file() else sorted({*path.glob("epg/*/*.json"), *path.glob("*/epg/*/*.json"), *path.glob("*/*/epg/*/*.json")})
+    files = (
+        [path]
+        if path.is_file()
+        else sorted({*path.glob("epg/*/*.json"), *path.glob("*/epg/*/*.json"), *path.glob("*/*/epg/*/*.json")})
+    )
     result = []
     for file in files:
         try:
@@ -96,12 +102,22 @@ def _text(description: dict[str, Any], wire: dict[str, Any]) -> str:
     component_unit = f" [{wire['component_unit']}]" if wire["component_unit"] else ""
     array = "u" if wire["direction"] == "input" else "y"
     rows = [
-        (f"model {wire['direction']}", f"{wire['port']}{unit}, {wire['type']}", f"{model['name']}: {array}[{wire['index']}]"),
+        (
+            f"model {wire['direction']}",
+            f"{wire['port']}{unit}, {wire['type']}",
+            f"{model['name']}: {array}[{wire['index']}]",
+        ),
         ("C symbol", wire["symbol"], wire["model_file"]),
         ("bound", f"{wire['component']}.{wire['component_port']}", wire["written"]),
     ]
     rows += [("conversion", _step_text(step), step["reason"]) for step in wire["steps"]]
-    rows.append(("component", f"{wire['component']}.{wire['component_port']}{component_unit}", f"{component['kind']}, {component['written']}"))
+    rows.append(
+        (
+            "component",
+            f"{wire['component']}.{wire['component_port']}{component_unit}",
+            f"{component['kind']}, {component['written']}",
+        )
+    )
     rows.append(("C symbol", component["symbol"], ""))
     rows += [("hardware", resource, claim) for claim, resource in component["resources"].items()]
     rows += [("pin", f"GPIO {pin}", signal) for signal, pin in component["pins"].items()]

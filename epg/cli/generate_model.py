@@ -22,8 +22,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from epg.cli.output import update_folder
     from epg.emit.cmake import PathNames
-    from epg.load.models import load_model
     from epg.emit.outputs import model_outputs
+    from epg.load.models import load_model
     from epg.project import check_instances, check_name
 
     caller = Span(options.caller or "command line")

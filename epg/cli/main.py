@@ -79,7 +79,9 @@ def _run(options: argparse.Namespace) -> int:
     diagnostics = Diagnostics()
     status: int = EXIT_OK
     try:
-        status = importlib.import_module(f"epg.cli.{options.command.replace('-', '_')}").run(options, diagnostics) or EXIT_OK
+        status = (
+            importlib.import_module(f"epg.cli.{options.command.replace('-', '_')}").run(options, diagnostics) or EXIT_OK
+        )
     except UserError as problem:
         if problem.diagnostics is not diagnostics:
             diagnostics.items.extend(problem.diagnostics)

@@ -33,7 +33,8 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         }
         for key, ports in (("inputs", model.inputs), ("outputs", model.outputs)):
             data[key] = [
-                {"name": p.name, "unit": p.unit, "type": p.type, "index": p.index, "description": p.description} for p in ports
+                {"name": p.name, "unit": p.unit, "type": p.type, "index": p.index, "description": p.description}
+                for p in ports
             ]
         data["parameters"] = [{"name": p.name, "value": p.value, "unit": p.unit} for p in model.parameters]
         sys.stdout.write(to_json(data))

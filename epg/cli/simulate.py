@@ -14,7 +14,9 @@ EXIT_LIMITS = 5
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("executable", type=Path, metavar="EXECUTABLE", help="a host executable made by epg_add_executable()")
+    parser.add_argument(
+        "executable", type=Path, metavar="EXECUTABLE", help="a host executable made by epg_add_executable()"
+    )
     parser.add_argument("--scenario", required=True, type=Path, metavar="FILE", help="setpoints, events and limits")
     parser.add_argument("--output", type=Path, default=Path(), metavar="FOLDER", help="where results go; default: here")
     parser.add_argument("--realtime", action="store_true", help="in real time instead of simulated time")
@@ -30,7 +32,9 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     except bootstrap.MissingPackages as problem:
         sys.stderr.write(f"epg: no plot will be drawn: {problem}\n")
     progress = _Progress(quiet=options.json)
-    result = simulate(options.executable, options.scenario, options.output, realtime=options.realtime, progress=progress)
+    result = simulate(
+        options.executable, options.scenario, options.output, realtime=options.realtime, progress=progress
+    )
     progress.done()
     diagnostics.items.extend(result.diagnostics)
     if options.json:

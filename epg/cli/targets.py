@@ -35,7 +35,9 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
                             "board": t.board.name,
                             "platform": t.platform.name,
                             "builds": t.platform.builds,
-                            "middlewares": {name: list(transports) for name, transports in t.platform.middlewares.items()},
+                            "middlewares": {
+                                name: list(transports) for name, transports in t.platform.middlewares.items()
+                            },
                         }
                         for t in targets
                     ],
@@ -44,7 +46,8 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
                             "name": k.name,
                             "summary": k.summary,
                             "ports": [
-                                {"name": p.name, "direction": p.direction, "unit": p.unit, "type": p.type} for p in k.ports
+                                {"name": p.name, "direction": p.direction, "unit": p.unit, "type": p.type}
+                                for p in k.ports
                             ],
                         }
                         for k in kinds
@@ -56,13 +59,23 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         return 0
     if options.kinds:
         rows = [
-            (k.name, ", ".join(f"{p.name} ({p.direction}{', ' + p.unit if p.unit else ''})" for p in k.ports), k.summary)
+            (
+                k.name,
+                ", ".join(f"{p.name} ({p.direction}{', ' + p.unit if p.unit else ''})" for p in k.ports),
+                k.summary,
+            )
             for k in kinds
         ]
         print(table(("kind", "ports", "what it is"), rows))
         return 0
     lines = [
-        (t.name, t.board.summary, t.platform.summary, ", ".join(t.platform.middlewares), "yes" if t.platform.builds else "check only")
+        (
+            t.name,
+            t.board.summary,
+            t.platform.summary,
+            ", ".join(t.platform.middlewares),
+            "yes" if t.platform.builds else "check only",
+        )
         for t in targets
     ]
     print(table(("target", "board", "platform", "middlewares", "builds"), lines))

@@ -12,7 +12,6 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-
 from epg.emit.text import Code, double, environment, identifier
 from epg.resolve.application import Application, ResolvedComponent, Step, Wire
 
@@ -125,7 +124,9 @@ class Emitter:
     def _module(self, component: ResolvedComponent) -> Any:
         kind = component.kind.name
         if kind not in self.modules:
-            self.modules[kind] = self.env.get_template(f"components/{kind}/code.c.j2").make_module({"pi": self.env.globals["pi"]})
+            self.modules[kind] = self.env.get_template(f"components/{kind}/code.c.j2").make_module(
+                {"pi": self.env.globals["pi"]}
+            )
         return self.modules[kind]
 
     def _macro(self, component: ResolvedComponent, macro: str, *arguments: object) -> Code:
@@ -229,5 +230,3 @@ def _tidy(text: str) -> str:
         if line or (result and result[-1]):
             result.append(line)
     return "\n".join(result).rstrip("\n") + "\n"
-
-

@@ -148,6 +148,16 @@ def _scalar(value: object) -> str:
     if isinstance(value, (int, float)):
         return repr(value)
     text = str(value)
-    if re.fullmatch(r"[A-Za-z_][A-Za-z0-9_.]*", text) and text.casefold() not in ("true", "false", "null", "yes", "no", "on", "off", "y", "n"):
+    if re.fullmatch(r"[A-Za-z_][A-Za-z0-9_.]*", text) and text.casefold() not in (
+        "true",
+        "false",
+        "null",
+        "yes",
+        "no",
+        "on",
+        "off",
+        "y",
+        "n",
+    ):
         return text
     return "'" + text.replace("'", "''") + "'"

@@ -52,7 +52,12 @@ def predefined_tcf_names(roots: Iterable[Path]) -> list[str]:
 
 
 def load_tcf_chain(
-    name: str, roots: Sequence[Path], diagnostics: Diagnostics, *, beside: Path | None = None, wanted_by: Span | None = None
+    name: str,
+    roots: Sequence[Path],
+    diagnostics: Diagnostics,
+    *,
+    beside: Path | None = None,
+    wanted_by: Span | None = None,
 ) -> tuple[TcfFile, ...]:
     """The file ``name`` and all that it extends, innermost first; empty after reporting why it cannot be read."""
     chain: list[TcfFile] = []
@@ -67,7 +72,9 @@ def load_tcf_chain(
         for file in chain:
             if file.path.resolve() == path.resolve():
                 assert wanted_by is not None
-                diagnostics.error("extends-loop", wanted_by, f"'{path.name}' is extended by itself", hint="remove this 'extends'")
+                diagnostics.error(
+                    "extends-loop", wanted_by, f"'{path.name}' is extended by itself", hint="remove this 'extends'"
+                )
                 return ()
         if len(chain) == _MAX_CHAIN:
             assert wanted_by is not None
@@ -93,7 +100,7 @@ def _load(path: Path, diagnostics: Diagnostics, wanted_by: Span | None) -> Node 
             "tcf-is-20-sim-4c",
             Span(str(path), 1, 1, 2),
             f"this is {kind}, not of EPG",
-            hint="both are called .tcf; EPG's are YAML: 'epg targets' lists those it brings, docs/files.md describes them",
+            hint="both are called .tcf; EPG's are YAML: 'epg targets' lists those it brings",
         )
         return None
     node = parse_yaml(text, str(path), diagnostics)
@@ -112,7 +119,12 @@ def settings_node(settings: Iterable[tuple[str, Span]], diagnostics: Diagnostics
         key, equals, value = text.partition("=")
         path = tuple(key.strip().split("."))
         if not equals or not all(path):
-            diagnostics.error("wrong-setting", span, f"'{text}' is no setting", hint="write KEY.KEY=VALUE, such as control.period=2 ms")
+            diagnostics.error(
+                "wrong-setting",
+                span,
+                f"'{text}' is no setting",
+                hint="write KEY.KEY=VALUE, such as control.period=2 ms",
+            )
             continue
         problems = Diagnostics()
         node = parse_yaml(value, span.file, problems)
@@ -131,5 +143,3 @@ def _moved(node: Node, span: Span) -> Node:
     if node.is_sequence:
         return Node(tuple(_moved(child, span) for child in node.elements()), span)
     return Node(node.value, span)
-
-

@@ -28,7 +28,9 @@ def read_text(path: Path, diagnostics: Diagnostics, wanted_by: Span | None = Non
         diagnostics.error("file-unreadable", whole, f"cannot read '{path.name}': {error.strerror or error}")
         return None
     if len(data) > MAX_BYTES:
-        diagnostics.error("file-too-large", whole, f"'{path.name}' is larger than 1 MiB", hint="is this the right file?")
+        diagnostics.error(
+            "file-too-large", whole, f"'{path.name}' is larger than 1 MiB", hint="is this the right file?"
+        )
         return None
     try:
         text = data.decode("utf-8-sig")

@@ -92,15 +92,21 @@ class _Builder:
             if self.documents > 1:
                 return self._refuse(event, "yaml-documents", "a second document in one file", "keep one; remove '---'")
         if isinstance(event, yaml.AliasEvent) or getattr(event, "anchor", None):
-            return self._refuse(event, "yaml-alias", "anchors and aliases are not supported", "write the value out, or use 'extends'")
+            return self._refuse(
+                event, "yaml-alias", "anchors and aliases are not supported", "write the value out, or use 'extends'"
+            )
         if getattr(event, "tag", None) not in (None, "!"):
             return self._refuse(event, "yaml-tag", f"tags such as '{event.tag}' are not supported", "remove the tag")
         if isinstance(event, (yaml.MappingStartEvent, yaml.SequenceStartEvent)):
             if len(self.stack) >= MAX_DEPTH:
-                return self._refuse(event, "yaml-depth", f"nested deeper than {MAX_DEPTH} levels", "is this the right file?")
+                return self._refuse(
+                    event, "yaml-depth", f"nested deeper than {MAX_DEPTH} levels", "is this the right file?"
+                )
             mapping = isinstance(event, yaml.MappingStartEvent)
             if self.stack and self.stack[-1].mapping and self.stack[-1].key is None:
-                return self._refuse(event, "yaml-key", "a key must be a word, not a list or a map", "quote it if it is text")
+                return self._refuse(
+                    event, "yaml-key", "a key must be a word, not a list or a map", "quote it if it is text"
+                )
             self.stack.append(_Collection(self._span(event), mapping))
         elif isinstance(event, (yaml.MappingEndEvent, yaml.SequenceEndEvent)):
             done = self.stack.pop()

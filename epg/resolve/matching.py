@@ -30,7 +30,9 @@ def match_ports(model: Model, components: Mapping[str, Component]) -> dict[str, 
     for port in (*model.inputs, *model.outputs):
         direction = "source" if port.direction == "input" else "sink"
         ends = _ends(components, direction)
-        free = {reference: words for reference, words in ends.items() if direction == "source" or reference not in taken}
+        free = {
+            reference: words for reference, words in ends.items() if direction == "source" or reference not in taken
+        }
         reference = _best(_words(port.name), free)
         if reference and direction == "sink":
             taken.add(reference)

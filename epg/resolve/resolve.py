@@ -18,7 +18,8 @@ from epg.resolve.claims import TICK, component_claims, tick_claims
 from epg.resolve.wires import input_wires, output_wires, parameter_overrides
 
 _PUBLIC = frozenset(
-    "start stop enable status statistics target inputs outputs control host model plant".split()
+    ("start", "stop", "enable", "status", "statistics", "target")
+    + ("inputs", "outputs", "control", "host", "model", "plant")
 )
 """What follows ``<name>_`` in names that every application has."""
 
@@ -157,7 +158,9 @@ def _subscriptions(
         if component.kind.communication == "subscribe":
             units = {wire.port.unit for wire in inputs if wire.component is component}
             setpoint = _setpoint(configuration.components[component.name], units)
-            result.append(Topic(component, str(component.parameters["topic"]), str(component.parameters["qos"]), setpoint))
+            result.append(
+                Topic(component, str(component.parameters["topic"]), str(component.parameters["qos"]), setpoint)
+            )
     return tuple(result)
 
 
@@ -214,7 +217,9 @@ def _plant(
     if ratio.denominator != 1:
         message = f"the control period of {_ms(period)} is no multiple of the plant's step of {_ms(model.step)}"
         hint = "export the plant with a step that divides the period"
-        diagnostics.error("step-not-multiple", bindings.model_span, message, hint=hint, notes=[Note("the plant", model.span)])
+        diagnostics.error(
+            "step-not-multiple", bindings.model_span, message, hint=hint, notes=[Note("the plant", model.span)]
+        )
     physical = {name: c for name, c in configuration.components.items() if not c.kind.communication}
     inputs = input_wires(bindings, model, physical, components, diagnostics, direction="sink")
     outputs = output_wires(bindings, model, physical, components, diagnostics, direction="source")
@@ -238,5 +243,3 @@ def _ms(seconds: Fraction) -> str:
         if value.denominator == 1:
             return f"{value.numerator} {unit}"
     return f"{float(seconds * 1000):g} ms"
-
-

@@ -45,7 +45,9 @@ def input_wires(
         component, component_port = end
         steps = _input_steps(port, binding, component, component_port, diagnostics, physical=direction == "sink")
         if component_port.type == "real" and port.type != "real":
-            message = f"'{component.name}.{component_port.name}' gives any number, '{port.name}' wants {port.type} values"
+            message = (
+                f"'{component.name}.{component_port.name}' gives any number, '{port.name}' wants {port.type} values"
+            )
             diagnostics.error("wrong-port-type", binding.span, message, hint="make the model's input real")
         wires.append(Wire(port, resolved[component.name], component_port, steps, binding.span))
     return tuple(wires)

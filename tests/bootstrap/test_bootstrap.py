@@ -9,8 +9,8 @@ import venv
 from pathlib import Path
 
 import pytest
-from epg import bootstrap
 
+from epg import bootstrap
 from tests.cmake.project import ROOT, Project
 
 EPG = [str(ROOT / "epg" / "__main__.py"), "targets"]
@@ -25,7 +25,9 @@ def bare_python(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def run(python: Path | str, cache: Path, *arguments: str, **variables: str) -> subprocess.CompletedProcess[str]:
-    environment = {k: v for k, v in os.environ.items() if not k.startswith("PYTHON")} | {"EPG_CACHE": str(cache)} | variables
+    environment = (
+        {k: v for k, v in os.environ.items() if not k.startswith("PYTHON")} | {"EPG_CACHE": str(cache)} | variables
+    )
     return subprocess.run([str(python), *arguments], capture_output=True, text=True, env=environment)
 
 
@@ -73,7 +75,15 @@ def test_without_pip_it_names_what_is_missing(tmp_path: Path) -> None:
 
 
 def test_a_failed_installation_leaves_nothing_behind(bare_python: Path, tmp_path: Path) -> None:
-    done = run(bare_python, tmp_path, *EPG, PIP_INDEX_URL="http://127.0.0.1:9/", PIP_EXTRA_INDEX_URL="", PIP_RETRIES="0", PIP_NO_CACHE_DIR="1")
+    done = run(
+        bare_python,
+        tmp_path,
+        *EPG,
+        PIP_INDEX_URL="http://127.0.0.1:9/",
+        PIP_EXTRA_INDEX_URL="",
+        PIP_RETRIES="0",
+        PIP_NO_CACHE_DIR="1",
+    )
     if done.returncode == 0:
         pytest.skip("pip finds packages without an index here")
     assert done.returncode == 4

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+
 from epg.check.merge import apply_settings, merge_chain
 from epg.diagnostics import Diagnostics
 from epg.load.tcf import load_tcf_chain, settings_node

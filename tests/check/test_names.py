@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+
 from epg.check.names import absolute_topic, identifier_problem, namespace_problem, node_name_problem, topic_problem
 
 

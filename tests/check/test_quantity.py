@@ -6,6 +6,7 @@ import math
 from fractions import Fraction
 
 import pytest
+
 from epg.quantity import QuantityError, conversion_factor, dimension_of, parse_quantity, parse_ratio
 
 
@@ -49,7 +50,9 @@ def test_no_quantities(text: object, dimension: str, message: str, hint: str) ->
     assert hint in caught.value.hint
 
 
-@pytest.mark.parametrize(("value", "ratio"), [("5625/361", Fraction(5625, 361)), (19, Fraction(19)), (0.1, Fraction(1, 10))])
+@pytest.mark.parametrize(
+    ("value", "ratio"), [("5625/361", Fraction(5625, 361)), (19, Fraction(19)), (0.1, Fraction(1, 10))]
+)
 def test_ratios_are_exact(value: object, ratio: Fraction) -> None:
     assert parse_ratio(value) == ratio
 

@@ -7,11 +7,19 @@ import shutil
 from pathlib import Path
 
 import pytest
+
 from epg.cli.main import COMMANDS, main
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 JIWY = ROOT / "examples" / "jiwy"
-FILES = ["--tcf", "rpi_pico2_freertos_jiwy", "--model", str(JIWY / "model"), "--bindings", str(JIWY / "jiwy.bindings.yaml")]
+FILES = [
+    "--tcf",
+    "rpi_pico2_freertos_jiwy",
+    "--model",
+    str(JIWY / "model"),
+    "--bindings",
+    str(JIWY / "jiwy.bindings.yaml"),
+]
 
 
 @pytest.fixture
@@ -66,7 +74,9 @@ def test_check_alone_and_together(robot: Path, capsys: pytest.CaptureFixture[str
 def test_all_predefined_configurations_are_right(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["targets", "--json"]) == 0
     names = json.loads(capsys.readouterr().out)["tcf"]
-    complete = [name for name in names if name.startswith(("host_", "rpi_pico2_f", "rpi_pico2_b", "rpi_pico_f", "rpi_pico_b"))]
+    complete = [
+        name for name in names if name.startswith(("host_", "rpi_pico2_f", "rpi_pico2_b", "rpi_pico_f", "rpi_pico_b"))
+    ]
     assert len(complete) >= 7
     assert main(["check", *complete]) == 0
 
@@ -88,7 +98,12 @@ def test_ports(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
     data = json.loads(capsys.readouterr().out)
     assert data["name"] == "JIWY_Control"
     assert data["step"] == 0.001
-    assert [port["name"] for port in data["inputs"]] == ["position_pan", "position_tilt", "setpoint_pan", "setpoint_tilt"]
+    assert [port["name"] for port in data["inputs"]] == [
+        "position_pan",
+        "position_tilt",
+        "setpoint_pan",
+        "setpoint_tilt",
+    ]
     assert {"name": "Pan\\PID\\kp", "value": 2.6, "unit": ""} in data["parameters"]
 
 
@@ -122,13 +137,18 @@ def test_explain_shows_the_whole_way(capsys: pytest.CaptureFixture[str]) -> None
 def test_explain_a_component_as_json(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["explain", "encoder_pan", "--json", *FILES]) == 0
     wires = json.loads(capsys.readouterr().out)
-    assert [(wire["port"], wire["direction"]) for wire in wires] == [("position_pan", "input"), ("encoder_reset_pan", "output")]
+    assert [(wire["port"], wire["direction"]) for wire in wires] == [
+        ("position_pan", "input"),
+        ("encoder_reset_pan", "output"),
+    ]
     assert wires[0]["resources"]["pins"] == {"a": 10, "b": 11}
 
 
 def test_explain_shows_conversions(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
     text = (robot / "bindings.yaml").read_text()
-    (robot / "bindings.yaml").write_text(text.replace("angle: encoder", "angle: {from: encoder, unit: deg, limits: [-90, 90]}"))
+    (robot / "bindings.yaml").write_text(
+        text.replace("angle: encoder", "angle: {from: encoder, unit: deg, limits: [-90, 90]}")
+    )
     files = ["--tcf", "robot.tcf", "--model", "model", "--bindings", "bindings.yaml"]
     assert main(["explain", "angle", *files]) == 0
     shown = capsys.readouterr().out
@@ -151,7 +171,19 @@ def test_explain_reads_a_build_folder(robot: Path, capsys: pytest.CaptureFixture
 
 def test_generate_says_what_it_wrote(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (robot / "host.tcf").write_text((robot / "robot.tcf").read_text().replace("rpi_pico_bare_metal", "host"))
-    arguments = ["generate", "robot", "--tcf", "host.tcf", "--model", "model", "--bindings", "bindings.yaml", "--output", "out", "--json"]
+    arguments = [
+        "generate",
+        "robot",
+        "--tcf",
+        "host.tcf",
+        "--model",
+        "model",
+        "--bindings",
+        "bindings.yaml",
+        "--output",
+        "out",
+        "--json",
+    ]
     assert main(arguments) == 0
     first = json.loads(capsys.readouterr().out)
     assert set(first["written"]) == set(first["files"]) >= {"robot.h", "robot_app.c", "robot.cmake", "robot.json"}
@@ -187,17 +219,57 @@ def test_bind_does_not_overwrite(robot: Path, capsys: pytest.CaptureFixture[str]
 
 UPDATES = {
     "block": (
-        "version: 1\nmodel: Controller   # mine\ninputs:\n  # the load\n  angle: encoder   # rad\n  old:\n    from: button\n"
-        "    scale: 2\n  setpoint: target\noutputs:\n  log: position\n  gone: motor\n",
-        "version: 1\nmodel: Controller   # mine\ninputs:\n  # the load\n  angle: encoder   # rad\n  # old:   # no longer a port of the model\n"
-        "  #   from: button\n  #   scale: 2\n  setpoint: target\n  # go:    # no name matches; possible: button, encoder, target\n"
-        "outputs:\n  log: position\n  # gone: motor   # no longer a port of the model\n  duty: motor\n  reset: encoder.reset\n",
+        """\
+version: 1
+model: Controller   # mine
+inputs:
+  # the load
+  angle: encoder   # rad
+  old:
+    from: button
+    scale: 2
+  setpoint: target
+outputs:
+  log: position
+  gone: motor
+""",
+        """\
+version: 1
+model: Controller   # mine
+inputs:
+  # the load
+  angle: encoder   # rad
+  # old:   # no longer a port of the model
+  #   from: button
+  #   scale: 2
+  setpoint: target
+  # go:    # no name matches; possible: button, encoder, target
+outputs:
+  log: position
+  # gone: motor   # no longer a port of the model
+  duty: motor
+  reset: encoder.reset
+""",
     ),
     "flow": (
-        "version: 1\nmodel: Controller\ninputs: {angle: encoder, go: button, setpoint: target}\n"
-        "outputs: {log: [position], gone: {to: motor, scale: 2}}\n# the end\n",
-        "version: 1\nmodel: Controller\ninputs: {angle: encoder, go: button, setpoint: target}\n"
-        "outputs:\n  log: [position]\n  # gone: {to: motor, scale: 2}   # no longer a port of the model\n  duty: motor\n  reset: encoder.reset\n# the end\n",
+        """\
+version: 1
+model: Controller
+inputs: {angle: encoder, go: button, setpoint: target}
+outputs: {log: [position], gone: {to: motor, scale: 2}}
+# the end
+""",
+        """\
+version: 1
+model: Controller
+inputs: {angle: encoder, go: button, setpoint: target}
+outputs:
+  log: [position]
+  # gone: {to: motor, scale: 2}   # no longer a port of the model
+  duty: motor
+  reset: encoder.reset
+# the end
+""",
     ),
 }
 

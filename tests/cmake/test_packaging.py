@@ -46,7 +46,9 @@ def test_the_wheel_holds_the_same_files_as_the_checkout(wheel: Path) -> None:
     with zipfile.ZipFile(wheel) as archive:
         names = set(archive.namelist())
         for tree in TREES:
-            tracked = subprocess.run(["git", "ls-files", tree], cwd=ROOT, capture_output=True, text=True).stdout.split("\n")
+            tracked = subprocess.run(["git", "ls-files", tree], cwd=ROOT, capture_output=True, text=True).stdout.split(
+                "\n"
+            )
             files = [name for name in tracked if name and (ROOT / name).is_file()]
             assert files or not (ROOT / ".git").exists()
             for name in files:
@@ -63,7 +65,9 @@ def test_cmake_finds_a_wheel_by_its_prefix(prefix: Path, tmp_path: Path) -> None
 
 def test_cmake_finds_a_wheel_by_the_command_line(prefix: Path, tmp_path: Path) -> None:
     (site,) = prefix.glob("lib/*/site-packages")
-    done = subprocess.run([sys.executable, str(site / "epg"), "--cmake-dir"], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, str(site / "epg"), "--cmake-dir"], capture_output=True, text=True, check=True
+    )
     folder = done.stdout.strip()
     assert folder == (site / "epg/_data/cmake").as_posix()
     Project(tmp_path, "robot").configure(f"-DEPG_DIR={folder}", epg_dir=False)

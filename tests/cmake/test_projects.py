@@ -96,7 +96,9 @@ def test_compile_commands_find_all_headers_right_after_configure(robot: Project)
 def test_output_is_the_same_in_another_folder(tmp_path: Path) -> None:
     texts = []
     for name in ("one", "a folder with blanks"):
-        project = Project(tmp_path / name, "robot", {"PYTHONHASHSEED": "1" if name == "one" else "2", "TZ": "Asia/Tokyo"})
+        project = Project(
+            tmp_path / name, "robot", {"PYTHONHASHSEED": "1" if name == "one" else "2", "TZ": "Asia/Tokyo"}
+        )
         project.configure()
         texts.append(snapshot(project.build_folder / "epg" / "robot"))
     assert texts[0] == texts[1]
@@ -141,7 +143,11 @@ def test_a_wrong_setting_names_the_cmakelists(tmp_path: Path) -> None:
         ("BINDINGS bindings.yaml", "BINDINGS bindings.yaml PLANT plant", "PLANT needs PLANT_BINDINGS"),
         ("LANGUAGES C", "LANGUAGES NONE", "EPG needs C: write project(robot LANGUAGES"),
         ("epg_add_executable(robot_host EPG::robot)", "epg_add_executable(x EPG::other)", "call epg_add_target(other"),
-        ("epg_add_executable", "add_library(a INTERFACE)\nepg_add_target(a TCF x MODEL y BINDINGS z)\n#", "a target of this name exists"),
+        (
+            "epg_add_executable",
+            "add_library(a INTERFACE)\nepg_add_target(a TCF x MODEL y BINDINGS z)\n#",
+            "a target of this name exists",
+        ),
     ],
 )
 def test_wrong_calls_say_what_to_write(robot: Project, old: str, new: str, message: str) -> None:
@@ -150,7 +156,11 @@ def test_wrong_calls_say_what_to_write(robot: Project, old: str, new: str, messa
 
 
 def test_the_version_is_the_packages(robot: Project) -> None:
-    robot.edit("CMakeLists.txt", "find_package(EPG REQUIRED)", 'find_package(EPG REQUIRED)\nmessage(STATUS "is ${EPG_VERSION}")')
+    robot.edit(
+        "CMakeLists.txt",
+        "find_package(EPG REQUIRED)",
+        'find_package(EPG REQUIRED)\nmessage(STATUS "is ${EPG_VERSION}")',
+    )
     import epg
 
     assert f"is {epg.__version__}\n" in robot.configure()
@@ -182,6 +192,4 @@ def test_import_file_under_a_toolchain_that_confines_packages(robot: Project, wh
     line = "project(robot LANGUAGES C)"
     include = "include(epg_import.cmake)"
     robot.edit("CMakeLists.txt", line, f"{include}\n{line}" if where.startswith("before") else f"{line}\n{include}")
-    robot.configure(
-        f"-DCMAKE_TOOLCHAIN_FILE={robot.source}/toolchain.cmake", f"-DEPG_PATH={ROOT}", epg_dir=False
-    )
+    robot.configure(f"-DCMAKE_TOOLCHAIN_FILE={robot.source}/toolchain.cmake", f"-DEPG_PATH={ROOT}", epg_dir=False)

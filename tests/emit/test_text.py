@@ -7,13 +7,18 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from epg.emit.text import Code, cmake, comment, cstring, double, environment, identifier, nanoseconds
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from epg.emit.text import Code, cmake, comment, cstring, double, environment, identifier, nanoseconds
+
 
 @settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(st.lists(st.text(alphabet=st.characters(codec="utf-8", exclude_characters="\0"), max_size=12), min_size=8, max_size=8))
+@given(
+    st.lists(
+        st.text(alphabet=st.characters(codec="utf-8", exclude_characters="\0"), max_size=12), min_size=8, max_size=8
+    )
+)
 def test_c_strings_and_comments_hold_any_text(tmp_path: Path, texts: list[str]) -> None:
     lines = ["#include <stdio.h>", "int main(void) {"]
     for text in [*texts, "*/ evil", "a\\", '"; x', "??/", "%s", "/* x", "*", "\\\n", "a *\\\n/ b"]:

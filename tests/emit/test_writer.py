@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 
 import pytest
+
 from epg.cli.output import update_folder
 from epg.emit.writer import write_outputs
 

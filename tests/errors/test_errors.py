@@ -10,8 +10,8 @@ A file ``cases/<name>.case`` holds the files that are wrong and what EPG says ab
     robot.tcf:3:1: error: ...
 
 Files that a case does not mention are those of ``common/``; the command is the one above unless the first line gives
-another.  Below ``--- name <- edit`` stand changes to the common file, one ``old => new`` a line (``\\n`` is a line end).
-``EPG_UPDATE_GOLDEN=1`` rewrites what is expected: read the difference.
+another.  Below ``--- name <- edit`` stand changes to the common file, one ``old => new`` a line, where ``\\n`` is a
+line end.  ``EPG_UPDATE_GOLDEN=1`` rewrites what is expected: read the difference.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ import shutil
 from pathlib import Path
 
 import pytest
+
 from epg.cli.main import main
 
 HERE = Path(__file__).resolve().parent
@@ -89,6 +90,14 @@ def test_every_kind_of_message_has_a_case() -> None:
     for path in root.rglob("*.py"):
         if "simulate" in path.parts:
             continue
-        ids |= set(re.findall(r"""(?:error|warning)\(\s*["']([a-z0-9.]+(?:-[a-z0-9.]+)+)["']""", path.read_text(encoding="utf-8")))
-    shown = {found for case in CASES for found in re.findall(r"\[([a-z0-9.-]+)\]$", case.read_text(encoding="utf-8"), re.MULTILINE)}
+        ids |= set(
+            re.findall(
+                r"""(?:error|warning)\(\s*["']([a-z0-9.]+(?:-[a-z0-9.]+)+)["']""", path.read_text(encoding="utf-8")
+            )
+        )
+    shown = {
+        found
+        for case in CASES
+        for found in re.findall(r"\[([a-z0-9.-]+)\]$", case.read_text(encoding="utf-8"), re.MULTILINE)
+    }
     assert sorted(ids - shown) == []

@@ -34,7 +34,9 @@ def jiwy(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
     return folder, run(command)
 
 
-def simulate(folder: Path, setpoints: str, duration: float, *options: str) -> tuple[list[dict[str, str]], dict[str, object]]:
+def simulate(
+    folder: Path, setpoints: str, duration: float, *options: str
+) -> tuple[list[dict[str, str]], dict[str, object]]:
     """Trace and statistics of a run with the given setpoint file."""
     (folder / "in.csv").write_text("time,topic,value\n" + setpoints)
     files = ["--setpoints", "in.csv", "--trace", "out.csv", "--statistics", "out.json", "--duration", str(duration)]
@@ -45,9 +47,20 @@ def simulate(folder: Path, setpoints: str, duration: float, *options: str) -> tu
 
 def test_the_readmes_first_command(jiwy: tuple[Path, str]) -> None:
     folder, output = jiwy
-    for words in ("cycles", "overruns", "RMS error", "largest error", "computation time", "simulated time", "wall time"):
+    for words in (
+        "cycles",
+        "overruns",
+        "RMS error",
+        "largest error",
+        "computation time",
+        "simulated time",
+        "wall time",
+    ):
         assert words in output
-    rms = {(axis, start): float(value) for axis, start, value in re.findall(r"^(pan|tilt)\s+(\S+) \.\.\. \S+ s\s+(\S+) rad", output, re.M)}
+    rms = {
+        (axis, start): float(value)
+        for axis, start, value in re.findall(r"^(pan|tilt)\s+(\S+) \.\.\. \S+ s\s+(\S+) rad", output, re.M)
+    }
     assert rms["pan", "5"] <= 0.03
     assert rms["tilt", "5"] <= 0.05
     assert (folder / "tracking.png").read_bytes().startswith(b"\x89PNG")
@@ -112,7 +125,12 @@ def test_overruns_in_a_row_disable_and_latch(jiwy: tuple[Path, str]) -> None:
 
 def test_real_time(jiwy: tuple[Path, str]) -> None:
     folder, _ = jiwy
-    done = subprocess.run([folder / "jiwy_host", "--realtime", "--duration", "2", "--statistics", "rt.json"], cwd=folder, capture_output=True, text=True)
+    done = subprocess.run(
+        [folder / "jiwy_host", "--realtime", "--duration", "2", "--statistics", "rt.json"],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+    )
     assert done.returncode == 0, done.stderr
     statistics = json.loads((folder / "rt.json").read_text())
     assert statistics["cycles"] + statistics["missed"] == 2000
