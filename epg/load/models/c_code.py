@@ -243,13 +243,16 @@ def _variables(text: str, offset: int) -> Iterator[Variable]:
         return
     if matched[2] in ("class", "template", "public", "private", "protected"):
         return
-    rest, at = text[matched.end() :], matched.end()
+    name_of_type, at = matched[2], matched.end()
+    if re.match(r"\s*(?:[\[=,]|$)", text[at:]) and re.search(r"\b(unsigned|signed|long|short)\b", matched[1]):
+        name_of_type, at = matched[1].split()[-1], matched.start(2)  # "unsigned long e": there is no further word
+    rest = text[at:]
     for part, part_at in _split_commas(rest, at):
         declared = _DECLARATOR.match(part)
         if declared and declared[2] not in KEYWORDS:
             yield Variable(
                 declared[2],
-                matched[2],
+                name_of_type,
                 "static" in matched[1].split(),
                 "const" in matched[1].split(),
                 bool(declared[1]),

@@ -54,7 +54,8 @@ def check_method(method: str, diagnostics: Diagnostics, code: Code, start: int) 
     """Reports an integration method that needs a variable step or that EPG does not know."""
     if method in FIXED_STEP_METHODS:
         return
-    span = code.file.span(start, start + max(1, len(method)))
+    word = re.compile(r"\w*").match(code.file.code, start)
+    span = code.file.span(start, word.end() if word and word[0] else start + 1)
     diagnostics.error(
         "model-variable-step",
         span,
@@ -240,7 +241,8 @@ def _check_directives(linked: Linked, reachable: Iterable[tuple[Code, Function]]
             elif "constraint" in folded:
                 diagnostics.error("model-constraint", span, _solver("constraints"), hint=_CONSTRAINT_HINT)
             elif "not yet implemented" not in folded and match[1] == "warning" and text:
-                diagnostics.warning("model-warning", span, f"the export warns: {text[:200]}")
+                hint = "the code generator or a developer left this remark: see whether it matters, then remove it"
+                diagnostics.warning("model-warning", span, f"the export warns: {text[:200]}", hint=hint)
 
 
 def _solver(what: str) -> str:

@@ -125,6 +125,16 @@ def _check_method(tokens: Tokens, diagnostics: Diagnostics) -> None:
         )
 
 
+def _balanced(code: str) -> bool:
+    """Whether every brace of a token closes one of the same token: no equation ends the function it stands in."""
+    depth = 0
+    for brace in re.findall(r"[{}]", code):
+        depth += 1 if brace == "{" else -1
+        if depth < 0:
+            return False
+    return depth == 0
+
+
 def _comments_closed(text: str) -> bool:
     """Whether no comment of a token runs on into the code behind it."""
     opened = 0
@@ -139,13 +149,10 @@ def _check_calls(tokens: Tokens, diagnostics: Diagnostics) -> tuple[str, ...]:
     helpers: set[str] = set()
     for token in CODE:
         file = tokens.code(token)
-        if (
-            "#" in file.without_comments
-            or file.code.count("{") != file.code.count("}")
-            or not _comments_closed(file.text)
-        ):
+        if "#" in file.without_comments or not _balanced(file.code) or not _comments_closed(file.text):
             message = f"token '{token}' holds something else than equations"
             diagnostics.error("model-tokens", tokens.span(token), message, hint="export the model again")
+            continue
         for match in re.finditer(r"(?<![\w>.])([A-Za-z_]\w*)\s*\(", file.code):
             name = match[1]
             if name in KEYWORDS or name in MATH:

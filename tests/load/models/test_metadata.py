@@ -1,0 +1,105 @@
+"""Files beside the sources: what they add, and what is said when they are of another export."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.models.exports import Export
+from tests.models.harness import load
+
+
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        ({"INPUT_NAMES3": "in\nspeed\n"}, "inputs in, speed, the sources in, position"),
+        ({"OUTPUT_NAMES3": "out\ncorr\n"}, "outputs in the order out, corr, the sources in the order corr, out"),
+        ({"TIME_STEP_SIZE": "0.01"}, "step size 0.01 s, the sources 0.001 s"),
+        ({"INTEGRATION_METHOD_NAME": "Euler"}, "integration method 'Euler', the sources 'Discrete'"),
+        ({"VARPREFIX": "pan_"}, "prefix 'pan_', the sources 'xx_'"),
+        ({"SUBMODEL_NAME": "Tilt"}, "submodel 'Tilt', the sources 'Servo'"),
+        ({"PARAMETER_NAMES3": "PI1\\kp\n"}, "no parameter 'PI1\\tauI', which the sources have"),
+    ],
+    ids=["names", "order", "step", "method", "prefix", "submodel", "parameters"],
+)
+def test_differences_are_named(values: dict[str, str], said: str, tmp_path: Path) -> None:
+    model, diagnostics = load(Export(token_values=values).write(tmp_path))
+    assert model is not None
+    assert [(item.severity, item.id) for item in diagnostics] == [("warning", "stale-metadata")]
+    problem = diagnostics.items[0]
+    assert said in problem.message and "'tokens.xml'" in problem.message
+    line = (tmp_path / "tokens.xml").read_text().splitlines()[problem.span.line - 1]
+    assert next(iter(values)) in line
+    assert Path(problem.notes[0].span.file).name == "xxsubmod.c"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "<tokens>",
+        "<tokens><token name='A'>&undefined;</token></tokens>",
+        '<!DOCTYPE t [<!ENTITY a "aaaa"><!ENTITY b "&a;&a;&a;">]><tokens><token name="A">&b;</token></tokens>',
+        "<a>" * 200 + "</a>" * 200,
+        "no xml at all",
+        '<?xml version="1.0" encoding="no-such-encoding"?><tokens/>',
+    ],
+    ids=["empty", "open", "entity", "doctype", "deep", "text", "encoding"],
+)
+def test_broken_tokens_are_a_warning_beside_sources_and_an_error_alone(text: str, tmp_path: Path) -> None:
+    folder = Export().write(tmp_path / "with")
+    (folder / "tokens.xml").write_text(text)
+    model, diagnostics = load(folder)
+    assert model is not None
+    assert [(item.severity, item.id) for item in diagnostics] == [("warning", "model-xml")]
+    alone = tmp_path / "alone"
+    alone.mkdir()
+    (alone / "tokens.xml").write_text(text)
+    model, diagnostics = load(alone)
+    assert model is None
+    assert [(item.severity, item.id) for item in diagnostics] == [("error", "model-xml")]
+
+
+def configuration(**ports: str) -> str:
+    variables = "".join(
+        f"<modelVariable><name>{name}</name><kind>{'output' if name in ('corr', 'out') else 'input'}</kind>"
+        f"<type>{kind}</type><description>the {name}</description>"
+        f"<physical><unit><name>m</name></unit></physical></modelVariable>"
+        for name, kind in ports.items()
+    )
+    return (
+        "<modelConfiguration><general><name>Servo</name></general><run><stepSize>0.001</stepSize></run>"
+        f"<modelVariables>{variables}</modelVariables></modelConfiguration>"
+    )
+
+
+def test_configuration_gives_types_units_and_descriptions(tmp_path: Path) -> None:
+    folder = Export().write(tmp_path)
+    text = configuration(**{"position": "real", "in": "boolean", "out": "integer", "corr": "real"})
+    (folder / "ModelConfiguration.xml").write_text(text)
+    model, diagnostics = load(folder)
+    assert model is not None and not diagnostics.items
+    assert [(p.name, p.type, p.unit) for p in model.inputs] == [("in", "boolean", "rad"), ("position", "real", "rad")]
+    assert [(p.type, p.unit, p.description) for p in model.outputs] == [
+        ("real", "m", "the corr"),
+        ("integer", "m", "the out"),
+    ]
+
+
+def test_stale_configuration_is_named(tmp_path: Path) -> None:
+    folder = Export().write(tmp_path)
+    text = configuration(**{"in": "real", "speed": "real", "out": "real", "corr": "real"}).replace("0.001", "0.002")
+    (folder / "ModelConfiguration.xml").write_text(text)
+    model, diagnostics = load(folder)
+    assert model is not None
+    assert {item.id for item in diagnostics} == {"stale-metadata"}
+    said = " ".join(item.message for item in diagnostics)
+    assert "no input 'position'" in said and "the input 'speed'" in said and "step size 0.002" in said
+
+
+def test_tokens_of_a_second_model_beside_it_are_not_used(tmp_path: Path) -> None:
+    folder = Export().write_cpp(tmp_path)
+    (folder / "Other_tokens.xml").write_text(Export(name="Other", step="0.5").tokens_xml())
+    model, diagnostics = load(folder)
+    assert model is not None and not diagnostics.items
