@@ -41,7 +41,7 @@ class Binding:
 
 @dataclass(frozen=True)
 class Bindings:
-    """A bindings file.  ``inputs`` and ``outputs`` map names of model ports to (where the name is written, bindings)."""
+    """A bindings file.  ``inputs`` and ``outputs`` map model ports to (where the name is written, bindings)."""
 
     path: Path
     model: str

@@ -7,9 +7,14 @@ from __future__ import annotations
 
 import re
 
-_C11 = ["auto", "break", "case", "char", "const", "continue", "default", "do", "double", "else", "enum", "extern", "float", "for", "goto", "if", "inline", "int", "long", "register", "restrict", "return", "short", "signed", "sizeof", "static", "struct", "switch", "typedef", "union", "unsigned", "void", "volatile", "while"]
-_CPP = ["alignas", "alignof", "and", "and_eq", "asm", "bitand", "bitor", "bool", "catch", "char16_t", "char32_t", "char8_t", "class", "compl", "concept", "const_cast", "consteval", "constexpr", "constinit", "co_await", "co_return", "co_yield", "decltype", "delete", "dynamic_cast", "explicit", "export", "false", "friend", "mutable", "namespace", "new", "noexcept", "not", "not_eq", "nullptr", "operator", "or", "or_eq", "private", "protected", "public", "reinterpret_cast", "requires", "static_assert", "static_cast", "template", "this", "thread_local", "throw", "true", "try", "typeid", "typename", "using", "virtual", "wchar_t", "xor", "xor_eq"]
-_C_LIBRARY = ["main", "errno", "stdin", "stdout", "stderr", "NULL", "EOF", "assert", "bool", "true", "false", "inline", "unix", "linux"]
+_C11 = """auto break case char const continue default do double else enum extern float for goto if inline int long
+register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while""".split()
+_CPP = """alignas alignof and and_eq asm bitand bitor bool catch char16_t char32_t char8_t class compl concept
+const_cast consteval constexpr constinit co_await co_return co_yield decltype delete dynamic_cast explicit export
+false friend mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected public
+reinterpret_cast requires static_assert static_cast template this thread_local throw true try typeid typename
+using virtual wchar_t xor xor_eq""".split()
+_C_LIBRARY = "main errno stdin stdout stderr NULL EOF assert unix linux".split()
 
 RESERVED = frozenset(_C11) | frozenset(_CPP) | frozenset(_C_LIBRARY)
 """Words that are no identifiers in C11 or C++20, or macros of the C library and common compilers."""

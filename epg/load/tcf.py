@@ -30,7 +30,7 @@ class TcfFile:
 
 
 def find_tcf(name: str, beside: Path, roots: Iterable[Path]) -> Path | None:
-    """The file called ``name`` (with or without ``.tcf``): a path relative to ``beside``, or a robot's file in ``roots``."""
+    """The file ``name`` (with or without ``.tcf``): a path relative to ``beside``, or a robot's file in ``roots``."""
     names = [name] if name.endswith(".tcf") else [name, f"{name}.tcf"]
     for candidate in names:
         path = beside / candidate

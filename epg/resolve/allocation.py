@@ -116,17 +116,17 @@ def _class(claim: Claim, target: Target, diagnostics: Diagnostics) -> ResourceCl
     missing = [signal for signal in found.signals if signal not in claim.signals] if target.has_pins else []
     for signal in unknown:
         hint = did_you_mean(signal, found.signals, "signals")
-        message = f"a {found.title} has no signal '{signal}'"
+        message = f"{found.a_title} has no signal '{signal}'"
         diagnostics.error("unknown-name", claim.stated_in, message, hint=hint, notes=[Note("this class", found.span)])
     for signal in missing:
-        message = f"the claim '{claim.name}' gives signal '{signal}' of a {found.title} no pin"
+        message = f"the claim '{claim.name}' gives signal '{signal}' of {found.a_title} no pin"
         diagnostics.error("incomplete-claim", claim.stated_in, message, notes=[Note("this class", found.span)])
     return None if unknown or missing else found
 
 
 def _incomplete(claim: Claim, resource_class: ResourceClass, diagnostics: Diagnostics) -> None:
     attribute = resource_class.divider_from
-    message = f"the claim '{claim.name}' gives no '{attribute}', which a {resource_class.title} needs"
+    message = f"the claim '{claim.name}' gives no '{attribute}', which {resource_class.a_title} needs"
     hint = f"add 'attributes: {{{attribute}: ...}}' with a parameter that has a value"
     notes = [Note("this class", resource_class.span)]
     diagnostics.error("incomplete-claim", claim.stated_in, message, hint=hint, notes=notes)
@@ -162,8 +162,8 @@ def _division(
             message = f"{what} is out of range: the longest possible on {target.name} is {show(high, dimension, -1)}"
         else:
             possible = f"{show(low, dimension, 1)} to {show(high, dimension, -1)}"
-            message = f"{what} is out of range: a {resource_class.title} on {target.name} does {possible}"
-        hint = f"a {peripheral.title} counts at most {divider.prescaler[1]} x {divider.counter[1]} clocks of {speed}"
+            message = f"{what} is out of range: {resource_class.a_title} on {target.name} does {possible}"
+        hint = f"{peripheral.a_title} counts at most {divider.prescaler[1]} x {divider.counter[1]} clocks of {speed}"
         diagnostics.error(f"{attribute}-out-of-range", stated.span, message, hint=hint, notes=stated.notes)
         return None
     found = divide(clocks, divider, resource_class.exact)

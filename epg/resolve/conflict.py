@@ -117,7 +117,7 @@ def _several(core: Sequence[Candidate], peripheral: Peripheral, target: Target, 
     """Different claims of which each could have a place without the others."""
     last = core[-1]
     others = ", ".join(candidate.claim.user for candidate in core[:-1])
-    needs = f"needs all of a {peripheral.title}" if last.resource_class.whole else f"is a {last.resource_class.title}"
+    needs = f"needs all of {peripheral.a_title}" if last.resource_class.whole else f"is {last.resource_class.a_title}"
     extent = f"{target.name} has {_extent(peripheral)}"
     message = f"no {peripheral.title} is left for {last.claim.user}, which {needs}: {extent}"
     slots = [candidate for candidate in core if not candidate.resource_class.whole]
@@ -125,7 +125,7 @@ def _several(core: Sequence[Candidate], peripheral: Peripheral, target: Target, 
     reason = f"; users of one {peripheral.title} have one {' and '.join(agreed)}" if agreed else ""
     hint = f"the others are {others}{reason}"
     notes = [
-        Note(f"{candidate.claim.user} is a {candidate.resource_class.title}", candidate.claim.span)
+        Note(f"{candidate.claim.user} takes one as {candidate.resource_class.title}", candidate.claim.span)
         for candidate in core[:-1]
     ]
     diagnostics.error("too-many", last.claim.span, message, hint=hint, notes=notes)

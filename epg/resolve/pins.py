@@ -123,8 +123,8 @@ class Pins:
     def _free_hint(self, resource_class: ResourceClass, signal: str) -> str:
         free = self.usable(resource_class, signal)
         if not free:
-            return f"no pin is left for a {resource_class.title}"
-        return f"free pins for a {resource_class.title}: {pin_list(free)}"
+            return f"no pin is left for {resource_class.a_title}"
+        return f"free pins for {resource_class.a_title}: {pin_list(free)}"
 
     def _peripheral(self, resource_class: ResourceClass) -> Peripheral | None:
         name = resource_class.peripheral
@@ -151,7 +151,7 @@ class Pins:
     def _report_neighbours(self, claim: Claim, resource_class: ResourceClass, pins: Sequence[str]) -> None:
         first, second = (claim.signals[signal] for signal in resource_class.neighbours)
         names = " and ".join(resource_class.neighbours)
-        message = f"pins {pins[0]} and {pins[1]} are no neighbours, as {names} of a {resource_class.title} must be"
+        message = f"pins {pins[0]} and {pins[1]} are no neighbours, as {names} of {resource_class.a_title} must be"
         order = self.target.soc.pins
         free = {*self.usable(resource_class, resource_class.neighbours[0]), *pins}
         pairs = [pair for pair in pairwise(order) if free.issuperset(pair)]
@@ -169,7 +169,7 @@ class Pins:
         for signal in alone:
             stated = claim.signals[signal]
             message = (
-                f"pin {pins[signal]} cannot be '{signal}' of a {resource_class.title}: no {peripheral.title} reaches it"
+                f"pin {pins[signal]} cannot be '{signal}' of {resource_class.a_title}: no {peripheral.title} reaches it"
             )
             hint = self._free_hint(resource_class, signal)
             self.diagnostics.error("pin-cannot-reach", stated.span, message, hint=hint, notes=stated.notes)

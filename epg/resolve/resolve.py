@@ -17,10 +17,7 @@ from epg.resolve.application import Application, Plant, ResolvedComponent, Setpo
 from epg.resolve.claims import TICK, component_claims, tick_claims
 from epg.resolve.wires import input_wires, output_wires, parameter_overrides
 
-_PUBLIC = frozenset(
-    ("start", "stop", "enable", "status", "statistics", "target")
-    + ("inputs", "outputs", "control", "host", "model", "plant")
-)
+_PUBLIC = frozenset("start stop enable status statistics target inputs outputs control host model plant".split())
 """What follows ``<name>_`` in names that every application has."""
 
 
