@@ -41,6 +41,10 @@ class Peripheral:
     pins: Mapping[tuple[int, int], tuple[str, ...]]
     span: Span
 
+    @property
+    def a_title(self) -> str:
+        return _with_article(self.title)
+
     def instance_title(self, instance: int) -> str:
         """What messages call an instance: ``PWM slice 1``."""
         return self.title if len(self.instances) == 1 else f"{self.title} {self.instances[instance]}"
@@ -72,6 +76,10 @@ class ResourceClass:
     exact: bool
     counter: tuple[int, int] | None
     span: Span
+
+    @property
+    def a_title(self) -> str:
+        return _with_article(self.title)
 
 
 @dataclass(frozen=True)
@@ -296,3 +304,7 @@ def _names(node: Node | None) -> tuple[str, ...]:
     if isinstance(node.value, int):
         return tuple(str(number) for number in range(node.value))
     return tuple(str(element.value) for element in node.elements())
+
+
+def _with_article(noun: str) -> str:
+    return f"{'an' if noun[:1].casefold() in tuple('aeiou') else 'a'} {noun}"

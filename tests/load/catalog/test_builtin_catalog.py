@@ -1,0 +1,250 @@
+"""EPG's own chips, boards, platforms, kinds and robots: all of them right, and what the data sheets say."""
+
+from __future__ import annotations
+
+import json
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+from jsonschema import Draft202012Validator
+
+from epg.check.catalog import check_all, check_catalog
+from epg.check.compose import component_schema, typed_parameters
+from epg.check.configuration import check_configuration
+from epg.check.merge import merge_chain
+from epg.check.schema import validate
+from epg.data import data_folder, targets_roots
+from epg.diagnostics import Diagnostics
+from epg.load.catalog import FOLDERS, Catalog, load_catalog
+from epg.load.tcf import load_tcf_chain, predefined_tcf_names
+from epg.load.yaml_file import parse_yaml
+from epg.source import Span
+
+TARGETS = data_folder("targets")
+BOARDS = ("rpi_pico", "rpi_pico2")
+PLATFORMS = ("bare_metal", "freertos")
+
+
+def builtin() -> tuple[Catalog, Diagnostics]:
+    problems = Diagnostics()
+    catalog = load_catalog(targets_roots(), problems)
+    check_catalog(catalog, problems)
+    return catalog, problems
+
+
+def test_everything_is_right() -> None:
+    catalog, problems = builtin()
+    check_all(catalog)
+    assert [(p.span, p.message) for p in problems] == []
+    assert {name for sort in FOLDERS for name in catalog.names(sort)} == {
+        path.name for folder in FOLDERS.values() for path in (TARGETS / folder).iterdir() if path.is_dir()
+    }
+
+
+def test_the_targets_of_the_thesis_and_the_host() -> None:
+    catalog, _ = builtin()
+    assert catalog.target_names() == sorted(["host", *(f"{board}_{name}" for board in BOARDS for name in PLATFORMS)])
+    assert [name for name in catalog.target_names() if catalog.find_target(name).platform.builds] == ["host"]
+
+
+def test_the_kinds() -> None:
+    catalog, _ = builtin()
+    assert catalog.kind_names() == [
+        "constant",
+        "digital_input",
+        "digital_output",
+        "pwm",
+        "pwm_h_bridge",
+        "quadrature_encoder",
+        "ros_publisher",
+        "ros_subscriber",
+    ]
+
+
+def test_drivers_name_all_their_files() -> None:
+    """A C file that component.yaml does not list would not be compiled, and a header would not be found."""
+    catalog, _ = builtin()
+    for name in catalog.kind_names():
+        kind = catalog.find_kind(name)
+        assert {path.name for path in kind.folder.glob("*.h")} == set(kind.headers)
+        assert {path.name for path in kind.folder.glob("*.c")} == set(kind.sources)
+        assert all(path.is_file() for path in kind.files)
+
+
+def test_schemas_are_schemas_that_editors_understand() -> None:
+    for sort in FOLDERS:
+        text = (data_folder("schemas") / f"{sort}.schema.json").read_text(encoding="utf-8")
+        schema = json.loads(text)
+        Draft202012Validator.check_schema(schema)
+        assert schema["$id"] == f"https://epg.dev/schemas/v1/{sort}.schema.json"
+        assert "unevaluated" not in text and "prefixItems" not in text
+
+
+def test_composed_schemas_are_valid_and_have_no_keywords_of_their_own_but_annotations() -> None:
+    catalog, _ = builtin()
+    for name in catalog.kind_names():
+        for with_pins in (True, False):
+            schema = component_schema(catalog.find_kind(name), with_pins)
+            Draft202012Validator.check_schema(schema)
+            assert schema["additionalProperties"] is False
+            assert ("pins" in schema["required"]) == (with_pins and bool(catalog.find_kind(name).pins))
+            json.dumps(schema)
+
+
+@pytest.mark.parametrize(("name", "slices", "blocks", "clock"), [("rpi_pico", 8, 2, 125), ("rpi_pico2", 12, 3, 150)])
+def test_numbers_of_the_data_sheets(name: str, slices: int, blocks: int, clock: int) -> None:
+    """RP2040 data sheet 3.1 and 4.5; RP2350 data sheet 11.1 and 12.5."""
+    target = builtin()[0].find_target(f"{name}_bare_metal")
+    soc = target.soc
+    pwm, pio = soc.peripherals["pwm"], soc.peripherals["pio"]
+    assert soc.clock == clock * 1_000_000
+    assert (len(pwm.instances), pwm.slots, len(pio.instances), len(pio.slots)) == (slices, ("A", "B"), blocks, 4)
+    assert soc.pins == tuple(str(pin) for pin in range(30))
+    reached = {pin: place for place, pins in pwm.pins.items() for pin in pins}
+    assert reached == {str(pin): (pin // 2 % 8, pin % 2) for pin in range(30)}
+    assert target.board.pins == tuple(str(pin) for pin in (*range(23), 26, 27, 28))
+    assert set(target.board.reserved) == {"23", "24", "29"}
+    assert target.board.onboard["25"].classes == ("digital_output", "pwm")
+
+
+@pytest.mark.parametrize("name", [name for name in predefined_tcf_names(targets_roots())])
+def test_predefined_configurations(name: str) -> None:
+    """Those with a target are right; the others are right apart from the target, pins and such they leave open."""
+    catalog, problems = builtin()
+    chain = load_tcf_chain(name, targets_roots(), problems)
+    if "target" in merge_chain(chain):
+        assert check_configuration(chain, [], catalog, problems) is not None
+        assert len(chain) == (2 if name.startswith("host") else 3)
+    else:
+        target = (("target",), parse_yaml("host", "test", problems))
+        assert check_configuration(chain, [(*target,)], catalog, problems) is not None or "pico" in name
+        problems.items = [p for p in problems if p.id != "unknown-middleware"]  # the host has no xrce
+    assert [(p.span, p.message) for p in problems] == []
+
+
+@pytest.mark.parametrize("robot", ["host_jiwy", "rpi_pico_bare_metal_jiwy", "rpi_pico2_freertos_jiwy"])
+def test_jiwy_is_the_thesis_robot(robot: str) -> None:
+    """Names, topics and counts of thesis-facts; the same on each target."""
+    catalog, problems = builtin()
+    configuration = check_configuration(load_tcf_chain(robot, targets_roots(), problems), [], catalog, problems)
+    assert (configuration.node, configuration.control.period) == ("JIWY_node", Fraction(1, 1000))
+    assert configuration.control.enable_at_start
+    assert configuration.communication.period == Fraction(33, 1000)
+    topics = {name: c.parameters["topic"] for name, c in configuration.components.items() if c.kind.communication}
+    assert topics == {name: name for name in ("pan_subscriber", "tilt_subscriber", "pan_publisher", "tilt_publisher")}
+    spans = {axis: configuration.components[f"encoder_{axis}"].parameters["span"] for axis in ("pan", "tilt")}
+    assert {axis: span["counts"] for axis, span in spans.items()} == {"pan": 1112, "tilt": 221}
+    assert spans["pan"]["angle"] == pytest.approx(3.141592653589793, abs=0)
+
+
+def test_relbot_has_exact_gears_and_a_right_wheel_that_counts_backwards() -> None:
+    catalog, problems = builtin()
+    chain = load_tcf_chain("rpi_pico2_freertos_relbot", targets_roots(), problems)
+    configuration = check_configuration(chain, [], catalog, problems)
+    wheels = {side: configuration.components[f"encoder_{side}"].parameters for side in ("left", "right")}
+    assert {wheel["gear"] for wheel in wheels.values()} == {Fraction(5625, 361)}
+    assert {side: wheel["invert"] for side, wheel in wheels.items()} == {"left": False, "right": True}
+
+
+def typed(kind_name: str, text: str) -> tuple[dict[str, object], Diagnostics]:
+    """The typed parameters of a component that is written as ``text``."""
+    catalog, _ = builtin()
+    problems = Diagnostics()
+    kind = catalog.find_kind(kind_name)
+    node = parse_yaml(text, "robot.tcf", problems)
+    assert validate(node, component_schema(kind, False), problems), [p.message for p in problems]
+    return dict(typed_parameters(kind, node, problems)), problems
+
+
+def test_parameters_are_typed_and_have_their_defaults() -> None:
+    values, problems = typed(
+        "quadrature_encoder", "{kind: quadrature_encoder, counts_per_revolution: 4096, gear: 5625/361}"
+    )
+    assert list(problems) == []
+    assert values == {
+        "counts_per_revolution": 4096.0,
+        "gear": Fraction(5625, 361),
+        "span": None,
+        "invert": False,
+        "preset": 0,
+        "pull_up": False,
+        "pins": {},
+    }
+    values, _ = typed("pwm_h_bridge", "{kind: pwm_h_bridge, pins: {value: 1, direction_a: 2, direction_b: GP3}}")
+    assert values == {
+        "frequency": Fraction(20_000),
+        "invert": False,
+        "max_duty": 1.0,
+        "pins": {"value": 1, "direction_a": 2, "direction_b": "GP3"},
+    }
+    values, _ = typed("ros_subscriber", "{kind: ros_subscriber, topic: x, timeout: 500 ms}")
+    assert values["timeout"] == Fraction(1, 2) and values["rate_limit"] is None
+
+
+@pytest.mark.parametrize(
+    ("kind", "text", "ids"),
+    [
+        ("quadrature_encoder", "{kind: quadrature_encoder}", ["exactly-one"]),
+        ("quadrature_encoder", "{kind: quadrature_encoder, counts_per_revolution: 1, gear: 0}", ["out-of-range"]),
+        ("quadrature_encoder", "{kind: quadrature_encoder, counts_per_revolution: 1, preset: 1 ms}", ["wrong-unit"]),
+        ("pwm", "{kind: pwm, frequency: 0 Hz}", ["out-of-range"]),
+        ("constant", "{kind: constant, value: .nan}", ["wrong-value"]),
+        ("ros_subscriber", "{kind: ros_subscriber, topic: x, timeout: -1 s}", ["out-of-range"]),
+    ],
+)
+def test_values_that_a_schema_cannot_judge(kind: str, text: str, ids: list[str]) -> None:
+    assert [p.id for p in typed(kind, text)[1]] == ids
+
+
+def test_names_that_do_not_exist() -> None:
+    catalog, problems = builtin()
+    span = Span("robot.tcf", 1, 1, 2)
+    assert catalog.kind("quadratur_encoder", span, problems) is None
+    assert catalog.target("rpi_pico_freertoss", span, problems) is None
+    assert catalog.target("freertos", span, problems) is None
+    assert catalog.target("host_host", span, problems) is None
+    assert [(p.id, p.hint) for p in problems][:2] == [
+        ("unknown-kind", "did you mean 'quadrature_encoder'?"),
+        ("unknown-target", "did you mean 'rpi_pico_freertos'?"),
+    ]
+    assert len(problems.items) == 4
+
+
+def test_a_users_folder_comes_first_and_a_missing_one_is_said(tmp_path: Path) -> None:
+    board = (TARGETS / "boards" / "rpi_pico" / "board.yaml").read_text(encoding="utf-8")
+    (tmp_path / "mine" / "boards" / "rpi_pico").mkdir(parents=True)
+    (tmp_path / "mine" / "boards" / "rpi_pico" / "board.yaml").write_text(
+        board.replace("summary: Raspberry Pi Pico", "summary: mine"), encoding="utf-8"
+    )
+    problems = Diagnostics()
+    catalog = load_catalog(targets_roots([tmp_path / "mine", tmp_path / "missing"]), problems)
+    check_catalog(catalog, problems)
+    assert catalog.find_target("rpi_pico_freertos").board.summary == "mine"
+    assert [p.id for p in problems] == ["targets-not-found", "shadowed-item"]
+
+
+def test_only_what_is_asked_for_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A target costs its three files, a kind its own."""
+    from epg.load import catalog as module
+
+    read: list[str] = []
+    load = module.load_yaml
+    monkeypatch.setattr(module, "load_yaml", lambda path, *rest: read.append(path.parent.name) or load(path, *rest))
+    catalog, _ = builtin()
+    catalog.find_target("rpi_pico2_freertos")
+    catalog.find_kind("pwm")
+    catalog.find_kind("pwm")
+    assert sorted(read) == ["freertos", "pwm", "rp2350", "rpi_pico2"]
+
+
+def test_what_is_wrong_is_reported_once(tmp_path: Path) -> None:
+    """A kind that cannot be read is not reported again as unknown, however often it is used."""
+    (tmp_path / "components" / "broken").mkdir(parents=True)
+    (tmp_path / "components" / "broken" / "component.yaml").write_text("api: 1\nkind: [", encoding="utf-8")
+    problems = Diagnostics()
+    catalog = load_catalog(targets_roots([tmp_path]), problems)
+    check_catalog(catalog, problems)
+    for line in (1, 2):
+        assert catalog.kind("broken", Span("robot.tcf", line, 1, 2), problems) is None
+    assert [p.id for p in problems] == ["yaml-syntax"]
