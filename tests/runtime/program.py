@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 import subprocess
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -48,6 +49,15 @@ def names_in(source: Path) -> list[str]:
     return re.findall(r"^TEST\((\w+)\)", source.read_text(), flags=re.MULTILINE)
 
 
-def run_program(command: Sequence[str | Path], *, timeout: float = 120) -> subprocess.CompletedProcess[str]:
-    """Runs a program and keeps what it prints; the caller judges its exit status."""
-    return subprocess.run([str(part) for part in command], capture_output=True, text=True, check=False, timeout=timeout)
+def run_program(
+    command: Sequence[str | Path], *, environment: Mapping[str, str] | None = None
+) -> subprocess.CompletedProcess[str]:
+    """Runs a program and keeps what it prints; the caller judges its exit status.  ``environment`` is added to ours."""
+    return subprocess.run(
+        [str(part) for part in command],
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=300,
+        env={**os.environ, **(environment or {})},
+    )
