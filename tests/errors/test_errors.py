@@ -11,7 +11,8 @@ A file ``cases/<name>.case`` holds the files that are wrong and what EPG says ab
 
 Files that a case does not mention are those of ``common/``; the command is the one above unless the first line gives
 another.  Below ``--- name <- edit`` stand changes to the common file, one ``old => new`` a line, where ``\\n`` is a
-line end.  ``EPG_UPDATE_GOLDEN=1`` rewrites what is expected: read the difference.
+line end.  ``--- name <- copy PATH`` is a folder of the repository under another name, ``--- name <- python`` the bytes
+an expression gives.  The command may begin with variables of the environment, as in a shell.  ``EPG_UPDATE_GOLDEN=1`` rewrites what is expected: read the difference.
 """
 
 from __future__ import annotations
@@ -27,16 +28,16 @@ from epg.cli.main import main
 
 HERE = Path(__file__).resolve().parent
 CASES = sorted((HERE / "cases").glob("*.case"))
-COMMAND = "check --tcf robot.tcf --model model --bindings bindings.yaml"
+COMMAND = "epg check --tcf robot.tcf --model model --bindings bindings.yaml"
 
 
 def read_case(path: Path) -> tuple[str, dict[str, str], str]:
     """Command, files and expected messages of a case."""
     text = path.read_text(encoding="utf-8")
     command = COMMAND
-    if text.startswith("$ epg "):
+    if text.startswith("$ "):
         first, _, text = text.partition("\n")
-        command = first.removeprefix("$ epg ")
+        command = first.removeprefix("$ ")
     parts = re.split(r"^--- (.+)\n", text, flags=re.MULTILINE)
     files = dict(zip(parts[1::2], parts[2::2]))
     return command, files, files.pop("expected", "")
@@ -46,6 +47,13 @@ def lay_out(folder: Path, files: dict[str, str]) -> None:
     """The common files, and those of the case over them."""
     shutil.copytree(HERE / "common", folder, dirs_exist_ok=True)
     for name, text in files.items():
+        copied, _, origin = name.partition(" <- copy ")
+        if origin:
+            shutil.copytree(HERE.parent.parent / origin, folder / copied, dirs_exist_ok=True)
+            continue
+        if name.endswith(" <- python"):
+            (folder / name.removesuffix(" <- python")).write_bytes(eval(text))
+            continue
         edited = name.removesuffix(" <- edit")
         path = folder / edited
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -68,9 +76,10 @@ def test_message(
     lay_out(tmp_path, files)
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("EPG_TARGETS_PATH", raising=False)
-    if (tmp_path / "targets").is_dir():
-        monkeypatch.setenv("EPG_TARGETS_PATH", "targets")
-    status = main(command.split())
+    variables, _, arguments = f" {command}".partition(" epg ")
+    for variable in variables.split():
+        monkeypatch.setenv(*variable.split("=", 1))
+    status = main(arguments.split())
     output = capfd.readouterr()
     assert "Traceback" not in output.err
     if os.environ.get("EPG_UPDATE_GOLDEN"):
