@@ -12,7 +12,8 @@ A file ``cases/<name>.case`` holds the files that are wrong and what EPG says ab
 Files that a case does not mention are those of ``common/``; the command is the one above unless the first line gives
 another.  Below ``--- name <- edit`` stand changes to the common file, one ``old => new`` a line, where ``\\n`` is a
 line end.  ``--- name <- copy PATH`` is a folder of the repository under another name, ``--- name <- python`` the bytes
-an expression gives.  The command may begin with variables of the environment, as in a shell.  ``EPG_UPDATE_GOLDEN=1`` rewrites what is expected: read the difference.
+an expression gives.  A folder ``targets`` is in ``EPG_TARGETS_PATH``.  The command may begin with variables of the
+environment, as in a shell.  ``EPG_UPDATE_GOLDEN=1`` rewrites what is expected: read the difference.
 """
 
 from __future__ import annotations
@@ -76,6 +77,8 @@ def test_message(
     lay_out(tmp_path, files)
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("EPG_TARGETS_PATH", raising=False)
+    if (tmp_path / "targets").is_dir():
+        monkeypatch.setenv("EPG_TARGETS_PATH", "targets")
     variables, _, arguments = f" {command}".partition(" epg ")
     for variable in variables.split():
         monkeypatch.setenv(*variable.split("=", 1))
