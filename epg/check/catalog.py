@@ -50,11 +50,13 @@ class _Check(CatalogCheck):
         elif sort == "platform":
             check_platform(node, diagnostics)
             _files_exist(node, ("templates",), _names_in(node, ("templates",)), diagnostics)
+            if node["builds"].value is True:
+                _beside(node["builds"], "platform.cmake", "docs/adding-a-platform.md", diagnostics)
         else:
             check_kind(node, diagnostics)
             for path in (("driver", "headers"), ("driver", "sources")):
                 _files_exist(node, path, _names_in(node, path), diagnostics)
-            _template_exists(node, diagnostics)
+            _beside(node["kind"], "code.c.j2", "docs/adding-a-component-kind.md", diagnostics)
         return diagnostics.error_count == errors
 
     def target(self, target: Target, diagnostics: Diagnostics) -> bool:
@@ -86,8 +88,9 @@ def _files_exist(node: Node, path: tuple[str, ...], names: Collection[Node], dia
             diagnostics.error("file-not-found", name.span, message, hint=hint)
 
 
-def _template_exists(node: Node, diagnostics: Diagnostics) -> None:
-    if not (Path(node.span.file).parent / "code.c.j2").is_file():
-        message = f"kind '{node['kind'].value}' has no code.c.j2"
-        hint = "docs/adding-a-component-kind.md lists the macros it holds"
-        diagnostics.error("file-not-found", node["kind"].span, message, hint=hint)
+def _beside(node: Node, name: str, page: str, diagnostics: Diagnostics) -> None:
+    """Reports that the file ``name`` is not in the folder in which ``node`` makes it necessary."""
+    folder = Path(node.span.file).parent
+    if not (folder / name).is_file():
+        hint = f"{page} says what it holds"
+        diagnostics.error("file-not-found", node.span, f"'{folder.name}' has no {name}", hint=hint)

@@ -17,7 +17,7 @@ from epg.check.schema import validate
 from epg.data import data_folder, targets_roots
 from epg.diagnostics import Diagnostics
 from epg.load.catalog import FOLDERS, Catalog, load_catalog
-from epg.load.tcf import load_tcf_chain, predefined_tcf_names
+from epg.load.tcf import load_tcf_chain, predefined_tcf_names, settings_node
 from epg.load.yaml_file import parse_yaml
 from epg.source import Span
 
@@ -108,19 +108,17 @@ def test_numbers_of_the_data_sheets(name: str, slices: int, blocks: int, clock: 
     assert target.board.onboard["25"].classes == ("digital_output", "pwm")
 
 
-@pytest.mark.parametrize("name", [name for name in predefined_tcf_names(targets_roots())])
+@pytest.mark.parametrize("name", predefined_tcf_names(targets_roots()))
 def test_predefined_configurations(name: str) -> None:
-    """Those with a target are right; the others are right apart from the target, pins and such they leave open."""
+    """Those with a target are right as they are, robots and wirings once the rest is set from outside."""
     catalog, problems = builtin()
     chain = load_tcf_chain(name, targets_roots(), problems)
-    if "target" in merge_chain(chain):
-        assert check_configuration(chain, [], catalog, problems) is not None
-        assert len(chain) == (2 if name.startswith("host") else 3)
-    else:
-        target = (("target",), parse_yaml("host", "test", problems))
-        assert check_configuration(chain, [(*target,)], catalog, problems) is not None or "pico" in name
-        problems.items = [p for p in problems if p.id != "unknown-middleware"]  # the host has no xrce
+    missing = "target" not in merge_chain(chain)
+    texts = ["target=host", "communication.middleware=files", "communication.transport=null"] if missing else []
+    settings = settings_node([(text, Span("settings")) for text in texts], problems)
+    assert check_configuration(chain, settings, catalog, problems) is not None
     assert [(p.span, p.message) for p in problems] == []
+    assert missing == (name in ("jiwy.tcf", "rpi_pico_jiwy.tcf", "relbot.tcf", "rpi_pico_relbot.tcf"))
 
 
 @pytest.mark.parametrize("robot", ["host_jiwy", "rpi_pico_bare_metal_jiwy", "rpi_pico2_freertos_jiwy"])

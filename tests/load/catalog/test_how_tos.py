@@ -91,7 +91,11 @@ def test_how_to(name: str, tmp_path: Path) -> None:
 def test_a_page_that_is_wrong_is_noticed() -> None:
     """The test above can fail."""
     page = "A file `a/b.yaml`:\n\n```yaml\nx: 1\n```\n\n```console\n$ epg check x\none\n...\ntwo\n$ epg y\n```\n"
-    assert steps(page) == [Step("a/b.yaml", "", "x: 1\n"), Step("", "epg check x", "one\n...\ntwo\n"), Step("", "epg y", "")]
+    assert steps(page) == [
+        Step("a/b.yaml", "", "x: 1\n"),
+        Step("", "epg check x", "one\n...\ntwo\n"),
+        Step("", "epg y", ""),
+    ]
     assert matches("one\nand a half\ntwo\n", "one\n...\ntwo\n")
     assert matches("one\ntwo\n", "one\n...\ntwo\n")
     assert not matches("one\nthree\n", "one\n...\ntwo\n")
