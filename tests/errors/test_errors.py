@@ -53,7 +53,9 @@ def lay_out(folder: Path, files: dict[str, str]) -> None:
             shutil.copytree(HERE.parent.parent / origin, folder / copied, dirs_exist_ok=True)
             continue
         if name.endswith(" <- python"):
-            (folder / name.removesuffix(" <- python")).write_bytes(eval(text))
+            path = folder / name.removesuffix(" <- python")
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(eval(text))
             continue
         edited = name.removesuffix(" <- edit")
         path = folder / edited
