@@ -167,16 +167,19 @@ class Emitter:
     def _plant_input(self, wire: Wire) -> InputView:
         value = self._expression(wire.component, "plant_read", wire.component_port.name)
         member = identifier(wire.port.identifier)
-        return InputView(wire.port.name, _reference(wire), member, self._converted(value, wire.steps))
+        return InputView(wire.port.name, _reference(wire), member, self._converted(value, wire.steps, counted=False))
 
     def _plant_output(self, wire: Wire) -> OutputView:
         value = Code(f"outputs.{identifier(wire.port.identifier)}")
-        value = self._converted(value, wire.steps)
+        value = self._converted(value, wire.steps, counted=False)
         statement = self._statement(wire.component, "plant_write", wire.component_port.name, value)
         return OutputView(wire.port.name, _reference(wire), _indented(statement))
 
-    def _converted(self, value: Code, steps: Sequence[Step]) -> Code:
-        """The C expression for ``value`` after all steps; steps without limits between them become one."""
+    def _converted(self, value: Code, steps: Sequence[Step], *, counted: bool = True) -> Code:
+        """The C expression for ``value`` after all steps; steps without limits between them become one.
+
+        Limits count in the controller's statistics, those of a plant (not ``counted``) do not.
+        """
         for step in _folded(steps):
             if step.scale != 1:
                 value = Code(f"{value} * {double(step.scale)}")
@@ -185,7 +188,8 @@ class Emitter:
                 value = Code(f"{value} {sign} {double(abs(step.offset))}")
             if step.limits is not None:
                 low, high = (double(limit) for limit in step.limits)
-                value = Code(f"epg_limit(&{self.prefix}_control, {value}, {low}, {high})")
+                call = f"epg_limit(&{self.prefix}_control, " if counted else "epg_clamp("
+                value = Code(f"{call}{value}, {low}, {high})")
         return value
 
 

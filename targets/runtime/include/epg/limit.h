@@ -7,6 +7,12 @@
 
 #include "epg/control.h"
 
+/** `value` within [low, high]. */
+static inline double epg_clamp(double value, double low, double high)
+{
+    return value < low ? low : value > high ? high : value;
+}
+
 /** `value` within [low, high]; counts it in the statistics of `control` if it was outside. */
 static inline double epg_limit(epg_control_t *control, double value, double low, double high)
 {
