@@ -21,14 +21,14 @@ int main(void)
     printf("first %.17g second %.17g\n", y1.pwm_pan, y2.pwm_pan);
 
     wheels_t *a = wheels_instance(0), *b = wheels_instance(1);
-    wheels_inputs_t ua = {.SetPosLeft = 1.0}, ub = {.SetPosLeft = 1.0};
+    wheels_inputs_t ua = {.SetPosLeft = 0.01}, ub = {.SetPosLeft = 0.01};
     wheels_outputs_t ya, yb, yc;
     wheels_init(a, &ua, &ya);
     wheels_init(b, &ub, &yb);
     for (int i = 0; i < 20000; i++) { /* beyond the experiment's finish time */
         wheels_step(a, &ua, &ya);
     }
-    ua.SetPosLeft = -1.0;
+    ua.SetPosLeft = -0.01;
     wheels_step(a, &ua, &yc);
     wheels_step(b, &ub, &yb);
     printf("instances %d frozen %d third %d\n", ya.SteerLeft != yb.SteerLeft, yc.SteerLeft == ya.SteerLeft,
