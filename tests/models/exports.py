@@ -17,6 +17,7 @@ PARAMETERS = (
     ("Filter\\tau", "5.0e-2", "s"),
     ("Limiter\\maximum", "0.95", ""),
 )
+PARTS = ("Initial", "Static", "Input", "Dynamic", "Output", "Final")
 INPUTS = (("in", "rad"), ("position", "rad"))
 OUTPUTS = (("corr", ""), ("out", ""))
 
@@ -61,6 +62,37 @@ class Export:
         """Writes a C++ class export into ``folder``."""
         return self._save(folder, replace(self, variable="m_").cpp_files())
 
+    def write_fmu(self, folder: Path, instance: bool, describe: str = "tokens.xml") -> Path:
+        """Writes the C sources of an FMU: without u and y, with one memory, since 4.6 in an ``instance``.
+
+        ``describe`` is the file that names the ports: tokens.xml, ModelConfiguration.xml or modelDescription.xml.
+        """
+        files = {name: text for name, text in replace(self, tokens=False).c_files().items() if name != "xxmain.c"}
+        files = _as_fmu(files, len(self.parameters))
+        if instance:
+            files = _with_instance(files, self.step)
+        base = len(self.parameters) + STATES
+        ports = [(name, "input", 4 + i) for i, (name, _) in enumerate(self.inputs)]
+        ports += [(name, "output", i) for i, (name, _) in enumerate(self.outputs)]
+        if describe == "tokens.xml":
+            files[describe] = self.tokens_xml()
+        elif describe == "ModelConfiguration.xml":
+            variables = "".join(
+                f"<modelVariable><name>{name}</name><kind>{kind}</kind><type>real</type>"
+                f"<storage><name>xx_V</name><index>{index}</index></storage></modelVariable>"
+                for name, kind, index in ports
+            )
+            files[describe] = f"<modelConfiguration><modelVariables>{variables}</modelVariables></modelConfiguration>"
+        else:
+            variables = "".join(
+                f'<ScalarVariable name="{name}" valueReference="{base + index}" causality="{kind}">'
+                "<Real/></ScalarVariable>"
+                for name, kind, index in ports
+            )
+            text = f"<fmiModelDescription><ModelVariables>{variables}</ModelVariables></fmiModelDescription>"
+            files["../modelDescription.xml"] = text
+        return self._save(folder / "sources", files)
+
     def write_tokens(self, folder: Path) -> Path:
         """Writes ``tokens.xml`` alone."""
         return self._save(folder, {"tokens.xml": self.tokens_xml()})
@@ -78,14 +110,19 @@ class Export:
 
     def port_lines(self) -> tuple[str, str]:
         v = self.variable
-        take = "".join(f"\t{v}V{self.suffix}[{4 + i}] = u[{i}];\t\t/* {_told(*p)} */\n" for i, p in enumerate(self.inputs))
-        give = "".join(f"\ty[{i}] = \t{v}V{self.suffix}[{i}];\t\t/* {_told(*p)} */\n" for i, p in enumerate(self.outputs))
+        take = "".join(
+            f"\t{v}V{self.suffix}[{4 + i}] = u[{i}];\t\t/* {_told(*p)} */\n" for i, p in enumerate(self.inputs)
+        )
+        give = "".join(
+            f"\ty[{i}] = \t{v}V{self.suffix}[{i}];\t\t/* {_told(*p)} */\n" for i, p in enumerate(self.outputs)
+        )
         return take, give
 
     def parameter_lines(self) -> str:
         array = f"{self.variable}P{self.suffix}"
         return "".join(
-            f"\t{array}[{i}] = {value};\t\t/* {name} {{{unit}}} */\n" for i, (name, value, unit) in enumerate(self.parameters)
+            f"\t{array}[{i}] = {value};\t\t/* {name} {{{unit}}} */\n"
+            for i, (name, value, unit) in enumerate(self.parameters)
         )
 
     def equations(self) -> dict[str, str]:
@@ -107,7 +144,8 @@ class Export:
             "OUTPUT_EQUATIONS": (
                 "\t/* corr = start + time; */\n\tV[0] = V[3] + time;\n\n"
                 "\t/* out = (if drive > Limiter\\maximum then Limiter\\maximum else drive end); */\n"
-                "\tV[1] = ((V[6] > P[3]) ? \n\t\t/* Limiter\\maximum */\n\t\tP[3]\n\t:\n\t\t/* drive */\n\t\tV[6]\n\t);\n"
+                "\tV[1] = ((V[6] > P[3]) ? \n\t\t/* Limiter\\maximum */\n\t\tP[3]\n"
+                "\t:\n\t\t/* drive */\n\t\tV[6]\n\t);\n"
             ),
             "FINAL_EQUATIONS": "\t/* corr = -1; */\n\tV[0] = -1.0;\n",
         }
@@ -132,9 +170,13 @@ class Export:
         sizes = {"P": len(self.parameters), "I": STATES, "V": 8, "s": STATES, "R": STATES}
         take, give = self.port_lines()
         equations = self.equations()
-        includes = "".join(f'#include "{name}.h"\n' for name in ("xxmodel", "xxinteg", "xxfuncs", "xxsubmod", "motionprofiles"))
+        includes = "".join(
+            f'#include "{name}.h"\n' for name in ("xxmodel", "xxinteg", "xxfuncs", "xxsubmod", "motionprofiles")
+        )
         vectors = "XXDouble *u, XXDouble *y, XXDouble t"
-        first = "".join(f"\t{f}Calculate{part}{x} ();\n" for part in ("Initial", "Static", "Input", "Dynamic", "Output"))
+        first = "".join(
+            f"\t{f}Calculate{part}{x} ();\n" for part in ("Initial", "Static", "Input", "Dynamic", "Output")
+        )
         names = "".join(f'\t"{name}",\n'.replace("\\", "\\\\") for name, _ in self.inputs)
         submod = f"""{self._head("xxsubmod.c")}
 #include <stdlib.h>
@@ -239,7 +281,7 @@ void {f}ModelInitialize{x} (void)
 {"".join(f"extern {kind} {v}{name}{x};{chr(10)}" for kind, name, _ in scalars)}
 {"".join(f"extern XXDouble {v}{array}{x}[];{chr(10)}" for array in sizes)}
 void {f}ModelInitialize{x} (void);
-{"".join(f"void {f}Calculate{p}{x} (void);{chr(10)}" for p in ("Initial", "Static", "Input", "Dynamic", "Output", "Final"))}
+{"".join(f"void {f}Calculate{p}{x} (void);{chr(10)}" for p in PARTS)}
 #endif
 """
         submod_h = f"""{self._head("xxsubmod.h")}
@@ -401,7 +443,9 @@ typedef struct {{ XXDouble *mat; XXInteger rows; XXInteger columns; }} XXMatrix;
         parts = ("Initial", "Static", "Input", "Dynamic", "Output", "Final")
         arrays = {"C": 0, "P": len(self.parameters), "I": STATES, "V": 8, "s": STATES, "R": STATES}
         makes = "".join(f"\tm_{array} = new XXDouble[{size} + 1];\n" for array, size in arrays.items())
-        clears = "".join(f"\tmemset(m_{array}, 0, ({size} + 1) * sizeof(XXDouble));\n" for array, size in arrays.items())
+        clears = "".join(
+            f"\tmemset(m_{array}, 0, ({size} + 1) * sizeof(XXDouble));\n" for array, size in arrays.items()
+        )
         frees = "".join(f"\tdelete[] m_{array};\n" for array in arrays)
         initial = "".join(f"\tm_I[{i}] = 0.0;\t\t/* state{i}_initial */\n" for i in range(STATES))
         states = "".join(f"\tm_s[{i}] = m_I[{i}];\t\t/* state{i} */\n" for i in range(STATES))
@@ -686,9 +730,79 @@ void {m}::Step ()
             **self.equations(),
             **self.token_values,
         }
-        lines = [f'\t<token name="{name}"><![CDATA[{value}]]></token>\n' for name, value in tokens.items() if value != "-"]
+        lines = [
+            f'\t<token name="{name}"><![CDATA[{value}]]></token>\n' for name, value in tokens.items() if value != "-"
+        ]
         return '<?xml version="1.0" encoding="UTF-8"?>\n<tokens>\n' + "".join(lines) + "</tokens>\n"
 
 
 def _told(name: str, unit: str) -> str:
     return f"{name} {{{unit}}}" if unit else name
+
+
+def _as_fmu(files: dict[str, str], parameters: int) -> dict[str, str]:
+    """Takes the port vectors out of a C export and lays its arrays into one memory, as 4.5 does for FMUs."""
+    result = {}
+    for name, text in files.items():
+        text = text.replace("XXDouble *u, XXDouble *y, ", "")
+        text = re.sub(r"void XXCopy\w+ \(XXDouble \*[uy]\)\s*\{.*?\n\}\n", "", text, flags=re.DOTALL)
+        text = re.sub(r"\tXXCopy\w+ \([uy]\);\n", "", text)
+        text = re.sub(r"XXInteger xx_number_of_\w+ = \d+;\n", "", text)
+        sizes = {"P": parameters, "I": STATES, "V": 8, "s": STATES, "R": STATES}
+        at = 0
+        for array, size in sizes.items():
+            text = re.sub(rf"\nXXDouble xx_{array}\[[^;]*;", f"\nXXDouble* xx_{array} = xx_MEMORY + {at};", text)
+            text = text.replace(f"extern XXDouble xx_{array}[];", f"extern XXDouble* xx_{array};")
+            at += size
+        text = text.replace(
+            "XXDouble* xx_P = xx_MEMORY", f"XXDouble xx_MEMORY[{at} + 1];\nXXDouble* xx_P = xx_MEMORY", 1
+        )
+        result[name] = text
+    return result
+
+
+def _with_instance(files: dict[str, str], step: str) -> dict[str, str]:
+    """Moves the global variables of an FMU into an instance, as since 4.6."""
+    scalars = ("start_time", "finish_time", "step_size", "time", "steps", "initialize", "major", "stop_simulation")
+    macros = "".join(f"#define xx_{name} model_instance->{name}\n" for name in (*"PIVsR", *scalars))
+    counts = "".join(
+        f"#define xx_{name} {size}\n"
+        for name, size in (("parameter_count", 4), ("initialvalue_count", 2), ("variable_count", 8), ("state_count", 2))
+    )
+    struct = f"""{counts}
+typedef struct xx_ModelInstance
+{{
+\tXXDouble start_time, finish_time, step_size, time;
+\tXXInteger steps;
+\tXXBoolean initialize, major, stop_simulation;
+\tXXDouble MEMORY[xx_parameter_count + xx_initialvalue_count + xx_variable_count + 2 * xx_state_count + 1];
+\tXXDouble* P;
+\tXXDouble* I;
+\tXXDouble* V;
+\tXXDouble* s;
+\tXXDouble* R;
+}} xx_ModelInstance;
+{macros}"""
+    result = {}
+    for name, text in files.items():
+        text = re.sub(r"(\n|^)(extern )?XX\w+\*? xx_\w+( = [^;]*|\[[^;]*)?;", "", text)
+        text = re.sub(r"(?<=\w) \(void\)", " (xx_ModelInstance* model_instance)", text)
+        text = re.sub(
+            r"(XX(?:Initialize|Calculate|Terminate)Submodel) \(XXDouble t\)",
+            r"\1 (xx_ModelInstance* model_instance, XXDouble t)",
+            text,
+        )
+        text = re.sub(r"(\tXX\w+) \(\);", r"\1 (model_instance);", text)
+        text = text.replace("\tXXModelInitialize (model_instance);\n", "")
+        if name == "xxmodel.h":
+            text = text.replace('#include "xxtypes.h"\n', f'#include "xxtypes.h"\n{struct}', 1)
+        if name == "xxinteg.h":
+            text = text.replace('#include "xxtypes.h"', '#include "xxtypes.h"\n#include "xxmodel.h"')
+        if name == "xxfuncs.c":
+            text = text.replace("xx_stop_simulation = XXTRUE", "(void) message")
+        result[name] = text
+    result["fmi2Functions.c"] = (
+        f'#include "xxsubmod.h"\nvoid *fmi2Instantiate (xx_ModelInstance* model_instance)\n{{\n'
+        f"\tmodel_instance->step_size = {step};\n\tmodel_instance->P = model_instance->MEMORY;\n\treturn 0;\n}}\n"
+    )
+    return result

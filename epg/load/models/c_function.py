@@ -123,7 +123,10 @@ class _Importer:
         parameters, places = make_parameters([line for _, line in settings], listed or token_parameters, ())
         holders = {id(line): code.file.path for code, line in settings}
         elements = tuple(
-            tuple(details.Element(line.array, line.array_index) for line in sorted(group, key=lambda line: line.index))
+            tuple(
+                details.Element(self._member(line.array), line.array_index)
+                for line in sorted(group, key=lambda line: line.index)
+            )
             if self._vectorless()
             else ()
             for group in (inputs_lines, outputs_lines)
@@ -252,6 +255,10 @@ class _Importer:
             if self.instance_type and re.search(rf"\}}\s*{self.instance_type}\s*;", code.file.code):
                 return code.file.path.name
         return ""
+
+    def _member(self, array: str) -> str:
+        """The member of the instance behind an array: ``xx_V`` is a macro for ``model_instance->V``."""
+        return re.sub(r".*->\s*", "", self.macros.get(array, array)) if self.instance_type else array
 
     def _memory(self) -> tuple[tuple[str, str], ...]:
         """Pointers of the instance and their offsets, in the order in which the FMI functions lay them out."""

@@ -88,7 +88,7 @@ class _Reader:
         instance = self._type(self.node.get("instance"), "instance")
         types = self._types(style)
         parameters, members = self._parameters(instance)
-        sources = self._files("sources", _SUFFIXES[language])
+        sources = self._files("sources", _SUFFIXES.get(language, (".c", ".cpp", ".cc", ".cxx")))
         directories = self._files("include_dirs", ()) or (self.path.parent,)
         header = self._header(directories)
         if step is None or functions is None or not sources:
@@ -172,7 +172,7 @@ class _Reader:
         if node.value not in choices:
             hint = did_you_mean(str(node.value), choices)
             self._error("wrong-value", node.span, f"'{node.value}' is not possible here", hint)
-            return default
+            return ""
         return str(node.value)
 
     def _type(self, node: Node | None, key: str) -> str:
@@ -185,6 +185,8 @@ class _Reader:
 
     def _types(self, style: str) -> tuple[str, str]:
         node = self.node.get("types")
+        if not style:
+            return "", ""
         if style == "arrays":
             if node is not None:
                 span = self.node.key_span("types")

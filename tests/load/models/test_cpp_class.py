@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.models.exports import Export
-from tests.models.harness import load, loaded
+from tests.models.harness import load
 
 
 @pytest.mark.parametrize("export", [Export(), Export(method="Euler", newline="\r\n"), Export(tokens=False)])

@@ -53,7 +53,7 @@ def test_sources_of_an_fmu_need_something_that_names_the_ports(tmp_path: Path) -
 
 def test_nothing_there(tmp_path: Path) -> None:
     (tmp_path / "models").mkdir()
-    id, message, hint = only_error(tmp_path / "model")
+    id, _, hint = only_error(tmp_path / "model")
     assert (id, hint) == ("model-not-found", "folders beside it: models")
     assert only_error(tmp_path / "a" / "b")[0] == "model-not-found"
     assert only_error(Path("\0"))[0] == "model-not-found"

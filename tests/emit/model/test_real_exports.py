@@ -1,0 +1,177 @@
+"""Real exports give through the library what their own code gives, bit for bit.
+
+They are not part of EPG: the environment variable EPG_TEST_EXPORTS names a folder whose subfolders are repositories
+with exports of 20-sim, in whatever layout.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from epg.load.models import Model
+from tests.models.direct import has_entry_points, run_c_vectors, run_cpp_class, run_fmu
+from tests.models.harness import build, load, run_program, run_wrapper
+
+STEPS = 1500
+SKIPPED = "set EPG_TEST_EXPORTS to a folder with real exports of 20-sim"
+
+
+def model_paths() -> list[Path]:
+    """Every submodel below the folder: files with a C submodel's functions, folders of C++ classes."""
+    root = os.environ.get("EPG_TEST_EXPORTS")
+    if not root:
+        return []
+    found: set[Path] = set()
+    for path in Path(root).rglob("*"):
+        if path.suffix == ".c" and path.is_file() and has_entry_points(path):
+            found.add(path)
+        elif path.name == "xxinteg.cpp":
+            found.add(path.parent.parent)
+    return sorted(found)
+
+
+def readable(path: Path) -> str:
+    if not PATHS:
+        return "none"
+    return path.relative_to(os.environ["EPG_TEST_EXPORTS"]).as_posix()
+
+
+PATHS = model_paths()
+needs_exports = pytest.mark.skipif(not PATHS, reason=SKIPPED)
+
+
+def direct(model: Model, path: Path, work: Path) -> tuple[str, bool]:
+    """What the export's own code gives, and whether it starts with inputs of zero."""
+    counts = (len(model.inputs), len(model.outputs))
+    details = model.details
+    if model.language == "c++":
+        return run_cpp_class(model.directory, model.name, work, counts, STEPS), False
+    names = [port.name for port in model.inputs], [port.name for port in model.outputs]
+    if (model.directory / "fmi2Functions.c").is_file():
+        return run_fmu(model.directory, work, *names, STEPS), True
+    linked = details.linked  # type: ignore[attr-defined]
+    function, _, suffix = details.calculate.name.partition("CalculateSubmodel")  # type: ignore[attr-defined]
+    variable = details.states.partition("s")[0] if details.states else "xx_"  # type: ignore[attr-defined]
+    argument = repr(float(model.step)) if "step" in details.calculate.arguments else ""  # type: ignore[attr-defined]
+    includes = list(linked.include_dirs)
+    for shim in linked.shims:  # the export lacks this header: give the direct program an empty one
+        (work / "lacking").mkdir(parents=True, exist_ok=True)
+        (work / "lacking" / shim.name).write_text("")
+        includes.append(work / "lacking")
+    sources = [code.file.path for code in linked.units]
+    return run_c_vectors(sources, includes, work, counts, STEPS, suffix, (variable, function), argument), False
+
+
+@needs_exports
+@pytest.mark.parametrize("path", PATHS or [Path("none")], ids=readable)
+def test_same_numbers(path: Path, tmp_path: Path) -> None:
+    model, diagnostics = load(path)
+    if model is None:
+        # an export that developers left half edited: it must be refused for what it lacks
+        assert {i.id for i in diagnostics if i.severity == "error"} <= {
+            "model-file-missing",
+            "model-incomplete",
+            "model-undeclared",
+        }
+        return
+    expected, zero_start = direct(model, path, tmp_path)
+    assert run_wrapper(build(model, "model", tmp_path), STEPS, zero_start) == expected
+    assert len(expected.splitlines()) == STEPS + 2
+
+
+@needs_exports
+@pytest.mark.parametrize("path", PATHS or [Path("none")], ids=readable)
+def test_tokens_alone(path: Path, tmp_path: Path) -> None:
+    folder = path if path.is_dir() else path.parent
+    files = sorted(folder.glob("*tokens.xml"))
+    model, _ = load(path)
+    if model is None or not files:
+        return
+    from_tokens, diagnostics = load(files[0])
+    assert from_tokens is not None, [item.message for item in diagnostics]
+    if from_tokens.name != model.name or from_tokens.version != model.version:
+        return
+    assert [(p.name, p.value) for p in from_tokens.parameters] == [(p.name, p.value) for p in model.parameters]
+    expected = run_wrapper(build(model, "sources", tmp_path), STEPS, True)
+    assert run_wrapper(build(from_tokens, "tokens", tmp_path), STEPS, True) == expected
+
+
+@needs_exports
+def test_all_of_them_in_one_program(tmp_path: Path) -> None:
+    """Every export that loads, each under a name of its own, linked together: each runs as it does alone."""
+    libraries = []
+    for index, path in enumerate(PATHS):
+        model, _ = load(path)
+        if model is not None:
+            libraries.append(build(model, f"model{index}", tmp_path))
+    assert len(libraries) >= 2
+    runs = ""
+    for library in libraries:
+        name, model = library.name, library.model
+        set_all = " ".join(f"in.{port.identifier} = 0.01 * (k % 17) - 0.05;" for port in model.inputs)
+        show = " ".join(f'printf("%a ", out.{port.identifier});' for port in model.outputs)
+        runs += f"""
+static void {name}_run(int first, int last)
+{{
+    static {name}_inputs_t in;
+    static {name}_outputs_t out;
+    for (int k = first; k < last; k++) {{
+        {set_all}
+        if (k == 0) {{ {name}_init({name}_instance(0), &in, &out); }}
+        {name}_step({name}_instance(0), &in, &out);
+    }}
+    if (last == 60) {{ {show} puts(""); }}
+}}
+"""
+    includes = "".join(f'#include "{library.name}.h"\n' for library in libraries) + "#include <stdio.h>\n"
+    halves = "\n".join(f"    {library.name}_run(0, 30);" for library in libraries)
+    rest = "\n".join(f"    {library.name}_run(30, 60);" for library in libraries)
+    together = run_program(
+        tmp_path / "all", f"{includes}{runs}int main(void)\n{{\n{halves}\n{rest}\n    return 0;\n}}\n", libraries
+    )
+    for library, line in zip(libraries, together.splitlines(), strict=True):
+        start = runs.index(f"static void {library.name}_run")
+        own = runs[start : runs.index("\n}\n", start) + 3]
+        text = f'#include "{library.name}.h"\n#include <stdio.h>\n{own}'
+        text += f"int main(void) {{ {library.name}_run(0, 60); return 0; }}\n"
+        assert run_program(tmp_path / library.name / "alone", text, [library]).strip() == line.strip()
+
+
+@needs_exports
+def test_two_instances_of_a_class(tmp_path: Path) -> None:
+    for index, path in enumerate(path for path in PATHS if path.is_dir()):
+        model, _ = load(path)
+        if model is None:
+            continue
+        name = f"m{index}"
+        library = build(model, name, tmp_path, instances=2)
+        port = model.inputs[0].identifier
+        show = " ".join(f'printf("%a ", out.{p.identifier});' for p in model.outputs)
+        text = f"""
+#include "{name}.h"
+#include <stdio.h>
+static void run(unsigned i, double value)
+{{
+    static {name}_inputs_t in;
+    {name}_outputs_t out = {{0}};
+    in.{port} = value;
+    {name}_step({name}_instance(i), &in, &out);
+    if (i == 0) {{ {show} puts(""); }}
+}}
+int main(int argc, char **argv)
+{{
+    {name}_inputs_t in = {{0}};
+    {name}_outputs_t out;
+    (void)argv;
+    {name}_init({name}_instance(0), &in, &out);
+    {name}_init({name}_instance(1), &in, &out);
+    for (int k = 0; k < 50; k++) {{ run(0, 0.5); if (argc == 1) {{ run(1, -3.0); }} }}
+    return 0;
+}}
+"""
+        both = run_program(tmp_path / name / "both", text, [library])
+        alone = run_program(tmp_path / name / "alone", text.replace("argc == 1", "argc == 0"), [library])
+        assert both == alone

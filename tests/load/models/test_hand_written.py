@@ -1,0 +1,174 @@
+"""Controllers written by hand, described by model.yaml."""
+
+from __future__ import annotations
+
+import json
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+import yaml
+
+from tests.models.harness import MODELS, load, loaded
+
+SCHEMA = Path(__file__).resolve().parents[3] / "schemas" / "model.schema.json"
+
+
+def test_reads_everything() -> None:
+    model = loaded(MODELS / "pid_c")
+    assert (model.name, model.origin, model.language, model.step) == ("pid", "hand-written", "c", Fraction(1, 500))
+    assert [(p.name, p.unit, p.type, p.index) for p in model.inputs] == [
+        ("setpoint", "rad", "real", 0),
+        ("position", "rad", "real", 1),
+        ("enable", "", "boolean", 2),
+        ("limit", "", "integer", 3),
+    ]
+    assert [(p.name, p.type) for p in model.outputs] == [
+        ("duty", "real"),
+        ("steps", "integer"),
+        ("saturated", "boolean"),
+    ]
+    assert [(p.name, p.identifier, p.value, p.unit) for p in model.parameters] == [
+        ("kp", "kp", 2.0, "1/rad"),
+        ("integral rate", "integral_rate", 0.125, ""),
+    ]
+    assert model.instantiable
+    assert {path.name for path in model.files} == {"model.yaml", "pid.c", "pid.h"}
+    assert model.inputs[1].span.line == 12
+
+
+def test_defaults() -> None:
+    model = loaded(MODELS / "gain_arrays")
+    assert model.name == "gain_arrays" and not model.instantiable and model.step == Fraction(1, 2000)
+
+
+BASE = {
+    "version": 1,
+    "step": "1 ms",
+    "header": "a.h",
+    "sources": ["a.c"],
+    "style": "arrays",
+    "functions": {"step": "a_step"},
+    "inputs": {"in": {"unit": "rad"}},
+    "outputs": {"out": None},
+}
+
+
+def write(folder: Path, document: object) -> Path:
+    (folder / "model.yaml").write_text(
+        document if isinstance(document, str) else yaml.safe_dump(document, sort_keys=False)
+    )
+    (folder / "a.c").write_text('#include "a.h"\nvoid a_step(const double *u, double *y) { y[0] = u[0]; }\n')
+    (folder / "a.h").write_text("void a_step(const double *u, double *y);\n")
+    return folder
+
+
+def test_base_is_good(tmp_path: Path) -> None:
+    loaded(write(tmp_path, BASE))
+
+
+WRONG = [
+    ({"version": 2}, "newer-version"),
+    ({"version": "one"}, "wrong-value"),
+    ({"step": "1"}, "wrong-unit"),
+    ({"step": 1}, "wrong-unit"),
+    ({"step": "1 kg"}, "wrong-unit"),
+    ({"step": "0 ms"}, "out-of-range"),
+    ({"step": "-1 ms"}, "out-of-range"),
+    ({"step": None}, "wrong-quantity"),
+    ({"header": "b.h"}, "file-not-found"),
+    ({"header": 3}, "wrong-type"),
+    ({"sources": []}, "wrong-type"),
+    ({"sources": "a.c"}, "wrong-type"),
+    ({"sources": ["b.c"]}, "file-not-found"),
+    ({"sources": ["a.h"]}, "wrong-value"),
+    ({"style": "structs"}, "wrong-value"),
+    ({"functions": {"init": "a_step"}}, "missing-key"),
+    ({"functions": {"step": "a step"}}, "wrong-value"),
+    ({"functions": {"step": "a_step", "run": "a_step"}}, "unknown-key"),
+    ({"functions": ["a_step"]}, "wrong-type"),
+    ({"inputs": {"in put": {}}}, "invalid-name"),
+    ({"inputs": {"double": {}}}, "invalid-name"),
+    ({"inputs": {"in": {"unit": 3}}}, "wrong-type"),
+    ({"inputs": {"in": {"type": "bool"}}}, "wrong-value"),
+    ({"inputs": {"in": {"units": "rad"}}}, "unknown-key"),
+    ({"inputs": {"in": "rad"}}, "wrong-type"),
+    ({"inputs": ["in"]}, "wrong-type"),
+    ({"outputs": None, "parameters": {"k": {}}}, "wrong-type"),
+    ({"parameters": {"k": "2"}}, "wrong-type"),
+    ({"parameters": {"k": {"value": True}}}, "wrong-type"),
+    ({"parameters": {"k": {"value": 1, "member": "a b"}}}, "invalid-name"),
+    ({"parameters": {"a b": 1}}, "invalid-name"),
+    ({"instance": "a b"}, "wrong-value"),
+    ({"types": {"inputs": "x_t"}}, "unknown-key"),
+    ({"language": "c++"}, "wrong-value"),
+    ({"language": "rust"}, "wrong-value"),
+    ({"include_dirs": ["nowhere"]}, "file-not-found"),
+    ({"ports": {}}, "unknown-key"),
+]
+
+
+@pytest.mark.parametrize(("change", "id"), WRONG, ids=[f"{next(iter(c))}-{i}-{n}" for n, (c, i) in enumerate(WRONG)])
+def test_wrong(change: dict[str, object], id: str, tmp_path: Path) -> None:
+    model, diagnostics = load(write(tmp_path, {**BASE, **change}))
+    assert model is None
+    assert id in {item.id for item in diagnostics}, [(item.id, item.message) for item in diagnostics]
+    problem = next(item for item in diagnostics if item.id == id)
+    line = (tmp_path / "model.yaml").read_text().splitlines()[problem.span.line - 1]
+    at = line[problem.span.column - 1 :]
+    assert any(at.startswith((str(word), repr(word).lower(), "[]", "- ", "null", "a.c")) for word in _words(change)), (
+        line
+    )
+
+
+@pytest.mark.parametrize("key", ["version", "step", "header", "sources", "functions", "outputs"])
+def test_missing(key: str, tmp_path: Path) -> None:
+    model, diagnostics = load(write(tmp_path, {name: value for name, value in BASE.items() if name != key}))
+    assert model is None
+    assert [item.id for item in diagnostics] == ["missing-key"]
+    assert f"'{key}'" in diagnostics.items[0].message
+
+
+def test_struct_style_needs_types(tmp_path: Path) -> None:
+    model, diagnostics = load(write(tmp_path, {**BASE, "style": "struct"}))
+    assert model is None
+    assert [item.id for item in diagnostics] == ["missing-key"]
+    assert "types" in diagnostics.items[0].hint
+
+
+@pytest.mark.parametrize("text", ["", "[]", "3", "a: [", "version: 1\nversion: 1\n"])
+def test_no_map_at_all(text: str, tmp_path: Path) -> None:
+    model, diagnostics = load(write(tmp_path, text))
+    assert model is None and diagnostics.has_errors
+
+
+def test_everything_is_reported_at_once(tmp_path: Path) -> None:
+    model, diagnostics = load(write(tmp_path, {**BASE, "step": "1", "style": "x", "inputs": {"a b": {}}, "extra": 1}))
+    assert model is None
+    assert {item.id for item in diagnostics} == {"wrong-unit", "wrong-value", "invalid-name", "unknown-key"}
+
+
+def test_schema_agrees() -> None:
+    """The schema for editors accepts and refuses what the importer does, but for what no schema can see."""
+    from jsonschema import Draft202012Validator
+
+    schema = json.loads(SCHEMA.read_text())
+    Draft202012Validator.check_schema(schema)
+    assert "unevaluated" not in SCHEMA.read_text() and "prefixItems" not in SCHEMA.read_text()
+    validator = Draft202012Validator(schema)
+    for name in ("pid_c", "pid_cpp", "gain_arrays"):
+        document = yaml.safe_load((MODELS / name / "model.yaml").read_text())
+        assert list(validator.iter_errors(document)) == []
+    unseen = {"0 ms", "-1 ms", "b.h", "b.c", "a.h", "double", "nowhere", "c++", "x_t", "a b"}
+    for change, _ in WRONG:
+        errors = list(validator.iter_errors({**BASE, **change}))
+        words = {str(word) for word in _words(change)}
+        assert errors or words & unseen, change
+
+
+def _words(value: object) -> list[object]:
+    if isinstance(value, dict):
+        return [word for key, child in value.items() for word in [key, *_words(child)]]
+    if isinstance(value, list):
+        return [word for child in value for word in _words(child)]
+    return [value]
