@@ -100,11 +100,11 @@ def test_a_cache_that_cannot_be_written(bare_python: Path, tmp_path: Path) -> No
 
 
 def test_cmake_with_a_bare_python(bare_python: Path, tmp_path: Path) -> None:
-    cache = {"EPG_CACHE": str(tmp_path / "cache")}
+    cache = {"EPG_CACHE": str(tmp_path / "cache"), "PYTHONPATH": ""}
     project = Project(tmp_path / "on", "robot", cache)
     output = project.configure(f"-DPython3_EXECUTABLE={bare_python}")
     assert "EPG: installing" in output
-    off = Project(tmp_path / "off", "robot", {"EPG_CACHE": str(tmp_path / "other")})
+    off = Project(tmp_path / "off", "robot", {"EPG_CACHE": str(tmp_path / "other"), "PYTHONPATH": ""})
     output = off.fails_to_configure(f"-DPython3_EXECUTABLE={bare_python}", "-DEPG_INSTALL_PYTHON_PACKAGES=OFF")
     assert "installing them is turned off" in output
     assert not (tmp_path / "other").exists()
