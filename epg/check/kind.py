@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from epg.check.compose import COMMON_PARAMETERS, parameter_problems
 from epg.diagnostics import Diagnostics, Note, did_you_mean
@@ -10,6 +10,7 @@ from epg.load.items import map_of, texts_of
 from epg.source import Node, Span
 
 _TOPIC_PARAMETERS = ("topic", "qos")
+_DIMENSIONS = {"frequency": "frequency", "period": "time"}
 
 
 def check_kind(node: Node, diagnostics: Diagnostics) -> None:
@@ -58,7 +59,7 @@ def _ports(node: Node, diagnostics: Diagnostics) -> None:
                 diagnostics.error("wrong-value", span, message, notes=[Note("the other one", other_span)])
 
 
-def _claims(node: Node, parameters: Iterable[str], diagnostics: Diagnostics) -> None:
+def _claims(node: Node, parameters: Mapping[str, Node], diagnostics: Diagnostics) -> None:
     pins = texts_of(node, "pins")
     used: dict[str, Span] = {}
     for claim in map_of(node, "claims").values():
@@ -68,12 +69,25 @@ def _claims(node: Node, parameters: Iterable[str], diagnostics: Diagnostics) -> 
             if first != pin.span:
                 message = f"pin '{pin.value}' is claimed twice"
                 diagnostics.error("wrong-value", pin.span, message, notes=[Note("first here", first)])
-        for parameter in map_of(claim, "attributes").values():
+        for attribute, parameter in map_of(claim, "attributes").items():
             _known("parameter", parameter, parameters, diagnostics)
+            _attribute(attribute, parameter, parameters.get(str(parameter.value)), diagnostics)
     for pin in node["pins"].elements() if "pins" in node else ():
         if pin.value not in used:
             hint = "name it in the signals of a claim"
             diagnostics.error("wrong-value", pin.span, f"pin '{pin.value}' is in no claim", hint=hint)
+
+
+def _attribute(attribute: str, named: Node, parameter: Node | None, diagnostics: Diagnostics) -> None:
+    """Dividers are set from numbers with a unit; other attributes are compared, so they are single values."""
+    if parameter is None:
+        return
+    wanted = _DIMENSIONS.get(attribute)
+    if wanted is not None and ("quantity" not in parameter or parameter["quantity"].value != wanted):
+        message = f"attribute '{attribute}' comes from a parameter with 'quantity: {wanted}'"
+        diagnostics.error("wrong-value", named.span, message)
+    elif "type" in parameter and parameter["type"].value == "object":
+        diagnostics.error("wrong-value", named.span, f"attribute '{attribute}' cannot come from an object")
 
 
 def _known(what: str, node: Node, known: Iterable[str], diagnostics: Diagnostics) -> None:
