@@ -1,7 +1,7 @@
 """``epg``: parses the command line, runs a subcommand, prints what is wrong and says so in the exit status.
 
 Exit status: 0 success; 1 mistakes in the user's files; 2 wrong command line; 3 a bug in EPG; 4 something the
-computer lacks (Python packages, a compiler); other values are those of a program that was run (``simulate``).
+computer lacks (Python packages, a program, a folder that can be written); other values are those of a program that was run (``simulate``).
 """
 
 from __future__ import annotations
@@ -93,6 +93,10 @@ def _run(options: argparse.Namespace) -> int:
         return EXIT_OK
     except KeyboardInterrupt:
         return 130
+    except OSError as problem:  # a folder that cannot be written, a full disk
+        where = f"{problem.filename}: " if problem.filename else ""
+        sys.stderr.write(f"epg: {where}{problem.strerror or problem}\n")
+        return EXIT_MISSING
     except Exception:
         sys.stderr.write(format_diagnostics(diagnostics))
         traceback.print_exc()

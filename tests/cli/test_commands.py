@@ -59,6 +59,14 @@ def test_a_bug_is_status_3_and_says_so(monkeypatch: pytest.MonkeyPatch, capsys: 
     assert "this is a bug in EPG" in capsys.readouterr().err
 
 
+def test_a_folder_that_cannot_be_written_is_status_4(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (robot / "host.tcf").write_text((robot / "robot.tcf").read_text().replace("rpi_pico_bare_metal", "host"))
+    (robot / "out").write_text("a file where the folder should be")
+    files = ["--tcf", "host.tcf", "--model", "model", "--bindings", "bindings.yaml"]
+    assert main(["generate", "robot", *files, "--output", "out"]) == 4
+    assert "Traceback" not in capsys.readouterr().err
+
+
 def test_the_cmake_folder(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--cmake-dir"]) == 0
     assert capsys.readouterr().out == f"{(ROOT / 'cmake').as_posix()}\n"
