@@ -128,7 +128,7 @@ def parse_quantity(value: object, dimension: str) -> Fraction | float:
     if dimension == "ratio" and isinstance(value, (int, float)) and not isinstance(value, bool):
         return parse_ratio(value)
     if isinstance(value, (int, float)) and not isinstance(value, bool):
-        common = {"time": "ms", "frequency": "kHz"}.get(dimension, units[len(units) // 2])
+        common = {"time": "ms", "frequency": "kHz", "angle": "deg"}.get(dimension, units[len(units) // 2])
         raise QuantityError(
             f"{dimension} without a unit", f"write for example '{value} {common}'; units: {', '.join(units)}"
         )

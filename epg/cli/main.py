@@ -1,7 +1,7 @@
 """``epg``: parses the command line, runs a subcommand, prints what is wrong and says so in the exit status.
 
-Exit status: 0 success; 1 mistakes in the user's files; 2 wrong command line; 3 a bug in EPG; 4 something the
-computer lacks (Python packages, a program, a folder that can be written); other values are those of a program that was run (``simulate``).
+Exit status: 0 success; 1 mistakes in the user's files; 2 wrong command line; 3 a bug in EPG; 4 something the computer
+lacks (Python packages, a program, a folder that can be written); 5 a limit that does not hold (``simulate``).
 """
 
 from __future__ import annotations

@@ -22,12 +22,12 @@ from epg.emit.text import Code, cmake, comment, cstring, double, environment, id
 def test_c_strings_and_comments_hold_any_text(tmp_path: Path, texts: list[str]) -> None:
     lines = ["#include <stdio.h>", "int main(void) {"]
     for text in [*texts, "*/ evil", "a\\", '"; x', "??/", "%s", "/* x", "*", "\\\n", "a *\\\n/ b"]:
-        lines += [f"    /* {comment(text)} */", f"    fputs({cstring(text)}, stdout); putchar(1);"]
+        lines += [f"    /* {comment(text)} */", f"    fputs({cstring(text)}, stdout); putchar(0);"]
     source = tmp_path / "x.c"
     source.write_text("\n".join([*lines, "    return 0;", "}", ""]), encoding="utf-8")
     program = tmp_path / "x"
     subprocess.run(["gcc", "-std=c11", "-Wall", "-Wextra", "-Werror", "-trigraphs", "-o", program, source], check=True)
-    shown = subprocess.run([program], capture_output=True, check=True).stdout.decode("utf-8").split("\1")
+    shown = subprocess.run([program], capture_output=True, check=True).stdout.decode("utf-8").split("\0")
     assert shown[: len(texts)] == texts
 
 
