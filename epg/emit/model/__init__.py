@@ -11,7 +11,7 @@ Names of generated files and symbols begin with the name of the library:
     access to the model's own code; compiled with it, without warnings
 ``<name>_names.h``
     renames the global symbols of a C model; included before every file of the model
-``<name>_<file>``
+``<name>_copies/<file>``
     a copy of one of the model's files with other parameter values
 ``<name>_headers/``
     headers the model includes under a name of another case

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from epg.emit.model.copies import copies
+from epg.emit.model.copies import copies, copy_name
 from epg.load.models.details import CFunctionExport, CppClassExport, HandWritten
 from epg.load.models.model import Model
 
@@ -38,9 +38,8 @@ def model_build(model: Model, name: str, parameters: Mapping[str, float] | None 
     forced: str | None = None
     details = model.details
     if isinstance(details, CFunctionExport):
-        exported = tuple(
-            code.file.path for code in details.linked.units if f"{name}_{code.file.path.name}" not in edited
-        )
+        units = [code.file.path for code in details.linked.units]
+        exported = tuple(path for path in units if copy_name(name, path) not in edited)
         own += sorted(edited)
         directories = details.linked.include_dirs
         forced = f"{name}_names.h"

@@ -23,7 +23,12 @@ def copies(model: Model, name: str, values: Mapping[str, float]) -> dict[str, st
         for place in places:
             edits.setdefault(place.file, []).append((place.start, place.end, values[parameter.name]))
     texts = {code.file.path: code.file.text for code in details.linked.units}
-    return {f"{name}_{path.name}": _edited(texts[path], edits[path]) for path in sorted(edits)}
+    return {copy_name(name, path): _edited(texts[path], edits[path]) for path in sorted(edits)}
+
+
+def copy_name(name: str, path: Path) -> str:
+    """Where the copy of a file goes: into a folder without headers, so that it includes those of the export."""
+    return f"{name}_copies/{path.name}"
 
 
 def _edited(text: str, edits: list[tuple[int, int, float]]) -> str:

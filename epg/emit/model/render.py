@@ -10,7 +10,7 @@ from typing import Any
 
 import jinja2
 
-from epg.emit.model.copies import copies
+from epg.emit.model.copies import copies, copy_name
 from epg.emit.model.tokens_code import helper_texts, tokens_code
 from epg.emit.text import Code, comment, environment
 from epg.load.models.details import CFunctionExport, CppClassExport, HandWritten, TokensExport
@@ -111,15 +111,17 @@ def _c_function(model: Model, details: CFunctionExport) -> dict[str, Any]:
             "entries": _entries(details),
             "pointers": (),
             "unsized": (),
-            "time": Code("models[index].time"),
-            "states": [Code(f"models[index].{member}") for member in ("s", "R") if states and member in members],
-            "parameter_array": Code("models[index].P"),
+            "own_time": False,
+            "time": Code("epg_models[index].time"),
+            "states": [Code(f"epg_models[index].{member}") for member in ("s", "R") if states and member in members],
+            "parameter_array": Code("epg_models[index].P"),
         }
     return {
         "entries": _entries(details),
         "pointers": sorted(wanted & set(details.pointers)),
         "unsized": sorted(wanted - set(details.pointers) - declared),
-        "time": Code(details.time if details.time in declared else "0.0"),
+        "own_time": details.time not in declared,
+        "time": Code(details.time if details.time in declared else "epg_time"),
         "states": [Code(array) for array in states],
         "parameter_array": Code(details.parameters),
     }
@@ -140,7 +142,7 @@ def _cpp_class(model: Model, details: CppClassExport, name: str, values: Mapping
     edited = copies(model, name, values)
     sources = []
     for code in details.linked.units:
-        copy = f"{name}_{code.file.path.name}"
+        copy = copy_name(name, code.file.path)
         sources.append(copy if copy in edited else _include_name(code.file.path, details.linked.include_dirs))
     return {"sources": sources, "system_headers": _system_headers(details.linked), "prefix": details.parameters[:-1]}
 

@@ -212,8 +212,14 @@ class _Importer:
         return self._step_name().partition("step_size")[2]
 
     def _array(self, letter: str) -> str:
-        names = (f"{self._prefix()}{letter}{self._suffix()}", f"{self._prefix()}{letter}")
+        """The name of an array; some developers put their suffix to the arrays only."""
+        names = [f"{self._prefix()}{letter}{suffix}" for suffix in (self._suffix(), *self._array_suffixes(), "")]
         return next((name for name in names if self._exists(name)), names[0])
+
+    def _array_suffixes(self) -> list[str]:
+        pattern = re.compile(rf"{re.escape(self._prefix())}[VR](\w+)")
+        matches = [pattern.fullmatch(name) for name, (_, v) in sorted(self.variables.items()) if v.dimensions]
+        return [match[1] for match in matches if match]
 
     def _exists(self, name: str) -> bool:
         return name in self.variables or name in self.macros

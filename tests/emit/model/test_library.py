@@ -382,6 +382,18 @@ def test_hand_written_model_with_instances(rate: float, tmp_path: Path) -> None:
         assert block[3] == [min((4.0 + i) * 0.75 + rate * 0.75, 3.0), rate]
 
 
+def test_a_library_called_like_the_code_it_wraps(tmp_path: Path) -> None:
+    """Header, types and functions of the user have the names of the generated ones; and a class that of its library."""
+    pid = build(loaded(MODELS / "pid_c"), "pid", tmp_path, instances=2)
+    assert run_program(tmp_path, PID, [pid]).split()[0] == "1.5"
+    for kind, write in sorted(KINDS.items()):
+        folder = write(Export(), tmp_path / kind)
+        values_ = {"PI1\\kp": 0.5}
+        expected = run_wrapper(build(loaded(folder), "other", tmp_path / kind, values_), 20)
+        assert run_wrapper(build(loaded(folder), "Servo", tmp_path / kind, values_), 20) == expected
+        assert run_wrapper(build(loaded(folder), "xxmodel", tmp_path / kind, values_), 20) == expected
+
+
 def test_hand_written_cpp_model(tmp_path: Path) -> None:
     text = """
 #include "f.h"
@@ -525,10 +537,10 @@ def test_build_lists_what_to_compile(tmp_path: Path) -> None:
     assert [path.name for path in made.exported] == ["xxsubmod.c", "xxfuncs.c", "xxinteg.c", "xxmodel.c"]
     assert made.forced_header == "pan_names.h" and made.language == "c"
     changed = model_build(model, "pan", {"PI1\\kp": 1.0})
-    assert changed.exported_generated == ("pan_export.c", "pan_xxmodel.c")
+    assert changed.exported_generated == ("pan_export.c", "pan_copies/xxmodel.c")
     assert [path.name for path in changed.exported] == ["xxsubmod.c", "xxfuncs.c", "xxinteg.c"]
     names = set(emit_model(model, "pan", {"PI1\\kp": 1.0}))
-    assert names == {"pan.h", "pan.c", "pan_export.h", "pan_export.c", "pan_names.h", "pan_xxmodel.c"}
+    assert names == {"pan.h", "pan.c", "pan_export.h", "pan_export.c", "pan_names.h", "pan_copies/xxmodel.c"}
 
 
 SANITIZE = ("-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")

@@ -120,6 +120,16 @@ def test_two_renamed_models_in_one_folder_are_told_apart(tmp_path: Path) -> None
     assert not any("tilt" in path.name for path in pan.files)
 
 
+def test_suffix_on_some_names_only(tmp_path: Path) -> None:
+    folder = Export(tokens=False).write(tmp_path)
+    for path in folder.glob("*.[ch]"):
+        path.write_text(re.sub(r"\bxx_([PIVsR])\b", r"xx_\1pan", path.read_text()))
+    model = loaded(folder)
+    assert names(model) == PORTS and len(model.parameters) == 4
+    details = model.details
+    assert (details.parameters, details.states, details.state_count) == ("xx_Ppan", "xx_span", 2)  # type: ignore[attr-defined]
+
+
 def test_renamed_integration_file(tmp_path: Path) -> None:
     folder = Export(method="Euler", rename={"xxinteg.c": "Euler.c", "xxinteg.h": "Euler.h"}).write(tmp_path)
     for name in ("xxsubmod.c", "Euler.c"):
