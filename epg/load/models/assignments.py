@@ -14,7 +14,9 @@ from fractions import Fraction
 from epg.load.models.source_file import SourceFile
 from epg.source import Span
 
-_ASSIGNMENT = re.compile(r"(?<![\w.>])((?:[A-Za-z_]\w*->)?[A-Za-z_]\w*)\s*\[\s*(\d+)\s*\]\s*=(?!=)\s*([^;{}]*?)\s*;")
+# Two steps: one expression for a whole statement takes quadratic time where its `;` is missing.
+_STATEMENT_END = re.compile(r"[;{}]")
+_ASSIGNMENT = re.compile(r"(?<![\w.>])((?:[A-Za-z_]\w{0,255}->)?[A-Za-z_]\w{0,255})\s{0,80}\[\s{0,80}(\d{1,9})\s{0,80}\]\s{0,80}=(?!=)\s*")
 _ELEMENT = re.compile(r"(?<![\w.>])([A-Za-z_]\w*)\s*\[\s*(\d+)\s*\]")
 _COMMENT = re.compile(r"[ \t]*(?:/\*[ \t]*(.*?)[ \t]*\*/|//[ \t]*(.*?)[ \t]*$)", re.MULTILINE)
 _NAME_UNIT = re.compile(r"(.*?)(?:\s*\{([^{}]*)\})?", re.DOTALL)
@@ -52,19 +54,25 @@ class PortLine:
 def assignments(file: SourceFile, start: int = 0, end: int | None = None) -> Iterator[Assignment]:
     """All assignments of a value to an array element with a literal index, in order."""
     code = file.code
-    for match in _ASSIGNMENT.finditer(code, start, len(code) if end is None else end):
-        comment = _COMMENT.match(file.text, match.end())
+    statement = start
+    for mark in _STATEMENT_END.finditer(code, start, len(code) if end is None else end):
+        match = _ASSIGNMENT.search(code, statement, mark.start()) if mark[0] == ";" else None
+        statement = mark.end()
+        if match is None:
+            continue
+        value_end = match.end() + len(code[match.end() : mark.start()].rstrip())
+        comment = _COMMENT.match(file.text, mark.end())
         name, unit = split_name((comment[1] or comment[2] or "") if comment else "")
         yield Assignment(
             match[1],
             int(match[2]),
-            file.text[match.start(3) : match.end(3)],
+            file.text[match.end() : value_end],
             name,
             unit,
             match.start(),
-            match.start(3),
-            match.end(3),
-            file.span(match.start(), match.end()),
+            match.end(),
+            value_end,
+            file.span(match.start(), mark.end()),
         )
 
 
