@@ -56,7 +56,7 @@ def run(command: str, folder: Path) -> str:
         words[:1] = [sys.executable, str(ROOT / "epg")]
     elif words[0] == "cmake" and "--build" not in words:
         words += ["-G", "Ninja", f"-DEPG_DIR={ROOT / 'cmake'}", f"-DPython3_EXECUTABLE={sys.executable}"]
-    environment = {**os.environ, "EPG_TARGETS_PATH": "targets", "PYTHONPATH": str(ROOT)}
+    environment = {**os.environ, "EPG_TARGETS_PATH": "targets"}
     if words[0] == "cmake":
         environment["EPG_TARGETS_PATH"] = str(folder / "targets")
     done = subprocess.run(
