@@ -12,7 +12,7 @@ function(epg_add_model name)
   endif()
   get_filename_component(model "${arg_MODEL}" ABSOLUTE BASE_DIR "${CMAKE_CURRENT_SOURCE_DIR}")
   set(output "${CMAKE_BINARY_DIR}/epg/${name}")
-  _epg_run(good generate-model "${name}" --model "${model}" --instances "${arg_INSTANCES}" --output "${output}"
+  _epg_generate(good "${name}" "${output}" generate-model "${name}" --model "${model}" --instances "${arg_INSTANCES}"
     --source-dir "${CMAKE_SOURCE_DIR}" --caller "${CMAKE_CURRENT_LIST_FILE}")
   if(NOT good)
     message(SEND_ERROR "EPG: model '${name}' was not generated; the messages above say why")
@@ -24,7 +24,6 @@ function(epg_add_model name)
   include("${output}/${name}.cmake")
   _epg_model_library("${name}" "${output}")
   add_library(EPG::${name} ALIAS ${name})
-  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${EPG_DEPENDS})
 endfunction()
 
 # An empty library in place of one that could not be made, so that only the real mistake is reported.

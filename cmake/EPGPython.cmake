@@ -1,8 +1,10 @@
 # How CMake calls EPG's Python backend.
 
 # Finds the interpreter once per build tree: Python3_EXECUTABLE or Python_EXECUTABLE if set, else what FindPython3 finds.
+# Another -DPython3_EXECUTABLE is heeded, and so is an interpreter that is gone.
 function(_epg_find_python result)
-  if(NOT EPG_PYTHON OR NOT EXISTS "${EPG_PYTHON}")
+  set(wanted "$CACHE{Python3_EXECUTABLE}|$CACHE{Python_EXECUTABLE}")
+  if(NOT EPG_PYTHON OR NOT EXISTS "${EPG_PYTHON}" OR NOT wanted STREQUAL EPG_PYTHON_WANTED)
     if(Python3_EXECUTABLE)
       set(found "${Python3_EXECUTABLE}")
     elseif(Python_EXECUTABLE)
@@ -14,16 +16,27 @@ function(_epg_find_python result)
       find_package(Python3 3.10 QUIET COMPONENTS Interpreter)
       set(found "${Python3_EXECUTABLE}")
     endif()
+    set(remedy "Install it, or name it: cmake -DPython3_EXECUTABLE=<path> ...")
     if(NOT found)
-      message(FATAL_ERROR "EPG needs Python 3.10 or newer and found none.\n"
-        "Install it, or name it: cmake -DPython3_EXECUTABLE=<path> ...")
+      message(FATAL_ERROR "EPG needs Python 3.10 or newer and found none.\n${remedy}")
     endif()
-    set(EPG_PYTHON "${found}" CACHE INTERNAL "Python interpreter that runs EPG")
+    # What is found may be a launcher that looks for the real one each time (pyenv's takes 100 ms).
+    execute_process(COMMAND "${found}" -c "import sys; print('%d.%d' % sys.version_info[:2], sys.executable)"
+      OUTPUT_VARIABLE answer OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_VARIABLE problem RESULT_VARIABLE status)
+    if(NOT status STREQUAL "0" OR NOT answer MATCHES "^([0-9]+\\.[0-9]+) (.+)$")
+      message(FATAL_ERROR "EPG needs Python 3.10 or newer, and this cannot be started: ${found}\n${problem}\n${remedy}")
+    endif()
+    if(CMAKE_MATCH_1 VERSION_LESS 3.10)
+      message(FATAL_ERROR "EPG needs Python 3.10 or newer; this is ${CMAKE_MATCH_1}: ${found}\n${remedy}")
+    endif()
+    file(TO_CMAKE_PATH "${CMAKE_MATCH_2}" executable)
+    set(EPG_PYTHON "${executable}" CACHE INTERNAL "Python interpreter that runs EPG")
+    set(EPG_PYTHON_WANTED "${wanted}" CACHE INTERNAL "What EPG_PYTHON was found from")
   endif()
   set(${result} "${EPG_PYTHON}" PARENT_SCOPE)
 endfunction()
 
-# Runs `epg <arguments>`; its messages go to the terminal as they are (CMake would wrap their lines).
+# Runs `epg <argument>...`; its messages go to the terminal as they are (CMake would wrap their lines).
 # Sets <result> to TRUE or FALSE.
 function(_epg_run result)
   option(EPG_INSTALL_PYTHON_PACKAGES "Let EPG install Python packages it lacks into its own cache" ON)
@@ -32,11 +45,12 @@ function(_epg_run result)
   if(NOT EPG_INSTALL_PYTHON_PACKAGES)
     list(APPEND environment "EPG_NO_INSTALL=1")
   endif()
-  if(EPG_TARGETS_PATH)
+  _epg_user_folders(folders)
+  if(folders)
     if(CMAKE_HOST_WIN32)
-      list(JOIN EPG_TARGETS_PATH "\\;" folders)
+      list(JOIN folders "\\;" folders)
     else()
-      list(JOIN EPG_TARGETS_PATH ":" folders)
+      list(JOIN folders ":" folders)
     endif()
     list(APPEND environment "EPG_TARGETS_PATH=${folders}")
   endif()
@@ -45,16 +59,26 @@ function(_epg_run result)
     COMMAND "${CMAKE_COMMAND}" -E env ${environment} "${python}" "${folder}/__main__.py" ${ARGN}
     WORKING_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}"
     RESULT_VARIABLE status)
-  # The generator itself is an input: a new version of EPG generates anew.
-  file(GLOB_RECURSE own LIST_DIRECTORIES false "${folder}/*.py" "${folder}/*.j2")
-  _epg_data_folder(data)
-  file(GLOB_RECURSE schemas LIST_DIRECTORIES false "${data}/schemas/*.json")
-  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${own} ${schemas})
   if(status STREQUAL "0")
     set(${result} TRUE PARENT_SCOPE)
   else()
     set(${result} FALSE PARENT_SCOPE)
   endif()
+endfunction()
+
+# The user's `targets` folders: the variable EPG_TARGETS_PATH (a list), else the environment variable.
+function(_epg_user_folders result)
+  set(folders "${EPG_TARGETS_PATH}")
+  if(NOT folders)
+    file(TO_CMAKE_PATH "$ENV{EPG_TARGETS_PATH}" folders)
+  endif()
+  list(FILTER folders EXCLUDE REGEX "^$")
+  set(absolute "")
+  foreach(folder IN LISTS folders)
+    get_filename_component(folder "${folder}" ABSOLUTE BASE_DIR "${CMAKE_CURRENT_SOURCE_DIR}")
+    list(APPEND absolute "${folder}")
+  endforeach()
+  set(${result} "${absolute}" PARENT_SCOPE)
 endfunction()
 
 # The folder of the Python package `epg`: beside cmake/ in a checkout, around _data/cmake/ in a wheel.

@@ -59,7 +59,8 @@ class Component:
 
 @dataclass(frozen=True)
 class Configuration:
-    """All a ``.tcf`` says.  ``files`` are those it was read from, ``root`` the merged tree with positions."""
+    """All a ``.tcf`` says.  ``files`` are those it was read from, ``absent`` those that would have been read if they existed, ``root`` is
+    the merged tree with positions."""
 
     target: Target
     node: str
@@ -68,6 +69,7 @@ class Configuration:
     communication: Communication
     components: Mapping[str, Component]
     files: tuple[Path, ...]
+    absent: tuple[Path, ...]
     root: Node
 
 
@@ -110,6 +112,7 @@ def check_configuration(
         communication=communication,
         components=components,
         files=tuple(file.path for file in chain),
+        absent=tuple(path for file in chain for path in file.absent),
         root=root,
     )
 

@@ -33,5 +33,10 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         diagnostics.error("platform-not-built", span, message, hint="choose another target: 'epg targets' lists them")
         diagnostics.stop_if_errors()
     names = PathNames(options.source_dir)
-    update_folder(options.output, application_outputs(app, request.roots, names), sys.stdout if options.json else None)
+    update_folder(
+        options.output,
+        application_outputs(app, request.roots, names),
+        diagnostics,
+        sys.stdout if options.json else None,
+    )
     return 0

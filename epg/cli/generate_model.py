@@ -34,5 +34,5 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     diagnostics.stop_if_errors()
     assert model is not None
     files = model_outputs(model, options.name, options.instances, PathNames(options.source_dir))
-    update_folder(options.output, files, sys.stdout if options.json else None)
+    update_folder(options.output, files, diagnostics, sys.stdout if options.json else None)
     return 0

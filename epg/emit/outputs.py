@@ -23,13 +23,13 @@ def application_outputs(app: Application, roots: Sequence[Path], names: PathName
     for model, name, parameters in parts:
         files |= emit_model(model, name, parameters)
         builds.append((name, model_build(model, name, parameters)))
-    files[f"{app.name}.cmake"] = application_cmake(app, builds, sorted(files), names)
     files[f"{app.name}.json"] = describe(app, names)
+    files[f"{app.name}.cmake"] = application_cmake(app, builds, files, names)
     return files
 
 
 def model_outputs(model: Model, name: str, instances: int, names: PathNames) -> dict[str, str]:
     """The library of a model alone, as ``epg_add_model`` makes it."""
     files = emit_model(model, name, {}, instances)
-    files[f"{name}.cmake"] = model_cmake(name, model_build(model, name, {}), model.files, names)
+    files[f"{name}.cmake"] = model_cmake(model, name, model_build(model, name, {}), files, names)
     return files

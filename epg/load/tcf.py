@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import takewhile
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics, did_you_mean
@@ -22,18 +23,21 @@ _MAX_CHAIN = 16
 
 @dataclass(frozen=True)
 class TcfFile:
-    """One file of a chain; ``extended_by`` is where the file before it in the chain names it."""
+    """One file of a chain; ``extended_by`` is where the file before it in the chain names it.
+
+    ``absent`` are files that would be read instead of this one if they existed.
+    """
 
     path: Path
     node: Node
     extended_by: Span | None = None
+    absent: tuple[Path, ...] = ()
 
 
 def find_tcf(name: str, beside: Path, roots: Iterable[Path]) -> Path | None:
     """The file ``name`` (with or without ``.tcf``): a path relative to ``beside``, or a robot's file in ``roots``."""
-    names = [name] if name.endswith(".tcf") else [name, f"{name}.tcf"]
-    for candidate in names:
-        path = beside / candidate
+    names = _file_names(name)
+    for path in _candidates(name, beside):
         if path.is_file():
             return path
     if any(separator in name for separator in "/\\"):
@@ -44,6 +48,14 @@ def find_tcf(name: str, beside: Path, roots: Iterable[Path]) -> Path | None:
             if found:
                 return found[0]
     return None
+
+
+def _file_names(name: str) -> list[str]:
+    return [name] if name.endswith(".tcf") else [name, f"{name}.tcf"]
+
+
+def _candidates(name: str, beside: Path) -> list[Path]:
+    return [beside / candidate for candidate in _file_names(name)]
 
 
 def predefined_tcf_names(roots: Iterable[Path]) -> list[str]:
@@ -83,7 +95,8 @@ def load_tcf_chain(
         node = _load(path, diagnostics, wanted_by)
         if node is None:
             return ()
-        chain.append(TcfFile(path, node, wanted_by))
+        absent = tuple(takewhile(lambda candidate: candidate != path, _candidates(name, beside)))
+        chain.append(TcfFile(path, node, wanted_by, absent))
         extends = node.get("extends")
         if extends is None or not isinstance(extends.value, str):
             return tuple(chain)

@@ -107,3 +107,4 @@ class Application:
     period: Fraction
     step_divider: int
     files: tuple[Path, ...] = field(default=())
+    absent: tuple[Path, ...] = field(default=())

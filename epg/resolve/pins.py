@@ -33,6 +33,7 @@ class Pins:
         self.taken: dict[str, PinUser] = {}
         self.wanted = {target.board.pin_name(str(s.value)) for claim in claims for s in claim.signals.values()}
         self.numbered = 0  # pins that EPG numbered
+        self._places: dict[tuple[str, str], Mapping[str, frozenset[Place]]] = {}
 
     def check(self, claim: Claim, resource_class: ResourceClass) -> Mapping[str, str] | None:
         """Signal -> pin of the chip, or None after reporting pins that do not exist or are not free."""
@@ -47,7 +48,7 @@ class Pins:
         """Signal -> number of its pin in C, None when none is left; in the order of claims where users name no pins."""
         soc = self.target.soc
         if self.target.has_pins:
-            return MappingProxyType({signal: soc.pins.index(pin) for signal, pin in pins.items()})
+            return MappingProxyType({signal: soc.numbers[pin] for signal, pin in pins.items()})
         result = {signal: self.numbered + number for number, signal in enumerate(resource_class.signals)}
         self.numbered += len(result)
         if self.numbered > soc.automatic_pins:
@@ -73,11 +74,27 @@ class Pins:
         self, resource_class: ResourceClass, peripheral: Peripheral, pins: Mapping[str, str]
     ) -> frozenset[Place]:
         """The places whose pins include ``pins``."""
-        return frozenset(
-            place
-            for place in all_places(resource_class, peripheral)
-            if all(pin in self._reached(resource_class, peripheral, signal, place) for signal, pin in pins.items())
-        )
+        found: frozenset[Place] | None = None
+        for signal, pin in pins.items():
+            if resource_class.signals.get(signal, "any") != "any":
+                places = self._places_by_pin(resource_class, peripheral, signal).get(pin, frozenset())
+                found = places if found is None else found & places
+            elif pin not in self.target.soc.numbers:
+                return frozenset()
+        return frozenset(all_places(resource_class, peripheral)) if found is None else found
+
+    def _places_by_pin(
+        self, resource_class: ResourceClass, peripheral: Peripheral, signal: str
+    ) -> Mapping[str, frozenset[Place]]:
+        """For each pin the places in which ``signal`` has it; for a signal that does not have any pin."""
+        key = resource_class.name, signal
+        if key not in self._places:
+            result: dict[str, set[Place]] = {}
+            for place in all_places(resource_class, peripheral):
+                for pin in self._reached(resource_class, peripheral, signal, place):
+                    result.setdefault(pin, set()).add(place)
+            self._places[key] = {pin: frozenset(places) for pin, places in result.items()}
+        return self._places[key]
 
     def usable(self, resource_class: ResourceClass, signal: str) -> list[str]:
         """Free pins that a signal of a class can have, in the chip's order."""
@@ -95,7 +112,7 @@ class Pins:
             return False
         if pin in board.pins or pin in board.onboard:
             return True
-        what = "is not broken out" if pin in soc.pins else "does not exist"
+        what = "is not broken out" if pin in soc.numbers else "does not exist"
         message = f"pin {stated.value} {what} on {board.name}"
         hint = f"pins of {board.name}: {pin_list(board.pins)}"
         self.diagnostics.error("pin-unknown", stated.span, message, hint=hint, notes=stated.notes)
@@ -145,8 +162,8 @@ class Pins:
         return peripheral is None or bool(self.reachable(resource_class, peripheral, {signal: pin}))
 
     def _are_neighbours(self, one: str, other: str) -> bool:
-        pins = self.target.soc.pins
-        return abs(pins.index(one) - pins.index(other)) == 1
+        numbers = self.target.soc.numbers
+        return abs(numbers[one] - numbers[other]) == 1
 
     def _report_neighbours(self, claim: Claim, resource_class: ResourceClass, pins: Sequence[str]) -> None:
         first, second = (claim.signals[signal] for signal in resource_class.neighbours)
@@ -189,6 +206,7 @@ class Pins:
 
 def all_places(resource_class: ResourceClass, peripheral: Peripheral) -> list[Place]:
     """Every place that a class can take of its peripheral, whatever the pins."""
-    names = resource_class.instances or peripheral.instances
     slots = [WHOLE] if resource_class.whole else list(range(len(peripheral.slots)))
-    return [(peripheral.instances.index(name), slot) for name in names for slot in slots]
+    numbers = {name: number for number, name in enumerate(peripheral.instances)}
+    names = resource_class.instances or peripheral.instances
+    return [(numbers[name], slot) for name in names for slot in slots]

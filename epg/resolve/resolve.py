@@ -78,6 +78,7 @@ def resolve(
         period=period,
         step_divider=divider,
         files=_files(configuration, model, bindings, plant),
+        absent=configuration.absent,
     )
 
 

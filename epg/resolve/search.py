@@ -2,8 +2,11 @@
 
 A peripheral has instances with slots.  A demand takes one of the places it can use: a slot of an instance, or the
 whole instance.  All users of an instance must agree on their attributes.  Taking the first place that is free would
-refuse wirings that are possible, so this searches: the most constrained demand first, with checks of what remains
-after each step.
+refuse wirings that are possible, so this searches: the most constrained demand first.
+
+Most wirings need no second try.  A dive takes the best move again and again without looking ahead; if it gets through,
+no step of it could have been refused, so it is what the search would have found.  Otherwise the search starts over,
+with checks of what remains after each step.
 
 Refusing must be fast too.  Demands that are equal form a group, instances and slots that the groups see alike are
 interchangeable, and a state of the search is what is left once names are taken away: how many of each group remain,
@@ -13,7 +16,7 @@ another name.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Sequence
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 WHOLE = -1
@@ -56,6 +59,7 @@ class _Instance:
     profile: int
     sorts: tuple[_Sort, ...]
     whole: frozenset[int]
+    users: frozenset[int]  # groups that could use it
     pressure: int  # how many demands could use it
     cost: int
 
@@ -88,13 +92,43 @@ class _Problem:
         self.groups = _groups(demands)
         self.instances = _instances(demands, self.groups, costs)
         self.slots = max((sum(len(sort.slots) for sort in i.sorts) for i in self.instances), default=0)
+        self.reached = [_reached_by(number, self.instances) for number in range(len(self.groups))]
 
     def solve(self) -> list[_Move] | None:
-        """Depth-first search; without recursion, as there can be hundreds of demands."""
+        """The moves that give each demand a place, or None."""
         remaining = tuple(len(group.members) for group in self.groups)
         state: _State = remaining, tuple(_Use((0,) * len(i.sorts), -1) for i in self.instances)
         if not self._hopeful(state):
             return None
+        return self._dive(state) or self._search(state)
+
+    def _dive(self, state: _State) -> list[_Move] | None:
+        """The first path of the search, followed without looking ahead; None if it ends early.
+
+        Only the options of groups that reach the instance of the last move change with it: that keeps a wiring with
+        hundreds of demands fast.
+        """
+        remaining, uses = list(state[0]), list(state[1])
+        options = {number: list(self._options(number, uses)) for number, count in enumerate(remaining) if count}
+        path: list[_Move] = []
+        while options:
+            tightest = self._tightest(options, remaining)
+            if not options[tightest]:
+                return None
+            move = min(options[tightest], key=lambda move: self._rank(move, uses))
+            path.append(move)
+            _, position, _ = move
+            uses[position] = self._used(uses[position], move)
+            remaining[tightest] -= 1
+            if not remaining[tightest]:
+                del options[tightest]
+            for number in self.instances[position].users:
+                if number in options:
+                    options[number] = list(self._options(number, uses))
+        return path
+
+    def _search(self, state: _State) -> list[_Move] | None:
+        """Depth-first search; without recursion, as there can be hundreds of demands."""
         refused: set[Hashable] = set()
         path: list[_Move] = []
         stack: list[tuple[_State, Iterator[_Move]]] = [(state, self._moves(state))]
@@ -131,8 +165,12 @@ class _Problem:
         options = {number: list(self._options(number, uses)) for number, count in enumerate(remaining) if count}
         if not options:
             return iter(())
-        tightest = min(options, key=lambda number: (len(options[number]), -remaining[number], number))
+        tightest = self._tightest(options, remaining)
         return iter(sorted(options[tightest], key=lambda move: self._rank(move, uses)))
+
+    def _tightest(self, options: Mapping[int, Sequence[_Move]], remaining: Sequence[int]) -> int:
+        """The group with the fewest options."""
+        return min(options, key=lambda number: (len(options[number]), -remaining[number], number))
 
     def _rank(self, move: _Move, uses: Sequence[_Use]) -> tuple[int, ...]:
         """Instances in use first, then those that others need least."""
@@ -143,7 +181,8 @@ class _Problem:
         """Moves of a group, one for each set of interchangeable instances."""
         group = self.groups[number]
         seen: set[tuple[int, _Use]] = set()
-        for position, (instance, use) in enumerate(zip(self.instances, uses)):
+        for position in self.reached[number]:
+            instance, use = self.instances[position], uses[position]
             if (instance.profile, use) in seen or use.agree not in (-1, group.agree):
                 continue
             seen.add((instance.profile, use))
@@ -155,15 +194,18 @@ class _Problem:
 
     def _after(self, state: _State, move: _Move) -> _State:
         remaining, uses = state
+        number, position, _ = move
+        left = (*remaining[:number], remaining[number] - 1, *remaining[number + 1 :])
+        return left, (*uses[:position], self._used(uses[position], move), *uses[position + 1 :])
+
+    def _used(self, use: _Use, move: _Move) -> _Use:
+        """The use of an instance after a move to it."""
         number, position, sort = move
-        used = uses[position].used
         if sort == WHOLE:
             used = tuple(len(slots.slots) for slots in self.instances[position].sorts)
         else:
-            used = (*used[:sort], used[sort] + 1, *used[sort + 1 :])
-        left = (*remaining[:number], remaining[number] - 1, *remaining[number + 1 :])
-        new = _Use(used, self.groups[number].agree)
-        return left, (*uses[:position], new, *uses[position + 1 :])
+            used = (*use.used[:sort], use.used[sort] + 1, *use.used[sort + 1 :])
+        return _Use(used, self.groups[number].agree)
 
     def _key(self, state: _State) -> Hashable:
         """The state without names of instances."""
@@ -279,8 +321,14 @@ def _instances(demands: Sequence[Demand], groups: Sequence[_Group], costs: Seque
         sorts = tuple(_Sort(numbers, tuple(slots)) for numbers, slots in ordered)
         whole = frozenset(seen[index].get(WHOLE, ()))
         alike = (tuple((sort.groups, len(sort.slots)) for sort in sorts), whole)
-        users = {number for numbers in seen[index].values() for number in numbers}
+        users = frozenset(number for numbers in seen[index].values() for number in numbers)
         pressure = sum(len(groups[number].members) for number in users)
         cost = costs[index] if index < len(costs) else 0
-        result.append(_Instance(index, profiles.setdefault(alike, len(profiles)), sorts, whole, pressure, cost))
+        profile = profiles.setdefault(alike, len(profiles))
+        result.append(_Instance(index, profile, sorts, whole, users, pressure, cost))
     return tuple(sorted(result, key=lambda instance: (instance.cost, instance.index)))
+
+
+def _reached_by(group: int, instances: Sequence[_Instance]) -> tuple[int, ...]:
+    """The positions of the instances that a group can use."""
+    return tuple(position for position, instance in enumerate(instances) if group in instance.users)

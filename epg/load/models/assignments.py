@@ -16,7 +16,9 @@ from epg.source import Span
 
 # Two steps: one expression for a whole statement takes quadratic time where its `;` is missing.
 _STATEMENT_END = re.compile(r"[;{}]")
-_ASSIGNMENT = re.compile(r"(?<![\w.>])((?:[A-Za-z_]\w{0,255}->)?[A-Za-z_]\w{0,255})\s{0,80}\[\s{0,80}(\d{1,9})\s{0,80}\]\s{0,80}=(?!=)\s*")
+_ASSIGNMENT = re.compile(
+    r"(?<![\w.>])((?:[A-Za-z_]\w{0,255}->)?[A-Za-z_]\w{0,255})\s{0,80}\[\s{0,80}(\d{1,9})\s{0,80}\]\s{0,80}=(?!=)\s*"
+)
 _ELEMENT = re.compile(r"(?<![\w.>])([A-Za-z_]\w*)\s*\[\s*(\d+)\s*\]")
 _COMMENT = re.compile(r"[ \t]*(?:/\*[ \t]*(.*?)[ \t]*\*/|//[ \t]*(.*?)[ \t]*$)", re.MULTILINE)
 _NAME_UNIT = re.compile(r"(.*?)(?:\s*\{([^{}]*)\})?", re.DOTALL)

@@ -23,7 +23,8 @@ from epg.load.models.assignments import (
 )
 from epg.load.models.c_code import Code, Function, Variable, integer_value, parse_code
 from epg.load.models.features import check_features, check_method, check_tokens
-from epg.load.models.link import Linked, link, source_files
+from epg.load.models.folders import source_files
+from epg.load.models.link import Linked, link
 from epg.load.models.metadata import Metadata, cross_check, find_metadata
 from epg.load.models.model import Model
 from epg.load.models.ports import check_identifiers, make_parameters, make_ports

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from epg.diagnostics import Diagnostics, Note
 from epg.load.models.c_code import Code, Function, Include, parse_code
+from epg.load.models.folders import source_files
 from epg.load.models.source_file import SourceFile, read_source
 from epg.source import Span
 
@@ -83,25 +84,6 @@ class Linked:
         return [(code, function) for code, function in self.functions() if (code.file.path, function.start) in found]
 
 
-def source_files(directory: Path, suffixes: Iterable[str], depth: int = 1) -> list[Path]:
-    """Files with one of ``suffixes`` in ``directory`` and ``depth`` levels below; project files of IDEs left out."""
-    wanted = {suffix.lower() for suffix in suffixes}
-    found: list[Path] = []
-    try:
-        entries = sorted(directory.iterdir())
-    except OSError:
-        return []
-    for entry in entries:
-        if entry.is_file() and entry.suffix.lower() in wanted:
-            found.append(entry)
-    if depth:
-        for entry in entries:
-            skip = entry.name.startswith(".") or entry.name.lower() in ("project", "build", "cmakefiles", "binaries")
-            if not skip and entry.is_dir() and not entry.is_symlink():
-                found.extend(source_files(entry, suffixes, depth - 1))
-    return found
-
-
 def is_program(path: Path) -> bool:
     """Whether a file is one of the demo programs or FMI glue files that 20-sim writes beside a model."""
     return bool(_FMI_FILE.fullmatch(path.name) or _DEMO_FILE.fullmatch(path.name))
@@ -164,7 +146,7 @@ def link(main: Code, suffixes: Iterable[str], diagnostics: Diagnostics) -> Linke
 
 def _pool(main: Code, directory: Path, suffixes: Iterable[str]) -> list[Code]:
     codes = [main]
-    for path in source_files(directory, suffixes, depth=2):
+    for path in source_files(directory, suffixes):
         if path == main.file.path or is_program(path):
             continue
         file = read_source(path, Diagnostics())

@@ -9,7 +9,8 @@ from pathlib import Path
 from epg.diagnostics import Diagnostics
 from epg.load.models import c_function, cpp_class, hand_written
 from epg.load.models.c_code import Code, parse_code
-from epg.load.models.link import is_program, source_files
+from epg.load.models.folders import source_files
+from epg.load.models.link import is_program
 from epg.load.models.model import Model
 from epg.load.models.source_file import read_any_text, read_source
 from epg.load.models.tokens import is_tokens_file, load_tokens

@@ -1,0 +1,46 @@
+"""Where the files of a model are looked for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+#: levels below a model's folder that are searched
+DEPTH = 2
+_SKIPPED = frozenset(("project", "build", "cmakefiles", "binaries"))
+
+
+def searched_folders(directory: Path, depth: int = DEPTH) -> list[Path]:
+    """``directory`` and those of its folders, ``depth`` levels down, that may hold sources of a model.
+
+    Left out: links, hidden folders, project files of IDEs and build folders.
+    """
+    found = [directory]
+    if depth:
+        try:
+            entries = sorted(directory.iterdir())
+        except OSError:
+            return found
+        for entry in entries:
+            if _may_hold_sources(entry):
+                found.extend(searched_folders(entry, depth - 1))
+    return found
+
+
+def source_files(directory: Path, suffixes: Iterable[str], depth: int = DEPTH) -> list[Path]:
+    """Files with one of ``suffixes`` in the :func:`searched_folders`."""
+    wanted = {suffix.lower() for suffix in suffixes}
+    found: list[Path] = []
+    for folder in searched_folders(directory, depth):
+        try:
+            entries = sorted(folder.iterdir())
+        except OSError:
+            continue
+        found.extend(entry for entry in entries if entry.suffix.lower() in wanted and entry.is_file())
+    return found
+
+
+def _may_hold_sources(entry: Path) -> bool:
+    if entry.name.startswith(".") or entry.name.lower() in _SKIPPED or entry.is_symlink() or not entry.is_dir():
+        return False
+    return not (entry / "CMakeCache.txt").exists()
