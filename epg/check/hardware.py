@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 
 from epg.diagnostics import Diagnostics, Note, did_you_mean
@@ -66,7 +67,7 @@ def check_target(target: Target, diagnostics: Diagnostics) -> bool:
         if str(written.value) not in soc.pins:
             _no_pin(str(written.value), written.span, target, diagnostics)
     for name in board.pins:
-        if name not in soc.pins:
+        if name not in soc.numbers:
             _no_pin(name, node["pins"].span, target, diagnostics)
     for child in map_of(node, "onboard").values():
         for element in child["classes"].elements():
@@ -154,7 +155,8 @@ def _pins(node: Node | None, diagnostics: Diagnostics) -> tuple[str, ...]:
         assert node is not None
         diagnostics.error("wrong-value", node.span, str(problem), hint="write the lower end first, such as 0-22")
         return ()
-    double = next((name for name in names if names.count(name) > 1), None)
+    counts = Counter(names)
+    double = next((name for name in names if counts[name] > 1), None)
     if double is not None and node is not None:
         diagnostics.error("wrong-value", node.span, f"pin {double} is listed twice")
     return names

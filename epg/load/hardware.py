@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
 
@@ -99,6 +100,11 @@ class Soc:
     classes: Mapping[str, ResourceClass]
     folder: Path
     span: Span
+
+    @cached_property
+    def numbers(self) -> Mapping[str, int]:
+        """The number in C of each pin."""
+        return MappingProxyType({pin: number for number, pin in enumerate(self.pins)})
 
 
 @dataclass(frozen=True)

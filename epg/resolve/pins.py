@@ -30,10 +30,12 @@ class Pins:
         """``claims`` are all there are, so that hints name only pins that stay free."""
         self.target = target
         self.diagnostics = diagnostics
+        self.usable_pins = {*target.board.pins, *target.board.onboard}
         self.taken: dict[str, PinUser] = {}
         self.wanted = {target.board.pin_name(str(s.value)) for claim in claims for s in claim.signals.values()}
         self.numbered = 0  # pins that EPG numbered
-        self._places: dict[tuple[str, str], Mapping[str, frozenset[Place]]] = {}
+        self._places: dict[tuple[str, str], Mapping[str, frozenset[Place]]] = {}  # by class and signal, then by pin
+        self._anywhere: dict[str, frozenset[Place]] = {}  # by class
 
     def check(self, claim: Claim, resource_class: ResourceClass) -> Mapping[str, str] | None:
         """Signal -> pin of the chip, or None after reporting pins that do not exist or are not free."""
@@ -81,7 +83,12 @@ class Pins:
                 found = places if found is None else found & places
             elif pin not in self.target.soc.numbers:
                 return frozenset()
-        return frozenset(all_places(resource_class, peripheral)) if found is None else found
+        return self._all_places(resource_class, peripheral) if found is None else found
+
+    def _all_places(self, resource_class: ResourceClass, peripheral: Peripheral) -> frozenset[Place]:
+        if resource_class.name not in self._anywhere:
+            self._anywhere[resource_class.name] = frozenset(all_places(resource_class, peripheral))
+        return self._anywhere[resource_class.name]
 
     def _places_by_pin(
         self, resource_class: ResourceClass, peripheral: Peripheral, signal: str
@@ -110,7 +117,7 @@ class Pins:
             hint = f"pins of {board.name}: {pin_list(board.pins)}"
             self.diagnostics.error("pin-reserved", stated.span, message, hint=hint, notes=stated.notes)
             return False
-        if pin in board.pins or pin in board.onboard:
+        if pin in self.usable_pins:
             return True
         what = "is not broken out" if pin in soc.numbers else "does not exist"
         message = f"pin {stated.value} {what} on {board.name}"

@@ -122,19 +122,21 @@ def _components(
 ) -> dict[str, ResolvedComponent]:
     result: dict[str, ResolvedComponent] = {}
     slots = {"subscribe": 0, "publish": 0}
+    claims: dict[str, dict[str, Assignment]] = {}
+    for (owner, claim), found in assignments.items():
+        claims.setdefault(owner, {})[claim] = found
     for component in configuration.components.values():
         slot: int | None = None
         direction = component.kind.communication
         if direction:
             slot = slots[direction]
             slots[direction] += 1
-        claims = {claim: found for (owner, claim), found in assignments.items() if owner == component.name}
         result[component.name] = ResolvedComponent(
             name=component.name,
             symbol=_symbol(name, component.name),
             kind=component.kind,
             parameters=component.parameters,
-            claims=claims,
+            claims=claims.get(component.name, {}),
             slot=slot,
             application=name,
             span=component.span,
@@ -151,11 +153,13 @@ def _symbol(application: str, component: str) -> str:
 def _subscriptions(
     components: Mapping[str, ResolvedComponent], configuration: Configuration, inputs: Sequence[Wire]
 ) -> tuple[Topic, ...]:
+    units: dict[str, set[str]] = {}
+    for wire in inputs:
+        units.setdefault(wire.component.name, set()).add(wire.port.unit)
     result = []
     for component in components.values():
         if component.kind.communication == "subscribe":
-            units = {wire.port.unit for wire in inputs if wire.component is component}
-            setpoint = _setpoint(configuration.components[component.name], units)
+            setpoint = _setpoint(configuration.components[component.name], units.get(component.name, ()))
             result.append(
                 Topic(component, str(component.parameters["topic"]), str(component.parameters["qos"]), setpoint)
             )

@@ -92,7 +92,10 @@ class _Problem:
         self.groups = _groups(demands)
         self.instances = _instances(demands, self.groups, costs)
         self.slots = max((sum(len(sort.slots) for sort in i.sorts) for i in self.instances), default=0)
-        self.reached = [_reached_by(number, self.instances) for number in range(len(self.groups))]
+        self.reached: list[list[int]] = [[] for _ in self.groups]  # positions of the instances a group can use
+        for position, instance in enumerate(self.instances):
+            for number in instance.users:
+                self.reached[number].append(position)
 
     def solve(self) -> list[_Move] | None:
         """The moves that give each demand a place, or None."""
@@ -327,8 +330,3 @@ def _instances(demands: Sequence[Demand], groups: Sequence[_Group], costs: Seque
         profile = profiles.setdefault(alike, len(profiles))
         result.append(_Instance(index, profile, sorts, whole, users, pressure, cost))
     return tuple(sorted(result, key=lambda instance: (instance.cost, instance.index)))
-
-
-def _reached_by(group: int, instances: Sequence[_Instance]) -> tuple[int, ...]:
-    """The positions of the instances that a group can use."""
-    return tuple(position for position, instance in enumerate(instances) if group in instance.users)

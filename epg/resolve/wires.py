@@ -113,11 +113,12 @@ def _unknown_ports(
     diagnostics: Diagnostics,
 ) -> None:
     assert isinstance(bound, Mapping)
-    names = [port.name for port in ports]
+    names = {port.name for port in ports}
+    other_names = {port.name for port in others}
     for name, (span, _) in bound.items():
         if name in names:
             continue
-        if name in (port.name for port in others):
+        if name in other_names:
             wrong = "output" if what == "input" else "input"
             diagnostics.error(
                 "wrong-direction", span, f"'{name}' is an {wrong} of {model.name}", hint=f"move it to '{wrong}s'"
@@ -142,17 +143,16 @@ def _end(
     binding: Binding, direction: str, components: Mapping[str, Component], diagnostics: Diagnostics
 ) -> tuple[Component, KindPort] | None:
     """The component port a binding names, after checking that it exists and has the direction."""
-    possible = _possible(components.values(), direction)
     component = components.get(binding.component)
     if component is None:
-        hint = did_you_mean(binding.component, possible, "possible")
+        hint = did_you_mean(binding.component, _possible(components.values(), direction), "possible")
         diagnostics.error("unknown-component", binding.span, f"there is no component '{binding.component}'", hint=hint)
         return None
     ports = {port.name: port for port in component.kind.ports}
     if binding.port is None:
         default = component.kind.main_port(direction)
         if default is None:
-            _wrong_direction(component, component.name, direction, possible, binding, diagnostics)
+            _wrong_direction(component, component.name, direction, components, binding, diagnostics)
             return None
         return component, default
     if binding.port not in ports:
@@ -161,7 +161,7 @@ def _end(
         diagnostics.error("unknown-port", binding.span, message, hint=hint)
         return None
     if ports[binding.port].direction != direction:
-        _wrong_direction(component, f"{component.name}.{binding.port}", direction, possible, binding, diagnostics)
+        _wrong_direction(component, f"{component.name}.{binding.port}", direction, components, binding, diagnostics)
         return None
     return component, ports[binding.port]
 
@@ -170,13 +170,14 @@ def _wrong_direction(
     component: Component,
     reference: str,
     direction: str,
-    possible: list[str],
+    components: Mapping[str, Component],
     binding: Binding,
     diagnostics: Diagnostics,
 ) -> None:
     verb = "gives no value" if direction == "source" else "takes no value"
     message = f"'{reference}' ({component.kind.name}) {verb}"
-    hint = f"possible: {', '.join(sorted(possible))}" if possible else ""
+    possible = sorted(_possible(components.values(), direction))
+    hint = f"possible: {', '.join(possible)}" if possible else ""
     diagnostics.error("wrong-direction", binding.span, message, hint=hint)
 
 

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from epg.resolve.search import WHOLE, Demand, Place, find_places
+from epg.resolve.search import WHOLE, Demand, Place, _Problem, _Use, find_places
 
 
 def fits(demands: Sequence[Demand], places: Sequence[Place]) -> bool:
@@ -82,6 +82,27 @@ def test_the_order_of_demands_does_not_decide(demands: list[Demand], order: rand
     shuffled = list(demands)
     order.shuffle(shuffled)
     assert (find_places(shuffled) is None) == (find_places(demands) is None)
+
+
+@settings(max_examples=300, deadline=None)
+@given(problems())
+def test_a_dive_that_gets_through_finds_what_the_search_finds(demands: list[Demand]) -> None:
+    problem = _Problem(demands, ())
+    begin = (
+        tuple(len(group.members) for group in problem.groups),
+        tuple(_Use((0,) * len(instance.sorts), -1) for instance in problem.instances),
+    )
+    dive = problem._dive(begin)
+    assert dive is None or dive == problem._search(begin)
+
+
+def test_five_hundred_motors_are_placed_in_half_a_second() -> None:
+    """Each has one place, agrees with its neighbour, and a timer needs a whole slice (the best of three runs)."""
+    motors = [Demand(frozenset({(number // 2, number % 2)}), "20 kHz") for number in range(500)]
+    timer = Demand(frozenset((instance, WHOLE) for instance in range(251)))
+    found = find_places([*motors, timer])
+    assert found is not None and found[-1] == (250, WHOLE)
+    assert min(_seconds([*motors, timer]) for _ in range(3)) < 0.5
 
 
 def test_what_a_greedy_choice_refuses_is_accepted() -> None:
