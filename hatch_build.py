@@ -1,7 +1,8 @@
 """Build hook: what a wheel holds besides the Python package.
 
-A wheel carries copies of ``cmake/``, ``targets/`` and ``schemas/`` in ``epg/_data``; an editable install reads those of
-the checkout, so that an edit there is seen at once.  Both get ``share/EPG/cmake/EPGConfig.cmake``, where CMake looks.
+A wheel carries copies of ``cmake/``, ``targets/``, ``schemas/`` and the page about messages in ``epg/_data``; an
+editable install reads those of the checkout, so that an edit there is seen at once.  Both get
+``share/EPG/cmake/EPGConfig.cmake``, where CMake looks.
 """
 
 from __future__ import annotations
@@ -32,6 +33,7 @@ class EpgBuildHook(BuildHookInterface):
         else:
             for name in DATA:
                 build_data["force_include"][str(root / name)] = f"epg/_data/{name}"
+            build_data["force_include"][str(root / "docs/errors.md")] = "epg/_data/docs/errors.md"
         files = {
             "EPGConfig.cmake": config,
             "EPGConfigVersion.cmake": (forwarder / "EPGConfigVersion.cmake")

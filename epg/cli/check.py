@@ -11,6 +11,9 @@ from epg.diagnostics import Diagnostics
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("files", nargs="*", metavar="FILE", help=".tcf files to check by themselves")
+    parser.add_argument(
+        "--format", choices=("text", "json", "sarif"), help="what is printed; sarif: SARIF 2.1.0, for CI and editors"
+    )
     add_target_arguments(parser, required=False)
 
 
@@ -21,6 +24,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from epg.load.models import load_model
     from epg.project import check_target, load_application, make_catalog
 
+    options.json = options.json or options.format == "json"
     request = request_of(options, "target")
     if options.tcf and options.model and options.bindings:
         load_application(request, diagnostics)
@@ -35,9 +39,11 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     if not (options.files or options.tcf or options.model or options.bindings):
         sys.stderr.write("epg check: name a .tcf, or give --tcf, --model and --bindings\n")
         return 2
-    if not diagnostics.has_errors and not options.json:
+    if diagnostics.has_errors or options.format == "sarif":
+        return 0  # the caller prints what there is
+    if not options.json:
         print("no errors")
-    elif not diagnostics.has_errors:
+    else:
         from epg.cli.report import diagnostics_json, to_json
 
         sys.stdout.write(to_json({"diagnostics": diagnostics_json(diagnostics)}))

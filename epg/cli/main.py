@@ -36,12 +36,14 @@ class MissingTool(Exception):
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs ``epg``; returns the exit status."""
-    try:
-        bootstrap.ensure()
-    except bootstrap.MissingPackages as problem:
-        sys.stderr.write(f"{problem}\n")
-        return EXIT_MISSING
-    parser = _parser(sys.argv[1:] if arguments is None else arguments)
+    words = sys.argv[1:] if arguments is None else arguments
+    if _command(words) != "doctor":  # which says what is missing instead
+        try:
+            bootstrap.ensure()
+        except bootstrap.MissingPackages as problem:
+            sys.stderr.write(f"{problem}\n")
+            return EXIT_MISSING
+    parser = _parser(words)
     try:
         options = parser.parse_args(arguments)
     except SystemExit as stop:
@@ -57,13 +59,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return _run(options)
 
 
+def _command(arguments: Sequence[str]) -> str | None:
+    """The subcommand: the first word that is no option."""
+    return next((word for word in arguments if not word.startswith("-")), None)
+
+
 def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
     """The parser; only the module of the chosen subcommand is imported."""
     parser = argparse.ArgumentParser(prog="epg", description="Turns a controller modelled in 20-sim into firmware.")
     parser.add_argument("--version", action="version", version=f"epg {epg.__version__}")
     parser.add_argument("--cmake-dir", action="store_true", help="print the folder of EPGConfig.cmake and exit")
     subparsers = parser.add_subparsers(dest="command", metavar="COMMAND")
-    chosen = next((word for word in arguments if not word.startswith("-")), None)
+    chosen = _command(arguments)
     for name, summary in COMMANDS.items():
         sub = subparsers.add_parser(name, help=summary, description=summary[0].upper() + summary[1:] + ".")
         if name == chosen:
@@ -102,7 +109,13 @@ def _run(options: argparse.Namespace) -> int:
         traceback.print_exc()
         sys.stderr.write(f"epg: this is a bug in EPG {epg.__version__}; please report it with the lines above\n")
         return EXIT_BUG
-    if diagnostics.items and options.json and diagnostics.has_errors:
+    if getattr(options, "format", None) == "sarif" and status != EXIT_USAGE:
+        from pathlib import Path
+
+        from epg.cli.sarif import to_sarif
+
+        sys.stdout.write(to_sarif(diagnostics, Path.cwd()))
+    elif diagnostics.items and options.json and diagnostics.has_errors:
         sys.stdout.write(to_json({"diagnostics": diagnostics_json(diagnostics)}))
     sys.stderr.write(format_diagnostics(diagnostics))
     return EXIT_MISTAKES if diagnostics.has_errors else status

@@ -53,6 +53,7 @@ def test_the_wheel_holds_the_same_files_as_the_checkout(wheel: Path) -> None:
             assert files or not (ROOT / ".git").exists()
             for name in files:
                 assert archive.read(f"epg/_data/{name}") == (ROOT / name).read_bytes()
+        assert archive.read("epg/_data/docs/errors.md") == (ROOT / "docs/errors.md").read_bytes()
     assert {"epg/__main__.py", "epg/emit/templates/app.c.j2", "epg/lock/generator.txt"} <= names
     assert any(name.endswith(".data/data/share/EPG/cmake/EPGConfig.cmake") for name in names)
 

@@ -1,0 +1,64 @@
+"""The page ``docs/errors.md`` as data: what each kind of message means.
+
+>>> entry = find_entry("unknown-key")
+>>> entry.anchor, entry.summary
+('unknown-key', 'The format has no such key.')
+>>> find_entry("timer-used-twice").id
+'PERIPHERAL-used-twice'
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from functools import cache
+
+from epg.data import data_folder
+
+PAGE = "errors.md"
+_HEADING = re.compile(r"^### (\S+)\n", re.MULTILINE)
+_EXAMPLE = re.compile(r"^```\n(.*?)\n```$", re.MULTILINE | re.DOTALL)
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One entry.  Words in capitals in ``id`` stand for any name: messages about peripherals carry theirs."""
+
+    id: str
+    text: str  # Markdown without the example; what it means, why it is refused, what to do
+    example: str  # the first line of a message, or ""
+
+    @property
+    def summary(self) -> str:
+        """The first sentence."""
+        return re.split(r"(?<=\.) ", self.text, maxsplit=1)[0]
+
+    @property
+    def anchor(self) -> str:
+        """The anchor of the heading, as GitHub and most renderers of Markdown make it."""
+        return re.sub(r"[^\w-]", "", self.id).lower()
+
+    def covers(self, id: str) -> bool:
+        pattern = "".join("[a-z0-9_]+" if part.isupper() else re.escape(part) for part in re.split("([A-Z]+)", self.id))
+        return re.fullmatch(pattern, id) is not None
+
+
+@cache
+def read_page() -> tuple[Entry, ...]:
+    """All entries of the page, in its order."""
+    text = (data_folder("docs") / PAGE).read_text(encoding="utf-8")
+    parts = _HEADING.split(text)
+    return tuple(_entry(id, body) for id, body in zip(parts[1::2], parts[2::2]))
+
+
+def find_entry(id: str) -> Entry | None:
+    """The entry of a kind of message: the one of that name, else the one whose form it has."""
+    fitting = [entry for entry in read_page() if entry.covers(id)]
+    return next((entry for entry in fitting if entry.id == id), fitting[0] if fitting else None)
+
+
+def _entry(id: str, body: str) -> Entry:
+    body = re.split(r"^## ", body, maxsplit=1, flags=re.MULTILINE)[0]
+    example = _EXAMPLE.search(body)
+    text = " ".join(_EXAMPLE.sub("", body).split())
+    return Entry(id, text, example[1] if example else "")
