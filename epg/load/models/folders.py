@@ -8,6 +8,7 @@ from pathlib import Path
 #: levels below a model's folder that are searched
 DEPTH = 2
 _SKIPPED = frozenset(("project", "build", "cmakefiles", "binaries"))
+_BUILD_MARKS = ("CMakeCache.txt", ".epg-outputs.json")
 
 
 def searched_folders(directory: Path, depth: int = DEPTH) -> list[Path]:
@@ -43,4 +44,4 @@ def source_files(directory: Path, suffixes: Iterable[str], depth: int = DEPTH) -
 def _may_hold_sources(entry: Path) -> bool:
     if entry.name.startswith(".") or entry.name.lower() in _SKIPPED or entry.is_symlink() or not entry.is_dir():
         return False
-    return not (entry / "CMakeCache.txt").exists()
+    return not any((entry / mark).exists() for mark in _BUILD_MARKS)
