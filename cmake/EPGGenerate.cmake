@@ -1,14 +1,15 @@
 # When the generator runs: only if something it has read, or would read now, is not what it was.
 #
-# A run that succeeds ends with a stamp beside its outputs: a key (how EPG was called, and which EPG it was) and a
-# digest of the contents of all files read and written.  Contents, not times: an upgraded wheel, a checkout of another
+# A run that succeeds ends with a stamp: a key (how EPG was called, and which EPG it was) and a digest of the contents
+# of all files read and written.  It names paths of this machine, so it stands apart from the outputs, which do not.  Contents, not times: an upgraded wheel, a checkout of another
 # branch and an unpacked archive may bring changed files that are old.  While the stamp holds, no Python is started or
 # looked for, and no file is touched.
 
 # Brings <folder> up to date by `epg <argument>... --output <folder>`, which writes <name>.cmake among others.
 # Sets <result> to TRUE or FALSE; the messages of a run that failed are on the terminal.
 function(_epg_generate result name folder)
-  set(stamp "${folder}/.epg-stamp")
+  set(record "${CMAKE_BINARY_DIR}/CMakeFiles/epg/${name}")
+  set(stamp "${record}.stamp")
   set(EPG_TARGETS_DIR "")
   _epg_data_folder(data)
   set(EPG_TARGETS_DIR "${data}/targets")
@@ -21,7 +22,7 @@ function(_epg_generate result name folder)
       _epg_digest(digest "${folder}")
       if(known STREQUAL "${key} ${digest}")
         _epg_configure_depends()
-        _epg_repeat_warnings("${folder}")
+        _epg_repeat_warnings("${record}.warnings.txt")
         set(${result} TRUE PARENT_SCOPE)
         return()
       endif()
@@ -29,9 +30,9 @@ function(_epg_generate result name folder)
     file(REMOVE "${stamp}")
   endif()
 
-  set(started "${folder}/.epg-started")
+  set(started "${record}.started")
   file(WRITE "${started}" "")
-  _epg_run(good ${ARGN} --output "${folder}")
+  _epg_run(good ${ARGN} --output "${folder}" --warnings "${record}.warnings.txt")
   set(${result} "${good}" PARENT_SCOPE)
   if(good)
     include("${folder}/${name}.cmake")
@@ -143,10 +144,10 @@ function(_epg_configure_depends)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${EPG_DEPENDS} ${watched})
 endfunction()
 
-# Says again what the run that made <folder> warned about, as a compiler would for a file it compiles again.
-function(_epg_repeat_warnings folder)
-  if(EXISTS "${folder}/.epg-warnings.txt")
-    file(READ "${folder}/.epg-warnings.txt" text)
+# Says again what the last run warned about, as a compiler would for a file it compiles again.
+function(_epg_repeat_warnings file)
+  if(EXISTS "${file}")
+    file(READ "${file}" text)
     message(NOTICE "${text}")
   endif()
 endfunction()

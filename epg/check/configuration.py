@@ -59,8 +59,8 @@ class Component:
 
 @dataclass(frozen=True)
 class Configuration:
-    """All a ``.tcf`` says.  ``files`` are those it was read from, ``absent`` those that would have been read if they existed, ``root`` is
-    the merged tree with positions."""
+    """All a ``.tcf`` says.  ``files`` are those it was read from, ``absent`` those that would have been read
+    if they existed, ``root`` is the merged tree with positions."""
 
     target: Target
     node: str

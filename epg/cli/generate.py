@@ -4,21 +4,19 @@ from __future__ import annotations
 
 import argparse
 import sys
-from pathlib import Path
 
 from epg.cli.arguments import add_target_arguments, request_of
+from epg.cli.output import add_output_arguments, update_folder, write_warnings
 from epg.diagnostics import Diagnostics
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("name", help="name of the target: prefix of its C symbols")
-    parser.add_argument("--output", required=True, type=Path, metavar="FOLDER", help="where the files go")
-    parser.add_argument("--source-dir", type=Path, help=argparse.SUPPRESS)
+    add_output_arguments(parser)
     add_target_arguments(parser, required=True)
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
-    from epg.cli.output import update_folder
     from epg.emit.cmake import PathNames
     from epg.emit.outputs import application_outputs
     from epg.project import load_application
@@ -36,7 +34,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     update_folder(
         options.output,
         application_outputs(app, request.roots, names),
-        diagnostics,
         sys.stdout if options.json else None,
     )
+    write_warnings(options.warnings, diagnostics)
     return 0

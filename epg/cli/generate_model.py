@@ -6,6 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
+from epg.cli.output import add_output_arguments, update_folder, write_warnings
 from epg.diagnostics import Diagnostics
 from epg.source import Span
 
@@ -14,13 +15,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("name", help="name of the library: prefix of its C symbols")
     parser.add_argument("--model", required=True, type=Path, metavar="FOLDER", help="folder of the model")
     parser.add_argument("--instances", type=int, default=1, metavar="N", help="instances of a C++ model")
-    parser.add_argument("--output", required=True, type=Path, metavar="FOLDER", help="where the files go")
-    parser.add_argument("--source-dir", type=Path, help=argparse.SUPPRESS)
+    add_output_arguments(parser)
     parser.add_argument("--caller", help=argparse.SUPPRESS)
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
-    from epg.cli.output import update_folder
     from epg.emit.cmake import PathNames
     from epg.emit.outputs import model_outputs
     from epg.load.models import load_model
@@ -34,5 +33,6 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     diagnostics.stop_if_errors()
     assert model is not None
     files = model_outputs(model, options.name, options.instances, PathNames(options.source_dir))
-    update_folder(options.output, files, diagnostics, sys.stdout if options.json else None)
+    update_folder(options.output, files, sys.stdout if options.json else None)
+    write_warnings(options.warnings, diagnostics)
     return 0

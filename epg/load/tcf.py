@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from itertools import takewhile
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics, did_you_mean
@@ -95,8 +94,9 @@ def load_tcf_chain(
         node = _load(path, diagnostics, wanted_by)
         if node is None:
             return ()
-        absent = tuple(takewhile(lambda candidate: candidate != path, _candidates(name, beside)))
-        chain.append(TcfFile(path, node, wanted_by, absent))
+        candidates = _candidates(name, beside)
+        absent = candidates[: candidates.index(path)] if path in candidates else candidates
+        chain.append(TcfFile(path, node, wanted_by, tuple(absent)))
         extends = node.get("extends")
         if extends is None or not isinstance(extends.value, str):
             return tuple(chain)

@@ -88,7 +88,7 @@ CHANGES: dict[str, Callable[[Watched], object]] = {
     "an output that is gone": lambda w: (w.outputs / "robot/robot_app.c").unlink(),
     "an output that somebody edited": lambda w: w.write(w.outputs / "robot/robot.h", "mine\n"),
     "the description that is gone": lambda w: (w.outputs / "robot/robot.cmake").unlink(),
-    "a stamp that is damaged": lambda w: w.write(w.outputs / "robot/.epg-stamp", "\0"),
+    "a stamp that is damaged": lambda w: w.write(w.project.build_folder / "CMakeFiles/epg/robot.stamp", "\0"),
     "a new file in the user's targets": lambda w: w.write(w.user_folder / "components/lamp/component.yaml", KIND),
 }
 

@@ -13,8 +13,8 @@ from pathlib import Path
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.load.models import details
 from epg.load.models.c_code import parse_code
-from epg.load.models.identifiers import RESERVED, to_identifier
 from epg.load.models.folders import source_files
+from epg.load.models.identifiers import RESERVED, to_identifier
 from epg.load.models.model import Model, Parameter, Port
 from epg.load.models.ports import check_identifiers
 from epg.load.models.source_file import read_source
