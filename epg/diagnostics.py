@@ -40,6 +40,7 @@ class Diagnostics:
     """Collects the problems of one run, so that all are reported at once."""
 
     items: list[Diagnostic] = field(default_factory=list)
+    _known: set[Diagnostic] = field(default_factory=set, repr=False, compare=False)
 
     def error(self, id: str, span: Span, message: str, *, hint: str = "", notes: Iterable[Note] = ()) -> None:
         self._add(Diagnostic(id, "error", span, message, hint, tuple(notes)))
@@ -48,7 +49,8 @@ class Diagnostics:
         self._add(Diagnostic(id, "warning", span, message, hint, tuple(notes)))
 
     def _add(self, diagnostic: Diagnostic) -> None:
-        if diagnostic not in self.items:
+        if diagnostic not in self._known:
+            self._known.add(diagnostic)
             self.items.append(diagnostic)
 
     @property

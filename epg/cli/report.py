@@ -30,7 +30,7 @@ class _Lines:
         if file not in self.files:
             self.files[file] = self._read(file)
         lines = self.files[file]
-        return lines[number - 1] if 0 < number <= len(lines) else None
+        return _printable(lines[number - 1], "?") if 0 < number <= len(lines) else None
 
     @staticmethod
     def _read(file: str) -> list[str]:
@@ -38,8 +38,7 @@ class _Lines:
             text = Path(file).read_bytes().decode("utf-8-sig", "replace")
         except OSError:
             return []
-        lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
-        return ["".join(char if char.isprintable() or char == "\t" else "?" for char in line) for line in lines]
+        return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 
 def format_diagnostics(diagnostics: Diagnostics) -> str:
@@ -84,16 +83,28 @@ def _position(span: Span) -> dict[str, Any]:
 
 
 def _format(d: Diagnostic, source: _Lines) -> str:
-    lines = [f"{_place(d.span)}: {d.severity}: {d.message} [{d.id}]", *_excerpt(d.span, source)]
+    lines = [f"{_place(d.span)}: {d.severity}: {_printable(d.message)} [{d.id}]", *_excerpt(d.span, source)]
     for note in d.notes:
-        lines += [f"{_place(note.span)}: note: {note.message}", *_excerpt(note.span, source)]
+        lines += [f"{_place(note.span)}: note: {_printable(note.message)}", *_excerpt(note.span, source)]
     if d.hint:
-        lines.append(f"hint: {d.hint}")
+        lines.append(f"hint: {_printable(d.hint)}")
     return "\n".join(lines) + "\n"
 
 
+def _printable(text: str, instead: str = "") -> str:
+    """Text of a user on one line of a terminal: no line ends, escape sequences or other controls.
+
+    They are replaced by ``instead``, or shown as Python would write them: ``\\n``, ``\\x1b``.
+    """
+    if text.isprintable():
+        return text
+    return "".join(
+        char if char.isprintable() or (instead and char == "\t") else instead or repr(char)[1:-1] for char in text
+    )
+
+
 def _place(span: Span) -> str:
-    file = shown_path(span.file)
+    file = _printable(shown_path(span.file))
     if not span.line:
         return file
     return f"{file}:{span.line}:{span.column}" if span.column else f"{file}:{span.line}"
@@ -101,8 +112,10 @@ def _place(span: Span) -> str:
 
 def _excerpt(span: Span, source: _Lines) -> list[str]:
     """The line a span stands on, with a caret below it."""
-    text = span.text if span.text is not None else source.line(span.file, span.line)
-    if not span.line or not span.column or text is None:
+    if not span.line or not span.column:
+        return []
+    text = _printable(span.text, "?") if span.text is not None else source.line(span.file, span.line)
+    if text is None:
         return []
     text = text.rstrip("\r\n")
     start, end = span.column - 1, max(span.end - 1, span.column)

@@ -10,20 +10,23 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import TypeGuard
 
-from epg.load.models.source_file import SourceFile
+from epg.load.models.source_file import STRING, SourceFile
 from epg.source import Span
 
 # Two steps: one expression for a whole statement takes quadratic time where its `;` is missing.
 _STATEMENT_END = re.compile(r"[;{}]")
 _ASSIGNMENT = re.compile(
-    r"(?<![\w.>])((?:[A-Za-z_]\w{0,255}->)?[A-Za-z_]\w{0,255})\s{0,80}\[\s{0,80}(\d{1,9})\s{0,80}\]\s{0,80}=(?!=)\s*"
+    r"(?<![\w.>])((?:[A-Za-z_]\w{0,255}->)?[A-Za-z_]\w{0,255})\s{0,80}\[\s{0,80}(\d{1,9})\s{0,80}\]\s{0,80}=(?!=)\s*",
+    re.ASCII,
 )
-_ELEMENT = re.compile(r"(?<![\w.>])([A-Za-z_]\w*)\s*\[\s*(\d+)\s*\]")
-_COMMENT = re.compile(r"[ \t]*(?:/\*[ \t]*(.*?)[ \t]*\*/|//[ \t]*(.*?)[ \t]*$)", re.MULTILINE)
-_NAME_UNIT = re.compile(r"(.*?)(?:\s*\{([^{}]*)\})?", re.DOTALL)
-_NUMBER = re.compile(r"[-+]?\s*(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d{1,3})?")
-_STRING = re.compile(r'"((?:\\.|[^"\\])*)"')
+_ELEMENT = re.compile(r"(?<![\w.>])([A-Za-z_]\w{0,255})\s{0,80}\[\s{0,80}(\d{1,9})\s{0,80}\]", re.ASCII)
+_COMMENT = re.compile(r"[ \t]*(?:/\*(.*?)\*/|//(.*)$)", re.MULTILINE)
+_NUMBER = re.compile(r"[-+]?\s*(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d{1,3})?", re.ASCII)
+_LONGEST_NUMBER = 400
+_LONGEST_LIST = 1 << 20
+_LIST_END = re.compile(r"\bNULL\b|\}")
 
 
 @dataclass(frozen=True)
@@ -101,20 +104,21 @@ def output_lines(file: SourceFile, vector: str, start: int = 0, end: int | None 
 
 def split_name(comment: str) -> tuple[str, str]:
     """Name and unit of a comment: ``PID1\\tauD {s}`` gives ``("PID1\\tauD", "s")``."""
-    match = _NAME_UNIT.fullmatch(comment.strip())
-    assert match is not None
-    return match[1].strip(), (match[2] or "").strip()
+    text = comment.strip()
+    name, brace, unit = text[:-1].rpartition("{") if text.endswith("}") else ("", "", "")
+    return (name.strip(), unit.strip()) if brace and "}" not in unit else (text, "")
 
 
 def listed_names(file: SourceFile, kind: str) -> list[tuple[str, Span]]:
     """Names in the list ``xx_<kind>_names[]``, which exports carry inside a comment."""
-    for match in re.finditer(rf"{kind}_names\w*\s*\[\s*\]\s*=\s*\{{(.*?)(?:\bNULL\b|\}})", file.text, re.DOTALL):
+    head = re.compile(rf"{kind}_names\w{{0,80}}\s{{0,80}}\[\s{{0,80}}\]\s{{0,80}}=\s{{0,80}}\{{", re.ASCII)
+    for match in head.finditer(file.text):
+        end = _LIST_END.search(file.text, match.end(), match.end() + _LONGEST_LIST)
+        if end is None:
+            break
         names = [
-            (
-                re.sub(r"\\(.)", r"\1", string[1]),
-                file.span(match.start(1) + string.start(), match.start(1) + string.end()),
-            )
-            for string in _STRING.finditer(match[1])
+            (re.sub(r"\\(.)", r"\1", string[1]), file.span(string.start(), string.end()))
+            for string in STRING.finditer(file.text, match.end(), end.start())
         ]
         if names:
             return names
@@ -123,7 +127,10 @@ def listed_names(file: SourceFile, kind: str) -> list[tuple[str, Span]]:
 
 def exact_number(text: str) -> Fraction | None:
     """The value of a literal, exact; also ``1.0 / 1000.0``, a cast or a truth value.  None for anything else."""
-    text = re.sub(r"\(\s*(?:XX|YY)?[A-Za-z]\w*\s*\)", "", text.strip())
+    text = text.strip()
+    if len(text) > _LONGEST_NUMBER:
+        return None
+    text = re.sub(r"\(\s*(?:XX|YY)?[A-Za-z]\w*\s*\)", "", text)
     while text.startswith("(") and text.endswith(")"):
         text = text[1:-1].strip()
     if re.fullmatch(r"(?:\w*TRUE|true)", text):
@@ -140,7 +147,11 @@ def exact_number(text: str) -> Fraction | None:
 
 def number(text: str) -> float | None:
     """The value of a literal as a double; None for anything else."""
-    value = exact_number(text)
+    return finite(exact_number(text))
+
+
+def finite(value: Fraction | None) -> float | None:
+    """The nearest double; None where there is none, or no value."""
     if value is None:
         return None
     try:
@@ -149,8 +160,13 @@ def number(text: str) -> float | None:
         return None
 
 
+def is_step(value: Fraction | None) -> TypeGuard[Fraction]:
+    """Whether a value in seconds can be the step of a model: a double, and whole nanoseconds when it is a period."""
+    return value is not None and Fraction(1, 1_000_000_000) <= value <= 1_000_000
+
+
 def _literal(text: str) -> Fraction | None:
     text = text.strip()
     if re.fullmatch(r".*[\d.][fFlL]", text):
         text = text[:-1]
-    return Fraction(re.sub(r"\s", "", text)) if len(text) <= 400 and _NUMBER.fullmatch(text) else None
+    return Fraction(re.sub(r"\s", "", text)) if _NUMBER.fullmatch(text) else None

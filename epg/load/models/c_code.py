@@ -25,16 +25,23 @@ KEYWORDS = words(
 )
 
 _LONGEST_HEAD = 2000  # characters of a declaration before its body that are looked at
-_IDENTIFIER = re.compile(r"[A-Za-z_]\w*")
-_MACRO = re.compile(r"^[ \t]*#[ \t]*define[ \t]+([A-Za-z_]\w*)(\([^)\n]*\))?[ \t]*((?:\\\n|[^\n])*)", re.MULTILINE)
+_LONGEST_SIZE = 2000  # characters of a size such as "xx_states_size + 1" when its macros are replaced
+_IDENTIFIER = re.compile(r"[A-Za-z_]\w*", re.ASCII)
+_MACRO = re.compile(
+    r"^[ \t]*#[ \t]*define[ \t]+([A-Za-z_]\w*)(\([^)\n]*\))?[ \t]*((?:\\\n|[^\n])*)", re.MULTILINE | re.ASCII
+)
 _INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*(?:"([^"\n]+)"|<([^>\n]+)>)', re.MULTILINE)
-_FUNCTION_HEAD = re.compile(r"((?:[A-Za-z_]\w*\s*::\s*)?~?[A-Za-z_]\w*)\s*\(([^()]*)\)[^()=;{}]*(?::[^;{}=]*)?$")
-_CALL = re.compile(r"(?<![\w>.])([A-Za-z_]\w*)\s*\(")
-_DECLARATOR = re.compile(r"\s*(\**)\s*(?:const\s+)?([A-Za-z_]\w*)\s*((?:\[[^\]]*\]\s*)*)(?:=\s*(.*))?$", re.DOTALL)
+_PARAMETERS = re.compile(r"\(([^()]*)\)")
+_CALL = re.compile(r"(?<![\w.>])([A-Za-z_]\w*)\s*\(", re.ASCII)
+_DECLARATOR = re.compile(
+    r"(\**)\s*(?:const\s+)?([A-Za-z_]\w*)\s*((?:\[[^\]]*\]\s*)*)(?:=\s*(.*))?$", re.DOTALL | re.ASCII
+)
 _TYPE = re.compile(
     r"\s*((?:(?:static|const|extern|volatile|register|unsigned|signed|long|short|struct|enum|union)\b\s*)*)"
-    r"([A-Za-z_]\w*(?:\s*::\s*[A-Za-z_]\w*)*)?"
+    r"([A-Za-z_]\w*(?:\s*::\s*[A-Za-z_]\w*)*)?",
+    re.ASCII,
 )
+_TYPEDEF = re.compile(r"\btypedef\b([^;{}()]{1,200});")
 
 
 @dataclass(frozen=True)
@@ -113,8 +120,8 @@ def parse_code(file: SourceFile) -> Code:
             continue
         start = max(start, head_end - _LONGEST_HEAD)
         head = file.code[start:head_end]
-        matched = _FUNCTION_HEAD.search(head) if body_start >= 0 else None
-        if matched and not re.search(r"=\s*$|\b(struct|union|enum|class|namespace)\s+\w*\s*$", head):
+        matched = function_head(head) if body_start >= 0 else None
+        if matched and not _opens_type(head):
             functions.append(_function(head, matched, start, body_start, end))
         elif "(" not in head.split("=")[0]:
             variables.extend(_variables(file.code[start:end], start))
@@ -131,23 +138,87 @@ def parse_code(file: SourceFile) -> Code:
     )
 
 
+@dataclass(frozen=True)
+class Head:
+    """What stands before the body of a function; ``start`` is where its name, with the owner's, begins."""
+
+    name: str
+    owner: str
+    parameters: str
+    start: int
+
+
+def function_head(head: str) -> Head | None:
+    """The name and the parameters in ``head``, the text before a ``{``; None if it is no function's.
+
+    Takes linear time, which no regular expression for the whole does.
+    """
+    begin = max(head.rfind(sign) for sign in "=;{}") + 1
+    for match in _PARAMETERS.finditer(head, begin):
+        at = match.end()
+        nested = min((found for found in (head.find("(", at), head.find(")", at)) if found >= 0), default=-1)
+        if nested >= 0 and ":" not in head[at:nested]:  # only the initialisers of a constructor hold parentheses
+            continue
+        start, name = _word_before(head, match.start())
+        if not name or name in KEYWORDS:
+            continue
+        if head[start - 1 : start] == "~":
+            start, name = start - 1, f"~{name}"
+        colons = len(head[:start].rstrip())
+        owner = ""
+        if head[colons - 2 : colons] == "::":
+            owner_start, owner = _word_before(head, colons - 2)
+            start = owner_start if owner else start
+        return Head(name, owner, match[1].strip(), start)
+    return None
+
+
+def _word_before(text: str, end: int) -> tuple[int, str]:
+    """Start and text of the identifier that stands, with blanks behind it, before ``end``; empty if there is none."""
+    while end > 0 and text[end - 1].isspace():
+        end -= 1
+    start = end
+    while start > 0 and (text[start - 1].isalnum() or text[start - 1] == "_"):
+        start -= 1
+    word = text[start:end]
+    return (start, word) if word.isascii() and not word[:1].isdigit() else (end, "")
+
+
+def _opens_type(head: str) -> bool:
+    """Whether ``head`` is that of an initialiser or of a type instead of a function's."""
+    end = head.rstrip()
+    return end.endswith("=") or re.search(r"\b(?:struct|union|enum|class|namespace)(?:\s+\w+)?$", end[-300:]) is not None
+
+
+def typedefs(code: Code) -> Iterator[tuple[str, str]]:
+    """Name and type of each ``typedef`` of one plain type: ``("XXDouble", "double")``."""
+    for match in _TYPEDEF.finditer(code.file.code):
+        words_of_it = match[1].split()
+        if len(words_of_it) > 1 and all(_IDENTIFIER.fullmatch(word) for word in words_of_it):
+            yield words_of_it[-1], " ".join(words_of_it[:-1])
+
+
 def integer_value(expression: str, macros: Mapping[str, str]) -> int | None:
-    """The value of a size such as ``xx_states_size`` or ``0 + 6 + 1``; None if it is not that simple."""
+    """The value of a size such as ``xx_states_size`` or ``0 + 6 + 1``; None if it is not that simple, or no ``int``."""
+
+    def replacement(match: re.Match[str]) -> str:
+        value = macros.get(match[0], match[0])
+        return match[0] if value is match[0] or len(value) > 200 else f"({value})"
+
     for _ in range(8):
-        replaced = _IDENTIFIER.sub(
-            lambda match: f"({macros[match[0]]})" if match[0] in macros else match[0], expression
-        )
+        if len(expression) > _LONGEST_SIZE:
+            return None
+        replaced = _IDENTIFIER.sub(replacement, expression)
         if replaced == expression:
             break
         expression = replaced
-        if len(expression) > 2000:
-            return None
-    if not re.fullmatch(r"[\d\s()+*-]+", expression) or "**" in expression.replace(" ", ""):
+    if not re.fullmatch(r"[0-9\s()+*-]+", expression) or "**" in expression.replace(" ", ""):
         return None
     try:
-        return int(_sum(re.findall(r"\d+|[()+*-]", expression)))
+        value = _sum(re.findall(r"[0-9]+|[()+*-]", expression))
     except (ValueError, IndexError, RecursionError):
         return None
+    return value if -(1 << 31) <= value < 1 << 31 else None
 
 
 def _sum(tokens: list[str]) -> int:
@@ -192,25 +263,27 @@ def _top_level(code: str) -> Iterator[tuple[int, int, int]]:
 
     A body that is no initialiser ends a declaration; ``extern "C" {`` is passed through.
     """
-    start, depth, body_start = 0, 0, -1
+    start, depth, body_start, head_start = 0, 0, -1, 0
     for match in re.finditer(r"[{};]", code):
         symbol, at = match[0], match.start()
         if symbol == "{":
             if depth == 0:
-                head = code[max(start, at - _LONGEST_HEAD) : at]
-                if re.search(r'\bextern\s*"[^"]*"\s*$|\bnamespace(?:\s+\w+)?\s*$', head):
-                    start = at + 1
+                end = code[max(start, at - 300) : at].rstrip()
+                if re.search(r'\bextern\s*"[^"]*"$|\bnamespace(?:\s+\w+)?$', end):
+                    start = head_start = at + 1
                     continue
                 body_start = at
             depth += 1
         elif symbol == "}":
             if depth == 0:
-                start = at + 1
+                start = head_start = at + 1
                 continue
             depth -= 1
             if depth == 0:
-                head = code[max(start, body_start - _LONGEST_HEAD) : body_start]
-                if not re.search(r"=\s*$|\b(?:struct|union|enum|class)\b[^()]*$", head):
+                head = code[max(start, head_start, body_start - _LONGEST_HEAD) : body_start].rstrip()
+                head_start = at + 1  # no part of the text is looked at twice
+                words_behind = head[max(head.rfind("("), head.rfind(")")) + 1 :]
+                if not head.endswith("=") and not re.search(r"\b(?:struct|union|enum|class)\b", words_behind):
                     yield start, body_start, at + 1
                     start, body_start = at + 1, -1
         elif depth == 0:
@@ -219,17 +292,15 @@ def _top_level(code: str) -> Iterator[tuple[int, int, int]]:
             start, body_start = at + 1, -1
 
 
-def _function(head: str, matched: re.Match[str], start: int, body_start: int, end: int) -> Function:
-    qualified = re.sub(r"\s+", "", matched[1])
-    owner, _, name = qualified.rpartition("::")
-    before = head[: matched.start()]
+def _function(head: str, found: Head, start: int, body_start: int, end: int) -> Function:
+    before = head[: found.start]
     return Function(
-        name,
-        owner,
-        matched[2].strip(),
+        found.name,
+        found.owner,
+        found.parameters,
         " ".join(before.split()),
         re.search(r"\bstatic\b", before) is not None,
-        start + matched.start(1),
+        start + found.start,
         body_start + 1,
         end - 1,
     )
@@ -248,7 +319,8 @@ def _variables(text: str, offset: int) -> Iterator[Variable]:
         name_of_type, at = matched[1].split()[-1], matched.start(2)  # "unsigned long e": there is no further word
     rest = text[at:]
     for part, part_at in _split_commas(rest, at):
-        declared = _DECLARATOR.match(part)
+        part_at += len(part) - len(part.lstrip())
+        declared = _DECLARATOR.match(part.strip())
         if declared and declared[2] not in KEYWORDS:
             yield Variable(
                 declared[2],

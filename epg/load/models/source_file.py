@@ -17,10 +17,13 @@ from epg.source import Span
 
 MAX_BYTES = 16 << 20
 
+# A string that is not closed ends with its line: going back from there would take quadratic time.
 _BLANKED = re.compile(
-    r"""//(?:\\\r?\n|[^\n])*|/\*.*?(?:\*/|\Z)|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'""",
+    r"""//(?:\\\r?\n|[^\n])*|/\*.*?(?:\*/|\Z)|"(?:\\.|[^"\\\n])*(?:"|(?=\n)|\\?\Z)|'(?:\\.|[^'\\\n])*(?:'|(?=\n)|\\?\Z)""",
     re.DOTALL,
 )
+STRING = re.compile(r'"((?:\\.|[^"\\\n])*)(?:"|\\?(?=\n|\Z))')
+"""A string, or what stands between an opening quote and the end of its line."""
 _DIRECTIVE = re.compile(r"^[ \t]*#(?:\\\r?\n|[^\n])*", re.MULTILINE)
 _NOT_NEWLINE = re.compile(r"[^\n]")
 
@@ -96,6 +99,6 @@ def decode(data: bytes) -> str:
 
 def _blank(match: re.Match[str]) -> str:
     matched = match[0]
-    if matched[0] in "\"'" and len(matched) >= 2:
-        return matched[0] + " " * (len(matched) - 2) + matched[-1]
+    if matched[0] in "\"'" and len(matched) >= 2 and matched[-1] == matched[0]:
+        return matched[0] + _NOT_NEWLINE.sub(" ", matched[1:-1]) + matched[-1]
     return _NOT_NEWLINE.sub(" ", matched)

@@ -11,11 +11,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics
-from epg.load.models.source_file import SourceFile
+from epg.load.models.source_file import STRING, SourceFile
 from epg.load.models.xml_file import load_xml
 from epg.source import Span
 
-_STRING = re.compile(r'"((?:\\.|[^"\\])*)"')
 _CDATA = "<![CDATA["
 
 
@@ -52,7 +51,7 @@ class Tokens:
         """Names of ``kind`` ("INPUT", "PARAMETER", ...) in the order of their array."""
         if f"{kind}_NAMES3" in self.values:
             return [name.strip() for name in self._lines(f"{kind}_NAMES3")]
-        return [re.sub(r"\\(.)", r"\1", match[1]) for match in _STRING.finditer(self.get(f"{kind}_NAMES"))]
+        return [re.sub(r"\\(.)", r"\1", match[1]) for match in STRING.finditer(self.get(f"{kind}_NAMES"))]
 
     def units(self, kind: str, count: int) -> list[str]:
         """Units of ``kind``, empty strings where there are none; always ``count`` of them."""
