@@ -15,7 +15,7 @@ void epg_control_start(epg_control_t *control, const epg_application_t *applicat
         .initialise = true,
         .status_exchange = {.slots = control->status_slots, .size = sizeof control->status_slots[0]},
     };
-    epg_setpoints_start(application);
+    control->setpoints_move = epg_setpoints_start(application);
     for (size_t i = 0; i < application->monitor_count; i++) {
         application->monitor_values[i] = 0.0;
     }
@@ -64,13 +64,14 @@ static void handle_request(epg_control_t *control, bool permitted, uint64_t now_
 static void command(epg_control_t *control, uint64_t now_ns)
 {
     const epg_application_t *application = control->application;
-    epg_setpoints_take(application);
+    const bool taken = epg_setpoints_take(application);
     const bool permitted = application->fail_safe == NULL || application->fail_safe();
     handle_request(control, permitted, now_ns);
     if (!permitted) {
         latch(control, EPG_FAULT_FAIL_SAFE);
     }
-    if (!epg_setpoints_update(application, now_ns, &control->statistics) && control->enabled) {
+    if ((taken || control->setpoints_move) && !epg_setpoints_update(application, now_ns, &control->statistics) &&
+        control->enabled) {
         latch(control, EPG_FAULT_SETPOINT_TIMEOUT);
     }
 }
@@ -147,13 +148,8 @@ static void publish_status(epg_control_t *control, uint64_t tick_ns)
 {
     control->statistics.setpoints_dropped = atomic_load(&control->dropped);
     control->statistics.reconnects = atomic_load(&control->reconnects);
-    const epg_status_t status = {
-        .enabled = control->enabled,
-        .fault = control->fault,
-        .time_ns = tick_ns,
-        .statistics = control->statistics,
-    };
-    epg_exchange_write(&control->status_exchange, &status);
+    control->time_ns = tick_ns;
+    epg_exchange_write(&control->status_exchange, &control->status);
 }
 
 void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed)

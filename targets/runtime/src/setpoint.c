@@ -6,24 +6,28 @@
 
 #include "epg/finite.h"
 
-void epg_setpoints_start(const epg_application_t *application)
+bool epg_setpoints_start(const epg_application_t *application)
 {
+    bool move = false;
     for (size_t i = 0; i < application->setpoint_count; i++) {
         const double initial = application->setpoints[i].initial;
         application->samples[i] = (epg_setpoint_sample_t){0};
         application->received[i] = (epg_setpoint_sample_t){0};
         application->setpoint_states[i] = (epg_setpoint_state_t){.value = initial, .target = initial};
+        move = move || application->setpoints[i].timeout_ns > 0 || application->setpoints[i].rate_limit > 0.0;
     }
     if (application->setpoint_exchange != NULL) {
         epg_exchange_clear(application->setpoint_exchange);
     }
+    return move;
 }
 
-void epg_setpoints_take(const epg_application_t *application)
+bool epg_setpoints_take(const epg_application_t *application)
 {
+    bool taken = false;
     if (application->setpoint_exchange == NULL ||
         !epg_exchange_read(application->setpoint_exchange, application->samples)) {
-        return;
+        return false;
     }
     for (size_t i = 0; i < application->setpoint_count; i++) {
         const epg_setpoint_sample_t *sample = &application->samples[i];
@@ -33,8 +37,10 @@ void epg_setpoints_take(const epg_application_t *application)
             state->fresh_ns = sample->received_ns;
             state->count = sample->count;
             state->timed_out = false;
+            taken = true;
         }
     }
+    return taken;
 }
 
 void epg_setpoints_enable(const epg_application_t *application, uint64_t now_ns)
@@ -54,8 +60,7 @@ void epg_setpoints_enable(const epg_application_t *application, uint64_t now_ns)
 static bool too_old(const epg_setpoint_t *setpoint, const epg_setpoint_state_t *state, uint64_t now_ns)
 {
     /* A sample received while this cycle was starting is younger than the cycle. */
-    return setpoint->timeout_ns > 0 && state->count > 0 && now_ns > state->fresh_ns &&
-           now_ns - state->fresh_ns > setpoint->timeout_ns;
+    return state->count > 0 && now_ns > state->fresh_ns && now_ns - state->fresh_ns > setpoint->timeout_ns;
 }
 
 /** `target`, or as near to it as one period allows. */
@@ -78,25 +83,22 @@ bool epg_setpoints_update(const epg_application_t *application, uint64_t now_ns,
     for (size_t i = 0; i < application->setpoint_count; i++) {
         const epg_setpoint_t *setpoint = &application->setpoints[i];
         epg_setpoint_state_t *state = &application->setpoint_states[i];
-        if (!state->timed_out && too_old(setpoint, state, now_ns)) {
-            state->timed_out = true;
-            statistics->setpoint_timeouts++;
-            if (setpoint->action == EPG_TIMEOUT_ZERO) {
-                state->target = 0.0;
+        if (setpoint->timeout_ns > 0) {
+            if (!state->timed_out && too_old(setpoint, state, now_ns)) {
+                state->timed_out = true;
+                statistics->setpoint_timeouts++;
+                if (setpoint->action == EPG_TIMEOUT_ZERO) {
+                    state->target = 0.0;
+                }
             }
-        }
-        if (state->timed_out && setpoint->action == EPG_TIMEOUT_DISABLE) {
-            valid = false;
+            if (state->timed_out && setpoint->action == EPG_TIMEOUT_DISABLE) {
+                valid = false;
+            }
         }
         state->value =
             setpoint->rate_limit > 0.0 ? limited(application, setpoint, state->value, state->target) : state->target;
     }
     return valid;
-}
-
-double epg_control_setpoint(const epg_control_t *control, size_t index)
-{
-    return control->application->setpoint_states[index].value;
 }
 
 /* Communication side ------------------------------------------------------------------------------------------- */

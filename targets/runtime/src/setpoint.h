@@ -7,18 +7,18 @@
 
 #include "epg/control.h"
 
-/** All setpoints to their initial values, all samples forgotten. */
-void epg_setpoints_start(const epg_application_t *application);
+/** All setpoints to their initial values, all samples forgotten.  True if one has a timeout or a rate limit. */
+bool epg_setpoints_start(const epg_application_t *application);
 
-/** Takes over the newest samples. */
-void epg_setpoints_take(const epg_application_t *application);
+/** Takes over the newest samples; false when there is none that is new. */
+bool epg_setpoints_take(const epg_application_t *application);
 
 /** Their ages count from `now_ns` on: the target is being enabled. */
 void epg_setpoints_enable(const epg_application_t *application, uint64_t now_ns);
 
 /**
  * Applies timeouts and rate limits: one control period's worth, however late the cycle is.  Returns false if a
- * setpoint is too old whose action is to disable.
+ * setpoint is too old whose action is to disable.  Changes nothing when no sample is new and none has either of them.
  */
 bool epg_setpoints_update(const epg_application_t *application, uint64_t now_ns, epg_statistics_t *statistics);
 

@@ -198,6 +198,15 @@ static double load_speed(void)
     return motor.speed / 19.0;
 }
 
+/** Setpoints of 10 rad/s every 33 ms, `count` of them. */
+static void send(int count)
+{
+    for (int i = 0; i < count; i++) {
+        epg_control_receive(&control, 0, 10.0, fake_port.now_ns, true);
+        run(33);
+    }
+}
+
 /** The motor runs at 10 rad/s under control. */
 static void begin(epg_setpoint_t setpoint)
 {
@@ -205,8 +214,7 @@ static void begin(epg_setpoint_t setpoint)
     fake_port.inputs[PIN_FAIL_SAFE] = true;
     setpoints[0] = setpoint;
     epg_control_start(&control, &application);
-    epg_control_receive(&control, 0, 10.0, 0, true);
-    run(3000);
+    send(91);
     CHECK(status().enabled);
     CHECK(fabs(load_speed() - 10.0) < 0.5);
     CHECK(fabs(motor.torque) > 1e-5);
@@ -338,12 +346,8 @@ TEST(motor_coasts_when_the_fail_safe_input_falls)
 /** Setpoints every 33 ms until now, and none from here on. */
 static void begin_with_sender(epg_timeout_action_t action)
 {
-    begin((epg_setpoint_t){.action = EPG_TIMEOUT_HOLD});
-    setpoints[0] = (epg_setpoint_t){.timeout_ns = 500 * (uint64_t)PERIOD_NS, .action = action};
-    for (int i = 0; i < 30; i++) {
-        epg_control_receive(&control, 0, 10.0, fake_port.now_ns, true);
-        run(33);
-    }
+    begin((epg_setpoint_t){.timeout_ns = 500 * (uint64_t)PERIOD_NS, .action = action});
+    send(30);
     CHECK(fabs(load_speed() - 10.0) < 0.5);
     epg_control_receive(&control, 0, 10.0, tick * PERIOD_NS, true);
     run(501);

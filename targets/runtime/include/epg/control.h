@@ -27,6 +27,7 @@
 #ifndef EPG_CONTROL_H
 #define EPG_CONTROL_H
 
+#include <assert.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -99,11 +100,19 @@ typedef struct epg_application {
 
 typedef struct epg_control {
     const epg_application_t *application;
-    epg_statistics_t statistics;
-    epg_fault_t fault;
-    bool enabled;
+    /* What is handed over at the end of each cycle, as a whole and by the names of its members. */
+    union {
+        epg_status_t status;
+        struct {
+            bool enabled;
+            epg_fault_t fault;
+            uint64_t time_ns; /**< tick of the newest cycle */
+            epg_statistics_t statistics;
+        };
+    };
     bool initialise;     /**< the model is to be initialised in this or the next cycle */
     bool model_valid;    /**< false: not initialised, or it rests after a fault */
+    bool setpoints_move; /**< a setpoint has a timeout or a rate limit: they change without a new sample */
     uint32_t until_step; /**< cycles until the model's next step */
     uint32_t consecutive_overruns;
     uint32_t request_seen;
@@ -113,6 +122,10 @@ typedef struct epg_control {
     epg_exchange_t status_exchange;
     epg_status_t status_slots[4];
 } epg_control_t;
+
+static_assert(offsetof(epg_control_t, statistics) - offsetof(epg_control_t, status) ==
+                  offsetof(epg_status_t, statistics),
+              "a control object begins with the members of epg_status_t");
 
 /*
  * One context is the control side, one other the communication side; two contexts may be the communication side if
@@ -137,7 +150,10 @@ void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed
 void epg_control_count_clamped(epg_control_t *control);
 
 /** Value of setpoint `index` in this cycle. */
-double epg_control_setpoint(const epg_control_t *control, size_t index);
+static inline double epg_control_setpoint(const epg_control_t *control, size_t index)
+{
+    return control->application->setpoint_states[index].value;
+}
 
 /* Communication side ----------------------------------------------------------------------------------------- */
 

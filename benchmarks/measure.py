@@ -1,0 +1,63 @@
+"""Wall times of things that are to be compared: taken in turns, so that all of them see the same machine.
+
+>>> times = in_turns({"nothing": lambda: None, "sum": lambda: sum(range(1000))}, rounds=5)
+>>> sorted(times)
+['nothing', 'sum']
+"""
+
+from __future__ import annotations
+
+import os
+import statistics
+import subprocess
+import time
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+EPG = ROOT / "epg" / "__main__.py"
+JIWY = ROOT / "examples" / "jiwy"
+
+
+def in_turns(actions: Mapping[str, Callable[[], object]], rounds: int) -> dict[str, float]:
+    """Median wall time in seconds of each action.
+
+    Every action runs once to warm caches and is then timed ``rounds`` times; within a round all actions run, each
+    round beginning with another one, so that a machine that grows slower burdens all alike.
+    """
+    times = all_in_turns(actions, rounds)
+    return {name: statistics.median(values) for name, values in times.items()}
+
+
+def all_in_turns(actions: Mapping[str, Callable[[], object]], rounds: int) -> dict[str, list[float]]:
+    """As :func:`in_turns`, with every single time."""
+    for action in actions.values():
+        action()
+    names = list(actions)
+    times: dict[str, list[float]] = {name: [] for name in names}
+    for number in range(rounds):
+        first = number % len(names)
+        for name in names[first:] + names[:first]:
+            begin = time.perf_counter()
+            actions[name]()
+            times[name].append(time.perf_counter() - begin)
+    return times
+
+
+def median_ratio(times: Mapping[str, Sequence[float]], name: str, reference: str) -> float:
+    """Median of the ratios within the rounds: a slow moment of the machine slows both of a pair."""
+    return statistics.median(a / b for a, b in zip(times[name], times[reference]))
+
+
+def run(command: Sequence[str | Path], **environment: str) -> str:
+    """Runs a program that must succeed, and returns what it prints.
+
+    Python programs may write and use ``.pyc`` files, whatever this shell says: cold means a new output folder, not a
+    new installation.
+    """
+    variables = {**os.environ, **environment}
+    variables.pop("PYTHONDONTWRITEBYTECODE", None)
+    done = subprocess.run([str(word) for word in command], env=variables, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise RuntimeError(f"{' '.join(map(str, command))}\n{done.stdout[-4000:]}\n{done.stderr[-4000:]}")
+    return done.stdout
