@@ -65,7 +65,7 @@ def ensure(group: str = "generator", *, install: bool | None = None) -> None:
     missing = _missing(group)
     if not missing:
         return
-    folder = _package_folder(group)
+    folder = package_folder(group)
     if not folder.is_dir():
         allowed = not os.environ.get("EPG_NO_INSTALL") if install is None else install
         if not allowed:
@@ -86,7 +86,7 @@ def main(arguments: list[str]) -> int:
     except MissingPackages as problem:
         sys.stderr.write(f"{problem}\n")
         return 4
-    print(_package_folder(arguments[0]).as_posix() if missing else "")
+    print(package_folder(arguments[0]).as_posix() if missing else "")
     return 0
 
 
@@ -105,12 +105,13 @@ def _missing(group: str) -> list[str]:
             version = metadata.version(distribution)
         except metadata.PackageNotFoundError:
             continue
-        if _numbers(version) < oldest:
+        if version_numbers(version) < oldest:
             result.append(distribution)
     return sorted(result)
 
 
-def _numbers(version: str) -> tuple[int, ...]:
+def version_numbers(version: str) -> tuple[int, ...]:
+    """The numbers of a version that are compared: ``6.0.1`` gives (6, 0, 1)."""
     numbers = []
     for part in version.split(".")[:3]:
         digits = "".join(char for char in part if char.isdigit())
@@ -118,7 +119,8 @@ def _numbers(version: str) -> tuple[int, ...]:
     return tuple(numbers)
 
 
-def _package_folder(group: str) -> Path:
+def package_folder(group: str) -> Path:
+    """The folder of EPG's cache that holds the packages of ``group`` for this interpreter, once they are installed."""
     lock = hashlib.sha256((LOCKS / f"{group}.txt").read_bytes()).hexdigest()[:12]
     abi = f"{sys.implementation.cache_tag}-{sys.platform}-{'64' if sys.maxsize > 2**32 else '32'}"
     return cache_folder() / f"python-{group}-{abi}-{lock}"

@@ -6,9 +6,12 @@ import argparse
 import os
 import re
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from epg.project import Request
 from epg.source import Span
+
+if TYPE_CHECKING:
+    from epg.project import Request
 
 
 def add_target_arguments(parser: argparse.ArgumentParser, *, required: bool) -> None:
@@ -43,6 +46,8 @@ def user_roots() -> list[Path]:
 
 def request_of(arguments: argparse.Namespace, name: str) -> Request:
     """The request that the arguments of :func:`add_target_arguments` make."""
+    from epg.project import Request
+
     settings = list(arguments.settings)
     if arguments.node is not None:
         settings.append(f"node={arguments.node}")

@@ -25,6 +25,7 @@ COMMANDS = {
     "targets": "list targets, component kinds and predefined .tcf files",
     "explain": "show the way of a model port to its pin",
     "simulate": "run a host executable through a scenario and judge the result",
+    "doctor": "show what this computer has and lacks",
 }
 
 EXIT_OK, EXIT_MISTAKES, EXIT_USAGE, EXIT_BUG, EXIT_MISSING = range(5)

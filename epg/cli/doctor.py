@@ -1,0 +1,176 @@
+"""``epg doctor``: what this computer has of what EPG and its targets need, and the command that gets what is missing.
+
+Works with nothing but Python's standard library, because missing packages are among the things it reports.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib.util
+import os
+import platform
+import shutil
+import sys
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, dataclass
+from importlib import metadata
+from pathlib import Path
+
+import epg
+from epg import bootstrap
+from epg.cli.arguments import user_roots
+from epg.cli.report import to_json
+from epg.data import targets_roots
+from epg.diagnostics import Diagnostics
+from epg.load.find_tool import Finding, Surroundings, find_tool, read_cmake_cache
+from epg.load.tools import Tool, load_tools
+
+HOST = "host"
+MANAGERS = {"apt": "apt-get", "dnf": "dnf", "pacman": "pacman", "brew": "brew", "winget": "winget"}
+"""Package managers, and the program that shows that a computer has them."""
+
+
+@dataclass(frozen=True)
+class Item:
+    """One thing that was looked for.
+
+    ``status``: "found"; "later" for a Python package that EPG installs into its cache when it is first needed;
+    "missing"; "old"; "wrong" when a variable leads to something else.  ``remedy`` is the command that gets it.
+    """
+
+    name: str
+    title: str
+    needed_for: str
+    required: bool
+    status: str
+    version: str = ""
+    path: str = ""
+    source: str = ""
+    note: str = ""
+    remedy: str = ""
+
+    @property
+    def good(self) -> bool:
+        return self.status in ("found", "later")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--build", type=Path, metavar="FOLDER", help="a build folder whose CMake variables count too")
+
+
+def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
+    cmake = read_cmake_cache(options.build / "CMakeCache.txt", diagnostics) if options.build else {}
+    tools = load_tools(targets_roots(user_roots()), diagnostics)
+    diagnostics.stop_if_errors()
+    where = Surroundings.here(bootstrap.cache_folder(), cmake)
+    items = [
+        Item("python", "Python", HOST, True, "found", platform.python_version(), sys.executable),
+        *(_package("generator", *package, required=True) for package in bootstrap.REQUIREMENTS["generator"].values()),
+        *(_package("plot", *package, required=False) for package in bootstrap.REQUIREMENTS["plot"].values()),
+        *(_item(find_tool(tool, where), where.cache) for tool in tools.values()),
+    ]
+    host = all(item.good for item in items if item.needed_for == HOST and item.required)
+    if options.json:
+        data = {
+            "epg": {"version": epg.__version__, "path": _home(), "cache": where.cache.as_posix()},
+            "items": [asdict(item) for item in items],
+            "host": host,
+        }
+        sys.stdout.write(to_json(data))
+    else:
+        print(f"EPG {epg.__version__} in {_home()}, cache in {where.cache.as_posix()}{_cache_note(where.cache)}")
+        print("\n".join(_lines(items)))
+        print("\nthe host target can be built" if host else "\nthe host target cannot be built")
+    return 0 if host else 4
+
+
+def _home() -> str:
+    return Path(epg.__file__).resolve().parent.as_posix()
+
+
+def _cache_note(cache: Path) -> str:
+    """What is special about EPG's cache; its folder is made when it is first needed."""
+    existing = next(folder for folder in (cache, *cache.absolute().parents) if folder.exists())
+    if not os.access(existing, os.W_OK):
+        return " (which cannot be written)"
+    return "" if cache.is_dir() else " (not yet there)"
+
+
+def _package(group: str, name: str, oldest: tuple[int, ...], *, required: bool) -> Item:
+    """A Python package: the interpreter's own, or the one in EPG's cache."""
+    note = "" if required else "for the plots of 'epg simulate'"
+    old = ""
+    for source, places in (("", sys.path), ("EPG's cache", [str(bootstrap.package_folder(group))])):
+        found = next(iter(metadata.distributions(name=name, path=places)), None)
+        if found is not None and bootstrap.version_numbers(found.version) >= oldest:
+            path = Path(str(found.locate_file(""))).as_posix()
+            return Item(name.lower(), name, HOST, required, "found", found.version, path, source, note)
+        old = found.version if found is not None else old
+    remedy = f"{sys.executable} -m pip install {name}"
+    if importlib.util.find_spec("pip") is not None and not os.environ.get("EPG_NO_INSTALL"):
+        return Item(name.lower(), name, HOST, required, "later", old, note=note, remedy=remedy)
+    if _manager() == "apt":
+        remedy = f"{_privileged('apt')}apt install python3-{'yaml' if name == 'PyYAML' else name.lower()}"
+    return Item(name.lower(), name, HOST, required, "old" if old else "missing", old, note=note, remedy=remedy)
+
+
+def _item(finding: Finding, cache: Path) -> Item:
+    tool = finding.tool
+    if finding.status == "wrong":
+        wanted = f"no {tool.holds}" if tool.holds else f"no {' or '.join(tool.programs)}"
+        note, remedy = f"there is {wanted} there", f"correct {finding.source}, or leave it unset"
+    elif finding.status == "missing":
+        note, remedy = f"looked in {', '.join(finding.looked)}; get it with:", _remedy(tool, cache)
+    elif finding.status == "old":
+        note, remedy = f"{tool.oldest} or newer is needed; get it with:", _remedy(tool, cache)
+    else:
+        differs = tool.tested and finding.version and not f"{finding.version}.".startswith(f"{tool.tested}.")
+        note, remedy = f"tested with {tool.tested}" if differs else "", ""
+    if tool.optional and not finding.path:
+        note = f"{tool.optional}; {note}"
+    return Item(
+        name=tool.name,
+        title=tool.title,
+        needed_for=tool.needed_for,
+        required=not tool.optional,
+        status=finding.status,
+        version=finding.version,
+        path=finding.path.as_posix() if finding.path else "",
+        source=finding.source,
+        note=note,
+        remedy=remedy,
+    )
+
+
+def _remedy(tool: Tool, cache: Path) -> str:
+    manager = _manager()
+    command = tool.get.get(manager) if manager else None
+    prefix = _privileged(manager) if command else ""
+    folder = f'"{cache.as_posix()}"' if " " in cache.as_posix() else cache.as_posix()
+    return prefix + (command or tool.get["any"]).replace("{cache}", folder)
+
+
+def _manager() -> str:
+    """The package manager of this computer, or ""."""
+    return next((name for name, program in MANAGERS.items() if shutil.which(program)), "")
+
+
+def _privileged(manager: str) -> str:
+    root = hasattr(os, "geteuid") and os.geteuid() == 0
+    return "" if root or manager in ("brew", "winget") else "sudo "
+
+
+def _lines(items: Sequence[Item]) -> Iterable[str]:
+    """The report: what is needed for the same thing together, the host first."""
+    width = max(len(f"{item.title} {item.version}") for item in items)
+    for group in sorted({item.needed_for for item in items}, key=lambda name: (name != HOST, name)):
+        yield f"\n{group}"
+        for item in (item for item in items if item.needed_for == group):
+            named = f"{item.title} {item.version}".ljust(width)
+            source = f"({item.source})" if item.source else ""
+            place = "EPG installs it when it is first needed" if item.status == "later" else item.path
+            yield "  ".join(part for part in (f"  {item.status:7s}", named, place, source) if part).rstrip()
+            if item.note:
+                yield f"           {item.note}"
+            if not item.good:
+                yield f"           {item.remedy}"

@@ -1,0 +1,178 @@
+"""Where an SDK or program is: the same order of places for all.
+
+CMake variable, environment variable, ``PATH``, the places their own installers use, CMake's user package registry,
+EPG's cache.  Among versions beside each other the newest wins.
+
+>>> # find_tool(tools["pico_sdk"], Surroundings.here(cache_folder())).path
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from epg.diagnostics import Diagnostics
+from epg.load.text_file import read_text
+from epg.load.tools import Tool
+
+TIMEOUT = 5.0
+"""Seconds that a program may take to say its version."""
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """What decides where tools are looked for; ``cmake`` are the variables of a CMake cache."""
+
+    environment: Mapping[str, str]
+    cmake: Mapping[str, str]
+    home: Path
+    cache: Path
+
+    @staticmethod
+    def here(cache: Path, cmake: Mapping[str, str] | None = None) -> Surroundings:
+        """Those of this process."""
+        return Surroundings(os.environ, cmake or {}, Path.home(), cache)
+
+    @property
+    def path(self) -> str:
+        return self.environment.get("PATH", "")
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What was found of a tool.
+
+    ``status``: "found"; "missing"; "old" when it is older than needed; "wrong" when a variable leads to something
+    else, which is not passed over, because builds would stop there too.  ``source`` says how it was found, ``looked``
+    all places that were tried.
+    """
+
+    tool: Tool
+    status: str
+    path: Path | None = None
+    source: str = ""
+    version: str = ""
+    looked: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class _Place:
+    source: str
+    folders: list[Path]
+    stated: bool = False  # by a variable: then the tool must be there
+
+
+def find_tool(tool: Tool, where: Surroundings) -> Finding:
+    """Looks for ``tool`` in all its places; the first hit wins."""
+    looked: list[str] = []
+    for place in _places(tool, where):
+        looked.append(place.source)
+        for folder in place.folders:
+            path = _in_folder(tool, folder, where)
+            if path is not None:
+                version = _version(tool, path)
+                old = bool(tool.oldest and version) and _order(version) < _order(tool.oldest)
+                return Finding(tool, "old" if old else "found", path, place.source, version, tuple(looked))
+        if place.stated:
+            return Finding(tool, "wrong", place.folders[0], place.source, looked=tuple(looked))
+    return Finding(tool, "missing", looked=tuple(looked))
+
+
+def read_cmake_cache(path: Path, diagnostics: Diagnostics) -> dict[str, str]:
+    """The variables of a ``CMakeCache.txt``, without those that say that nothing was found."""
+    text = read_text(path, diagnostics) or ""
+    found = re.findall(r"^([^#/\s][^:=\n]*):[A-Z]+=(.*)$", text, re.MULTILINE)
+    return {name: value for name, value in found if value and not value.endswith("NOTFOUND")}
+
+
+def _places(tool: Tool, where: Surroundings) -> Iterator[_Place]:
+    for name in tool.variables:
+        if where.cmake.get(name):
+            yield _Place(f"CMake variable {name}", [Path(where.cmake[name])], stated=True)
+    for name in tool.environment:
+        if where.environment.get(name):
+            yield _Place(f"environment variable {name}", [Path(where.environment[name])], stated=True)
+    if tool.programs:
+        found = (shutil.which(program, path=where.path) for program in tool.programs)
+        yield _Place("PATH", [Path(program) for program in found if program])
+    for pattern in tool.places:
+        yield _Place(pattern, _matches(pattern, where.home))
+    if tool.registry:
+        yield _Place(f"CMake's package registry ({tool.registry})", _registered(tool, where))
+    if tool.cached:
+        yield _Place("EPG's cache", _newest_first(where.cache.glob(tool.cached)))
+
+
+def _matches(pattern: str, home: Path) -> list[Path]:
+    """The folders that an absolute pattern stands for; ``~`` is the home folder."""
+    path = Path(pattern.replace("~", home.as_posix(), 1))
+    if not path.is_absolute():  # a place of another system
+        return []
+    return _newest_first(Path(path.anchor).glob(path.relative_to(path.anchor).as_posix()))
+
+
+def _registered(tool: Tool, where: Surroundings) -> list[Path]:
+    """Folders that packages have entered into CMake's user package registry, or the one above that is the tool's."""
+    folders = []
+    for entry in (where.home / ".cmake/packages" / tool.registry).glob("*"):
+        try:
+            folder = Path(entry.read_text(encoding="utf-8").strip())
+        except (OSError, ValueError):
+            continue
+        folders += [above for above in (folder, *folder.parents) if (above / tool.holds).is_file()][:1]
+    return _newest_first(folders)
+
+
+def _in_folder(tool: Tool, folder: Path, where: Surroundings) -> Path | None:
+    """The tool at ``folder``: the folder itself, or a program in it or its ``bin``, or the program of that name."""
+    if tool.holds:
+        return folder if (folder / tool.holds).is_file() else None
+    if folder.is_dir():
+        places = [(program, str(place)) for program in tool.programs for place in (folder, folder / "bin")]
+    else:  # CC="gcc -m32", or a name to be found in PATH
+        places = [(str(folder), where.path), (str(folder).split(" ")[0], where.path)]
+    found = (shutil.which(program, path=path) for program, path in places)
+    return next((Path(path) for path in found if path), None)
+
+
+def _version(tool: Tool, path: Path) -> str:
+    """The version as the tool states it, or "" when it does not."""
+    text = _said(path) if tool.programs else _read(path / tool.version_file)
+    parts = [match[1] for pattern in tool.version_patterns if (match := re.search(pattern, text)) is not None]
+    return ".".join(parts) if len(parts) == len(tool.version_patterns) else ""
+
+
+def _said(program: Path) -> str:
+    """What a program answers to ``--version``."""
+    try:
+        done = subprocess.run(
+            [str(program), "--version"],
+            capture_output=True,
+            text=True,
+            errors="replace",
+            timeout=TIMEOUT,
+            stdin=subprocess.DEVNULL,
+        )
+    except (OSError, subprocess.TimeoutExpired):
+        return ""
+    return done.stdout
+
+
+def _read(file: Path) -> str:
+    try:
+        return file.read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return ""
+
+
+def _newest_first(folders: Iterable[Path]) -> list[Path]:
+    return sorted(folders, key=lambda folder: (_order(folder.as_posix()), folder.as_posix()), reverse=True)
+
+
+def _order(version: str) -> tuple[int, ...]:
+    return tuple(int(digits) for digits in re.findall(r"\d+", version))

@@ -1,0 +1,114 @@
+"""The SDKs, compilers and programs that targets need: data in ``tools/<name>.json`` below the ``targets`` folders.
+
+JSON, because CMake reads it too, and because ``epg doctor`` must work before any Python package is there.
+
+>>> # tools = load_tools(targets_roots(), diagnostics)
+>>> # tools["pico_sdk"].get["any"]  ->  git clone ...
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from epg.diagnostics import Diagnostics
+from epg.load.text_file import read_text
+from epg.source import Span
+
+_NUMBERS = r"(\d+(?:\.\d+)+)"
+
+
+@dataclass(frozen=True)
+class Tool:
+    """A program (``programs``: its names, best first) or a folder (``holds``: a file that makes it the right one).
+
+    ``places`` are patterns of folders, ``cached`` one below EPG's cache.  ``tested`` is the version EPG is verified
+    with, ``oldest`` the first that will do.  ``get`` maps package managers (or ``any``) to the command that gets it;
+    ``{cache}`` in it stands for EPG's cache.  ``optional`` says why it may be missing.
+    """
+
+    name: str
+    title: str
+    needed_for: str
+    optional: str = ""
+    programs: tuple[str, ...] = ()
+    holds: str = ""
+    variables: tuple[str, ...] = ()  # of CMake
+    environment: tuple[str, ...] = ()
+    places: tuple[str, ...] = ()
+    registry: str = ""  # name in CMake's user package registry
+    cached: str = ""
+    oldest: str = ""
+    tested: str = ""
+    version_file: str = ""  # of a folder; a program is asked with --version
+    version_patterns: tuple[str, ...] = (_NUMBERS,)  # the parts of the version
+    get: Mapping[str, str] = field(default_factory=dict)
+
+
+def load_tools(roots: Iterable[Path], diagnostics: Diagnostics) -> dict[str, Tool]:
+    """All tools by name, in the order of their files; of two with one name the first root's, the user's, wins."""
+    tools: dict[str, Tool] = {}
+    for root in roots:
+        for path in sorted((root / "tools").glob("*.json")):
+            tool = _load(path, diagnostics)
+            if tool is not None:
+                tools.setdefault(tool.name, tool)
+    return tools
+
+
+def _load(path: Path, diagnostics: Diagnostics) -> Tool | None:
+    text = read_text(path, diagnostics)
+    if text is None:
+        return None
+    try:
+        return _tool(json.loads(text))
+    except json.JSONDecodeError as error:
+        span = Span(str(path), error.lineno, error.colno, error.colno + 1)
+        diagnostics.error("wrong-value", span, f"this is no JSON: {error.msg}")
+    except (KeyError, TypeError, ValueError, AttributeError, RecursionError, re.error):
+        span = Span(str(path), 1, 1, 2)
+        hint = "schemas/tool.schema.json says what such a file holds"
+        diagnostics.error("wrong-value", span, "this does not describe a tool", hint=hint)
+    return None
+
+
+def _tool(data: Mapping[str, Any]) -> Tool:
+    """The tool a file describes.  Raises what comes where ``schemas/tool.schema.json`` is not kept."""
+    if data["api"] != 1 or bool(data.get("programs")) == bool(data.get("holds")):
+        raise ValueError
+    version = data.get("version", {})
+    patterns = _texts(version.get("patterns", [_NUMBERS]))
+    return Tool(
+        name=_text(data["tool"]),
+        title=_text(data["title"]),
+        needed_for=_text(data["needed_for"]),
+        optional=_text(data.get("optional", "")),
+        programs=_texts(data.get("programs", [])),
+        holds=_text(data.get("holds", "")),
+        variables=_texts(data.get("variables", [])),
+        environment=_texts(data.get("environment", [])),
+        places=_texts(data.get("places", [])),
+        registry=_text(data.get("registry", "")),
+        cached=_text(data.get("cached", f"{data['tool']}-*")),
+        oldest=_text(data.get("oldest", "")),
+        tested=_text(data.get("tested", "")),
+        version_file=_text(version.get("file", "")),
+        version_patterns=tuple(re.compile(pattern).pattern for pattern in patterns),
+        get={_text(key): _text(command) for key, command in data["get"].items()},
+    )
+
+
+def _text(value: object) -> str:
+    if not isinstance(value, str):
+        raise TypeError
+    return value
+
+
+def _texts(values: object) -> tuple[str, ...]:
+    if not isinstance(values, list):
+        raise TypeError
+    return tuple(_text(value) for value in values)

@@ -1,0 +1,178 @@
+"""``epg doctor``: what is there, and the command for what is not."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from epg.cli.main import main
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+
+
+@pytest.fixture(autouse=True)
+def bare(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """No SDK in the home folder, the environment or EPG's cache; a PATH with what the tests put there."""
+    for name in list(os.environ):
+        if name.endswith(("_PATH", "_BASE", "_DIR")) or name in ("CC", "CXX", "EPG_NO_INSTALL"):
+            monkeypatch.delenv(name)
+    (tmp_path / "bin").mkdir()
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    monkeypatch.setenv("USERPROFILE", str(tmp_path / "home"))
+    monkeypatch.setenv("EPG_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setenv("PATH", str(tmp_path / "bin"))
+    return tmp_path
+
+
+def program(folder: Path, name: str, says: str) -> None:
+    file = folder / "bin" / name
+    file.write_text(f"#!/bin/sh\necho '{says}'\n")
+    file.chmod(0o755)
+
+
+def host_programs(folder: Path, cmake: str = "3.25.1") -> None:
+    program(folder, "cmake", f"cmake version {cmake}")
+    program(folder, "ninja", "1.11.1")
+    program(folder, "cc", "cc (Debian 12.2.0-14) 12.2.0")
+
+
+def doctor(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, dict[str, dict[str, Any]], bool]:
+    """Exit status, items by name, and whether the host target can be built."""
+    status = main(["doctor", "--json", *arguments])
+    data = json.loads(capsys.readouterr().out)
+    return status, {item["name"]: item for item in data["items"]}, data["host"]
+
+
+def test_a_computer_with_what_the_host_needs(bare: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    host_programs(bare)
+    status, items, host = doctor(capsys)
+    assert (status, host) == (0, True)
+    assert items["cmake"]["version"] == "3.25.1"
+    assert items["c_compiler"]["path"] == (bare / "bin/cc").as_posix()
+    assert items["python"]["path"] == sys.executable
+    assert items["pyyaml"]["version"]
+    assert items["cxx_compiler"]["status"] == "missing"
+    assert not items["cxx_compiler"]["required"]
+
+
+def test_a_computer_without_a_compiler(bare: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    host_programs(bare)
+    (bare / "bin/cc").unlink()
+    status, items, host = doctor(capsys)
+    assert (status, host) == (4, False)
+    assert items["c_compiler"]["status"] == "missing"
+    assert main(["doctor"]) == 4
+    assert capsys.readouterr().out.endswith("\nthe host target cannot be built\n")
+
+
+def test_an_old_cmake(bare: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    host_programs(bare, cmake="3.18.4")
+    status, items, _ = doctor(capsys)
+    assert status == 4
+    assert items["cmake"]["status"] == "old"
+    assert "3.22 or newer" in items["cmake"]["note"]
+
+
+@pytest.mark.parametrize(
+    ("manager", "command"),
+    [("apt-get", "apt install cmake"), ("brew", "brew install cmake"), ("", "python -m pip install cmake")],
+)
+def test_the_command_is_that_of_the_package_manager(
+    manager: str, command: str, bare: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    if manager:
+        program(bare, manager, "")
+    _, items, _ = doctor(capsys)
+    assert items["cmake"]["remedy"].removeprefix("sudo ") == command
+
+
+def test_sdks_are_found_where_their_installers_put_them(bare: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for version in ("2.1.1", "2.2.0"):
+        folder = bare / "home/.pico-sdk/sdk" / version
+        folder.mkdir(parents=True)
+        (folder / "pico_sdk_init.cmake").write_text("")
+    _, items, _ = doctor(capsys)
+    assert items["pico_sdk"]["path"] == (bare / "home/.pico-sdk/sdk/2.2.0").as_posix()
+    assert items["pico_sdk"]["source"] == "~/.pico-sdk/sdk/*"
+    assert items["zephyr"]["status"] == "missing"
+    assert items["zephyr"]["remedy"].startswith("west init")
+
+
+def test_commands_put_sdks_into_the_cache(bare: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    _, items, _ = doctor(capsys)
+    assert items["pico_sdk"]["remedy"].endswith(f" {(bare / 'cache').as_posix()}/pico_sdk-2.2.0")
+
+
+def test_a_variable_that_leads_nowhere(
+    bare: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("PICO_SDK_PATH", str(bare))
+    main(["doctor"])
+    text = capsys.readouterr().out
+    assert "there is no pico_sdk_init.cmake there" in text
+    assert "correct environment variable PICO_SDK_PATH" in text
+
+
+def test_variables_of_a_build_folder(bare: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (bare / "sdk").mkdir()
+    (bare / "sdk/pico_sdk_init.cmake").write_text("")
+    (bare / "build").mkdir()
+    (bare / "build/CMakeCache.txt").write_text(f"PICO_SDK_PATH:PATH={bare}/sdk\n")
+    _, items, _ = doctor(capsys, "--build", str(bare / "build"))
+    assert items["pico_sdk"]["source"] == "CMake variable PICO_SDK_PATH"
+    assert main(["doctor", "--build", str(bare / "nothing")]) == 1
+    assert "there is no file 'CMakeCache.txt'" in capsys.readouterr().err
+
+
+def test_packages_that_are_missing(bare: Path) -> None:
+    """Without any package, in a Python of its own, and nothing is installed by asking."""
+    host_programs(bare)
+    environment = {**os.environ, "EPG_NO_INSTALL": "1"}
+    command = [sys.executable, "-S", "-E", str(ROOT / "epg"), "doctor", "--json"]
+    done = subprocess.run(command, capture_output=True, text=True, env=environment)
+    assert done.stderr == ""
+    items = {item["name"]: item for item in json.loads(done.stdout)["items"]}
+    assert done.returncode == 4
+    assert items["jsonschema"]["status"] == "missing"
+    assert items["jsonschema"]["remedy"] == f"{sys.executable} -m pip install jsonschema"
+    assert items["cmake"]["status"] == "found"
+    assert not (bare / "cache").exists()
+
+
+def test_packages_of_the_cache_count(
+    bare: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from epg import bootstrap
+
+    monkeypatch.setitem(bootstrap.REQUIREMENTS, "plot", {"plotpackage": ("plotpackage", (1, 2))})
+    folder = bootstrap.package_folder("plot") / "plotpackage-1.3.dist-info"
+    _, items, _ = doctor(capsys)
+    assert items["plotpackage"]["status"] == "later"
+    folder.mkdir(parents=True)
+    (folder / "METADATA").write_text("Metadata-Version: 2.1\nName: plotpackage\nVersion: 1.3\n")
+    _, items, _ = doctor(capsys)
+    found = items["plotpackage"]
+    assert (found["status"], found["version"], found["source"]) == ("found", "1.3", "EPG's cache")
+
+
+def test_a_wrong_table_of_the_user(
+    bare: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (bare / "mine/tools").mkdir(parents=True)
+    (bare / "mine/tools/x.json").write_text("{")
+    monkeypatch.setenv("EPG_TARGETS_PATH", str(bare / "mine"))
+    assert main(["doctor"]) == 1
+    assert "this is no JSON" in capsys.readouterr().err
+
+
+def test_the_real_computer(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    """The one that runs these tests builds host targets, so all is there."""
+    monkeypatch.undo()
+    assert main(["doctor"]) == 0
+    assert capsys.readouterr().out.endswith("\nthe host target can be built\n")
