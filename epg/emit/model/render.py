@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
@@ -59,19 +60,26 @@ def render(model: Model, name: str, values: Mapping[str, float], instances: int)
     return files
 
 
+_PUBLIC = """t inputs inputs_t outputs outputs_t parameter parameter_t instance init step terminate stopped finite
+get_parameter set_parameter""".split()
+"""What follows ``<name>_`` in the names of types and functions of a library."""
+
+
 def parameter_constants(name: str, parameters: Sequence[Parameter]) -> list[str]:
     """Enumerators: ``PAN_PID1_KP``.  Parameters that differ in case only keep theirs: ``PAN_Kp``, ``PAN_KP``."""
     upper = [f"{name}_{parameter.identifier}".upper() for parameter in parameters]
     reserved = {
         f"{name}_{word}".upper() for word in ("h", "step_size", "instances", "parameters", "export_h", "names_h")
     }
-    result: list[str] = []
+    reserved |= {f"{name}_{word}" for word in _PUBLIC}  # a name in capitals: PAN_step() and parameters "step", "STEP"
+    result: dict[str, None] = {}  # in order
+    counts = Counter(upper)
     for constant, parameter in zip(upper, parameters, strict=True):
-        unique = constant if upper.count(constant) == 1 else f"{name.upper()}_{parameter.identifier}"
+        unique = constant if counts[constant] == 1 else f"{name.upper()}_{parameter.identifier}"
         while unique in reserved or unique in result:
             unique += "_"
-        result.append(unique)
-    return result
+        result[unique] = None
+    return list(result)
 
 
 @cache

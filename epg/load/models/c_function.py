@@ -17,11 +17,13 @@ from epg.load.models.assignments import (
     PortLine,
     assignments,
     exact_number,
+    finite,
     input_lines,
+    is_step,
     listed_names,
     output_lines,
 )
-from epg.load.models.c_code import Code, Function, Variable, integer_value, parse_code
+from epg.load.models.c_code import Code, Function, Variable, integer_value, parse_code, typedefs
 from epg.load.models.features import check_features, check_method, check_tokens
 from epg.load.models.folders import source_files
 from epg.load.models.link import Linked, link
@@ -34,6 +36,8 @@ from epg.source import Span
 SUFFIXES = (".c",)
 _ENTRY = re.compile(r"\w*?(Initialize|Calculate|Terminate)Submodel\w*")
 _METHODS = re.compile(r"(Discrete|Euler|RungeKutta2|RungeKutta4|MeBDFi|VodeAdams|BDF|AdamsBashford2?|Vode\w*)")
+_SCALAR = re.compile(r"(?<!\w)((?:\w{1,255}->)?\w{1,255})\s{0,80}=(?!=)\s{0,80}([^=;]+);", re.ASCII)
+_MOST_PARAMETERS = 16  # of a function that are looked at; exports have four
 _MEMORY_COUNTS = (
     "constants_count",
     "parameter_count",
@@ -78,6 +82,9 @@ class _Importer:
         self.whole = self.file.span(self.entries["Calculate"].start, self.entries["Calculate"].start + 1)
         self.macros = linked.macros()
         self.variables = {v.name: (c, v) for c in linked.units for v in c.variables if not v.static}
+        self.types: dict[str, str] = {
+            name: base.removeprefix("const ") for code in linked.all for name, base in typedefs(code)
+        }
         self.metadata: Metadata = find_metadata(self.file.path, self._name(), diagnostics)
         self.instance_type = self._instance_type()
 
@@ -175,7 +182,7 @@ class _Importer:
                 memory=self._memory(),
                 renames=self._renames(),
             ),
-            finish_time=float(finish) if finish is not None else None,
+            finish_time=finite(finish),
         )
         mine = self.diagnostics.error_count
         if self.metadata.tokens and cross_check(model, self._prefix(), self.metadata, self.diagnostics):
@@ -186,14 +193,14 @@ class _Importer:
 
     def _name(self) -> str:
         for code in (self.main, *self.linked.units, *self.linked.headers):
-            match = re.search(r"^\s*\*\s*subm:[ \t]*(\S[^\n]*?)[ \t]*$", code.file.text[:4000], re.MULTILINE)
-            if match:
-                return match[1]
+            match = re.search(r"^[ \t]*\*[ \t]*subm:([^\n]*)$", code.file.text[:4000], re.MULTILINE)
+            if match and match[1].strip():
+                return match[1].strip()
         return self.file.path.parent.name
 
     def _version(self) -> str:
         for code in (self.main, *self.linked.units, *self.linked.headers):
-            match = re.search(r"^\s*\*\s*build:[ \t]*([\d.]+)", code.file.text[:4000], re.MULTILINE)
+            match = re.search(r"^[ \t]*\*[ \t]*build:[ \t]*([\d.]+)", code.file.text[:4000], re.MULTILINE)
             if match:
                 return match[1]
         return self.metadata.version
@@ -233,13 +240,13 @@ class _Importer:
 
     def _instance_type(self) -> str:
         parameters = self.entries["Calculate"].parameters
-        match = re.match(r"(?:struct\s+)?(\w*ModelInstance\w*)\s*\*", parameters)
+        match = re.match(r"(?:struct\s+)?(\w*ModelInstance\w*)\s*\*", parameters, re.ASCII)
         return match[1] if match else ""
 
     def _entry(self, function: Function) -> details.EntryPoint:
         body = self.main.body(function) if function in self.main.functions else ""
         arguments: list[str] = []
-        for parameter in function.parameters.split(","):
+        for parameter in function.parameters.split(",")[:_MOST_PARAMETERS]:
             name = re.sub(r"\[.*", "", parameter).strip()
             name = name.split("*")[-1].split()[-1] if name.split() else ""
             if not name or name == "void":
@@ -247,7 +254,8 @@ class _Importer:
             if self.instance_type and self.instance_type in parameter:
                 arguments.append("instance")
             elif "*" in parameter or "[" in parameter:
-                passed = [match[1] for match in re.finditer(rf"(\w+)\s*\(\s*{re.escape(name)}\s*\)", body)]
+                call = rf"(?<!\w)(\w{{1,255}})\s{{0,80}}\(\s{{0,80}}{re.escape(name)}\s{{0,80}}\)"
+                passed = [match[1] for match in re.finditer(call, body)]
                 is_output = any("Output" in called for called in passed) or name.startswith("y")
                 arguments.append("y" if is_output and "y" not in arguments else "u" if "u" not in arguments else "y")
             elif "time" in arguments or "step" in arguments:
@@ -259,7 +267,7 @@ class _Importer:
 
     def _instance_header(self) -> str:
         for code in self.linked.headers:
-            if self.instance_type and re.search(rf"\}}\s*{self.instance_type}\s*;", code.file.code):
+            if self.instance_type and re.search(rf"\}}\s{{0,80}}{self.instance_type}\s*;", code.file.code):
                 return code.file.path.name
         return ""
 
@@ -272,7 +280,7 @@ class _Importer:
         if not self.instance_type:
             return ()
         text = "".join(code.file.code for code in self.linked.headers)
-        pointers = set(re.findall(r"\w+\s*\*\s*([CPIVsR])\s*;", text))
+        pointers = set(re.findall(r"(?<!\w)\w{1,255}\s{0,80}\*\s{0,80}([CPIVsR])\s{0,80};", text))
         counts: list[str] = []
         result: list[tuple[str, str]] = []
         for letter, word in zip("CPIVsR", _MEMORY_COUNTS, strict=True):
@@ -309,11 +317,10 @@ class _Importer:
             code, variable = self.variables[name]
             if variable.initializer:
                 return code.file.span(variable.start, variable.start + len(name)), variable.initializer
-        pattern = re.compile(rf"(?<!\w)(?:\w+->)?\w*{word}\w*\s*=\s*([^=;]+);")
         for file in [code.file for code in self.linked.units] + self._fmi_files():
-            for match in pattern.finditer(file.code):
-                if exact_number(match[1]) is not None:
-                    return file.span(match.start(), match.end()), match[1]
+            for match in _SCALAR.finditer(file.code):
+                if word in match[1] and exact_number(match[2]) is not None:
+                    return file.span(match.start(), match.end()), match[2]
         return None
 
     def _fmi_files(self) -> list[SourceFile]:
@@ -324,9 +331,9 @@ class _Importer:
     def _step(self) -> Fraction | None:
         place = self._scalar_place("step_size")
         value = exact_number(place[1]) if place else None
-        if value is None or value <= 0:
+        if not is_step(value):
             span = place[0] if place else self.whole
-            message = f"the step size '{place[1]}' is no positive number" if place else "the model has no step size"
+            message = f"the step size '{place[1][:80]}' is no positive number" if place else "the model has no step size"
             self.diagnostics.error(
                 "model-step", span, message, hint=f"the sources set it as '{self._step_name()} = 0.001;'"
             )
@@ -361,14 +368,10 @@ class _Importer:
         return self.metadata.tokens.count("NUMBER_STATES") if self.metadata.tokens else 0
 
     def _base_type(self, word: str) -> str:
-        types: dict[str, str] = {}
-        for code in self.linked.all:
-            for match in re.finditer(r"\btypedef\s+([\w ]+?)\s+(\w+)\s*;", code.file.code):
-                types[match[2]] = match[1].removeprefix("const ")
         for _ in range(4):
             if word in _BASE_TYPES:
                 return word
-            word = types.get(word, "")
+            word = self.types.get(word, "")
         return ""
 
     def _globals(self) -> tuple[details.GlobalVariable, ...]:
@@ -383,7 +386,7 @@ class _Importer:
                     result.append(details.GlobalVariable(name, base, count, ""))
                 continue
             value = exact_number(variable.initializer or "0")
-            if value is not None:
+            if value is not None and (base in ("double", "float") or abs(value) < 1 << 31) and finite(value) is not None:
                 result.append(details.GlobalVariable(name, base, 0, _value(value, base)))
         return tuple(result)
 
@@ -411,8 +414,8 @@ class _Importer:
                 return [], []
             return found
         for code, function in self.linked.reachable(roots):
-            for parameter in function.parameters.split(","):
-                match = re.search(r"(?:\*\s*|\s)(\w+)\s*(?:\[\s*\])?\s*$", parameter)
+            for parameter in function.parameters.split(",")[:_MOST_PARAMETERS]:
+                match = re.search(r"[* ](\w+) ?(?:\[ ?\])?$", " ".join(parameter.split()))
                 if match and ("*" in parameter or "[" in parameter):
                     inputs += input_lines(code.file, match[1], function.body_start, function.body_end)
                     outputs += output_lines(code.file, match[1], function.body_start, function.body_end)

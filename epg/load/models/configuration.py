@@ -7,11 +7,15 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics
 from epg.load.models.xml_file import Element, load_xml
 from epg.source import Span
+
+
+_INDEX = re.compile(r"[0-9]{1,9}")
 
 
 @dataclass(frozen=True)
@@ -39,8 +43,12 @@ class Configuration:
     finish: str
     ports: tuple[ConfiguredPort, ...]
 
+    @cached_property
+    def _by_name(self) -> dict[tuple[str, str], ConfiguredPort]:
+        return {(port.direction, port.name): port for port in reversed(self.ports)}
+
     def port(self, direction: str, name: str) -> ConfiguredPort | None:
-        return next((port for port in self.ports if port.direction == direction and port.name == name), None)
+        return self._by_name.get((direction, name))
 
 
 def find_configuration(directory: Path) -> Path | None:
@@ -85,7 +93,7 @@ def load_model_description(path: Path, diagnostics: Diagnostics) -> Configuratio
     for element in variables.children if variables else []:
         direction = element.attributes.get("causality", "")
         reference = element.attributes.get("valueReference", "")
-        if direction not in ("input", "output") or not reference.isdigit():
+        if direction not in ("input", "output") or not _INDEX.fullmatch(reference):
             continue
         kind = element.children[0].name.lower() if element.children else "real"
         unit = element.children[0].attributes.get("unit", "") if element.children else ""
@@ -119,7 +127,7 @@ def _port(element: Element) -> ConfiguredPort | None:
         _positive(element.text_of("size", "rows")),
         _positive(element.text_of("size", "columns")),
         element.text_of("storage", "name"),
-        int(index) if index.isdigit() and len(index) < 9 else -1,
+        int(index) if _INDEX.fullmatch(index) else -1,
         element.span,
     )
 
@@ -129,4 +137,4 @@ def _type(word: str) -> str:
 
 
 def _positive(text: str) -> int:
-    return int(text) if re.fullmatch(r"[1-9]\d{0,5}", text) else 1
+    return int(text) if re.fullmatch(r"[1-9][0-9]{0,5}", text) else 1

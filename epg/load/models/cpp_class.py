@@ -7,8 +7,8 @@ from fractions import Fraction
 
 from epg.diagnostics import Diagnostics
 from epg.load.models import details
-from epg.load.models.assignments import Assignment, assignments, exact_number, input_lines, output_lines
-from epg.load.models.c_code import Code, Function, integer_value
+from epg.load.models.assignments import Assignment, assignments, exact_number, finite, input_lines, is_step, output_lines
+from epg.load.models.c_code import Code, Function, integer_value, typedefs
 from epg.load.models.features import FIXED_STEP_METHODS, check_features, check_method, check_tokens
 from epg.load.models.link import Linked, link
 from epg.load.models.metadata import cross_check, find_metadata
@@ -17,6 +17,7 @@ from epg.load.models.ports import check_identifiers, make_parameters, make_ports
 from epg.source import Span
 
 SUFFIXES = (".cpp", ".cc", ".cxx")
+_MOST_PARAMETERS = 16  # of a method that are looked at; exports have three
 _NEEDED = {"CopyInputsToVariables", "Initialize", "Calculate"}
 
 
@@ -98,7 +99,7 @@ class _Importer:
                 rates=self._prefix() + "R",
                 places=tuple(tuple(self._place(line) for line in group) for group in places),
             ),
-            finish_time=float(finish) if finish is not None else None,
+            finish_time=finite(finish),
         )
         if tokens and cross_check(model, self._prefix(), self.metadata, self.diagnostics):
             check_tokens(tokens, self.diagnostics)
@@ -109,13 +110,13 @@ class _Importer:
 
     def _version(self) -> str:
         for code in (self.main, *self.linked.units, *self.linked.headers):
-            match = re.search(r"^\s*\*\s*build:[ \t]*([\d.]+)", code.file.text[:4000], re.MULTILINE)
+            match = re.search(r"^[ \t]*\*[ \t]*build:[ \t]*([\d.]+)", code.file.text[:4000], re.MULTILINE)
             if match:
                 return match[1]
         return self.metadata.version
 
     def _prefix(self) -> str:
-        match = re.search(r"\b(\w*?)step_size\s*=", self.file.code)
+        match = re.search(r"\b(\w{0,80}?)step_size\s*=", self.file.code, re.ASCII)
         return match[1] if match else "m_"
 
     def _parameter_array(self) -> str:
@@ -132,9 +133,9 @@ class _Importer:
     def _step(self) -> Fraction | None:
         place = self._place_of("step_size")
         value = exact_number(place[1]) if place else None
-        if value is None or value <= 0:
+        if not is_step(value):
             span = place[0] if place else self.whole
-            message = f"the step size '{place[1]}' is no positive number" if place else "the model has no step size"
+            message = f"the step size '{place[1][:80]}' is no positive number" if place else "the model has no step size"
             hint = f"{self.class_name}::Reset() sets it as 'm_step_size = 0.001;'"
             self.diagnostics.error("model-step", span, message, hint=hint)
             return None
@@ -163,8 +164,8 @@ class _Importer:
     def _ports(self, direction: str) -> tuple[Port, ...]:
         functions: list[tuple[Function, str]] = []
         for function in self.methods.values():
-            for parameter in function.parameters.split(","):
-                match = re.search(r"\*\s*(\w+)\s*$", parameter)
+            for parameter in function.parameters.split(",")[:_MOST_PARAMETERS]:
+                match = re.search(r"\* ?(\w+)$", " ".join(parameter.split()))
                 if match:
                     functions.append((function, match[1]))
         read = input_lines if direction == "input" else output_lines
@@ -192,7 +193,7 @@ class _Importer:
 
     def _real_type(self) -> str:
         for code in self.linked.headers:
-            match = re.search(r"\btypedef\s+([\w ]+?)\s+XXDouble\s*;", code.file.code)
-            if match:
-                return match[1]
+            for name, base in typedefs(code):
+                if name == "XXDouble":
+                    return base
         return "double"

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import bisect
 import re
 from collections.abc import Iterable, Sequence
+from pathlib import Path
 
 from epg.diagnostics import Diagnostics, Note
-from epg.load.models.c_code import KEYWORDS, Code, Function
+from epg.load.models.c_code import KEYWORDS, Code, Function, function_head
 from epg.load.models.identifiers import words
 from epg.load.models.link import Linked
 from epg.load.models.tokens import Tokens
@@ -27,6 +29,10 @@ STUBS = {
 _STUB_NAME = re.compile(rf"(?:XX|YY|[A-Z]\w*?_?)?({'|'.join(sorted(STUBS, key=len, reverse=True))})(?=[a-z_]|$)")
 _TRIVIAL_BODY = re.compile(r"\s*(?:return\s*\(?\s*(?:0(?:\.0*)?|XXFALSE|false)\s*\)?\s*;\s*)?")
 _DIRECTIVE = re.compile(r"^[ \t]*#[ \t]*(warning|error)\b[ \t]*([^\n]*)", re.MULTILINE)
+
+_CALLED = re.compile(r"(?<!\w)([A-Za-z_]\w{0,255})\s{0,80}\(", re.ASCII)
+_LONGEST_TYPEDEF = 2000
+_LONGEST_HEAD = 2000
 
 _HEAP = words("malloc calloc realloc free strdup aligned_alloc")
 _FILES = words(
@@ -96,9 +102,10 @@ def check_features(linked: Linked, roots: Sequence[Function], method_class: str,
         and function.result != "void"
     }
     told: set[str] = set()
+    declarations = _Declarations(linked)
     for code, function in reachable:
         for name, start in code.calls(function):
-            _check_declared(name, start, code, linked, told, diagnostics)
+            _check_declared(name, start, code, declarations, told, diagnostics)
             _check_call(name, start, code, stubs, known, told, diagnostics)
         if function.owner and not _may_allocate(function):
             for match in re.finditer(r"\bnew\b", code.body(function)):
@@ -115,19 +122,43 @@ def check_features(linked: Linked, roots: Sequence[Function], method_class: str,
             )
 
 
+class _Declarations:
+    """Where functions are defined and declared: asked for each call."""
+
+    def __init__(self, linked: Linked) -> None:
+        self._headers = [header.identifiers for header in linked.headers]
+        self._defined: dict[str, set[Path]] = {}  # by functions that other files see
+        self._own: dict[Path, set[str]] = {}
+        for unit in linked.units:
+            for function in unit.functions:
+                self._own.setdefault(unit.file.path, set()).add(function.name)
+                if not function.static:
+                    self._defined.setdefault(function.name, set()).add(unit.file.path)
+        self._prototypes: dict[Path, set[str]] = {}
+
+    def elsewhere(self, name: str, code: Code) -> bool:
+        """Whether another file than ``code`` defines the function."""
+        return bool(self._defined.get(name, set()) - {code.file.path})
+
+    def visible(self, name: str, code: Code) -> bool:
+        """Whether ``code`` defines or declares the function, or a header does."""
+        path = code.file.path
+        if name in self._own.get(path, ()) or any(name in header for header in self._headers):
+            return True
+        if path not in self._prototypes:
+            statements = (s for outside in _outside_bodies(code) for s in re.split(r"[{}]|(?<=;)", outside))
+            declared = (s for s in statements if s.rstrip("; \t\n").endswith(")") and s.endswith(";"))
+            self._prototypes[path] = {match[1] for s in declared for match in _CALLED.finditer(s)}
+        return name in self._prototypes[path]
+
+
 def _check_declared(
-    name: str, start: int, code: Code, linked: Linked, told: set[str], diagnostics: Diagnostics
+    name: str, start: int, code: Code, declarations: _Declarations, told: set[str], diagnostics: Diagnostics
 ) -> None:
     """Reports a call of a function of another C file that no header declares: C would take it to return int."""
-    if (
-        code.file.path.suffix != ".c"
-        or name in told
-        or not any(f.name == name for unit in linked.units if unit is not code for f in unit.functions if not f.static)
-    ):
+    if code.file.path.suffix != ".c" or name in told or not declarations.elsewhere(name, code):
         return
-    if any(f.name == name for f in code.functions) or any(name in header.identifiers for header in linked.headers):
-        return
-    if re.search(rf"\b{name}\s*\([^;{{}}]*\)\s*;", "".join(_outside_bodies(code))):
+    if declarations.visible(name, code):
         return
     told.add(name)
     span = code.file.span(start, start + len(name))
@@ -214,22 +245,39 @@ def _known_names(linked: Linked) -> set[str]:
     }
     known |= linked.macro_names() | KEYWORDS
     for code in linked.all:
-        known |= set(re.findall(r"\btypedef\b[^;]*?\b(\w+)\s*;", code.file.code))
-        known |= set(re.findall(r"\}\s*(\w+)\s*;", code.file.code))
-        known |= set(re.findall(r"\b(?:class|struct|union|enum)\s+(\w+)", code.file.code))
+        text = code.file.code
+        for match in re.finditer(r"\btypedef\b", text):
+            end = text.find(";", match.end(), match.end() + _LONGEST_TYPEDEF)
+            last = re.search(r"\w+$", text[match.end() : max(end, match.end())].rstrip()[-256:])
+            known |= {last[0]} if last else set()
+        known |= set(re.findall(r"\}\s{0,80}(\w{1,255})\s{0,80};", text))
+        known |= set(re.findall(r"\b(?:class|struct|union|enum)\s+(\w+)", text))
         if code.file.path.suffix.lower() != ".c":
-            inline = r"\b(\w+)\s*\([^;{}()]*\)\s*(?:const\s*)?(?::[^{};]*)?\{"
-            known |= set(re.findall(inline, code.file.code))
+            known |= _inline_functions(text)
     return known
+
+
+def _inline_functions(text: str) -> set[str]:
+    """Functions with a body anywhere in ``text``: those that a class defines inside its braces too."""
+    found = set()
+    start = 0
+    for match in re.finditer(r"[{};]", text):
+        if match[0] == "{":
+            head = function_head(text[max(start, match.start() - _LONGEST_HEAD) : match.start()])
+            found |= {head.name} if head else set()
+        start = match.end()
+    return found
 
 
 def _check_directives(linked: Linked, reachable: Iterable[tuple[Code, Function]], diagnostics: Diagnostics) -> None:
     """Reports ``#warning`` and ``#error`` texts of 20-sim's templates in code that runs, or outside of functions."""
     running = {(code.file.path, function.start) for code, function in reachable}
     for code in linked.all:
+        starts = [function.body_start for function in code.functions]
         for match in _DIRECTIVE.finditer(code.file.without_comments):
-            holder = next((f for f in code.functions if f.body_start <= match.start() < f.body_end), None)
-            if holder is not None and (code.file.path, holder.start) not in running:
+            before = bisect.bisect_right(starts, match.start()) - 1
+            holder = code.functions[before] if before >= 0 else None
+            if holder and match.start() < holder.body_end and (code.file.path, holder.start) not in running:
                 continue
             text = code.file.text[match.start(2) : match.end(2)].strip().strip('"')
             span = code.file.span(match.start(1), match.end(2))

@@ -49,13 +49,13 @@ def to_identifier(name: str) -> str:
 def unique_identifiers(names: Iterable[str]) -> list[str]:
     """Identifiers for ``names`` in order; the second and later ones of a collision get a number."""
     used: set[str] = set()
+    counts: dict[str, int] = {}
     result: list[str] = []
     for name in names:
         identifier = first = to_identifier(name)
-        count = 1
         while identifier in used:
-            count += 1
-            identifier = f"{first}_{count}"
+            counts[first] = counts.get(first, 1) + 1
+            identifier = f"{first}_{counts[first]}"
         used.add(identifier)
         result.append(identifier)
     return result

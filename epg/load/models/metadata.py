@@ -145,7 +145,8 @@ def _check_names(model: Model, tokens: Tokens, diagnostics: Diagnostics) -> bool
         same &= _differs(tokens.path, tokens.span(token), text, model.span, diagnostics)
     told = [name for name in tokens.names("PARAMETER") if name]
     known = [parameter.name for parameter in model.parameters]
-    missing = [name for name in known if name not in told]
+    listed = set(told)
+    missing = [name for name in known if name not in listed]
     if told and missing:
         text = f"no parameter '{missing[0]}', which the sources have"
         same &= _differs(tokens.path, tokens.span("PARAMETER_NAMES3"), text, model.span, diagnostics)

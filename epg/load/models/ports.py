@@ -30,7 +30,8 @@ def make_ports(
         by_index.setdefault(line.index, line)
     count = max(by_index, default=-1) + 1 if expected is None else expected
     vector = "u" if direction == "input" else "y"
-    missing = [index for index in range(count) if index not in by_index]
+    most = min(count, len(by_index) + 8)  # a count can be anything; eight missing ones are enough to tell
+    missing = [index for index in range(most) if index not in by_index]
     surplus = sorted(index for index in by_index if index >= count)
     if missing or surplus:
         listed = ", ".join(f"{vector}[{index}]" for index in (missing or surplus)[:8])

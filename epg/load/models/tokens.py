@@ -41,7 +41,7 @@ class Tokens:
     def count(self, name: str) -> int:
         """The number in token ``name``; 0 when there is none."""
         text = self.trimmed(name)
-        return int(text) if re.fullmatch(r"\d{1,9}", text) else 0
+        return int(text) if re.fullmatch(r"[0-9]{1,9}", text) else 0
 
     def span(self, name: str) -> Span:
         token = self.values.get(name)

@@ -6,7 +6,7 @@ import re
 
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.load.models import details
-from epg.load.models.assignments import assignments, exact_number, input_lines, output_lines
+from epg.load.models.assignments import assignments, exact_number, finite, input_lines, is_step, output_lines
 from epg.load.models.c_code import KEYWORDS
 from epg.load.models.features import FIXED_STEP_METHODS, STUBS, check_tokens
 from epg.load.models.identifiers import words
@@ -73,8 +73,8 @@ def load_tokens_model(tokens: Tokens, diagnostics: Diagnostics) -> Model | None:
         message = "the tokens were made for single precision"
         diagnostics.warning("model-single-precision", tokens.span("FLOATPOSTFIX"), message, hint=_EXPORT_HINT)
     step = exact_number(tokens.trimmed("TIME_STEP_SIZE"))
-    if step is None or step <= 0:
-        message = f"the step size '{tokens.trimmed('TIME_STEP_SIZE')}' is no positive number"
+    if not is_step(step):
+        message = f"the step size '{tokens.trimmed('TIME_STEP_SIZE')[:80]}' is no positive number"
         diagnostics.error("model-step", tokens.span("TIME_STEP_SIZE"), message, hint="export the model again")
     ports = []
     for kind, token, vector in (
@@ -110,7 +110,7 @@ def load_tokens_model(tokens: Tokens, diagnostics: Diagnostics) -> Model | None:
         files=(tokens.path,),
         span=whole,
         details=details.TokensExport(tokens, helpers),
-        finish_time=float(finish) if finish is not None else None,
+        finish_time=finite(finish),
     )
 
 
@@ -137,10 +137,8 @@ def _balanced(code: str) -> bool:
 
 def _comments_closed(text: str) -> bool:
     """Whether no comment of a token runs on into the code behind it."""
-    opened = 0
-    for match in re.finditer(r"/\*.*?(\*/|\Z)", text, re.DOTALL):
-        opened += not match[1]
-    return not opened and not re.search(r"//[^\n]*\Z", text)
+    last_line = text[text.rfind("\n") + 1 :]
+    return all(match[1] for match in re.finditer(r"/\*.*?(\*/|\Z)", text, re.DOTALL)) and "//" not in last_line
 
 
 def _check_calls(tokens: Tokens, diagnostics: Diagnostics) -> tuple[str, ...]:

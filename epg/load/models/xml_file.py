@@ -82,6 +82,7 @@ class _Builder:
         self.file = file
         self.root: Element | None = None
         self.stack: list[Element] = []
+        self.texts: list[list[str]] = []
         self.parser = expat.ParserCreate()
         self.parser.buffer_text = True
         self.parser.StartElementHandler = self._start
@@ -102,13 +103,14 @@ class _Builder:
         else:
             self.root = element
         self.stack.append(element)
+        self.texts.append([])
 
     def _end(self, _name: str) -> None:
-        self.stack.pop()
+        self.stack.pop().text = "".join(self.texts.pop())
 
     def _text(self, data: str) -> None:
-        if self.stack:
-            self.stack[-1].text += data
+        if self.texts:
+            self.texts[-1].append(data)
 
     def _doctype(self, *_arguments: object) -> None:
         raise _Refused("XML: document type declarations are not read")
