@@ -14,7 +14,7 @@ from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
-DATA = ("cmake", "targets", "schemas")
+DATA = ("cmake", "targets", "schemas", "docs/errors.md")
 
 
 class EpgBuildHook(BuildHookInterface):
@@ -25,22 +25,18 @@ class EpgBuildHook(BuildHookInterface):
         found = re.search(r'__version__ = "(.+?)"', (root / "epg/__init__.py").read_text(encoding="utf-8"))
         assert found
         self.folder = Path(tempfile.mkdtemp(prefix="epg-wheel-"))
-        forwarder = root / "cmake/forwarder"
-        config = (forwarder / "EPGConfig.cmake").read_text(encoding="utf-8")
-        if version == "editable":
-            checkout = (root / "cmake" / "EPGConfig.cmake").as_posix()
-            config = f'# Leads to the checkout of an editable install.\ninclude("{checkout}")\n'
-        else:
+        if version != "editable":
             for name in DATA:
                 build_data["force_include"][str(root / name)] = f"epg/_data/{name}"
-            build_data["force_include"][str(root / "docs/errors.md")] = "epg/_data/docs/errors.md"
-        files = {
-            "EPGConfig.cmake": config,
-            "EPGConfigVersion.cmake": (forwarder / "EPGConfigVersion.cmake")
-            .read_text(encoding="utf-8")
-            .replace("@VERSION@", found[1]),
+        forwarder = root / "cmake/forwarder"
+        sources = {
+            "EPGConfig.cmake": forwarder / ("EPGConfig.editable.cmake" if version == "editable" else "EPGConfig.cmake"),
+            "EPGConfigVersion.cmake": forwarder / "EPGConfigVersion.cmake",
+            "EPGCompatible.cmake": root / "cmake/EPGCompatible.cmake",
         }
-        for name, text in files.items():
+        for name, source in sources.items():
+            text = source.read_text(encoding="utf-8")
+            text = text.replace("@VERSION@", found[1]).replace("@CHECKOUT@", root.as_posix())
             (self.folder / name).write_text(text, encoding="utf-8")
             build_data["shared_data"][str(self.folder / name)] = f"share/EPG/cmake/{name}"
 

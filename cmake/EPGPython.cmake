@@ -42,7 +42,7 @@ function(_epg_run result)
   option(EPG_INSTALL_PYTHON_PACKAGES "Let EPG install Python packages it lacks into its own cache" ON)
   _epg_find_python(python)
   set(environment "EPG_ABSOLUTE_PATHS=1")
-  if(NOT EPG_INSTALL_PYTHON_PACKAGES)
+  if(NOT EPG_INSTALL_PYTHON_PACKAGES OR FETCHCONTENT_FULLY_DISCONNECTED)
     list(APPEND environment "EPG_NO_INSTALL=1")
   endif()
   _epg_user_folders(folders)
@@ -126,11 +126,15 @@ function(_epg_require_language language reason)
   endif()
 endfunction()
 
-# The options with which + - x / give the same bits on every target.
+# The options of all compiled code: + - x / give the same bits on every target.
 function(_epg_exact_arithmetic target)
   target_compile_options(${target} PRIVATE
     $<$<OR:$<C_COMPILER_ID:GNU,Clang,AppleClang,ARMClang>,$<CXX_COMPILER_ID:GNU,Clang,AppleClang,ARMClang>>:-ffp-contract=off>)
   set_target_properties(${target} PROPERTIES
     C_STANDARD 11 C_STANDARD_REQUIRED ON C_EXTENSIONS OFF
     CXX_STANDARD 17 CXX_STANDARD_REQUIRED ON CXX_EXTENSIONS OFF)
+  if(TARGET zephyr_interface)
+    # Zephyr keeps the flags that all code of an image must share, the processor's among them, in this target.
+    target_link_libraries(${target} PRIVATE zephyr_interface)
+  endif()
 endfunction()

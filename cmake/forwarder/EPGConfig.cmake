@@ -5,11 +5,12 @@ file(GLOB _epg_configs
   "${_epg_prefix}/lib*/python*/*-packages/epg/_data/cmake/EPGConfig.cmake"
   "${_epg_prefix}/local/lib*/python*/*-packages/epg/_data/cmake/EPGConfig.cmake"
   "${_epg_prefix}/[Ll]ib/*-packages/epg/_data/cmake/EPGConfig.cmake")
-list(LENGTH _epg_configs _epg_count)
-if(_epg_count EQUAL 0)
-  set(EPG_FOUND FALSE)
-  set(EPG_NOT_FOUND_MESSAGE "the Python package 'epg' is not below ${_epg_prefix}; set EPG_DIR to the output of 'python -m epg --cmake-dir'")
-else()
+if(_epg_configs)
+  list(SORT _epg_configs COMPARE NATURAL ORDER DESCENDING) # several Pythons share a prefix: the newest
   list(GET _epg_configs 0 _epg_config)
   include("${_epg_config}")
+else()
+  set(EPG_FOUND FALSE)
+  set(EPG_NOT_FOUND_MESSAGE
+    "the Python package 'epg' is not below ${_epg_prefix}; set EPG_DIR to the output of 'python -m epg --cmake-dir'")
 endif()

@@ -85,4 +85,4 @@ def test_an_editable_install_leads_to_the_checkout(tmp_path: Path) -> None:
         names = archive.namelist()
         assert not [name for name in names if "_data/" in name.replace(".data/data", "")]
         (config,) = [name for name in names if name.endswith("EPGConfig.cmake")]
-        assert f'include("{ROOT.as_posix()}/cmake/EPGConfig.cmake")' in archive.read(config).decode()
+        assert f"[==[{ROOT.as_posix()}/cmake/EPGConfig.cmake]==]" in archive.read(config).decode()

@@ -1,0 +1,8 @@
+# Leads to the checkout of an editable install.
+set(_epg_config [==[@CHECKOUT@/cmake/EPGConfig.cmake]==])
+if(EXISTS "${_epg_config}")
+  include("${_epg_config}")
+else()
+  set(EPG_FOUND FALSE)
+  set(EPG_NOT_FOUND_MESSAGE "the checkout of an editable install is gone: there is no ${_epg_config}")
+endif()
