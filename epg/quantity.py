@@ -62,8 +62,9 @@ SPELLINGS = {
     "1": "",
 }
 
-_NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?"
+_NUMBER = r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
 _QUANTITY = re.compile(rf"({_NUMBER})\s*(\S.*?)?\s*")
+_LONGEST = 200
 _RATIO = re.compile(rf"({_NUMBER})\s*/\s*({_NUMBER})")
 
 
@@ -112,7 +113,7 @@ def parse_ratio(value: object) -> Fraction:
     if isinstance(value, float) and math.isfinite(value):
         return Fraction(repr(value))
     if isinstance(value, str):
-        match = _RATIO.fullmatch(value.strip())
+        match = _RATIO.fullmatch(value.strip()) if len(value) <= _LONGEST else None
         if match and _is_small(match[1]) and _is_small(match[2]) and Fraction(match[2]) != 0:
             return Fraction(match[1]) / Fraction(match[2])
     raise QuantityError("this is no ratio", "write a number or a ratio such as 5625/361")
@@ -134,9 +135,9 @@ def parse_quantity(value: object, dimension: str) -> Fraction | float:
         )
     if not isinstance(value, str):
         raise QuantityError(f"this is no {dimension}", example)
-    match = _QUANTITY.fullmatch(value.strip())
+    match = _QUANTITY.fullmatch(value.strip()) if len(value) <= _LONGEST else None
     if not match or not _is_small(match[1]):
-        raise QuantityError(f"'{value}' is no {dimension}", example)
+        raise QuantityError(f"'{value if len(value) <= 60 else value[:57] + '...'}' is no {dimension}", example)
     unit = normal_unit(match[2] or "")
     if unit not in UNITS or (not unit and dimension != "ratio"):
         if not unit:

@@ -11,6 +11,7 @@ from epg.check.schema import load_schema, validate
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.load.catalog import Catalog, CatalogCheck
 from epg.load.hardware import Target
+from epg.load.text_file import is_file
 from epg.source import Node, Span
 
 
@@ -81,7 +82,7 @@ def _files_exist(node: Node, path: tuple[str, ...], names: Collection[Node], dia
     """Reports names in ``node`` that are no files beside it."""
     folder = Path(node.span.file).parent
     for name in names:
-        if not (folder / str(name.value)).is_file():
+        if not is_file(folder / str(name.value)):
             there = [file.name for file in folder.iterdir() if file.is_file()]
             hint = did_you_mean(str(name.value), there, "in that folder")
             message = f"{'.'.join(path)}: there is no file '{name.value}'"

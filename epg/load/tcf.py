@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics, did_you_mean
-from epg.load.text_file import read_text
-from epg.load.yaml_file import parse_yaml
+from epg.load.text_file import is_file, read_text
+from epg.load.yaml_file import MAX_DEPTH, parse_yaml
 from epg.source import Node, Span
 
 _20SIM_4C = re.compile(r"\s*(<\?xml|<!DOCTYPE|<[A-Za-z])")
@@ -37,13 +37,14 @@ def find_tcf(name: str, beside: Path, roots: Iterable[Path]) -> Path | None:
     """The file ``name`` (with or without ``.tcf``): a path relative to ``beside``, or a robot's file in ``roots``."""
     names = _file_names(name)
     for path in _candidates(name, beside):
-        if path.is_file():
+        if is_file(path):
             return path
     if any(separator in name for separator in "/\\"):
         return None
     for root in roots:
+        robots = sorted((root / "robots").glob("*/"))
         for candidate in names:
-            found = sorted((root / "robots").glob(f"*/{candidate}"))
+            found = [robot / candidate for robot in robots if is_file(robot / candidate)]
             if found:
                 return found[0]
     return None
@@ -131,7 +132,7 @@ def settings_node(settings: Iterable[tuple[str, Span]], diagnostics: Diagnostics
     for text, span in settings:
         key, equals, value = text.partition("=")
         path = tuple(key.strip().split("."))
-        if not equals or not all(path):
+        if not equals or not all(path) or len(path) > MAX_DEPTH:
             diagnostics.error(
                 "wrong-setting",
                 span,

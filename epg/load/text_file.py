@@ -49,6 +49,22 @@ def read_text(path: Path, diagnostics: Diagnostics, wanted_by: Span | None = Non
     return text
 
 
+def is_file(path: Path) -> bool:
+    """Whether there is a file of that name; no name a user can write raises, however long it is."""
+    try:
+        return path.is_file()
+    except (OSError, ValueError):
+        return False
+
+
+def is_folder(path: Path) -> bool:
+    """Whether there is a folder of that name; see :func:`is_file`."""
+    try:
+        return path.is_dir()
+    except (OSError, ValueError):
+        return False
+
+
 def _position(before: str) -> tuple[int, int]:
     lines = re.split("\r\n|\r|\n|\x85|\u2028|\u2029", before)
     return len(lines), len(lines[-1]) + 1

@@ -186,8 +186,8 @@ def _word_before(text: str, end: int) -> tuple[int, str]:
 
 def _opens_type(head: str) -> bool:
     """Whether ``head`` is that of an initialiser or of a type instead of a function's."""
-    end = head.rstrip()
-    return end.endswith("=") or re.search(r"\b(?:struct|union|enum|class|namespace)(?:\s+\w+)?$", end[-300:]) is not None
+    end = head.rstrip()[-300:]
+    return re.search(r"=$|\b(?:struct|union|enum|class|namespace)(?:\s+\w+)?$", end) is not None
 
 
 def typedefs(code: Code) -> Iterator[tuple[str, str]]:

@@ -333,7 +333,9 @@ class _Importer:
         value = exact_number(place[1]) if place else None
         if not is_step(value):
             span = place[0] if place else self.whole
-            message = f"the step size '{place[1][:80]}' is no positive number" if place else "the model has no step size"
+            message = "the model has no step size"
+            if place:
+                message = f"the step size '{place[1][:80]}' is no positive number"
             self.diagnostics.error(
                 "model-step", span, message, hint=f"the sources set it as '{self._step_name()} = 0.001;'"
             )
@@ -386,7 +388,8 @@ class _Importer:
                     result.append(details.GlobalVariable(name, base, count, ""))
                 continue
             value = exact_number(variable.initializer or "0")
-            if value is not None and (base in ("double", "float") or abs(value) < 1 << 31) and finite(value) is not None:
+            floating = base in ("double", "float")
+            if value is not None and finite(value) is not None and (floating or abs(value) < 1 << 31):
                 result.append(details.GlobalVariable(name, base, 0, _value(value, base)))
         return tuple(result)
 

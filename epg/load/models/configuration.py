@@ -14,7 +14,6 @@ from epg.diagnostics import Diagnostics
 from epg.load.models.xml_file import Element, load_xml
 from epg.source import Span
 
-
 _INDEX = re.compile(r"[0-9]{1,9}")
 
 

@@ -7,7 +7,15 @@ from fractions import Fraction
 
 from epg.diagnostics import Diagnostics
 from epg.load.models import details
-from epg.load.models.assignments import Assignment, assignments, exact_number, finite, input_lines, is_step, output_lines
+from epg.load.models.assignments import (
+    Assignment,
+    assignments,
+    exact_number,
+    finite,
+    input_lines,
+    is_step,
+    output_lines,
+)
 from epg.load.models.c_code import Code, Function, integer_value, typedefs
 from epg.load.models.features import FIXED_STEP_METHODS, check_features, check_method, check_tokens
 from epg.load.models.link import Linked, link
@@ -135,7 +143,9 @@ class _Importer:
         value = exact_number(place[1]) if place else None
         if not is_step(value):
             span = place[0] if place else self.whole
-            message = f"the step size '{place[1][:80]}' is no positive number" if place else "the model has no step size"
+            message = "the model has no step size"
+            if place:
+                message = f"the step size '{place[1][:80]}' is no positive number"
             hint = f"{self.class_name}::Reset() sets it as 'm_step_size = 0.001;'"
             self.diagnostics.error("model-step", span, message, hint=hint)
             return None

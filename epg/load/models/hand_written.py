@@ -5,6 +5,7 @@ The whole file is checked here, by the same rules as ``schemas/model.schema.json
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping
 from fractions import Fraction
@@ -12,12 +13,14 @@ from pathlib import Path
 
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.load.models import details
+from epg.load.models.assignments import is_step
 from epg.load.models.c_code import parse_code
 from epg.load.models.folders import source_files
 from epg.load.models.identifiers import RESERVED, to_identifier
 from epg.load.models.model import Model, Parameter, Port
 from epg.load.models.ports import check_identifiers
 from epg.load.models.source_file import read_source
+from epg.load.text_file import is_file, is_folder
 from epg.load.yaml_file import load_yaml
 from epg.quantity import QuantityError, parse_quantity
 from epg.source import Node, Span
@@ -46,8 +49,9 @@ _REQUIRED = ("version", "step", "sources", "header", "functions", "outputs")
 _FUNCTIONS = ("init", "step", "terminate", "stopped", "finite")
 _PORT_KEYS = ("unit", "type", "description")
 _PARAMETER_KEYS = ("value", "unit", "member", "description")
-_TYPE = re.compile(r"(?:struct )?[A-Za-z_]\w*(?:::[A-Za-z_]\w*)*")
-_IDENTIFIER = re.compile(r"[A-Za-z_]\w{0,62}")
+_TYPE = re.compile(r"(?:struct )?[A-Za-z_]\w*(?:::[A-Za-z_]\w*)*", re.ASCII)
+_IDENTIFIER = re.compile(r"[A-Za-z_]\w{0,62}", re.ASCII)
+_MEMBER = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*|\[\d{1,9}\])*", re.ASCII)
 _SUFFIXES = {"c": (".c",), "c++": (".cpp", ".cc", ".cxx")}
 
 
@@ -151,10 +155,12 @@ class _Reader:
                 "wrong-unit" if "unit" in str(problem) else "wrong-quantity", node.span, str(problem), problem.hint
             )
             return None
-        if value <= 0:
-            self._error("out-of-range", node.span, "the step must be more than 0", "write for example '1 ms'")
+        step = Fraction(value)
+        if not is_step(step):
+            words = "must be more than 0" if step <= 0 else "must be from 1 ns to 1000000 s"
+            self._error("out-of-range", node.span, f"the step {words}", "write for example '1 ms'")
             return None
-        return Fraction(value)
+        return step
 
     def _text(self, key: str) -> str:
         node = self.node.get(key)
@@ -289,8 +295,11 @@ class _Reader:
                 where = number.span if number else span
                 self._error("wrong-type", where, f"parameter '{name}' needs a number", "write for example {value: 2.0}")
                 continue
+            if not math.isfinite(float(number.value)):
+                self._error("wrong-value", number.span, f"parameter '{name}' must be finite", "")
+                continue
             member = self._word(value, "member") or name
-            if not re.fullmatch(r"[A-Za-z_]\w*(?:(?:\.|\[\d+\])\w*)*", member):
+            if not _MEMBER.fullmatch(member):
                 what = "member of the instance" if instance else "variable of the header"
                 self._error("invalid-name", span, f"'{member}' is no {what}", "set 'member'")
                 continue
@@ -330,8 +339,8 @@ class _Reader:
             if suffixes and path.suffix.lower() not in suffixes:
                 hint = f"sources of this language end in {', '.join(suffixes)}; 'language' is c or c++"
                 self._error("wrong-value", element.span, f"'{element.value}' has another suffix", hint)
-            elif not (path.is_file() if suffixes else path.is_dir()):
-                folder = path.parent if path.parent.is_dir() else self.path.parent
+            elif not (is_file(path) if suffixes else is_folder(path)):
+                folder = path.parent if is_folder(path.parent) else self.path.parent
                 known = [entry.name for entry in sorted(folder.iterdir()) if not suffixes or entry.suffix in suffixes]
                 message = f"there is no {'file' if suffixes else 'folder'} '{element.value}'"
                 self._error(
@@ -343,7 +352,7 @@ class _Reader:
 
     def _header(self, directories: tuple[Path, ...]) -> str:
         name = self._text("header")
-        if name and not any((folder / name).is_file() for folder in directories):
+        if name and not any(is_file(folder / name) for folder in directories):
             node = self.node["header"]
             known = [entry.name for folder in directories for entry in source_files(folder, (".h", ".hpp", ".hh"), 0)]
             self._error(

@@ -15,6 +15,7 @@ from epg.diagnostics import Diagnostics, Note
 from epg.load.models.c_code import Code, Function, Include, parse_code
 from epg.load.models.folders import source_files
 from epg.load.models.source_file import SourceFile, read_source
+from epg.load.text_file import is_file
 from epg.source import Span
 
 _FMI_FILE = re.compile(r"fmi\w*functions?\w*\.c$", re.IGNORECASE)
@@ -92,7 +93,7 @@ def is_program(path: Path) -> bool:
 def link(main: Code, suffixes: Iterable[str], diagnostics: Diagnostics) -> Linked | None:
     """The files that ``main`` needs; None after reporting an ambiguous definition or a missing header."""
     directory = main.file.path.parent
-    pool = _pool(main, directory, suffixes)
+    pool = _pool(main, directory, suffixes, diagnostics)
     definitions = _definitions(pool)
     units = [main]
     headers: dict[Path, Code] = {}
@@ -144,12 +145,16 @@ def link(main: Code, suffixes: Iterable[str], diagnostics: Diagnostics) -> Linke
     )
 
 
-def _pool(main: Code, directory: Path, suffixes: Iterable[str]) -> list[Code]:
+def _pool(main: Code, directory: Path, suffixes: Iterable[str], diagnostics: Diagnostics) -> list[Code]:
+    """The files that may belong to the model.  One that cannot be read is named: what it defines may be missing."""
     codes = [main]
     for path in source_files(directory, suffixes):
         if path == main.file.path or is_program(path):
             continue
-        file = read_source(path, Diagnostics())
+        problems = Diagnostics()
+        file = read_source(path, problems)
+        for problem in problems:
+            diagnostics.warning("model-unreadable", problem.span, problem.message, hint=problem.hint)
         if file is None:
             continue
         code = parse_code(file)
@@ -231,7 +236,7 @@ def _collect_headers(
 def _find_header(include: Include, file: SourceFile, search: list[Path]) -> Path | None:
     for directory in (file.path.parent, *search):
         path = directory / include.name
-        if path.is_file():
+        if is_file(path):
             return path
     return None
 
