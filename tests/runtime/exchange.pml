@@ -8,7 +8,8 @@
  * assertion `unshared` shows that the plain words are free of data races.
  *
  * Neither process has a loop or a wait inside one operation, and spin reports a state in which one cannot go on as
- * an invalid end state: both sides are wait-free, in at most eight steps.
+ * an invalid end state: both sides are wait-free, in at most nine steps.  epg_exchange_take() asks for `writes` once
+ * more in epg_exchange_read(), which decides nothing: the count never returns to 0.
  *
  * BROKEN_... leave out one rule of the algorithm each; spin must refuse all of them.  WITHOUT_UNSHARED leaves out
  * the assertion `unshared`, which most of them hit first, so that the assertions on values are seen to work as well.
@@ -31,7 +32,7 @@ byte second[4];
 bit latest;
 bit reading;
 bit slot[2];
-bool written;
+byte writes;            /* writes that have finished */
 
 byte finished;          /* newest value whose write has returned */
 byte being_written = NONE;
@@ -63,6 +64,9 @@ active proctype writer()
             second[2 * pair + index] = value;
             being_written = NONE;
         }
+#ifdef BROKEN_COUNT_BEFORE_PAIR
+        writes = value;
+#endif
 #ifdef BROKEN_PAIR_BEFORE_SLOT
         latest = pair;
         slot[pair] = index;
@@ -70,7 +74,7 @@ active proctype writer()
         slot[pair] = index;
         latest = pair;
 #endif
-        d_step { written = true; finished = value; }
+        d_step { writes = value; finished = value; }
         value++
     :: else -> break
     od
@@ -83,15 +87,29 @@ active proctype reader()
     byte expected;
     byte one;
     byte two;
+    byte seen;
+    byte taken;
+    bit take;
     bit pair;
     bit index;
     do
     :: count < READS ->
         expected = finished;
         if
-        :: !written ->
+        :: take = 0
+        :: take = 1 /* epg_exchange_take() */
+        fi;
+        seen = writes;
+        if
+        :: seen == 0 ->
             assert(expected == 0) /* empty only before the first write has returned */
+        :: seen != 0 && take && seen == taken ->
+            assert(before >= expected) /* nothing to take only if the value read before is the newest */
         :: else ->
+            if
+            :: take -> taken = seen
+            :: else
+            fi;
             pair = latest;
 #ifdef BROKEN_ANNOUNCES_LATE
             index = slot[pair];

@@ -27,6 +27,7 @@ BROKEN_MODELS = {
     "BROKEN_SLOT_BEFORE_DATA",
     "BROKEN_PAIR_BEFORE_SLOT",
     "BROKEN_ANNOUNCES_LATE",
+    "BROKEN_COUNT_BEFORE_PAIR",
 }
 
 needs_spin = pytest.mark.skipif(shutil.which("spin") is None, reason="spin is not installed: apt install spin")
@@ -70,6 +71,7 @@ def test_spin_refuses_a_broken_model(tmp_path: Path, broken: str) -> None:
         ("BROKEN_SLOT_BEFORE_DATA", "one==two"),
         ("BROKEN_ANNOUNCES_LATE", "one==two"),
         ("BROKEN_PAIR_BEFORE_SLOT", "one>="),
+        ("BROKEN_COUNT_BEFORE_PAIR", "before>=expected"),
     ],
 )
 def test_spin_sees_the_wrong_value_itself(tmp_path: Path, broken: str, assertion: str) -> None:
@@ -85,7 +87,8 @@ def test_model_and_code_have_the_same_statements() -> None:
 
     code = EXCHANGE.read_text()
     write = code[code.index("void epg_exchange_write") : code.index("bool epg_exchange_read")]
-    read = code[code.index("bool epg_exchange_read") :]
+    read = code[code.index("bool epg_exchange_read") : code.index("bool epg_exchange_take")]
+    take = code[code.index("bool epg_exchange_take") :]
     in_code = r"&exchange->(\w+)|(memcpy)"
     assert ["".join(match) for match in re.findall(in_code, write)] == [
         "reading",
@@ -93,12 +96,14 @@ def test_model_and_code_have_the_same_statements() -> None:
         "memcpy",
         "slot",
         "latest",
-        "written",
+        "writes",  # stored; loaded is its own count, which nobody else changes
+        "writes",
     ]
-    assert ["".join(match) for match in re.findall(in_code, read)] == ["written", "latest", "reading", "slot", "memcpy"]
+    assert ["".join(match) for match in re.findall(in_code, read)] == ["writes", "latest", "reading", "slot", "memcpy"]
+    assert ["".join(match) for match in re.findall(in_code, take)] == ["writes"]
 
     model = _without_broken(MODEL.read_text())
-    shared = r"\b(reading|latest|written|slot)\b(?=[ ;\[])|(second)\["
+    shared = r"\b(reading|latest|writes|slot)\b(?=[ ;\[])|(second)\["
     writer = model[model.index("proctype writer") : model.index("proctype reader")]
     reader = model[model.index("proctype reader") :]
     assert ["".join(match) for match in re.findall(shared, writer)] == [
@@ -107,10 +112,10 @@ def test_model_and_code_have_the_same_statements() -> None:
         "second",
         "slot",
         "latest",
-        "written",
+        "writes",
     ]
     assert ["".join(match) for match in re.findall(shared, reader)] == [
-        "written",
+        "writes",
         "latest",
         "reading",
         "slot",

@@ -64,7 +64,9 @@ static void handle_request(epg_control_t *control, bool permitted, uint64_t now_
 static void command(epg_control_t *control, uint64_t now_ns)
 {
     const epg_application_t *application = control->application;
-    const bool taken = epg_setpoints_take(application);
+    const bool taken = application->setpoint_exchange != NULL &&
+                       epg_exchange_take(application->setpoint_exchange, application->samples) &&
+                       epg_setpoints_take(application);
     const bool permitted = application->fail_safe == NULL || application->fail_safe();
     handle_request(control, permitted, now_ns);
     if (!permitted) {

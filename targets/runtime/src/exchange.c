@@ -17,7 +17,8 @@ static void *slot(const epg_exchange_t *exchange, unsigned int pair, unsigned in
 
 void epg_exchange_clear(epg_exchange_t *exchange)
 {
-    atomic_store(&exchange->written, false);
+    exchange->taken = 0U;
+    atomic_store(&exchange->writes, 0U);
     atomic_store(&exchange->latest, 0U);
     atomic_store(&exchange->reading, 0U);
     atomic_store(&exchange->slot[0], 0U);
@@ -31,12 +32,12 @@ void epg_exchange_write(epg_exchange_t *exchange, const void *value)
     memcpy(slot(exchange, pair, index), value, exchange->size);
     atomic_store(&exchange->slot[pair], index);
     atomic_store(&exchange->latest, pair);
-    atomic_store(&exchange->written, true);
+    atomic_store(&exchange->writes, (atomic_load(&exchange->writes) + 2U) | 1U);
 }
 
 bool epg_exchange_read(epg_exchange_t *exchange, void *value)
 {
-    if (!atomic_load(&exchange->written)) {
+    if (atomic_load(&exchange->writes) == 0U) {
         return false;
     }
     const unsigned int pair = atomic_load(&exchange->latest);
@@ -44,4 +45,15 @@ bool epg_exchange_read(epg_exchange_t *exchange, void *value)
     const unsigned int index = atomic_load(&exchange->slot[pair]);
     memcpy(value, slot(exchange, pair, index), exchange->size);
     return true;
+}
+
+bool epg_exchange_take(epg_exchange_t *exchange, void *value)
+{
+    /* Asked for before the value: a write that finishes in between is given now, and once more with the next call. */
+    const unsigned int writes = atomic_load(&exchange->writes);
+    if (writes == exchange->taken) {
+        return false;
+    }
+    exchange->taken = writes;
+    return epg_exchange_read(exchange, value);
 }

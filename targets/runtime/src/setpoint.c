@@ -25,10 +25,6 @@ bool epg_setpoints_start(const epg_application_t *application)
 bool epg_setpoints_take(const epg_application_t *application)
 {
     bool taken = false;
-    if (application->setpoint_exchange == NULL ||
-        !epg_exchange_read(application->setpoint_exchange, application->samples)) {
-        return false;
-    }
     for (size_t i = 0; i < application->setpoint_count; i++) {
         const epg_setpoint_sample_t *sample = &application->samples[i];
         epg_setpoint_state_t *state = &application->setpoint_states[i];

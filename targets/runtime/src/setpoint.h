@@ -10,7 +10,7 @@
 /** All setpoints to their initial values, all samples forgotten.  True if one has a timeout or a rate limit. */
 bool epg_setpoints_start(const epg_application_t *application);
 
-/** Takes over the newest samples; false when there is none that is new. */
+/** Takes over samples that have been read from the exchange; false when none of them is new. */
 bool epg_setpoints_take(const epg_application_t *application);
 
 /** Their ages count from `now_ns` on: the target is being enabled. */

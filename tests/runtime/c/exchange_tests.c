@@ -2,6 +2,8 @@
  * @file
  * The exchange from one thread: what a write leaves for a read.  Two threads: stress.c and exchange.pml.
  */
+#include <limits.h>
+
 #include "check.h"
 #include "epg/exchange.h"
 
@@ -59,6 +61,35 @@ TEST(a_value_may_be_read_again)
     CHECK(holds(5));
 }
 
+TEST(a_value_is_taken_once)
+{
+    value_t value = {.number = 77};
+    CHECK(!epg_exchange_take(&exchange, &value));
+    CHECK(value.number == 77);
+    write_number(5);
+    CHECK(epg_exchange_take(&exchange, &value) && value.number == 5);
+    value.number = 77;
+    CHECK(!epg_exchange_take(&exchange, &value));
+    CHECK(value.number == 77);
+    CHECK(holds(5)); /* reading it is another matter */
+    write_number(6);
+    write_number(7);
+    CHECK(epg_exchange_take(&exchange, &value) && value.number == 7);
+    CHECK(!epg_exchange_take(&exchange, &value));
+}
+
+TEST(the_count_of_writes_may_wrap)
+{
+    value_t value;
+    write_number(1);
+    CHECK(epg_exchange_take(&exchange, &value));
+    atomic_store(&exchange.writes, UINT_MAX);
+    CHECK(epg_exchange_take(&exchange, &value));
+    write_number(2);
+    CHECK(epg_exchange_take(&exchange, &value) && value.number == 2);
+    CHECK(holds(2));
+}
+
 TEST(cleared_is_empty)
 {
     write_number(5);
@@ -66,7 +97,9 @@ TEST(cleared_is_empty)
     epg_exchange_clear(&exchange);
     value_t value;
     CHECK(!epg_exchange_read(&exchange, &value));
+    CHECK(!epg_exchange_take(&exchange, &value));
 }
 
 RUN(ENTRY(empty_until_the_first_write), ENTRY(every_pattern_of_reads_and_writes_gives_the_newest),
-    ENTRY(a_value_may_be_read_again), ENTRY(cleared_is_empty))
+    ENTRY(a_value_may_be_read_again), ENTRY(a_value_is_taken_once), ENTRY(the_count_of_writes_may_wrap),
+    ENTRY(cleared_is_empty))

@@ -83,8 +83,9 @@ int main(int argc, char **argv)
 #else
             const uint64_t expected = atomic_load(&finished);
 #endif
-            if (!epg_exchange_read(&exchange, &value)) {
-                stale += expected > 0;
+            const bool given = i % 2 == 0 ? epg_exchange_read(&exchange, &value) : epg_exchange_take(&exchange, &value);
+            if (!given) {
+                stale += last < expected;
                 continue;
             }
             reads++;

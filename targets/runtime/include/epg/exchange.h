@@ -25,7 +25,8 @@ typedef struct epg_exchange {
     atomic_uint latest;  /**< pair written last: 0 or 1 */
     atomic_uint reading; /**< pair the reader works on: 0 or 1 */
     atomic_uint slot[2]; /**< slot written last in each pair: 0 or 1 */
-    atomic_bool written; /**< false until the first write has finished */
+    atomic_uint writes;  /**< 0 before the first write has finished, then odd; each write adds 2, modulo 2^32 */
+    unsigned int taken;  /**< the reader's: `writes` when epg_exchange_take() last gave a value */
 } epg_exchange_t;
 
 /** Static initialiser; `storage` is an array of four values. */
@@ -41,5 +42,11 @@ void epg_exchange_write(epg_exchange_t *exchange, const void *value);
 
 /** Copies the newest value to `*value`; false (and `*value` untouched) before the first write.  Only one context may read. */
 bool epg_exchange_read(epg_exchange_t *exchange, void *value);
+
+/**
+ * As epg_exchange_read(), but also false when no write has finished since it last gave a value: then that one is the
+ * newest still.  Spares the copy.
+ */
+bool epg_exchange_take(epg_exchange_t *exchange, void *value);
 
 #endif
