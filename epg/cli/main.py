@@ -26,6 +26,7 @@ COMMANDS = {
     "explain": "show the way of a model port to its pin",
     "simulate": "run a host executable through a scenario and judge the result",
     "doctor": "show what this computer has and lacks",
+    "schema": "write the JSON Schemas of EPG's files, for editors",
 }
 
 EXIT_OK, EXIT_MISTAKES, EXIT_USAGE, EXIT_BUG, EXIT_MISSING = range(5)

@@ -1,0 +1,193 @@
+"""The JSON Schemas for editors: complete, with all kinds and targets, in the part of draft 2020-12 they understand.
+
+EPG itself checks files with ``schemas/*.schema.json`` and, part by part, with what kinds say of themselves.  An editor
+has one schema for a file, so :func:`editor_schema` puts all of it into one: ``if`` the ``kind`` of a component is that,
+``then`` it is what that kind describes; quantities have the units of their dimension; and ``null``, with which a
+``.tcf`` deletes what another one says, is possible everywhere.  Nothing is required unless a file is complete by itself,
+which is one that names a ``target`` and extends nothing: robots and wirings, which others extend, need not be.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from epg.check.compose import component_schema
+from epg.check.schema import load_schema
+from epg.load.catalog import Catalog, Kind, Target
+from epg.quantity import SPELLINGS, units_of
+
+Schema = dict[str, Any]
+
+USER_FILES = ("tcf", "bindings", "model", "scenario")
+TARGET_FILES = ("board", "component", "platform", "soc", "tool")
+_NUMBER = r"([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][-+]?[0-9]+)?"
+_COMPLETE = {"required": ["target"], "not": {"required": ["extends"]}}
+
+
+def editor_schema(name: str, catalog: Catalog, *, built_in: bool) -> Schema:
+    """The schema of the files called ``name``, one of :data:`USER_FILES` and :data:`TARGET_FILES`.
+
+    ``built_in``: the catalog holds nothing of the user's, so that the schema is the one with the public ``$id``.
+    """
+    schema = _plain(load_schema(name))
+    if name == "tcf":
+        schema = _tcf(schema, catalog)
+    if built_in:
+        schema["$id"] = schema["$id"].replace("/schemas/v1/", "/schemas/v1/editor/")
+    else:
+        del schema["$id"]
+    return schema
+
+
+def _tcf(schema: Schema, catalog: Catalog) -> Schema:
+    kinds = [kind for name in catalog.kind_names() if (kind := catalog.find_kind(name)) is not None]
+    targets = [target for name in catalog.target_names() if (target := catalog.find_target(name)) is not None]
+    needed = _needs(schema)
+    schema = _optional(schema)
+    properties = schema["properties"]
+    properties["version"] = load_schema("tcf")["properties"]["version"]
+    properties["target"]["enum"] = [*(target.name for target in targets), None]
+    properties["components"]["additionalProperties"] = {"$ref": "#/$defs/component"}
+    needed.setdefault("properties", {})["components"] = {"additionalProperties": {"$ref": "#/$defs/complete"}}
+    wired = {"properties": {"components": {"additionalProperties": {"$ref": "#/$defs/wired"}}}}
+    without_pins = [target.name for target in targets if not target.has_pins]
+    pins = {"not": {"properties": {"target": {"enum": without_pins}}}} if without_pins else True
+    schema["allOf"] = [
+        {"if": _COMPLETE, "then": needed},
+        {"if": {"allOf": [_COMPLETE, pins]}, "then": wired},
+        *_middlewares(targets),
+    ]
+    schema["$defs"] = _components(kinds)
+    return schema
+
+
+def _components(kinds: Iterable[Kind]) -> Schema:
+    """Definitions: a ``component``, what a ``complete`` and a ``wired`` one needs, and all of that for each kind."""
+    kinds = list(kinds)
+    definitions: Schema = {}
+    keys = {"kind"}
+    for kind in kinds:
+        whole, unwired = (_plain(component_schema(kind, with_pins=pins)) for pins in (True, False))
+        keys |= set(whole["properties"])
+        possible = _optional(unwired)
+        possible["properties"]["kind"] = {"const": kind.name, "description": kind.summary}
+        definitions[kind.name] = {key: value for key, value in possible.items() if key != "$schema"}
+        definitions[f"{kind.name}-complete"] = _needs(unwired) | _relations(kind)
+        definitions[f"{kind.name}-wired"] = _pins_needed(kind)
+    listed = "; ".join(f"{kind.name}: {kind.summary}" for kind in kinds)
+    component = {
+        "type": ["object", "null"],
+        "description": "a sensor, an actuator, a topic or a number",
+        "properties": {"kind": {"enum": [kind.name for kind in kinds], "description": f"kind of component; {listed}"}},
+        "propertyNames": {"enum": sorted(keys)},
+        "allOf": [_if_kind(kind, kind.name) for kind in kinds],
+    }
+    complete = {"required": ["kind"], "allOf": [_if_kind(kind, f"{kind.name}-complete") for kind in kinds]}
+    wired = {"allOf": [_if_kind(kind, f"{kind.name}-wired") for kind in kinds]}
+    return {"component": component, "complete": complete, "wired": wired, **definitions}
+
+
+def _if_kind(kind: Kind, definition: str) -> Schema:
+    return {
+        "if": {"type": "object", "properties": {"kind": {"const": kind.name}}, "required": ["kind"]},
+        "then": {"$ref": f"#/$defs/{definition}"},
+    }
+
+
+def _relations(kind: Kind) -> Schema:
+    """Of keys that exclude each other one is stated, and keys that need another one are not alone."""
+    relations: Schema = {}
+    if kind.exactly_one:
+        relations["allOf"] = [{"oneOf": [{"required": [name]} for name in names]} for names in kind.exactly_one]
+    if kind.only_with:
+        needs: dict[str, list[str]] = {}
+        for key, needed in kind.only_with:
+            needs.setdefault(key, []).append(needed)
+        relations["dependentRequired"] = needs
+    return relations
+
+
+def _pins_needed(kind: Kind) -> Schema:
+    if not kind.pins:
+        return {}
+    return {"required": ["pins"], "properties": {"pins": {"required": list(kind.pins)}}}
+
+
+def _middlewares(targets: Iterable[Target]) -> list[Schema]:
+    """What each platform offers in ``communication``, for files that name one of its targets."""
+    platforms: dict[str, list[Target]] = {}
+    for target in targets:
+        platforms.setdefault(target.platform.name, []).append(target)
+    rules: list[Schema] = []
+    for group in platforms.values():
+        offered = group[0].platform.middlewares
+        chosen = {"properties": {"target": {"enum": [target.name for target in group]}}, "required": ["target"]}
+        rules.append({"if": chosen, "then": _communication({"middleware": {"enum": [*offered, None]}})})
+        for name, transports in offered.items():
+            using = _communication({"middleware": {"const": name}}, required=["middleware"])
+            possible = _communication({"transport": {"enum": [*transports, None]}})
+            rules.append({"if": {"allOf": [chosen, using]}, "then": possible})
+    return rules
+
+
+def _communication(properties: Schema, required: Iterable[str] = ()) -> Schema:
+    required = list(required)
+    inner = {"properties": properties, **({"required": required} if required else {})}
+    return {"properties": {"communication": inner}, **({"required": ["communication"]} if required else {})}
+
+
+def _plain(schema: Schema) -> Schema:
+    """``schema`` without EPG's own annotations; quantities and ratios by their exact form instead."""
+
+    def convert(value: Any) -> Any:
+        if isinstance(value, list):
+            return [convert(element) for element in value]
+        if not isinstance(value, dict):
+            return value
+        result = {key: convert(child) for key, child in value.items() if not key.startswith("x-")}
+        dimension = value.get("x-quantity")
+        if isinstance(dimension, str):
+            sign = "[-+]?" if "-+" in value.get("pattern", "") else ""
+            result["pattern"] = _ratio_form(sign) if dimension == "ratio" else _quantity_form(dimension, sign)
+        return result
+
+    converted: Schema = convert(schema)
+    return converted
+
+
+def _quantity_form(dimension: str, sign: str) -> str:
+    """What :func:`epg.quantity.parse_quantity` takes, as a regular expression of ECMA-262."""
+    units = units_of(dimension)
+    spellings = sorted(other for other, unit in SPELLINGS.items() if unit in units)
+    alternatives = "|".join(unit.replace(".", r"\.") for unit in (*units, *spellings))
+    return rf"^\s*{sign}{_NUMBER}\s*({alternatives})\s*$"
+
+
+def _ratio_form(sign: str) -> str:
+    return rf"^\s*{sign}{_NUMBER}\s*/\s*[-+]?{_NUMBER}\s*$"
+
+
+def _optional(schema: Mapping[str, Any]) -> Schema:
+    """``schema`` with nothing required in it, and ``null`` as a value of every key."""
+    result = {key: value for key, value in schema.items() if key != "required"}
+    if "properties" in result:
+        result["properties"] = {key: _nullable(child) for key, child in result["properties"].items()}
+    return result
+
+
+def _nullable(schema: Mapping[str, Any]) -> Schema:
+    result = _optional(schema)
+    if "type" in result:
+        types = [result["type"]] if isinstance(result["type"], str) else result["type"]
+        result["type"] = [*types, *(["null"] if "null" not in types else [])]
+    if "enum" in result:
+        result["enum"] = [*result["enum"], None]
+    return result
+
+
+def _needs(schema: Mapping[str, Any]) -> Schema:
+    """What ``schema`` requires, and nothing else of it."""
+    needs: Schema = {"required": schema["required"]} if schema.get("required") else {}
+    inner = {key: found for key, child in schema.get("properties", {}).items() if (found := _needs(child))}
+    return needs | ({"properties": inner} if inner else {})
