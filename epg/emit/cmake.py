@@ -33,6 +33,10 @@ class PathNames:
                 return f'"${{{variable}}}/{cmake(inside)[1:-1]}"'
         return str(cmake(_absolute(path).as_posix()))
 
+    def in_order(self, paths: Iterable[Path]) -> list[str]:
+        """CMake arguments in an order that is the same wherever project and EPG lie."""
+        return sorted({self.cmake(path) for path in paths})
+
     def shown(self, path: Path) -> str:
         """A path for the description: relative to the project or to EPG's own files where it can be."""
         for prefix, folder in (("EPG:", data_folder("targets")), ("", self.source_dir)):
@@ -50,8 +54,8 @@ def application_cmake(
 ) -> str:
     """The text of ``<name>.cmake`` for an application with its model libraries ``(name, build)``."""
     kinds = {component.kind.name: component.kind for component in app.components}
-    folders = sorted({kind.folder for kind in kinds.values() if kind.headers or kind.sources})
-    sources = sorted(kind.folder / source for kind in kinds.values() for source in kind.sources)
+    folders = {kind.folder for kind in kinds.values() if kind.headers or kind.sources}
+    sources = {kind.folder / source for kind in kinds.values() for source in kind.sources}
     of_models = {source for _, build in builds for source in (*build.generated, *build.exported_generated)}
     generated = sorted(generated)
     own = [name for name in generated if name.endswith(".c") and name not in of_models]
@@ -59,8 +63,8 @@ def application_cmake(
     lines += _set("EPG_PLATFORM", [str(cmake(app.target.platform.name))])
     lines += _set("EPG_PLATFORM_CMAKE", [names.cmake(app.target.platform.folder / "platform.cmake")])
     lines += _set("EPG_GENERATED_SOURCES", [str(cmake(name)) for name in own])
-    lines += _set("EPG_COMPONENT_SOURCES", [names.cmake(source) for source in sources])
-    lines += _set("EPG_COMPONENT_INCLUDES", [names.cmake(folder) for folder in folders])
+    lines += _set("EPG_COMPONENT_SOURCES", names.in_order(sources))
+    lines += _set("EPG_COMPONENT_INCLUDES", names.in_order(folders))
     lines += _set("EPG_MODELS", [str(cmake(name)) for name, _ in builds])
     for name, build in builds:
         lines += _model(name, build, names)
@@ -85,9 +89,9 @@ def _inputs(
 ) -> list[str]:
     """What ``EPGGenerate.cmake`` compares to know whether another run would make something else."""
     lines = ["# read: files, and folders of which the list of files matters; would be read, if it existed; written"]
-    lines += _set("EPG_DEPENDS", [names.cmake(path) for path in sorted(set(files))])
-    lines += _set("EPG_FOLDERS", [names.cmake(path) for path in sorted(set(folders))])
-    lines += _set("EPG_ABSENT", [names.cmake(path) for path in sorted(set(absent))])
+    lines += _set("EPG_DEPENDS", names.in_order(files))
+    lines += _set("EPG_FOLDERS", names.in_order(folders))
+    lines += _set("EPG_ABSENT", names.in_order(absent))
     lines += _set("EPG_OUTPUTS", [str(cmake(name)) for name in sorted(generated)])
     return lines
 
