@@ -44,7 +44,9 @@ def test_files_are_what_the_equations_say() -> None:
         assert (EXAMPLES / path).read_text(encoding="utf-8") == text, f"{path}: run write_models.py"
 
 
-@pytest.mark.parametrize("folder", ["jiwy/model", "jiwy/plant", "relbot/model", "relbot/plant"])
+@pytest.mark.parametrize(
+    "folder", ["jiwy/model", "jiwy/plant", "relbot/model", "relbot/plant", "existing_firmware/station/model"]
+)
 def test_importer_reads_them(folder: str) -> None:
     """Ports, parameters and metadata go together: there is nothing to warn about."""
     diagnostics = Diagnostics()

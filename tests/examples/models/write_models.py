@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from writer import jiwy, relbot
+from writer import jiwy, relbot, turntable
 from writer.c_function import c_function
 from writer.cpp_class import cpp_class
 
@@ -19,6 +19,7 @@ def model_files() -> dict[Path, str]:
         Path("jiwy/plant"): c_function(jiwy.plant()),
         Path("relbot/model"): cpp_class(relbot.control()),
         Path("relbot/plant"): cpp_class(relbot.plant()),
+        Path("existing_firmware/station/model"): c_function(turntable.control()),
     }
     return {folder / name: text for folder, files in folders.items() for name, text in files.items()}
 

@@ -1,0 +1,128 @@
+"""``examples/existing_firmware``: a repository with its own ways gains a controller, and nothing else in it changes."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+EXAMPLE = ROOT / "examples" / "existing_firmware"
+BLOCK = re.compile(r"\n# --- the turntable's controller, by EPG ---\n(.*\n.*\n.*\n)# ---\n")
+
+
+def run(folder: Path, *command: str, check: bool = True) -> str:
+    environment = {k: v for k, v in os.environ.items() if not k.startswith(("EPG_DIR", "EPG_PATH", "CMAKE_"))}
+    done = subprocess.run(
+        command, cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    )
+    assert not check or done.returncode == 0, done.stdout
+    return done.stdout
+
+
+def copy(folder: Path) -> Path:
+    """The example as a repository of its own."""
+    return shutil.copytree(EXAMPLE, folder / "repository", ignore=shutil.ignore_patterns("build"))
+
+
+def configure(repository: Path, preset: str = "host") -> str:
+    return run(repository, "cmake", "--preset", preset, f"-DEPG_PATH={ROOT}", f"-DPython3_EXECUTABLE={sys.executable}")
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    repository = copy(tmp_path_factory.mktemp("existing_firmware"))
+    configure(repository)
+    run(repository, "cmake", "--build", "--preset", "host")
+    return repository
+
+
+def test_the_readmes_commands(built: Path) -> None:
+    readme = (EXAMPLE / "README.md").read_text(encoding="utf-8")
+    commands = re.findall(r"^(?:cmake|build/).*$", readme, re.MULTILINE)
+    assert commands[0] == "cmake --preset host && cmake --build --preset host && ctest --preset host"
+    run(built, "ctest", "--preset", "host")
+    reports = run(built, "sh", "-c", commands[1]).splitlines()
+    assert len(reports) == 10
+    cycles = [int(re.fullmatch(r"enabled after (\d+) cycles, \d+ overruns", report)[1]) for report in reports]  # type: ignore[index]
+    assert cycles == sorted(set(cycles))
+    assert cycles[-1] <= 2500
+
+
+def test_the_readme_shows_the_lines_that_were_added() -> None:
+    added = BLOCK.search((EXAMPLE / "station/CMakeLists.txt").read_text(encoding="utf-8"))
+    assert added
+    readme = (EXAMPLE / "README.md").read_text(encoding="utf-8")
+    assert "".join(f"+{line}\n" for line in added[1].splitlines()) in readme
+
+
+def test_the_import_file_is_epgs() -> None:
+    assert (EXAMPLE / "cmake/epg_import.cmake").read_bytes() == (ROOT / "cmake/epg_import.cmake").read_bytes()
+
+
+def commands(repository: Path) -> dict[str, dict[str, str]]:
+    entries = json.loads((repository / "build/host/compile_commands.json").read_text())
+    return {entry["file"]: entry for entry in entries}
+
+
+def test_other_executables_are_compiled_as_before(built: Path, tmp_path: Path) -> None:
+    with_epg = commands(built)
+    # in the same folder, so that the commands can be equal byte by byte
+    aside = built.with_name("with_epg")
+    built.rename(aside)
+    try:
+        without = copy(built.parent)
+        file = without / "station/CMakeLists.txt"
+        file.write_text(BLOCK.sub("\n", file.read_text(encoding="utf-8")), encoding="utf-8")
+        assert "epg" not in file.read_text(encoding="utf-8").lower()
+        configure(without)
+        before = commands(without)
+        shutil.rmtree(without)
+    finally:
+        aside.rename(built)
+    station = str(built / "station/main.c")
+    assert station in before
+    assert len(before) == 4
+    del before[station]
+    assert {file: with_epg[file] for file in before} == before
+
+
+def test_warnings_of_the_repository_hold_for_generated_code(built: Path) -> None:
+    for file, entry in commands(built).items():
+        exported = "/station/model/" in file or file.endswith("_export.c")
+        assert "-Wall -Wextra -Wconversion -Werror" in entry["command"]
+        assert (" -w " in entry["command"]) == exported, file
+    assert any(file.endswith("epg/turntable/turntable_app.c") for file in commands(built))
+
+
+def test_careless_exported_code_fails_no_build(tmp_path: Path) -> None:
+    repository = copy(tmp_path)
+    file = repository / "station/model/xxfuncs.c"
+    careless = (
+        "\nint careless (double x, int unused)\n{\n\tint narrow = x;\n\tfloat never = 1.5;\n\treturn narrow;\n}\n"
+    )
+    file.write_text(file.read_text(encoding="utf-8") + careless, encoding="utf-8")
+    done = run(tmp_path, "cc", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-c", str(file), "-o", "x.o", check=False)
+    assert "-Werror" in done
+    configure(repository)
+    run(repository, "cmake", "--build", "--preset", "host", "--target", "turntable")
+
+
+def test_the_board(tmp_path: Path) -> None:
+    if shutil.which("arm-none-eabi-gcc") is None:
+        pytest.skip("no arm-none-eabi-gcc: apt install gcc-arm-none-eabi libnewlib-arm-none-eabi")
+    repository = copy(tmp_path)
+    configure(repository, "nucleo_h743zi")
+    run(repository, "cmake", "--build", "--preset", "nucleo_h743zi")
+    program = repository / "build/nucleo_h743zi/selftest/selftest.elf"
+    text = run(tmp_path, "arm-none-eabi-readelf", "-hA", str(program))
+    assert "Tag_CPU_arch: v7E-M" in text
+    assert "Tag_ABI_VFP_args: VFP registers" in text
+    symbols = run(tmp_path, "arm-none-eabi-nm", str(program))
+    assert re.search(r"^08000000 . board_vectors$", symbols, re.MULTILINE)
