@@ -14,7 +14,7 @@ from pathlib import Path
 from epg.check.bindings import Bindings, load_bindings
 from epg.check.catalog import check_catalog
 from epg.check.configuration import Configuration, check_configuration
-from epg.check.names import identifier_problem
+from epg.check.names import STANDARD_HEADERS, STANDARD_TYPES, identifier_problem
 from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
 from epg.load.catalog import Catalog, load_catalog
@@ -22,7 +22,7 @@ from epg.load.models import load_model
 from epg.load.models.model import Model
 from epg.load.tcf import load_tcf_chain, settings_node
 from epg.resolve.application import Application
-from epg.resolve.resolve import PlantFiles, allocate_hardware, resolve
+from epg.resolve.resolve import STATIC_NAMES, PlantFiles, allocate_hardware, resolve
 from epg.source import Span
 
 
@@ -79,15 +79,51 @@ def load_application(request: Request, diagnostics: Diagnostics) -> Application 
     if configuration is None or model is None or bindings is None:
         return None
     plant = PlantFiles(plant_model, plant_bindings) if plant_model and plant_bindings else None
+    check_model_names(model, f"{request.name}_model", diagnostics)
+    if plant is not None:
+        check_model_names(plant.model, f"{request.name}_plant", diagnostics)
     application = resolve(request.name, configuration, model, bindings, plant, diagnostics)
+    if application is not None:
+        check_driver_headers(application, diagnostics)
     return None if diagnostics.has_errors else application
 
 
 def check_name(name: str, span: Span, diagnostics: Diagnostics) -> None:
-    """A target's name becomes the prefix of C symbols and a CMake target."""
+    """A target's name becomes the prefix of C symbols, the name of a header and a CMake target."""
     problem = identifier_problem(name)
+    if problem is None and name in STANDARD_HEADERS:
+        problem = f"would make a header '{name}.h', which hides the C library's: choose another name"
+    elif problem is None and {f"{name}_inputs", f"{name}_outputs"} & STATIC_NAMES:
+        problem = f"would make a symbol '{name}_outputs', which generated code has inside: choose another name"
     if problem:
         diagnostics.error("invalid-name", span, f"target '{name}' {problem}")
+
+
+def check_library_name(name: str, span: Span, diagnostics: Diagnostics) -> None:
+    """The name of a model's library also becomes a type ``<name>_t``."""
+    check_name(name, span, diagnostics)
+    if f"{name}_t" in STANDARD_TYPES:
+        message = f"target '{name}' would make a type '{name}_t', which is one of the C library's"
+        diagnostics.error("invalid-name", span, message, hint=f"choose another name, such as {name}_model")
+
+
+def check_model_names(model: Model, library: str, diagnostics: Diagnostics) -> None:
+    """No port is called like a macro in the header of the model's ``library``."""
+    macros = {f"{library}_{word}".upper() for word in ("step_size", "instances", "parameters")}
+    for port in (*model.inputs, *model.outputs):
+        if port.identifier in macros:
+            message = f"{port.direction} '{port.name}' is called like a macro of the generated header"
+            diagnostics.error("invalid-name", port.span, message, hint="rename the port or the target")
+
+
+def check_driver_headers(application: Application, diagnostics: Diagnostics) -> None:
+    """No generated header is called like one of a driver that it is compiled with."""
+    name = application.name
+    generated = {f"{name}{end}.h" for end in ("", "_model", "_model_export", "_model_names", "_plant", "_plant_export")}
+    for component in application.components:
+        for header in sorted(generated.intersection(component.kind.headers)):
+            message = f"component '{component.name}' needs a header '{header}', and target '{name}' makes one"
+            diagnostics.error("invalid-name", component.span, message, hint="choose another name for the target")
 
 
 def check_target(request: Request, catalog: Catalog, diagnostics: Diagnostics) -> Configuration | None:

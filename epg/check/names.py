@@ -19,6 +19,22 @@ _C_LIBRARY = "main errno stdin stdout stderr NULL EOF assert unix linux".split()
 RESERVED = frozenset(_C11) | frozenset(_CPP) | frozenset(_C_LIBRARY)
 """Words that are no identifiers in C11 or C++20, or macros of the C library and common compilers."""
 
+STANDARD_HEADERS = frozenset(
+    """assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdalign stdarg stdatomic
+    stdbool stddef stdint stdio stdlib stdnoreturn string tgmath threads time uchar wchar wctype dirent fcntl malloc
+    memory poll pthread pwd sched semaphore spawn stdckdint strings syslog termios unistd values features alloca endian
+    byteswap elf error link""".split()
+)
+"""Headers of C11, and of POSIX and common C libraries, without ``.h``: a generated header would be found first."""
+
+STANDARD_TYPES = frozenset(
+    """size_t ssize_t ptrdiff_t wchar_t wint_t max_align_t sig_atomic_t time_t clock_t clockid_t timer_t pid_t off_t
+    mode_t dev_t ino_t key_t id_t uid_t gid_t nlink_t fpos_t div_t ldiv_t lldiv_t float_t double_t fenv_t fexcept_t
+    errno_t rsize_t sigset_t stack_t sem_t mtx_t thrd_t cnd_t tss_t locale_t va_t intptr_t uintptr_t intmax_t uintmax_t
+    useconds_t suseconds_t blksize_t blkcnt_t uint_t""".split()
+) | {f"{sign}int{least}{bits}_t" for sign in ("", "u") for least in ("", "_least", "_fast") for bits in (8, 16, 32, 64)}
+"""Types of C11 and POSIX headers."""
+
 _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,62}")
 _ROS_TOKEN = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
@@ -31,8 +47,8 @@ def identifier_problem(name: str) -> str | None:
         return "is a reserved word of C or C++"
     if name.startswith("__") or re.match("_[A-Z]", name):
         return "is reserved for the compiler: begin with a letter"
-    if name.casefold().startswith("epg_"):
-        return "begins with 'epg_', which EPG's own symbols do"
+    if name.casefold().startswith("epg_") or name.casefold() == "epg":
+        return "begins with 'epg_', which EPG's own symbols do" if len(name) > 3 else "is EPG's own prefix"
     return None
 
 

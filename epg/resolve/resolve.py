@@ -20,6 +20,13 @@ from epg.resolve.wires import input_wires, output_wires, parameter_overrides
 _PUBLIC = frozenset("start stop enable status statistics target inputs outputs control host model plant".split())
 """What follows ``<name>_`` in names that every application has."""
 
+STATIC_NAMES = frozenset(
+    """read_inputs inputs_finite model_init model_step model_finite model_stopped write_outputs safe_outputs fail_safe
+    setpoint_states setpoint_slots setpoint_exchange monitor_values monitor_slots monitor_exchange plant_init
+    plant_step""".split()
+)
+"""Names of two words in generated files: a target and a component's name could make one of them."""
+
 
 @dataclass(frozen=True)
 class PlantFiles:
@@ -133,7 +140,7 @@ def _components(
             slots[direction] += 1
         result[component.name] = ResolvedComponent(
             name=component.name,
-            symbol=_symbol(name, component.name),
+            symbol=_symbol(name, component.name, configuration.components),
             kind=component.kind,
             parameters=component.parameters,
             claims=claims.get(component.name, {}),
@@ -144,10 +151,18 @@ def _components(
     return result
 
 
-def _symbol(application: str, component: str) -> str:
-    """The C symbol of a component: prefixed, so that it meets neither the C library nor other targets' symbols."""
-    reserved = component in _PUBLIC or component.startswith(("model_", "plant_"))
-    return f"{application}_{component}_component" if reserved else f"{application}_{component}"
+def _symbol(application: str, component: str, others: Iterable[str]) -> str:
+    """The C symbol of a component: prefixed, so that it meets neither the C library nor other targets' symbols.
+
+    Kinds append to it (``<symbol>_config``), so that it must not begin the name of one of the ``others`` either.
+    """
+    folded = component.casefold()
+    symbol = component
+    if folded in _PUBLIC or folded.startswith(("model_", "plant_")) or f"{application}_{component}" in STATIC_NAMES:
+        symbol += "_component"
+    while any(other.startswith(f"{symbol}_") for other in others):
+        symbol += "_component"
+    return f"{application}_{symbol}"
 
 
 def _subscriptions(

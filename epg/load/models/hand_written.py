@@ -16,7 +16,7 @@ from epg.load.models import details
 from epg.load.models.assignments import is_step
 from epg.load.models.c_code import parse_code
 from epg.load.models.folders import source_files
-from epg.load.models.identifiers import RESERVED, to_identifier
+from epg.load.models.identifiers import is_reserved, to_identifier
 from epg.load.models.model import Model, Parameter, Port
 from epg.load.models.ports import check_identifiers
 from epg.load.models.source_file import read_source
@@ -251,7 +251,7 @@ class _Reader:
         ports = []
         for index, (name, value) in enumerate(node.items()):
             span = node.key_span(name)
-            if not _IDENTIFIER.fullmatch(name) or name in RESERVED:
+            if not _IDENTIFIER.fullmatch(name) or is_reserved(name):
                 self._error("invalid-name", span, f"'{name}' is no C identifier", "it names a member of the struct")
             if value.value is not None and not value.is_mapping:
                 self._error("wrong-type", value.span, f"port '{name}' is a map", "write {} or {unit: rad}")

@@ -35,15 +35,26 @@ _MACROS = words("NULL EOF errno stdin stdout stderr assert unix linux i386 INFIN
 RESERVED = _C11 | _CPP | _MACROS
 """Words that are no member of a struct in C11 or C++20, or macros of C libraries and common compilers."""
 
+_LIMITS = re.compile(
+    r"(?:U?INT(?:_LEAST|_FAST)?(?:8|16|32|64|PTR|MAX)|PTRDIFF|SIZE|SIG_ATOMIC|WCHAR|WINT|(?:S?CHAR|U?SHRT|U?INT|U?LONG|U?LLONG))"
+    r"_(?:MAX|MIN|WIDTH)|UCHAR_MAX|CHAR_BIT"
+)
+"""Macros of <stdint.h> and <limits.h>, which generated files or those of a user include."""
+
+
+def is_reserved(name: str) -> bool:
+    """Whether an identifier is a word or a macro that cannot name a member of a struct in generated code."""
+    return name in RESERVED or _LIMITS.fullmatch(name) is not None or name.startswith("EPG_")
+
 
 def to_identifier(name: str) -> str:
     """The C identifier for a name: other characters become ``_``, a reserved word gets ``_`` at its end."""
     identifier = re.sub(r"_+", "_", re.sub(r"[^A-Za-z0-9_]", "_", name)) if not _is_identifier(name) else name
     if not identifier or identifier[0].isdigit():
         identifier = f"_{identifier}"
-    if re.match(r"__|_[A-Z]", identifier):  # reserved for the compiler
+    if re.match(r"__|_[A-Z]|EPG_", identifier):  # reserved for the compiler, macros of EPG's headers
         identifier = "x" + identifier
-    return f"{identifier}_" if identifier in RESERVED else identifier
+    return f"{identifier}_" if is_reserved(identifier) else identifier
 
 
 def unique_identifiers(names: Iterable[str]) -> list[str]:
