@@ -3,8 +3,8 @@
 EPG itself checks files with ``schemas/*.schema.json`` and, part by part, with what kinds say of themselves.  An editor
 has one schema for a file, so :func:`editor_schema` puts all of it into one: ``if`` the ``kind`` of a component is that,
 ``then`` it is what that kind describes; quantities have the units of their dimension; and ``null``, with which a
-``.tcf`` deletes what another one says, is possible everywhere.  Nothing is required unless a file is complete by itself,
-which is one that names a ``target`` and extends nothing: robots and wirings, which others extend, need not be.
+``.tcf`` deletes what another one says, is possible everywhere.  Nothing is required unless a file is complete by
+itself, which is one that names a ``target`` and extends nothing: robots and wirings, which others extend, need not be.
 """
 
 from __future__ import annotations
