@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import re
 import subprocess
 import tarfile
 from pathlib import Path
@@ -20,9 +21,11 @@ if(CMAKE_VERSION VERSION_GREATER_EQUAL 3.24)
 endif()
 FetchContent_Declare(EPG URL "@URL@" URL_HASH SHA256=@HASH@ ${find_first})
 FetchContent_MakeAvailable(EPG)
-find_package(EPG REQUIRED) # another part of the project does not know of the first
 which_epg()
 """
+
+#: another part of the project does not know of the first
+ASKS_AGAIN = "find_package(EPG REQUIRED)\nwhich_epg()\n"
 
 
 def archive(folder: Path, name: str, text: str) -> tuple[str, str]:
@@ -37,8 +40,9 @@ def archive(folder: Path, name: str, text: str) -> tuple[str, str]:
     return file.as_uri(), hashlib.sha256(file.read_bytes()).hexdigest()
 
 
+@pytest.mark.parametrize("second", ["", ASKS_AGAIN], ids=["one asker", "two askers"])
 @pytest.mark.parametrize("version", ["oldest", "newest"])
-def test_another_archive_is_fetched_and_used(version: str, tmp_path: Path) -> None:
+def test_another_archive_is_fetched_and_used(version: str, second: str, tmp_path: Path) -> None:
     source, build = tmp_path / "source", tmp_path / "build"
     source.mkdir()
 
@@ -47,11 +51,12 @@ def test_another_archive_is_fetched_and_used(version: str, tmp_path: Path) -> No
         done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         assert done.returncode == 0, done.stdout
         assert "warning" not in done.stdout.lower(), done.stdout
+        assert len(set(re.findall(r"EPG is .*", done.stdout))) == 1, done.stdout
         return done.stdout
 
     def declare(name: str, text: str) -> None:
         url, digest = archive(tmp_path, name, text)
-        (source / "CMakeLists.txt").write_text(PROJECT.replace("@URL@", url).replace("@HASH@", digest))
+        (source / "CMakeLists.txt").write_text(PROJECT.replace("@URL@", url).replace("@HASH@", digest) + second)
 
     declare("one", "the first")
     assert "EPG is the first\n" in configure()
