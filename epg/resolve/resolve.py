@@ -28,6 +28,10 @@ STATIC_NAMES = frozenset(
 """Names of two words in generated files: a target and a component's name could make one of them."""
 
 
+_SHORTEST, _LONGEST = Fraction(1, 1_000_000), Fraction(3600)
+"""Control periods in seconds; targets have narrower limits of their own."""
+
+
 @dataclass(frozen=True)
 class PlantFiles:
     """A plant model with its bindings to the components' physical side."""
@@ -100,6 +104,12 @@ def _same_model(bindings: Bindings, model: Model, diagnostics: Diagnostics) -> N
 def _period(configuration: Configuration, model: Model, diagnostics: Diagnostics) -> tuple[Fraction, int]:
     """The control period in seconds, and every how many cycles the model runs."""
     period = configuration.control.period or model.step
+    if not _SHORTEST <= period <= _LONGEST:
+        stated = configuration.control.period is not None
+        message = f"a control period of {_ms(period)} is out of range: must be from 1 us to 3600 s"
+        notes = [] if stated else [Note("it is the model's step", model.span)]
+        diagnostics.error("out-of-range", configuration.control.period_span, message, notes=notes)
+        return Fraction(1, 1000), 1
     ratio = model.step / period
     if ratio.denominator != 1:
         message = f"the model's step of {_ms(model.step)} is no multiple of the control period of {_ms(period)}"
@@ -237,6 +247,10 @@ def _plant(
         diagnostics.error(
             "step-not-multiple", bindings.model_span, message, hint=hint, notes=[Note("the plant", model.span)]
         )
+    if ratio > 0xFFFF:
+        message = f"the plant would make {float(ratio):g} steps in every control period"
+        hint = "export the plant with a longer step"
+        diagnostics.error("step-not-multiple", bindings.model_span, message, hint=hint)
     physical = {name: c for name, c in configuration.components.items() if not c.kind.communication}
     inputs = input_wires(bindings, model, physical, components, diagnostics, direction="sink")
     outputs = output_wires(bindings, model, physical, components, diagnostics, direction="source")
@@ -258,5 +272,5 @@ def _ms(seconds: Fraction) -> str:
     for unit, factor in (("s", 1), ("ms", 1000), ("us", 1000_000)):
         value = seconds * factor
         if value.denominator == 1:
-            return f"{value.numerator} {unit}"
+            return f"{value.numerator if value < 1_000_000 else float(value):g} {unit}"
     return f"{float(seconds * 1000):g} ms"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 
 from epg.check.bindings import Binding, Bindings, Conversion
@@ -12,6 +12,7 @@ from epg.load.catalog import KindPort
 from epg.load.models.model import Model, Port
 from epg.quantity import conversion_factor, dimension_of, normal_unit
 from epg.resolve.application import ResolvedComponent, Step, Wire
+from epg.resolve.conversion import is_computable
 from epg.source import Span
 
 
@@ -44,6 +45,7 @@ def input_wires(
             continue
         component, component_port = end
         steps = _input_steps(port, binding, component, component_port, diagnostics, physical=direction == "sink")
+        _check_range(steps, binding, diagnostics)
         if component_port.type == "real" and port.type != "real":
             message = (
                 f"'{component.name}.{component_port.name}' gives any number, '{port.name}' wants {port.type} values"
@@ -83,6 +85,7 @@ def output_wires(
                 notes = [Note("bound here", first[1])]
                 diagnostics.error("bound-twice", binding.span, message, hint="remove one of the two", notes=notes)
             steps = _output_steps(port, binding, component, component_port, diagnostics, physical=direction == "source")
+            _check_range(steps, binding, diagnostics)
             wires.append(Wire(port, resolved[component.name], component_port, steps, binding.span))
     return tuple(wires)
 
@@ -247,6 +250,13 @@ def _output_steps(
     own = [Step(1 / step.scale, reason=_reversed(step.reason)) if " -> " in step.reason else step for step in own]
     ordered = [step for step in own if " -> " not in step.reason] + [step for step in own if " -> " in step.reason]
     return (*_wire_step(binding, f"outputs.{port.name}"), *between, *ordered)
+
+
+def _check_range(steps: Sequence[Step], binding: Binding, diagnostics: Diagnostics) -> None:
+    if not is_computable(steps):
+        message = "the conversion of this wire has a factor or an offset that C's doubles do not hold"
+        hint = "check 'scale' and 'offset' of the wire and of the component"
+        diagnostics.error("out-of-range", binding.span, message, hint=hint)
 
 
 def _wire_step(binding: Binding, reason: str) -> list[Step]:
