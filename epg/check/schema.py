@@ -44,14 +44,14 @@ def load_schema(name: str) -> dict[str, Any]:
 def validate(node: Node, schema: Mapping[str, Any], diagnostics: Diagnostics, *, partial: bool = False) -> bool:
     """Reports everything in ``node`` that ``schema`` does not allow; True when there is nothing.
 
-    ``partial``: the file extends another one, so missing keys are not reported.
+    ``partial``: the file extends another one, so missing keys are not reported, and ``null`` deletes any key.
     """
     from jsonschema import Draft202012Validator
 
     good = True
     errors = Draft202012Validator(schema).iter_errors(node.plain())
     for error in sorted(errors, key=lambda e: ([str(step) for step in e.absolute_path], str(e.validator))):
-        if partial and error.validator in ("required", "dependentRequired"):
+        if partial and (error.validator in ("required", "dependentRequired") or error.instance is None):
             continue
         good = False
         _report(error, node, diagnostics)

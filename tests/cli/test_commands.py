@@ -301,3 +301,19 @@ def test_bind_update_on_a_complete_file(robot: Path, capsys: pytest.CaptureFixtu
     assert main(["bind", "model", "robot.tcf", "-o", "bindings.yaml", "--update"]) == 0
     assert capsys.readouterr().out == "all ports of the model are bound\n"
     assert (robot / "bindings.yaml").read_bytes() == before
+
+
+def test_null_deletes_any_key_of_an_extended_file(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = (robot / "robot.tcf").read_text().replace("node: robot", "node: robot\nnamespace: /a")
+    (robot / "robot.tcf").write_text(text)
+    (robot / "mine.tcf").write_text(
+        "version: 1\nextends: robot.tcf\nnamespace: null\ncontrol: {period: null}\n"
+        "components: {button: null, motor: {frequency: null}}\n"
+    )
+    assert main(["check", "mine.tcf"]) == 0, capsys.readouterr().err
+    (robot / "mine.tcf").write_text("version: 1\nextends: robot.tcf\nnode: null\n")
+    assert main(["check", "mine.tcf"]) == 1
+    assert "'node' is missing" in capsys.readouterr().err
+    (robot / "mine.tcf").write_text("version: 1\nextends: robot.tcf\nnamspace: null\n")
+    assert main(["check", "mine.tcf"]) == 1
+    assert "unknown key 'namspace'" in capsys.readouterr().err
