@@ -130,10 +130,10 @@ void big_step(big_t *big, const big_inputs_t *in, big_outputs_t *out);
 
 
 def _source(axes: range) -> str:
-    statements = "".join(
-        f"    out->duty_{axis} = in->wanted_{axis} - in->position_{axis};\n    out->angle_{axis} = in->position_{axis};\n"
-        for axis in axes
-    )
+    lines = [
+        f"out->duty_{n} = in->wanted_{n} - in->position_{n};\n    out->angle_{n} = in->position_{n};" for n in axes
+    ]
+    statements = "".join(f"    {line}\n" for line in lines)
     return f"""#include "big.h"
 
 void big_step(big_t *big, const big_inputs_t *in, big_outputs_t *out)

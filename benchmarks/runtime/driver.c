@@ -76,7 +76,7 @@ static void move(void)
     for (int axis = 0; axis < AXES; axis++) {
         const uint8_t pin = forwards[axis];
         const double duty = (double)(pins[pin] - pins[pin + 1]) * levels[axis] / 6250.0;
-        speed[axis] += (duty * 40.0 - speed[axis] * 8.0) * 0.001;
+        speed[axis] += (duty * 200.0 - speed[axis] * 8.0) * 0.001;
         angle[axis] += speed[axis] * 0.001;
         if (fabs(angle[axis]) > 1.6) {
             angle[axis] = copysign(1.6, angle[axis]);
@@ -101,13 +101,13 @@ static void communicate(unsigned long cycle, bool mishaps)
     if (cycle % 1009 == 500) {
         glue_receive(cycle % 2, cycle % 3 == 0 ? (double)NAN : (double)INFINITY, now_ns, true);
     }
-    if (cycle % 4001 == 3000) {
+    if (cycle % 12007 == 9000) {
         glue_receive(0, 1e308, now_ns, true); /* the model makes infinity of it */
     }
-    if (cycle % 2503 == 1200 || cycle % 4001 == 3300) {
+    if (cycle % 15013 == 11000) {
         glue_request(false);
     }
-    if (cycle % 2503 == 1500 || cycle % 4001 == 3500 || cycle % 7001 == 6500) {
+    if (cycle % 15013 == 11500 || cycle % 12007 == 9500 || cycle % 7001 == 6500) {
         glue_request(true);
     }
     if (cycle % 7001 == 5000) {

@@ -1,0 +1,189 @@
+"""What EPG's Python costs when a project is configured: JIWY, from nothing, after an edit, and for no reason.
+
+The unit is ``python -c pass`` of the same interpreter, taken in turns with everything else.  ``.pyc`` files are there:
+cold means a new output folder.  ``epg generate`` refuses platforms without a port layer; for the Pico 2 this program
+brings a platform that is FreeRTOS's but for its name and an empty port layer.
+"""
+
+from __future__ import annotations
+
+import io
+import pstats
+import re
+import shutil
+import sys
+import tempfile
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from measure import EPG, JIWY, ROOT, all_in_turns, median_ratio, run
+from report import Table, arguments, command_line, milliseconds, show
+
+PASS = "python -c pass"
+BARE = "python -S -c pass"
+CHECK = "epg check, Pico 2"
+PICO = "epg generate, Pico 2, new folder"
+HOST = "epg generate, host with plant, new folder"
+EDIT = "epg generate, host with plant, one value edited"
+UNCHANGED = "epg generate, host with plant, nothing changed"
+BORDER = 20.0
+
+
+def main() -> None:
+    options = arguments(__doc__, rounds=21)
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        times = all_in_turns(actions(folder), options.rounds)
+        profile = where_the_time_goes(folder)
+    tables = [cost_table(times), profile_table(profile, times)]
+    show("generator", tables, options.write, command_line("generator"))
+
+
+def actions(folder: Path) -> Mapping[str, Callable[[], object]]:
+    """What is timed, by the name it has in the table."""
+    python = [sys.executable]
+    targets, pico = pico_with_a_port_layer(folder)
+    tcf = folder / "edited.tcf"
+
+    def edited() -> None:
+        before = tcf.read_text(encoding="utf-8") if tcf.exists() else ""
+        period = "33 ms" if "20 ms" in before else "20 ms"
+        tcf.write_text(f"version: 1\nextends: host_jiwy.tcf\ncommunication: {{period: {period}}}\n", encoding="utf-8")
+        run([*python, EPG, "generate", "jiwy", *files(str(tcf)), *PLANT, "--output", folder / "edited"])
+
+    def cold(output: Path, *arguments: str, **environment: str) -> None:
+        shutil.rmtree(output, ignore_errors=True)
+        run([*python, EPG, *arguments, "--output", str(output)], **environment)
+
+    return {
+        BARE: lambda: run([*python, "-S", "-c", "pass"]),
+        PASS: lambda: run([*python, "-c", "pass"]),
+        "import yaml": lambda: run([*python, "-c", "import yaml"]),
+        "import jinja2": lambda: run([*python, "-c", "import jinja2"]),
+        "import jsonschema": lambda: run([*python, "-c", "import jsonschema"]),
+        "all three": lambda: run([*python, "-c", "import yaml, jinja2, jsonschema"]),
+        CHECK: lambda: run([*python, EPG, "check", *files("rpi_pico2_freertos_jiwy.tcf")]),
+        PICO: lambda: cold(folder / "pico", *pico, EPG_TARGETS_PATH=str(targets)),
+        HOST: lambda: cold(folder / "host", *HOST_ARGUMENTS),
+        EDIT: edited,
+        UNCHANGED: lambda: run([*python, EPG, *HOST_ARGUMENTS, "--output", folder / "unchanged"]),
+    }
+
+
+def files(tcf: str) -> list[str]:
+    return ["--tcf", tcf, "--model", str(JIWY / "model"), "--bindings", str(JIWY / "jiwy.bindings.yaml")]
+
+
+PLANT = ["--plant", str(JIWY / "plant"), "--plant-bindings", str(JIWY / "plant.bindings.yaml")]
+HOST_ARGUMENTS = ["generate", "jiwy", *files("host_jiwy.tcf"), *PLANT]
+
+
+def pico_with_a_port_layer(folder: Path) -> tuple[Path, list[str]]:
+    """A ``targets`` folder with a platform that builds, and the arguments of ``epg generate`` for it."""
+    text = (ROOT / "targets" / "platforms" / "freertos" / "platform.yaml").read_text(encoding="utf-8")
+    text = re.sub(r"(?m)^platform: .*$", "platform: bench", text)
+    text = re.sub(r"(?m)^builds: .*$", "builds: true", text)
+    platform = folder / "targets" / "platforms" / "bench"
+    platform.mkdir(parents=True)
+    (platform / "platform.yaml").write_text(text, encoding="utf-8")
+    (platform / "platform.cmake").write_text("# An empty port layer.\n", encoding="utf-8")
+    tcf = folder / "pico.tcf"
+    tcf.write_text("version: 1\nextends: rpi_pico2_freertos_jiwy.tcf\ntarget: rpi_pico2_bench\n", encoding="utf-8")
+    return folder / "targets", ["generate", "jiwy", *files(str(tcf))]
+
+
+def cost_table(times: Mapping[str, list[float]]) -> Table:
+    rows = []
+    for name, values in times.items():
+        ratio = median_ratio(times, name, PASS)
+        rows.append([name, milliseconds(sorted(values)[len(values) // 2]), f"{ratio:.1f} x"])
+    worst = max(median_ratio(times, name, PASS) for name in (PICO, HOST))
+    judged = "holds" if worst <= BORDER else "does not hold"
+    notes = [
+        f"Aim: cold at most {BORDER:g} x `{PASS}`: {judged}. Ratios are medians of those within {len(values)} rounds."
+    ]
+    if median_ratio(times, PASS, BARE) > 2:
+        notes.append(
+            "This interpreter's own start is slow (its site-packages run code): use a fresh virtual environment."
+        )
+    return Table("Generator", ["what", "ms", "ratio"], rows, notes)
+
+
+# Where the time goes ---------------------------------------------------------------------------------------------
+
+GROUPS = (
+    (r"frozen importlib|marshal|/importlib/|imp\.|io\.open_code|builtins\.exec", "finding and loading modules"),
+    (r"/epg/load/models/", "epg: reading the models"),
+    (r"/epg/load/", "epg: reading .tcf, bindings and targets/"),
+    (r"/epg/check/", "epg: checking"),
+    (r"/epg/resolve/", "epg: wires and pins"),
+    (r"/epg/emit/.*\.j2", "templates, running"),
+    (r"/epg/emit/", "epg: emitting"),
+    (r"/epg/", "epg: the rest"),
+    (r"/jsonschema/|/jsonschema_specifications/|/referencing/|/rpds/|/attrs?/", "jsonschema"),
+    (r"/jinja2/|/markupsafe/", "jinja2"),
+    (r"/yaml/", "yaml"),
+    (r"/re/|/sre_", "compiling regular expressions"),
+    (r"/dataclasses\.py|/enum\.py|/typing\.py|/abc\.py|/_collections_abc\.py", "making dataclasses, enums, types"),
+    (r"/argparse\.py", "argparse"),
+)
+
+
+def where_the_time_goes(folder: Path) -> dict[str, float]:
+    """Shares of a cold run after the interpreter's own start, by a profile of which the built-in functions are told
+    apart by their callers.  A profiler slows calls more than it slows other work: shares, not times."""
+    profile = folder / "profile"
+    command = [
+        sys.executable,
+        "-m",
+        "cProfile",
+        "-o",
+        profile,
+        EPG,
+        "generate",
+        "jiwy",
+        *files(str(folder / "pico.tcf")),
+    ]
+    run([*command, "--output", folder / "profiled"], EPG_TARGETS_PATH=str(folder / "targets"))
+    stats = pstats.Stats(str(profile), stream=io.StringIO()).stats  # type: ignore[attr-defined]
+    costs: dict[str, float] = {}
+    for (file, _, name), (_, _, own, _, callers) in stats.items():
+        if file != "~":
+            costs[group(file)] = costs.get(group(file), 0.0) + own
+        elif group(name) != OTHERS or not callers:
+            costs[group(name)] = costs.get(group(name), 0.0) + own
+        else:
+            for (caller, _, _), (_, _, share, _) in callers.items():
+                costs[group(caller)] = costs.get(group(caller), 0.0) + share
+    whole = sum(costs.values())
+    return {name: cost / whole for name, cost in costs.items()}
+
+
+OTHERS = "the rest of the standard library"
+
+
+def group(place: str) -> str:
+    """Whose a file or built-in function is."""
+    return next((name for pattern, name in GROUPS if re.search(pattern, place.replace("\\", "/"))), OTHERS)
+
+
+def profile_table(shares: Mapping[str, float], times: Mapping[str, list[float]]) -> Table:
+    own = median_ratio(times, PICO, PASS) - 1
+    ordered = sorted(shares.items(), key=lambda item: -item[1])
+    rows = [["the interpreter's own start", "1.0 x", ""]]
+    rows += [[name, f"{share * own:.1f} x", f"{share:.0%}"] for name, share in ordered if share >= 0.005]
+    above, sums = own + 1 - 10, 0.0
+    needed: list[str] = []
+    for name, share in ordered:
+        if sums >= above:
+            break
+        sums += share * own
+        needed.append(name)
+    ten = "It is within 10 x."
+    if above > 0:
+        ten = f"10 x would take {above:.1f} x less: all of {', '.join(needed)}, or as much of others."
+    return Table("Where a cold run for the Pico 2 goes", ["part", "of python -c pass", "share"], rows, [ten])
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,192 @@
+"""What generated code costs at run time: JIWY generated, against JIWY written by hand (runtime/handwritten.c).
+
+Both are compiled for this machine with the same options, linked with the same model and the same driver, and must give
+the same trace: every signal, every published value and every counter of every cycle, through faults, overruns and
+values that are not finite.  Instructions per control cycle come from callgrind, which counts exactly and the same in
+every run.
+"""
+
+from __future__ import annotations
+
+import re
+import shutil
+import sys
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from measure import EPG, JIWY, ROOT, run
+from report import Table, arguments, command_line, show
+
+SOURCES = Path(__file__).resolve().parent / "runtime"
+RUNTIME = ROOT / "targets" / "runtime"
+OPTIONS = ["-std=c11", "-O2", "-ffp-contract=off"]
+WARNINGS = ["-Wall", "-Wextra", "-Wconversion", "-Wdouble-promotion", "-Werror"]
+BORDER = 1.2
+
+
+@dataclass(frozen=True)
+class Program:
+    """A linked driver.  ``glue`` are the objects that stand between model and port layer."""
+
+    path: Path
+    cycle: str
+    glue: tuple[Path, ...]
+    model: tuple[Path, ...]
+
+
+def main() -> None:
+    options = arguments(__doc__, cycles=2000, trace=60000)
+    if shutil.which("valgrind") is None:
+        raise SystemExit("valgrind is not installed: apt install valgrind")
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        generated, written = build_generated(folder), build_handwritten(folder)
+        compared = compare_traces(generated, written, options.trace)
+        costs = {p: cycle_costs(p, folder, options.cycles) for p in (generated, written)}
+        tables = [cost_table(costs[generated], costs[written], compared), memory_table(generated, written, folder)]
+    show("runtime", tables, options.write, command_line("runtime"))
+
+
+def build_generated(folder: Path) -> Program:
+    """JIWY as ``epg generate`` writes it, without the host's own port layer."""
+    output = folder / "generated"
+    files: list[str | Path] = [
+        "--tcf",
+        "host_jiwy.tcf",
+        "--model",
+        JIWY / "model",
+        "--bindings",
+        JIWY / "jiwy.bindings.yaml",
+    ]
+    run([sys.executable, EPG, "generate", "jiwy", *files, "--output", output, "--source-dir", JIWY])
+    kinds = sorted(path for path in (ROOT / "targets" / "components").iterdir() if path.is_dir())
+    includes = [RUNTIME / "include", SOURCES, output, *kinds]
+    names = ["-include", str(output / "jiwy_model_names.h")]
+    sources = [*sorted((RUNTIME / "src").glob("*.c")), output / "jiwy_app.c", output / "jiwy_model.c"]
+    glue = [compile_c(source, folder / "g", includes, WARNINGS) for source in sources]
+    glue.append(compile_c(output / "jiwy_model_export.c", folder / "g", includes, ["-w", *names]))
+    model = [compile_c(s, folder / "gm", [JIWY / "model"], ["-w", *names]) for s in model_sources()]
+    others = [compile_c(SOURCES / name, folder / "g", includes, WARNINGS) for name in ("generated.c", "driver.c")]
+    return Program(link([*glue, *model, *others], folder / "g/driver"), "epg_control_cycle", tuple(glue), tuple(model))
+
+
+def build_handwritten(folder: Path) -> Program:
+    includes = [RUNTIME / "include", SOURCES]
+    glue = [compile_c(SOURCES / "handwritten.c", folder / "h", includes, WARNINGS)]
+    model = [compile_c(source, folder / "hm", [JIWY / "model"], ["-w"]) for source in model_sources()]
+    driver = compile_c(SOURCES / "driver.c", folder / "h", includes, WARNINGS)
+    return Program(link([*glue, *model, driver], folder / "h/driver"), "glue_cycle", tuple(glue), tuple(model))
+
+
+def model_sources() -> list[Path]:
+    return sorted((JIWY / "model").glob("*.c"))
+
+
+def compile_c(source: Path, folder: Path, includes: Sequence[Path], more: Sequence[str]) -> Path:
+    folder.mkdir(exist_ok=True)
+    output = folder / f"{source.stem}.o"
+    run([compiler(), *OPTIONS, *more, *(f"-I{path}" for path in includes), "-c", source, "-o", output])
+    return output
+
+
+def link(objects: Sequence[Path], output: Path) -> Path:
+    run([compiler(), *objects, "-lm", "-o", output])
+    return output
+
+
+def compiler() -> str:
+    found = shutil.which("gcc") or shutil.which("cc")
+    if found is None:
+        raise SystemExit("a C compiler is needed: apt install gcc")
+    return found
+
+
+def compare_traces(generated: Program, written: Program, cycles: int) -> str:
+    """Says what was compared; the program ends here if the two differ."""
+    one, other = (run([program.path, str(cycles), "trace"]).splitlines() for program in (generated, written))
+    for number, (a, b) in enumerate(zip(one, other, strict=True)):
+        if a != b:
+            raise SystemExit(f"the two programs differ in cycle {number}:\n generated: {a}\n by hand:   {b}")
+    disabled = sum(line.split()[9] == "0" for line in one)
+    faults = {line.split()[10] for line in one} - {"0"}
+    return (
+        f"Both gave the same {len(one):,} lines of trace, in {disabled:,} of which the target was disabled, "
+        f"and {len(faults)} sorts of fault occurred."
+    )
+
+
+def cycle_costs(program: Program, folder: Path, cycles: int) -> dict[str, float]:
+    """Instructions per control cycle by whose they are; the first cycles, which initialise the model, do not count."""
+    few, many = (collected(program, folder, count) for count in (cycles // 2, cycles + cycles // 2))
+    model = defined_in(program.model)
+    result = {"model": 0.0, "port layer": 0.0, "glue": 0.0}
+    for function, cost in many.items():
+        share = (cost - few.get(function, 0)) / cycles
+        result["model" if function in model else "port layer" if function.startswith("epg_port_") else "glue"] += share
+    return result
+
+
+def collected(program: Program, folder: Path, cycles: int) -> dict[str, int]:
+    """Instructions within the control cycle by function."""
+    output = folder / "callgrind.out"
+    command = ["valgrind", "--tool=callgrind", f"--toggle-collect={program.cycle}", "--compress-strings=no"]
+    run([*command, "--compress-pos=no", f"--callgrind-out-file={output}", program.path, str(cycles)])
+    costs: dict[str, int] = {}
+    function, called = "", False
+    for line in output.read_text(encoding="utf-8").splitlines():
+        if line.startswith("fn="):
+            function = line[3:].partition("'")[0]
+        elif line.startswith("calls="):
+            called = True  # the next line is the cost of what was called, which is counted there
+        elif re.match(r"\d+ \d+$", line):
+            costs[function] = costs.get(function, 0) + (0 if called else int(line.split()[1]))
+            called = False
+    return costs
+
+
+def defined_in(objects: Sequence[Path]) -> set[str]:
+    lines = "".join(run(["nm", path]) for path in objects).splitlines()
+    return {line.split()[-1] for line in lines if line.split()[-2] in "tT"}
+
+
+def cost_table(generated: dict[str, float], written: dict[str, float], compared: str) -> Table:
+    rows = [[name, f"{generated[name]:.1f}", f"{written[name]:.1f}", ""] for name in ("model", "port layer")]
+    ratio = generated["glue"] / written["glue"]
+    rows.append(["everything else", f"{generated['glue']:.1f}", f"{written['glue']:.1f}", f"{ratio:.2f} x"])
+    whole = sum(generated.values()) / sum(written.values())
+    rows.append(["whole cycle", f"{sum(generated.values()):.1f}", f"{sum(written.values()):.1f}", f"{whole:.2f} x"])
+    judged = "holds" if ratio <= BORDER else "does not hold"
+    notes = [f"Aim: everything else at most {BORDER} x of what is written by hand: {judged}.", compared]
+    return Table("Instructions per control cycle", ["part", "generated", "by hand", "ratio"], rows, notes)
+
+
+def memory_table(generated: Program, written: Program, folder: Path) -> Table:
+    rows = []
+    for program, title in ((generated, "generated"), (written, "by hand")):
+        sums = [0, 0, 0, 0]
+        for path in program.glue:
+            sizes = section_sizes(path)
+            sums = [a + b for a, b in zip(sums, sizes)]
+            rows.append([f"{title}: {path.stem}", *map(str, sizes)])
+        if len(program.glue) > 1:
+            rows.append([f"{title}: all", *map(str, sums)])
+    includes = [RUNTIME / "include"]
+    sizes_program = link([compile_c(SOURCES / "sizes.c", folder / "s", includes, WARNINGS)], folder / "s/sizes")
+    notes = [f"Bytes of the runtime's objects: {', '.join(run([sizes_program]).splitlines())}."]
+    return Table("Memory of the glue, bytes", ["object", "code", "constants", ".data", ".bss"], rows, notes)
+
+
+def section_sizes(path: Path) -> tuple[int, int, int, int]:
+    """Code, constants, initialised and cleared memory of an object file."""
+    sums = {"text": 0, "rodata": 0, "data": 0, "bss": 0}
+    for line in run(["size", "-A", path]).splitlines():
+        found = re.match(r"\.(text|rodata|data\.rel\.ro|data|bss)\S*\s+(\d+)", line)
+        if found:
+            sums["rodata" if found[1] == "data.rel.ro" else found[1]] += int(found[2])
+    return sums["text"], sums["rodata"], sums["data"], sums["bss"]
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,67 @@
+"""Each benchmark runs, with counts too small to measure anything, and prints its tables."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+BENCHMARKS = ROOT / "benchmarks"
+PAGE = ROOT / "docs" / "benchmarks.md"
+
+SMALLEST = {
+    "generator": ["--rounds", "1"],
+    "configure": ["--rounds", "1"],
+    "scaling": ["--rounds", "1", "--components", "40", "--targets", "2"],
+    "runtime": ["--cycles", "200", "--trace", "6000"],
+    "exchange": ["--thousands", "1"],
+}
+PROGRAMS = sorted(
+    path.stem for path in BENCHMARKS.glob("*.py") if '__name__ == "__main__"' in path.read_text(encoding="utf-8")
+)
+
+
+def run(program: str) -> str:
+    command = [sys.executable, str(BENCHMARKS / f"{program}.py"), *SMALLEST[program]]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600, env=dict(os.environ))
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+@pytest.mark.parametrize("program", PROGRAMS)
+def test_it_runs_and_prints_what_the_page_shows(program: str) -> None:
+    """The page is written by the programs: the same tables, in the same order."""
+    if program == "runtime" and shutil.which("valgrind") is None:
+        pytest.skip("valgrind is not installed: apt install valgrind")
+    if program in ("configure", "scaling") and shutil.which("cmake") is None:
+        pytest.skip("cmake is not installed: apt install cmake")
+    printed = run(program)
+    titles = re.findall(r"^(.+)\n-+$", printed, flags=re.MULTILINE)
+    section = re.search(rf"<!-- begin {program} -->(.*?)<!-- end {program} -->", PAGE.read_text(encoding="utf-8"), re.S)
+    assert section is not None, f"docs/benchmarks.md has no section for {program}"
+    assert titles == re.findall(r"^### (.+)$", section[1], flags=re.MULTILINE)
+    assert f"python benchmarks/{program}.py" in section[1]
+
+
+@pytest.mark.skipif(shutil.which("valgrind") is None, reason="valgrind is not installed: apt install valgrind")
+def test_generated_code_costs_little_more_than_code_written_by_hand() -> None:
+    """Instructions are counted, not timed: the figure does not depend on what else the machine does."""
+    found = re.search(r"everything else +[\d.]+ +[\d.]+ +([\d.]+) x", run("runtime"))
+    assert found is not None
+    assert float(found[1]) <= 1.2
+
+
+def test_the_two_programs_are_compared_through_faults() -> None:
+    """A difference would end the program: what is compared must be worth it."""
+    if shutil.which("valgrind") is None:
+        pytest.skip("valgrind is not installed: apt install valgrind")
+    found = re.search(r"same ([\d,]+) lines of trace, in ([\d,]+) of which the target was disabled", run("runtime"))
+    assert found is not None
+    assert int(found[1].replace(",", "")) == 6000
+    assert int(found[2].replace(",", "")) > 100
