@@ -133,17 +133,8 @@ def where_the_time_goes(folder: Path) -> dict[str, float]:
     """Shares of a cold run after the interpreter's own start, by a profile of which the built-in functions are told
     apart by their callers.  A profiler slows calls more than it slows other work: shares, not times."""
     profile = folder / "profile"
-    command = [
-        sys.executable,
-        "-m",
-        "cProfile",
-        "-o",
-        profile,
-        EPG,
-        "generate",
-        "jiwy",
-        *files(str(folder / "pico.tcf")),
-    ]
+    command: list[str | Path] = [sys.executable, "-m", "cProfile", "-o", profile, EPG]
+    command += ["generate", "jiwy", *files(str(folder / "pico.tcf"))]
     run([*command, "--output", folder / "profiled"], EPG_TARGETS_PATH=str(folder / "targets"))
     stats = pstats.Stats(str(profile), stream=io.StringIO()).stats  # type: ignore[attr-defined]
     costs: dict[str, float] = {}
