@@ -2,8 +2,8 @@
 # package, wherever the interpreter of this prefix keeps it.
 get_filename_component(_epg_prefix "${CMAKE_CURRENT_LIST_DIR}/../../.." ABSOLUTE)
 file(GLOB _epg_configs
-  "${_epg_prefix}/lib*/python*/*-packages/epg/_data/cmake/EPGConfig.cmake"
-  "${_epg_prefix}/local/lib*/python*/*-packages/epg/_data/cmake/EPGConfig.cmake"
+  "${_epg_prefix}/lib/python*/*-packages/epg/_data/cmake/EPGConfig.cmake"
+  "${_epg_prefix}/local/lib/python*/*-packages/epg/_data/cmake/EPGConfig.cmake"
   "${_epg_prefix}/[Ll]ib/*-packages/epg/_data/cmake/EPGConfig.cmake")
 if(_epg_configs)
   list(SORT _epg_configs COMPARE NATURAL ORDER DESCENDING) # several Pythons share a prefix: the newest
