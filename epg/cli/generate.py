@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Sequence
+from pathlib import Path
 
 from epg.cli.arguments import add_target_arguments, request_of
 from epg.cli.output import add_output_arguments, update_folder, write_warnings
@@ -14,6 +16,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("name", help="name of the target: prefix of its C symbols")
     add_output_arguments(parser)
     add_target_arguments(parser, required=True)
+
+
+def report_mistake_in_template(error: Exception, user_roots: Sequence[Path], diagnostics: Diagnostics) -> None:
+    """Reports a mistake in a template of the user's own kinds and platforms and stops; EPG's own are bugs."""
+    from epg.emit.template import mistake_in_template
+    from epg.source import Span
+
+    file, line, message = mistake_in_template(error) or ("", 0, "")
+    if any(Path(file).is_relative_to(root) for root in user_roots):
+        hint = "docs/adding-a-component-kind.md says what a template may print"
+        diagnostics.error("template-wrong", Span(file, line, 1), f"this template does not work: {message}", hint=hint)
+        diagnostics.stop_if_errors()
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
@@ -30,11 +44,11 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         message = f"{app.target.name} can be checked, but this EPG has no port layer for {app.target.platform.name}"
         diagnostics.error("platform-not-built", span, message, hint="choose another target: 'epg targets' lists them")
         diagnostics.stop_if_errors()
-    names = PathNames(options.source_dir)
-    update_folder(
-        options.output,
-        application_outputs(app, request.roots, names),
-        sys.stdout if options.json else None,
-    )
+    try:
+        files = application_outputs(app, request.roots, PathNames(options.source_dir))
+    except Exception as error:
+        report_mistake_in_template(error, request.user_roots, diagnostics)
+        raise
+    update_folder(options.output, files, sys.stdout if options.json else None)
     write_warnings(options.warnings, diagnostics)
     return 0

@@ -8,12 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from epg.emit.text import Code, double, environment, identifier
+from epg.diagnostics import Diagnostics, UserError
+from epg.emit.template import environment
+from epg.emit.text import Code, double, identifier
 from epg.resolve.application import Application, ResolvedComponent, Step, Wire
+from epg.resolve.conversion import folded
 
 TEMPLATES = Path(__file__).resolve().parent / "templates"
 
@@ -67,8 +69,6 @@ class Emitter:
         self.app = app
         self.prefix = identifier(app.name)
         self.env = environment([TEMPLATES, *roots])
-        self.env.filters["code"] = Code
-        self.env.filters["upper"] = lambda text: Code(text.upper()) if isinstance(text, Code) else str(text).upper()
         self.views = {component.name: self._view(component) for component in app.components}
         self.modules: dict[str, Any] = {}
 
@@ -94,7 +94,7 @@ class Emitter:
         context: dict[str, Any] = {
             "app": app,
             "prefix": self.prefix,
-            "headers": [Code(header) for header in sorted(headers)],
+            "headers": sorted(headers),
             "parts": parts,
             "inputs": [self._input(wire) for wire in app.inputs],
             "outputs": [self._output(wire) for wire in app.outputs if wire.component.name not in publishers],
@@ -133,10 +133,17 @@ class Emitter:
         function = getattr(self._module(component), macro, None)
         if function is None:
             return Code("")
-        return Code(str(function(self.views[component.name], *arguments)).strip("\n"))
+        try:
+            return Code(str(function(self.views[component.name], *arguments)).strip("\n"))
+        except ArithmeticError:  # what a kind computes of parameters that are each in their range
+            problems = Diagnostics()
+            message = f"the parameters of '{component.name}' together give a number that C's doubles do not hold"
+            hint = "very large and very small ones cancel out badly: check their units"
+            problems.error("out-of-range", component.span, message, hint=hint)
+            raise UserError(problems) from None
 
     def _expression(self, component: ResolvedComponent, macro: str, *arguments: object) -> Code:
-        return Code(" ".join(self._statement(component, macro, *arguments).split()))
+        return Code(" ".join(str(self._statement(component, macro, *arguments)).split()))
 
     def _statement(self, component: ResolvedComponent, macro: str, *arguments: object) -> Code:
         code = self._macro(component, macro, *arguments)
@@ -180,7 +187,7 @@ class Emitter:
 
         Limits count in the controller's statistics, those of a plant (not ``counted``) do not.
         """
-        for step in _folded(steps):
+        for step in folded(steps):
             if step.scale != 1:
                 value = Code(f"{value} * {double(step.scale)}")
             if step.offset != 0:
@@ -198,21 +205,6 @@ def emit_application(app: Application, roots: Sequence[Path]) -> dict[str, str]:
     return Emitter(app, roots).files()
 
 
-def _folded(steps: Sequence[Step]) -> list[Step]:
-    result: list[Step] = []
-    for step in steps:
-        if result and result[-1].limits is None:
-            last = result.pop()
-            offset = float(last.offset * float(step.scale) + step.offset)
-            step = Step(_product(last.scale, step.scale), offset, step.limits, f"{last.reason}, {step.reason}")
-        result.append(step)
-    return result
-
-
-def _product(a: Fraction | float, b: Fraction | float) -> Fraction | float:
-    return a * b
-
-
 def _reference(wire: Wire) -> str:
     text = f"{wire.component.name}.{wire.component_port.name}"
     reasons = [step.reason for step in wire.steps if step.reason]
@@ -221,7 +213,7 @@ def _reference(wire: Wire) -> str:
 
 def _indented(code: Code, blanks: str = "    ") -> Code:
     """Statements of a macro at the depth of a function body, whatever depth they are written at."""
-    lines = [line.rstrip() for line in code.split("\n")]
+    lines = [line.rstrip() for line in str(code).split("\n")]
     filled = [line for line in lines if line]
     depth = min((len(line) - len(line.lstrip()) for line in filled), default=0)
     return Code("\n".join(blanks + line[depth:] for line in filled))

@@ -1,8 +1,9 @@
 """Text of generated files: each output language has its own escaping, and unescaped text is an error.
 
-A template may print numbers and :class:`Code`; anything else raises, so that no text of a user can reach generated
-code by accident.  Filters make code of values: ``|cstring``, ``|comment``, ``|identifier``, ``|double``, ``|bool``,
-``|cmake``.
+A template may print numbers and text that is code of its language already, by a filter: ``|cstring``, ``|comment``,
+``|identifier``, ``|double``, ``|bool``, ``|ns`` make C of values.  Anything else raises, so that no text of a user can
+reach generated code by accident, and no escaping of one language can stand in another.  What would let text pass
+unseen is refused when a template is read (:mod:`epg.emit.template`).
 """
 
 from __future__ import annotations
@@ -10,16 +11,50 @@ from __future__ import annotations
 import math
 import re
 from fractions import Fraction
-from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-import jinja2
 from markupsafe import Markup
 
 from epg.check.names import identifier_problem
 
+if TYPE_CHECKING:
+    from typing_extensions import Self
 
-class Code(Markup):
-    """Text that is code already."""
+
+class Escaped(Markup):
+    """Text of an output language.  Text that is none cannot be joined to it."""
+
+    @classmethod
+    def escape(cls, text: Any) -> Self:  # what Markup does to the other operand of +, %, join() and format()
+        """``text`` if it is of this language; raises TypeError (Markup would turn ``&`` into ``&amp;``)."""
+        if isinstance(text, cls):
+            return text
+        if type(text) is int:
+            return cls(text)
+        raise TypeError(f"{text!r} ({type(text).__name__}) was joined to {cls.__name__} without a filter")
+
+    def __radd__(self, other: Any) -> Any:
+        return type(self)(str.__add__(self.escape(other), self))
+
+
+class Code(Escaped):
+    """C or C++."""
+
+
+class CMakeCode(Escaped):
+    """CMake."""
+
+
+class DevicetreeCode(Escaped):
+    """Devicetree source."""
+
+
+class KconfigCode(Escaped):
+    """A Kconfig fragment."""
+
+
+class NotFinite(ArithmeticError, ValueError):
+    """A number that no literal of C has: infinite or NaN."""
 
 
 def cstring(text: object) -> Code:
@@ -53,13 +88,21 @@ def identifier(text: object) -> Code:
     return Code(name)
 
 
+def include(name: object) -> Code:
+    """The name between the brackets of ``#include <...>``; one that cannot stand there is an error."""
+    text = str(name)
+    if not text or not text.isprintable() or re.search(r'[<>"\\]|//|/\*', text):
+        raise ValueError(f"{text!r} cannot be included")
+    return Code(text)
+
+
 def double(value: object) -> Code:
     """A C literal with exactly the value of the nearest double; infinite and NaN are bugs."""
     if isinstance(value, bool) or not isinstance(value, (int, float, Fraction)):
         raise TypeError(f"{value!r} is no number")
     number = float(value)
     if not math.isfinite(number):
-        raise ValueError(f"{number} cannot be written as a literal")
+        raise NotFinite(f"{number} cannot be written as a literal")
     text = repr(number)
     if "." not in text and "e" not in text:
         text += ".0"
@@ -76,41 +119,29 @@ def nanoseconds(value: object) -> Code:
     return Code(f"{round(Fraction(value) * 1_000_000_000)}u")
 
 
-def cmake(text: object) -> Code:
-    """A CMake bracket-free quoted argument."""
+def cmake(text: object) -> CMakeCode:
+    """A quoted argument of CMake."""
     value = str(text)
     if "\0" in value:
         raise ValueError("NUL in a CMake argument")
     escaped = value.replace("\\", "\\\\").replace('"', '\\"').replace("$", "\\$").replace(";", "\\;")
-    return Code('"' + escaped.replace("\n", "\\n").replace("\r", "\\r") + '"')
+    return CMakeCode('"' + escaped.replace("\n", "\\n").replace("\r", "\\r") + '"')
 
 
-def _only_code(value: object) -> object:
-    if isinstance(value, Markup) or (isinstance(value, int) and not isinstance(value, bool)):
-        return value
-    raise TypeError(f"a template printed {value!r} ({type(value).__name__}) without a filter")
+def devicetree_string(text: object) -> DevicetreeCode:
+    """A string property's value; what dtc does not take as it is becomes an octal escape of its UTF-8."""
+    if "\0" in str(text):
+        raise ValueError("NUL in a devicetree string")
+    return DevicetreeCode(str(cstring(text)).replace("\\?", "?"))
 
 
-def environment(folders: list[Path]) -> jinja2.Environment:
-    """A Jinja environment for C and CMake with the filters of this module; undefined names are errors."""
-    env = jinja2.Environment(
-        loader=jinja2.FileSystemLoader([str(folder) for folder in folders]),
-        undefined=jinja2.StrictUndefined,
-        autoescape=True,
-        finalize=_only_code,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-        extensions=["jinja2.ext.do"],
-    )
-    env.filters.update(
-        cstring=cstring,
-        comment=comment,
-        identifier=identifier,
-        double=double,
-        bool=boolean,
-        ns=nanoseconds,
-        cmake=cmake,
-    )
-    env.globals["pi"] = math.pi
-    return env
+def kconfig_string(text: object) -> KconfigCode:
+    """The value of a string symbol, which ends with its line."""
+    value = str(text)
+    if not all(char.isprintable() for char in value):
+        raise ValueError(f"{value!r} cannot stand on one line")
+    return KconfigCode('"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"')
+
+
+def kconfig_bool(value: object) -> KconfigCode:
+    return KconfigCode("y" if value else "n")

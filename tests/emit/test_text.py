@@ -2,15 +2,33 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 from fractions import Fraction
 from pathlib import Path
 
+import jinja2
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from epg.emit.text import Code, cmake, comment, cstring, double, environment, identifier, nanoseconds
+from epg.emit.template import FILTERS, environment
+from epg.emit.text import (
+    CMakeCode,
+    Code,
+    DevicetreeCode,
+    Escaped,
+    KconfigCode,
+    cmake,
+    comment,
+    cstring,
+    devicetree_string,
+    double,
+    identifier,
+    include,
+    kconfig_string,
+    nanoseconds,
+)
 
 
 @settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -75,3 +93,81 @@ def test_a_template_that_prints_raw_text_is_an_error() -> None:
     for value in ("text", 1.5, True, None):
         with pytest.raises(TypeError, match="without a filter"):
             env.from_string("{{ x }}").render(x=value)
+
+
+@pytest.mark.parametrize("language", FILTERS)
+def test_text_of_another_language_is_raw_text(language: type[Escaped]) -> None:
+    env = environment([], language)
+    assert env.from_string("{{ x }} {{ 'a'|code }} {{ 1 }}").render(x=language("&")) == "& a 1"
+    for other in set(FILTERS) - {language}:
+        with pytest.raises(TypeError, match="without a filter"):
+            env.from_string("{{ x }}").render(x=other("y"))
+
+
+@pytest.mark.parametrize(
+    "template",
+    [
+        "{{ x ~ y }}",
+        "{{ x + y }}",
+        "{{ y + x }}",
+        "{{ 'a' + x }}",
+        "{{ x + 'a' }}",
+        "{{ '%s' % y }}",
+        "{{ y * 'a' }}",
+        "{{ '{}'.format(y) }}",
+        "{{ ' '.join([y]) }}",
+        "{{ x.join([y]) }}",
+        "{{ (x + '%s') % y }}",
+        "{{ y|code }}",
+        "{{ (y if x else y)|code }}",
+        "{{ y|safe }}",
+        "{{ y|e }}",
+        "{{ y|string }}",
+        "{{ [x, y]|join }}",
+        "{{ '%s'|format(y) }}",
+        "{{ y|replace('a', 'b') }}",
+        "{% autoescape false %}{{ y }}{% endautoescape %}",
+        "{% macro m() %}a{% endmacro %}{{ m() + y }}",
+        "{% macro m(z) %}{{ z }}{% endmacro %}{{ m(y) }}",
+        "{% set z %}{{ y }}{% endset %}{{ z }}",
+        "{% filter upper %}{{ y }}{% endfilter %}",
+        "{% call(z) m() %}{% endcall %}{% macro m() %}{{ caller(y) }}{% endmacro %}{{ y|default(x) }}",
+    ],
+)
+def test_no_template_lets_raw_text_pass(template: str) -> None:
+    """``y`` is raw and holds what HTML would escape: neither it nor its escaped form comes out."""
+    with pytest.raises((TypeError, jinja2.TemplateError)):
+        environment([]).from_string(template).render(x=Code("x"), y="<&>")
+
+
+def test_code_is_joined_to_code_without_change() -> None:
+    env = environment([])
+    template = "{% macro m() %}a & b < c{% endmacro %}{% set z %}{{ m() }} > {{ x }}{% endset %}{{ z }}{{ x + x }}"
+    assert env.from_string(template).render(x=Code("&x")) == "a & b < c > &x&x&x"
+    assert Code("&").join([Code("<"), Code(">")]) == "<&>"
+
+
+@pytest.mark.parametrize("name", ["", "a\nb", "a>b", 'a"b', "a<b", "a\\b", "a//b", "a/*b", "\0"])
+def test_names_that_cannot_be_included(name: str) -> None:
+    with pytest.raises(ValueError, match="cannot be included"):
+        include(name)
+    assert include("common/xx model.h") == "common/xx model.h"
+
+
+@settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.text(alphabet=st.characters(codec="utf-8", exclude_characters="\0"), max_size=20))
+@pytest.mark.skipif(not shutil.which("dtc"), reason="dtc is missing: apt install device-tree-compiler")
+def test_devicetree_strings_hold_any_text(tmp_path: Path, text: str) -> None:
+    source = f"/dts-v1/;\n/ {{ x = {devicetree_string(text)}; }};\n"
+    blob = subprocess.run(
+        ["dtc", "-I", "dts", "-O", "dtb"], input=source.encode("utf-8"), capture_output=True, check=True
+    ).stdout
+    assert text.encode("utf-8") + b"\0" in blob
+
+
+def test_kconfig_strings() -> None:
+    assert kconfig_string('a"b\\c') == '"a\\"b\\\\c"'
+    with pytest.raises(ValueError, match="one line"):
+        kconfig_string("a\nCONFIG_B=y")
+    assert isinstance(kconfig_string(""), KconfigCode) and isinstance(devicetree_string(""), DevicetreeCode)
+    assert isinstance(cmake(""), CMakeCode)

@@ -13,7 +13,8 @@ import jinja2
 
 from epg.emit.model.copies import copies, copy_name
 from epg.emit.model.tokens_code import helper_texts, tokens_code
-from epg.emit.text import Code, comment, environment
+from epg.emit.template import environment
+from epg.emit.text import Code, comment
 from epg.load.models.details import CFunctionExport, CppClassExport, HandWritten, TokensExport
 from epg.load.models.link import Linked
 from epg.load.models.model import Model, Parameter, Port
@@ -85,7 +86,7 @@ def parameter_constants(name: str, parameters: Sequence[Parameter]) -> list[str]
 @cache
 def _environment() -> jinja2.Environment:
     env = environment([Path(__file__).resolve().parent / "templates"])
-    env.filters["code"] = Code
+    env.filters["parsed"] = Code  # what EPG's parsers took from a source as it stands there
     env.filters["told"] = _told
     env.filters["last_name"] = lambda text: str(text).rpartition("::")[2].removeprefix("struct ")
     return env

@@ -1,0 +1,140 @@
+"""Jinja templates in which text cannot pass unescaped.
+
+>>> # env = environment([folder])
+>>> # env.from_string("{{ name|identifier }} = {{ value|double }};").render(name="gain", value=0.5)
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import jinja2
+from jinja2 import nodes
+from jinja2.compiler import CodeGenerator
+from jinja2.runtime import Macro
+
+from epg.emit import text
+from epg.emit.text import CMakeCode, Code, DevicetreeCode, Escaped, KconfigCode
+
+FILTERS: Mapping[type[Escaped], Mapping[str, Callable[..., object]]] = {
+    Code: {
+        "cstring": text.cstring,
+        "comment": text.comment,
+        "identifier": text.identifier,
+        "include": text.include,
+        "double": text.double,
+        "bool": text.boolean,
+        "ns": text.nanoseconds,
+        "code": Code,
+    },
+    CMakeCode: {"string": text.cmake, "code": CMakeCode},
+    DevicetreeCode: {
+        "string": text.devicetree_string,
+        "comment": lambda value: DevicetreeCode(text.comment(value)),
+        "label": lambda value: DevicetreeCode(text.identifier(value)),
+        "code": DevicetreeCode,
+    },
+    KconfigCode: {"string": text.kconfig_string, "bool": text.kconfig_bool, "code": KconfigCode},
+}
+"""What makes text of an output language.  ``code`` takes constants of the template only."""
+
+_PLAIN_FILTERS = """abs count default first float int last length list lower map max min reject rejectattr reverse round
+select selectattr sort sum unique upper""".split()
+"""Filters of Jinja that escape nothing: what they give is as escaped as what they got."""
+
+
+def environment(folders: Iterable[Path], language: type[Escaped] = Code) -> jinja2.Environment:
+    """A Jinja environment for one output language; undefined names are errors."""
+
+    def only_code(value: object) -> object:
+        if isinstance(value, language) or type(value) is int:
+            return value
+        raise TypeError(f"a template printed {value!r} ({type(value).__name__}) without a filter")
+
+    env = _Environment(
+        loader=jinja2.FileSystemLoader([str(folder) for folder in folders]),
+        undefined=jinja2.StrictUndefined,
+        autoescape=True,
+        finalize=only_code,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        extensions=["jinja2.ext.do"],
+    )
+    env.language = language
+    plain = {name: env.filters[name] for name in _PLAIN_FILTERS}
+    env.filters.clear()
+    env.filters.update(plain)
+    env.filters.update(FILTERS[language])
+    env.globals["pi"] = math.pi
+    return env
+
+
+class CodeMacro(Macro):
+    """A macro whose text is code of its environment's language."""
+
+    def _invoke(self, arguments: list[Any], autoescape: bool) -> Escaped:
+        environment = self._environment
+        assert isinstance(environment, _Environment)
+        return environment.language(super()._invoke(arguments, autoescape))
+
+
+class _CodeGenerator(CodeGenerator):
+    """Templates in which what macros and blocks give is code of the language, not HTML (``Markup``)."""
+
+    def visit_Template(self, node: nodes.Template, frame: Any = None) -> None:
+        super().visit_Template(node, frame)
+        environment = self.environment
+        assert isinstance(environment, _Environment)
+        self.writeline(f"from epg.emit.text import {environment.language.__name__} as Markup")
+        self.writeline("from epg.emit.template import CodeMacro as Macro")
+
+
+class _Environment(jinja2.Environment):
+    """Refuses, where it is written, what would go round the filters."""
+
+    code_generator_class = _CodeGenerator
+    language: type[Escaped]
+
+    def _parse(self, source: str, name: str | None, filename: str | None) -> nodes.Template:
+        tree = super()._parse(source, name, filename)
+        for node in tree.find_all((nodes.Concat, nodes.Filter, nodes.ScopedEvalContextModifier)):
+            problem = _problem(node)
+            if problem:
+                raise jinja2.TemplateAssertionError(problem, node.lineno, name, filename)
+        return tree
+
+
+def _problem(node: nodes.Node) -> str:
+    if isinstance(node, nodes.Concat):
+        return "'~' joins text without a filter: print the parts one after the other"
+    if isinstance(node, nodes.ScopedEvalContextModifier):
+        return "autoescape cannot be changed"
+    if isinstance(node, nodes.Filter) and node.name == "code" and not _is_constant(node.node):
+        return "'|code' is for constants: use a filter that knows what the value is, such as |identifier or |cstring"
+    return ""
+
+
+def _is_constant(node: nodes.Node | None) -> bool:
+    if isinstance(node, nodes.CondExpr):
+        return _is_constant(node.expr1) and (node.expr2 is None or _is_constant(node.expr2))
+    return isinstance(node, nodes.Const)
+
+
+def mistake_in_template(error: Exception) -> tuple[str, int, str] | None:
+    """File, line and message of an error that a template made; None if it is not one of a template's."""
+    if isinstance(error, jinja2.TemplateSyntaxError):
+        return (error.filename or "", error.lineno, error.message or "") if error.filename else None
+    place = None
+    trace = error.__traceback__
+    while trace is not None:
+        template = trace.tb_frame.f_globals.get("__jinja_template__")
+        if template is not None and template.filename:  # a macro called from Python: lines are those of compiled code
+            place = template.filename, template.get_corresponding_lineno(trace.tb_lineno)
+        elif trace.tb_frame.f_code.co_filename.endswith(".j2"):  # Jinja has put the template's lines in
+            place = trace.tb_frame.f_code.co_filename, trace.tb_lineno
+        trace = trace.tb_next
+    return (*place, str(error)) if place else None
