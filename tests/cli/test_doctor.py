@@ -106,7 +106,7 @@ def test_sdks_are_found_where_their_installers_put_them(bare: Path, capsys: pyte
 
 def test_commands_put_sdks_into_the_cache(bare: Path, capsys: pytest.CaptureFixture[str]) -> None:
     _, items, _ = doctor(capsys)
-    assert items["pico_sdk"]["remedy"].endswith(f" {(bare / 'cache').as_posix()}/pico_sdk-2.2.0")
+    assert items["pico_sdk"]["remedy"].endswith(f" {(bare / 'cache').as_posix()}/pico-sdk-2.2.0")
 
 
 def test_a_variable_that_leads_nowhere(
