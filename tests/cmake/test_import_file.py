@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import subprocess
+from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
@@ -57,7 +58,7 @@ class User:
         note = self.folder / "asked"
         return note.read_text().split() if note.exists() else []
 
-    def configure(self, *arguments: str, check: bool = True, **variables: str) -> str:
+    def configure(self, *arguments: str, check: bool = True, variables: Mapping[str, str] | None = None) -> str:
         done = subprocess.run(
             [
                 shutil.which("cmake") or "cmake",
@@ -69,7 +70,7 @@ class User:
                 "Ninja",
                 *arguments,
             ],
-            env={"PATH": str(self.programs), "HOME": str(self.folder), **variables},
+            env={"PATH": str(self.programs), "HOME": str(self.folder), **(variables or {})},
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
@@ -90,7 +91,7 @@ def test_a_checkout_goes_before_a_package(user: User) -> None:
     path, other, installed = user.checkout("path"), user.checkout("other"), user.checkout("installed")
     user.program("python3", installed, "-m epg --cmake-dir")
     found = f"EPG of {path}/cmake\n"
-    assert found in user.configure(f"-DEPG_PATH={path}", EPG_PATH=str(other))
+    assert found in user.configure(f"-DEPG_PATH={path}", variables={"EPG_PATH": str(other)})
     assert found in user.configure()
     assert user.asked == []
 
@@ -99,7 +100,7 @@ def test_a_checkout_goes_before_a_package(user: User) -> None:
 def test_environment(user: User, variable: str) -> None:
     checkout = user.checkout("somewhere")
     value = {"EPG_PATH": checkout, "EPG_DIR": checkout / "cmake"}[variable]
-    assert f"EPG of {checkout}/cmake\n" in user.configure(**{variable: str(value)})
+    assert f"EPG of {checkout}/cmake\n" in user.configure(variables={variable: str(value)})
 
 
 def test_a_relative_path_begins_at_the_project(user: User) -> None:

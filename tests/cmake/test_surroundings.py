@@ -77,7 +77,7 @@ def generated(around: Surroundings, folder: Path) -> dict[str, bytes]:
             f"-DPython3_EXECUTABLE={sys.executable}",
             *(around.arguments or ("-G", "Ninja")),
         ],
-        env=environment | around.variables,
+        env={**environment, **around.variables},
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         preexec_fn=lambda: os.umask(around.umask) and None,

@@ -49,7 +49,7 @@ def test_version(folder: Path, wanted: str, found: bool, tmp_path: Path) -> None
         f"find_package(EPG {wanted} QUIET CONFIG NO_DEFAULT_PATH PATHS [==[{folder}]==])\n"
         'message(STATUS "found: ${EPG_FOUND} ${EPG_VERSION}")\n'
     )
-    command = ["cmake", "-S", tmp_path, "-B", tmp_path / "build"]
+    command = ["cmake", "-S", str(tmp_path), "-B", str(tmp_path / "build")]
     output = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     assert (f"found: 1 {HERE}\n" in output) == found, output
 
@@ -60,7 +60,7 @@ def test_the_checkout_of_an_editable_install_has_gone(tmp_path: Path) -> None:
     (tmp_path / "CMakeLists.txt").write_text(
         "cmake_minimum_required(VERSION 3.22...3.31)\nproject(x LANGUAGES NONE)\nfind_package(EPG REQUIRED)\n"
     )
-    command = ["cmake", "-S", tmp_path, "-B", tmp_path / "build", f"-DEPG_DIR={tmp_path}"]
+    command = ["cmake", "-S", str(tmp_path), "-B", str(tmp_path / "build"), f"-DEPG_DIR={tmp_path}"]
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode != 0
     expected = "the checkout of an editable install is gone: there is no /gone/cmake/EPGConfig.cmake"

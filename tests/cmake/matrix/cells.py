@@ -12,7 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tests.cmake.matrix.cmakes import cmake
-from tests.cmake.matrix.ways import WAYS, Installations
+from tests.cmake.matrix.ways import WAYS, Conditions, Installations
+from tests.cmake.project import ROOT
 
 HERE = Path(__file__).resolve().parent
 MODEL = HERE.parent.parent / "models" / "pid_c"
@@ -21,6 +22,9 @@ MODEL = HERE.parent.parent / "models" / "pid_c"
 CROSS = "arm-none-eabi-" if shutil.which("arm-none-eabi-gcc") else ""
 
 GENERATORS = ("Ninja", "Unix Makefiles", "Ninja Multi-Config")
+
+#: at the end of ``find_epg.cmake``: which EPG was found
+SAY_WHICH = '_epg_data_folder(_epg_data)\nmessage(STATUS "EPG of ${_epg_data}")\n'
 
 
 @dataclass(frozen=True)
@@ -85,16 +89,19 @@ def check(cell: Cell, have: Installations, folder: Path) -> None:
     """Configures, builds and runs the cell's project in ``folder`` as its user would; asserts what he may expect."""
     convention = CONVENTIONS[cell.convention]
     project, build = folder / "project", folder / "build"
-    found = WAYS[cell.way](have, convention.confined)
+    found = WAYS[cell.way](have, Conditions(convention.confined, cell.cmake == "oldest"))
     shutil.copytree(HERE / "conventions" / cell.convention, project)
     shutil.copytree(MODEL, project / "model")
     for file in (HERE / "main.c", *found.copied):
         shutil.copy(file, project)
-    (project / "find_epg.cmake").write_text(found.text)
+    (project / "find_epg.cmake").write_text(f"{found.text}{SAY_WHICH}")
 
     ignored = ("EPG_", "CMAKE_", "PICO_", "ZEPHYR_", "Python3_", "VIRTUAL_ENV")
     environment = {key: value for key, value in os.environ.items() if not key.startswith(ignored)}
     environment |= {"ZEPHYR_BASE": str(project / "base"), **found.environment}
+    # ctest's PYTHONPATH holds the packages that tests need, and EPG itself
+    paths = [path for path in environment.pop("PYTHONPATH", "").split(os.pathsep) if path and Path(path) != ROOT]
+    environment |= {"PYTHONPATH": os.pathsep.join(paths)} if paths else {}
     if "EPG_CACHE" in os.environ:
         environment["EPG_CACHE"] = os.environ["EPG_CACHE"]
 
@@ -109,6 +116,7 @@ def check(cell: Cell, have: Installations, folder: Path) -> None:
     arguments = (*convention.arguments(project), *found.arguments)
     output = run(program, "-S", project, "-B", build, "-G", cell.generator, *arguments)
     assert not re.search("warning|deprecat", output, re.IGNORECASE), output
+    assert f"EPG of {(build / found.leads_to).as_posix()}\n" in output, output
 
     _compile_from_database(project / "main.c", build)
     run(program, "--build", build)

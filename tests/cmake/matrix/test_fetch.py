@@ -47,7 +47,7 @@ def test_another_archive_is_fetched_and_used(version: str, second: str, tmp_path
     source.mkdir()
 
     def configure(*arguments: str) -> str:
-        command = [cmake(version), "-S", source, "-B", build, "-G", "Ninja", *arguments]
+        command = [str(cmake(version)), "-S", str(source), "-B", str(build), "-G", "Ninja", *arguments]
         done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         assert done.returncode == 0, done.stdout
         assert "warning" not in done.stdout.lower(), done.stdout

@@ -25,13 +25,23 @@ class Found:
     """How one way reaches EPG."""
 
     text: str  #: lines of the project, where it asks for EPG
+    leads_to: Path  #: the folder above EPG's ``cmake``; relative to the build folder
     arguments: tuple[str, ...] = ()
     environment: Mapping[str, str] = field(default_factory=dict)
     copied: tuple[Path, ...] = ()  #: files that the project has copied from EPG
 
 
-#: makes of the installations, and of whether the toolchain confines packages to a sysroot, what the way needs
-Way = Callable[[Installations, bool], Found]
+@dataclass(frozen=True)
+class Conditions:
+    """What a way depends on."""
+
+    confined: bool  #: the toolchain file lets packages be found in its sysroot only
+    oldest: bool  #: the oldest CMake
+
+
+Way = Callable[[Installations, Conditions], Found]
+
+FETCHED = Path("_deps/epg-src")
 
 FIND = "find_package(EPG REQUIRED)\n"
 
@@ -45,33 +55,38 @@ def _python(have: Installations) -> str:
     return f"-DPython3_EXECUTABLE={have.python}"
 
 
-def _in_venv(venv: Path, cmake_dir: Path, confined: bool) -> Found:
-    # docs/cmake.md: where packages are confined, EPG_DIR is what `python -m epg --cmake-dir` prints
-    return Found(FIND, (f"-DEPG_DIR={cmake_dir.as_posix()}",) if confined else (), activated(venv))
-
-
-def wheel(have: Installations, confined: bool) -> Found:
+def _in_wheel(have: Installations) -> Path:
     (site,) = have.wheel_venv.glob("lib/python*/site-packages")
-    return _in_venv(have.wheel_venv, site / "epg/_data/cmake", confined)
+    return site / "epg/_data"
 
 
-def editable(have: Installations, confined: bool) -> Found:
-    return _in_venv(have.editable_venv, have.checkout / "cmake", confined)
+def _in_venv(venv: Path, root: Path, when: Conditions) -> Found:
+    # docs/cmake.md: where packages are confined, EPG_DIR is what `python -m epg --cmake-dir` prints
+    return Found(FIND, root, (f"-DEPG_DIR={root / 'cmake'}",) if when.confined else (), activated(venv))
 
 
-def checkout(have: Installations, confined: bool) -> Found:
-    return Found(FIND, (_python(have), f"-DEPG_DIR={have.checkout / 'cmake'}"))
+def wheel(have: Installations, when: Conditions) -> Found:
+    return _in_venv(have.wheel_venv, _in_wheel(have), when)
 
 
-def checkout_prefix(have: Installations, confined: bool) -> Found:
+def editable(have: Installations, when: Conditions) -> Found:
+    return _in_venv(have.editable_venv, have.checkout, when)
+
+
+def checkout(have: Installations, when: Conditions) -> Found:
+    return Found(FIND, have.checkout, (_python(have), f"-DEPG_DIR={have.checkout / 'cmake'}"))
+
+
+def checkout_prefix(have: Installations, when: Conditions) -> Found:
     # a find root that holds the checkout is what a confined search needs
-    where = "CMAKE_FIND_ROOT_PATH" if confined else "CMAKE_PREFIX_PATH"
+    where = "CMAKE_FIND_ROOT_PATH" if when.confined else "CMAKE_PREFIX_PATH"
     text = f'list(APPEND {where} "{have.checkout.as_posix()}")\n' + FIND
-    return Found(text, (_python(have),))
+    return Found(text, have.checkout, (_python(have),))
 
 
-def subdirectory(have: Installations, confined: bool) -> Found:
-    return Found(f'add_subdirectory("{have.checkout.as_posix()}" third_party/epg)\n', (_python(have),))
+def subdirectory(have: Installations, when: Conditions) -> Found:
+    text = f'add_subdirectory("{have.checkout.as_posix()}" third_party/epg)\n'
+    return Found(text, have.checkout, (_python(have),))
 
 
 def _fetch(declaration: str) -> str:
@@ -85,35 +100,41 @@ FetchContent_MakeAvailable(EPG)
 """
 
 
-def fetch_folder(have: Installations, confined: bool) -> Found:
-    return Found(_fetch(f'SOURCE_DIR "{have.checkout.as_posix()}"'), (_python(have),))
+def fetch_folder(have: Installations, when: Conditions) -> Found:
+    return Found(_fetch(f'SOURCE_DIR "{have.checkout.as_posix()}"'), have.checkout, (_python(have),))
 
 
-def fetch_archive(have: Installations, confined: bool) -> Found:
-    declaration = f'URL "{have.archive.as_uri()}" URL_HASH SHA256={have.archive_sha256}'
-    return Found(_fetch(declaration), (_python(have),))
+def _archive(have: Installations) -> str:
+    return f'URL "{have.archive.as_uri()}" URL_HASH SHA256={have.archive_sha256}'
 
 
-def fetch_unless_installed(have: Installations, confined: bool) -> Found:
-    declaration = f'URL "{have.archive.as_uri()}" URL_HASH SHA256={have.archive_sha256} ${{find_first}}'
+def fetch_archive(have: Installations, when: Conditions) -> Found:
+    return Found(_fetch(_archive(have)), FETCHED, (_python(have),))
+
+
+def fetch_unless_installed(have: Installations, when: Conditions) -> Found:
     # a second part of the project asks again, as it would if it did not know of the first
-    return Found(_fetch(declaration) + FIND, (), activated(have.wheel_venv))
+    text = _fetch(_archive(have) + " ${find_first}") + FIND
+    root = FETCHED if when.confined or when.oldest else _in_wheel(have)
+    return Found(text, root, (), activated(have.wheel_venv))
 
 
-def fetch_disconnected(have: Installations, confined: bool) -> Found:
+def fetch_disconnected(have: Installations, when: Conditions) -> Found:
     arguments = ("-DFETCHCONTENT_FULLY_DISCONNECTED=ON", f"-DFETCHCONTENT_SOURCE_DIR_EPG={have.checkout}")
-    return Found(_fetch("URL https://nowhere.invalid/epg.tar.gz"), (_python(have), *arguments))
+    return Found(_fetch("URL https://nowhere.invalid/epg.tar.gz"), have.checkout, (_python(have), *arguments))
 
 
-def import_installed(have: Installations, confined: bool) -> Found:
-    text = "include(epg_import.cmake)\n"
-    return Found(text, (), activated(have.wheel_venv), (have.checkout / "cmake/epg_import.cmake",))
+IMPORT = "include(epg_import.cmake)\n"
 
 
-def import_path(have: Installations, confined: bool) -> Found:
-    text = "include(epg_import.cmake)\n"
-    arguments = (_python(have), f"-DEPG_PATH={have.checkout}")
-    return Found(text, arguments, {}, (have.checkout / "cmake/epg_import.cmake",))
+def import_installed(have: Installations, when: Conditions) -> Found:
+    copied = (have.checkout / "cmake/epg_import.cmake",)
+    return Found(IMPORT, _in_wheel(have), (), activated(have.wheel_venv), copied)
+
+
+def import_path(have: Installations, when: Conditions) -> Found:
+    copied = (have.checkout / "cmake/epg_import.cmake",)
+    return Found(IMPORT, have.checkout, (_python(have), f"-DEPG_PATH={have.checkout}"), {}, copied)
 
 
 WAYS: dict[str, Way] = {
