@@ -64,12 +64,30 @@ def build_generated(folder: Path) -> Program:
     kinds = sorted(path for path in (ROOT / "targets" / "components").iterdir() if path.is_dir())
     includes = [RUNTIME / "include", SOURCES, output, *kinds]
     names = ["-include", str(output / "jiwy_model_names.h")]
-    sources = [*sorted((RUNTIME / "src").glob("*.c")), output / "jiwy_app.c", output / "jiwy_model.c"]
-    glue = [compile_c(source, folder / "g", includes, WARNINGS) for source in sources]
-    glue.append(compile_c(output / "jiwy_model_export.c", folder / "g", includes, ["-w", *names]))
     model = [compile_c(s, folder / "gm", [JIWY / "model"], ["-w", *names]) for s in model_sources()]
+    glue = [compile_c(output / name, folder / "g", includes, WARNINGS) for name in ("jiwy_app.c", "jiwy_model.c")]
+    glue.append(compile_c(output / "jiwy_model_export.c", folder / "g", includes, ["-w", *names]))
     others = [compile_c(SOURCES / name, folder / "g", includes, WARNINGS) for name in ("generated.c", "driver.c")]
+    library = [compile_c(s, folder / "r", includes, WARNINGS) for s in sorted((RUNTIME / "src").glob("*.c"))]
+    glue += linked_from(library, [*glue, *others])
     return Program(link([*glue, *model, *others], folder / "g/driver"), "epg_control_cycle", tuple(glue), tuple(model))
+
+
+def linked_from(library: Sequence[Path], objects: Sequence[Path]) -> list[Path]:
+    """The objects of a library that a linker takes for ``objects``: those that define what is missing."""
+    taken: list[Path] = []
+    while True:
+        present = [*objects, *taken]
+        missing = set().union(*(symbols(path, "U") for path in present))
+        more = [path for path in library if path not in taken and symbols(path, "TDBRVW") & missing]
+        if not more:
+            return taken
+        taken += more
+
+
+def symbols(path: Path, sorts: str) -> set[str]:
+    """Names of an object file of these sorts, as ``nm`` calls them."""
+    return {line.split()[-1] for line in run(["nm", path]).splitlines() if line.split()[-2] in sorts}
 
 
 def build_handwritten(folder: Path) -> Program:
@@ -147,8 +165,7 @@ def collected(program: Program, folder: Path, cycles: int) -> dict[str, int]:
 
 
 def defined_in(objects: Sequence[Path]) -> set[str]:
-    lines = "".join(run(["nm", path]) for path in objects).splitlines()
-    return {line.split()[-1] for line in lines if line.split()[-2] in "tT"}
+    return set().union(*(symbols(path, "tT") for path in objects))
 
 
 def cost_table(generated: dict[str, float], written: dict[str, float], compared: str) -> Table:
