@@ -126,6 +126,12 @@ class _Importer:
             for line in assignments(code.file, function.body_start, function.body_end)
             if line.array in (parameter_array, f"model_instance->{parameter_array}")
         ]
+        if settings and not self._exists(parameter_array):
+            code, line = settings[0]
+            message = f"'{line.array}' is set, but no file of the export defines it"
+            hint = "are all files there, and renamed in the same way? else export again"
+            self.diagnostics.error("model-incomplete", line.span, message, hint=hint)
+            return None
         token_parameters = self.metadata.tokens.names("PARAMETER") if self.metadata.tokens else []
         listed = [name for code in self.linked.units for name, _ in listed_names(code.file, "parameter")]
         parameters, places = make_parameters([line for _, line in settings], listed or token_parameters, ())

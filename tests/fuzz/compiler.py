@@ -1,0 +1,44 @@
+"""Whether generated C compiles under the strictest warnings EPG promises."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+STRICT = ["-std=c11", "-Wall", "-Wextra", "-Wconversion", "-Wdouble-promotion", "-Werror"]
+needs_compiler = pytest.mark.skipif(shutil.which("gcc") is None, reason="gcc is missing: apt install gcc")
+
+
+def include_options() -> list[str]:
+    targets = ROOT / "targets"
+    folders = [
+        targets / "runtime/include",
+        targets / "platforms/host/include",
+        *sorted((targets / "components").iterdir()),
+    ]
+    return [f"-I{folder}" for folder in folders]
+
+
+def compile_outputs(name: str, files: Mapping[str, str]) -> None:
+    """Asserts that every generated C file of target ``name`` compiles, but for those that are the model's own code."""
+    with tempfile.TemporaryDirectory() as made:
+        folder = Path(made)
+        for file, text in files.items():
+            (folder / file).parent.mkdir(parents=True, exist_ok=True)
+            (folder / file).write_text(text, encoding="utf-8")
+        sources = [file for file in sorted(files) if file.endswith(".c") and is_strict(file)]
+        assert sources
+        command = ["gcc", "-fsyntax-only", *STRICT, *include_options(), f"-I{folder}", *sources]
+        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, errors="replace")
+        assert done.returncode == 0, done.stderr[:4000]
+
+
+def is_strict(file: str) -> bool:
+    """Whether a generated file is compiled with the project's warnings: all but the model's own code."""
+    return not file.endswith("_export.c") and "_copies/" not in file
