@@ -169,7 +169,8 @@ def program(catalog: Catalog, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("templates")
     renderers = [Renderer(catalog, component) for component in COMPONENTS_TRIED]
     (folder / "generated.h").write_text(header(renderers))
-    sources = [HARNESS, HOST / "src" / "port.c", HOST / "src" / "clock.c", *runtime_sources()]
+    port = [HOST / "src" / f"{name}.c" for name in ("port", "clock", "store")]
+    sources = [HARNESS, *port, *runtime_sources()]
     return compile_program(folder / "templates", sources, includes=[folder, HOST / "include", HOST / "src"])
 
 

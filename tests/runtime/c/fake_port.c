@@ -78,3 +78,20 @@ bool epg_port_input_read(uint8_t pin)
     CHECK(fake_port.inputs_started[pin]);
     return fake_port.inputs[pin];
 }
+
+size_t epg_port_store_read(void *data, size_t size)
+{
+    const size_t taken = size < fake_port.store_size ? size : fake_port.store_size;
+    memcpy(data, fake_port.store, taken);
+    return taken;
+}
+
+bool epg_port_store_write(const void *data, size_t size)
+{
+    if (fake_port.store_refuses || size > FAKE_STORE) {
+        return false;
+    }
+    memcpy(fake_port.store, data, size);
+    fake_port.store_size = size;
+    return true;
+}

@@ -7,7 +7,7 @@
 
 #include "epg/port.h"
 
-enum { FAKE_UNITS = 8, FAKE_PINS = 32 };
+enum { FAKE_UNITS = 8, FAKE_PINS = 32, FAKE_STORE = 1024 };
 
 typedef struct fake_port {
     uint64_t now_ns;             /**< what epg_port_time_ns() returns */
@@ -21,6 +21,9 @@ typedef struct fake_port {
     bool pwms_started[FAKE_UNITS];
     bool outputs_started[FAKE_PINS];
     bool inputs_started[FAKE_PINS];
+    unsigned char store[FAKE_STORE];
+    size_t store_size;      /**< bytes stored; 0: nothing */
+    bool store_refuses;     /**< nothing can be stored */
     unsigned int writes;    /**< of PWM levels and pins */
     void (*on_write)(void); /**< called after each of them: nothing happens unseen */
 } fake_port_t;

@@ -11,6 +11,7 @@
 #define EPG_PORT_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #ifdef __cplusplus
@@ -58,6 +59,19 @@ void epg_port_output_start(uint8_t pin, bool level);
 void epg_port_output_write(uint8_t pin, bool level);
 void epg_port_input_start(uint8_t pin, epg_port_pull_t pull);
 bool epg_port_input_read(uint8_t pin);
+
+/**
+ * Copies up to `size` bytes of what epg_port_store_write() has stored last, also before the last restart, to `data`;
+ * returns how many, 0 when nothing is stored.  Before the control loop starts.
+ */
+size_t epg_port_store_read(void *data, size_t size);
+
+/**
+ * Stores `size` bytes in place of what was stored before, so that it is either there whole or not there; returns
+ * whether that could be done.  Called from the communication side, while outputs are safe: it may block, and delay the
+ * control cycle too.  A platform that has nothing to store in returns false.
+ */
+bool epg_port_store_write(const void *data, size_t size);
 
 #ifdef __cplusplus
 }

@@ -1,0 +1,65 @@
+/**
+ * @file
+ * Moving one actuator by hand.
+ */
+#include "epg/jog.h"
+
+static void take_readings(const epg_jog_t *jog, epg_jog_reading_t *readings)
+{
+    for (size_t i = 0; i < jog->encoder_count; i++) {
+        readings[i].count = jog->encoders[i].count();
+        readings[i].position = jog->encoders[i].position();
+    }
+}
+
+static void finish(epg_jog_t *jog, epg_jog_end_t end)
+{
+    take_readings(jog, jog->last);
+    jog->end = end;
+    jog->cycles = jog->elapsed;
+    jog->running = false;
+    epg_handover_return(&jog->handover);
+}
+
+bool epg_jog_cycle(epg_jog_t *jog, bool enabled)
+{
+    const bool forbidden = jog->stop || enabled;
+    jog->stop = false;
+    if (!epg_handover_there(&jog->handover)) {
+        return false;
+    }
+    if (!jog->running) {
+        take_readings(jog, jog->first);
+        jog->elapsed = 0;
+        if (forbidden) {
+            finish(jog, EPG_JOG_REFUSED);
+            return false;
+        }
+        jog->running = true;
+    } else if (forbidden || jog->elapsed == jog->cycles) {
+        finish(jog, forbidden ? EPG_JOG_STOPPED : EPG_JOG_DONE);
+        return false;
+    }
+    jog->elapsed++;
+    jog->actuators[jog->actuator].drive(jog->duty);
+    return true;
+}
+
+/* Communication side ------------------------------------------------------------------------------------------- */
+
+bool epg_jog_idle(epg_jog_t *jog)
+{
+    return epg_handover_here(&jog->handover);
+}
+
+bool epg_jog_start(epg_jog_t *jog, size_t index, double duty, uint32_t cycles)
+{
+    if (!epg_handover_here(&jog->handover) || index >= jog->actuator_count) {
+        return false;
+    }
+    jog->actuator = index;
+    jog->duty = duty;
+    jog->cycles = cycles;
+    epg_handover_give(&jog->handover);
+    return true;
+}
