@@ -42,6 +42,12 @@ uint32_t epg_port_quadrature_count(const epg_port_quadrature_t *decoder)
     return counts[decoder->unit];
 }
 
+bool epg_port_quadrature_healthy(const epg_port_quadrature_t *decoder)
+{
+    (void)decoder;
+    return true;
+}
+
 void epg_port_pwm_start(const epg_port_pwm_t *pwm)
 {
     levels[pwm->unit] = 0;

@@ -96,6 +96,7 @@ class Emitter:
             "prefix": self.prefix,
             "headers": sorted(headers),
             "parts": parts,
+            "numbers": {component.name: number for number, component in enumerate(app.components)},
             "inputs": [self._input(wire) for wire in app.inputs],
             "outputs": [self._output(wire) for wire in app.outputs if wire.component.name not in publishers],
             "monitor": [self._output(wire) for wire in app.outputs if wire.component.name in publishers],

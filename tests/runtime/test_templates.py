@@ -12,7 +12,8 @@ import pytest
 
 from epg.check.compose import typed_parameters
 from epg.diagnostics import Diagnostics
-from epg.emit.text import Code, environment, identifier
+from epg.emit.template import environment
+from epg.emit.text import Code, identifier
 from epg.load.catalog import Catalog, load_catalog
 from epg.load.yaml_file import parse_yaml
 

@@ -12,6 +12,7 @@ void epg_control_start(epg_control_t *control, const epg_application_t *applicat
     *control = (epg_control_t){
         .application = application,
         .enabled = application->enable_at_start,
+        .fault_component = EPG_NO_COMPONENT,
         .initialise = true,
         .status_exchange = {.slots = control->status_slots, .size = sizeof control->status_slots[0]},
     };
@@ -26,14 +27,20 @@ void epg_control_start(epg_control_t *control, const epg_application_t *applicat
     application->safe(); /* whatever the peripherals start with */
 }
 
-/** Disables and latches; the fault that came first stays, it is the cause of what follows. */
-static void latch(epg_control_t *control, epg_fault_t fault)
+void epg_control_fault(epg_control_t *control, epg_fault_t fault, uint16_t component)
 {
     if (control->fault == EPG_FAULT_NONE) {
         control->fault = fault;
+        control->fault_component = component;
         control->statistics.faults++;
     }
     control->enabled = false;
+}
+
+/** A fault that belongs to no component in particular. */
+static void latch(epg_control_t *control, epg_fault_t fault)
+{
+    epg_control_fault(control, fault, EPG_NO_COMPONENT);
 }
 
 /** Acts on a new request; `permitted` is what the fail-safe input says. */
@@ -52,6 +59,7 @@ static void handle_request(epg_control_t *control, bool permitted, uint64_t now_
         return;
     }
     control->fault = EPG_FAULT_NONE;
+    control->fault_component = EPG_NO_COMPONENT;
     if (permitted) {
         control->enabled = true;
         control->initialise = true;
@@ -70,11 +78,13 @@ static void command(epg_control_t *control, uint64_t now_ns)
     const bool permitted = application->fail_safe == NULL || application->fail_safe();
     handle_request(control, permitted, now_ns);
     if (!permitted) {
-        latch(control, EPG_FAULT_FAIL_SAFE);
+        epg_control_fault(control, EPG_FAULT_FAIL_SAFE, application->fail_safe_component);
     }
-    if ((taken || control->setpoints_move) && !epg_setpoints_update(application, now_ns, &control->statistics) &&
-        control->enabled) {
-        latch(control, EPG_FAULT_SETPOINT_TIMEOUT);
+    if (taken || control->setpoints_move) {
+        const epg_setpoint_t *late = epg_setpoints_update(application, now_ns, &control->statistics);
+        if (late != NULL && control->enabled) {
+            epg_control_fault(control, EPG_FAULT_SETPOINT_TIMEOUT, late->component);
+        }
     }
 }
 
@@ -146,10 +156,29 @@ static bool count_cycle(epg_control_t *control, uint64_t tick_ns, uint64_t begin
     return overrun;
 }
 
+/** How long the communication side has shown no life. */
+static void count_silence(epg_control_t *control)
+{
+    const unsigned int alive = atomic_load(&control->alive);
+    if (alive != control->alive_seen) {
+        control->alive_seen = alive;
+        control->silence = 0;
+    } else if (alive != 0U && control->silence < UINT32_MAX) {
+        control->silence++;
+        if (control->silence > control->statistics.silence_max) {
+            control->statistics.silence_max = control->silence;
+        }
+    }
+}
+
 static void publish_status(epg_control_t *control, uint64_t tick_ns)
 {
     control->statistics.setpoints_dropped = atomic_load(&control->dropped);
     control->statistics.reconnects = atomic_load(&control->reconnects);
+    for (unsigned int i = 0; i < EPG_STACKS; i++) {
+        control->statistics.stacks[i].used = atomic_load_explicit(&control->stacks[i].used, memory_order_relaxed);
+        control->statistics.stacks[i].size = atomic_load_explicit(&control->stacks[i].size, memory_order_relaxed);
+    }
     control->time_ns = tick_ns;
     epg_exchange_write(&control->status_exchange, &control->status);
 }
@@ -159,6 +188,7 @@ void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed
     const epg_application_t *application = control->application;
     const uint64_t begin_ns = epg_port_time_ns();
 
+    application->sample();
     command(control, begin_ns);
     application->read();
     const bool stepped = run_model(control);
@@ -178,6 +208,7 @@ void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed
         latch(control, EPG_FAULT_OVERRUN);
         application->safe();
     }
+    count_silence(control);
     publish_status(control, tick_ns);
 }
 
@@ -209,4 +240,18 @@ void epg_control_request(epg_control_t *control, bool enable)
 void epg_control_count_reconnect(epg_control_t *control)
 {
     atomic_store(&control->reconnects, atomic_load(&control->reconnects) + 1U);
+}
+
+void epg_control_alive(epg_control_t *control)
+{
+    const unsigned int alive = atomic_load(&control->alive) + 1U;
+    atomic_store(&control->alive, alive == 0U ? 1U : alive); /* 0 means never */
+}
+
+void epg_control_report_stack(epg_control_t *control, unsigned int stack, uint32_t used, uint32_t size)
+{
+    if (stack < EPG_STACKS) {
+        atomic_store_explicit(&control->stacks[stack].used, used, memory_order_relaxed);
+        atomic_store_explicit(&control->stacks[stack].size, size, memory_order_relaxed);
+    }
 }

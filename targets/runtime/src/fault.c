@@ -19,6 +19,20 @@ const char *epg_fault_name(epg_fault_t fault)
         return "setpoint timeout";
     case EPG_FAULT_FAIL_SAFE:
         return "fail-safe";
+    case EPG_FAULT_STALL:
+        return "stall";
+    case EPG_FAULT_RUNAWAY:
+        return "runaway";
+    case EPG_FAULT_HOMING_TRAVEL:
+        return "homing travel";
+    case EPG_FAULT_HOMING_TIME:
+        return "homing time";
+    case EPG_FAULT_SENSOR:
+        return "sensor";
+    case EPG_FAULT_WATCHDOG:
+        return "watchdog";
+    case EPG_FAULT_PROCESSOR:
+        return "processor";
     }
     return "unknown";
 }

@@ -73,9 +73,10 @@ static double limited(const epg_application_t *application, const epg_setpoint_t
     return target;
 }
 
-bool epg_setpoints_update(const epg_application_t *application, uint64_t now_ns, epg_statistics_t *statistics)
+const epg_setpoint_t *epg_setpoints_update(const epg_application_t *application, uint64_t now_ns,
+                                           epg_statistics_t *statistics)
 {
-    bool valid = true;
+    const epg_setpoint_t *late = NULL;
     for (size_t i = 0; i < application->setpoint_count; i++) {
         const epg_setpoint_t *setpoint = &application->setpoints[i];
         epg_setpoint_state_t *state = &application->setpoint_states[i];
@@ -87,14 +88,14 @@ bool epg_setpoints_update(const epg_application_t *application, uint64_t now_ns,
                     state->target = 0.0;
                 }
             }
-            if (state->timed_out && setpoint->action == EPG_TIMEOUT_DISABLE) {
-                valid = false;
+            if (late == NULL && state->timed_out && setpoint->action == EPG_TIMEOUT_DISABLE) {
+                late = setpoint;
             }
         }
         state->value =
             setpoint->rate_limit > 0.0 ? limited(application, setpoint, state->value, state->target) : state->target;
     }
-    return valid;
+    return late;
 }
 
 /* Communication side ------------------------------------------------------------------------------------------- */
@@ -117,6 +118,9 @@ bool epg_control_receive(epg_control_t *control, size_t index, double value, uin
     }
     if (publish) {
         epg_exchange_write(application->setpoint_exchange, application->received);
+    }
+    if (application->arrived != NULL) {
+        application->arrived(index);
     }
     return finite;
 }

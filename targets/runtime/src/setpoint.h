@@ -17,9 +17,11 @@ bool epg_setpoints_take(const epg_application_t *application);
 void epg_setpoints_enable(const epg_application_t *application, uint64_t now_ns);
 
 /**
- * Applies timeouts and rate limits: one control period's worth, however late the cycle is.  Returns false if a
- * setpoint is too old whose action is to disable.  Changes nothing when no sample is new and none has either of them.
+ * Applies timeouts and rate limits: one control period's worth, however late the cycle is.  Returns the first
+ * setpoint that is too old and whose action is to disable, NULL if there is none.  Changes nothing when no sample is
+ * new and none has either of them.
  */
-bool epg_setpoints_update(const epg_application_t *application, uint64_t now_ns, epg_statistics_t *statistics);
+const epg_setpoint_t *epg_setpoints_update(const epg_application_t *application, uint64_t now_ns,
+                                           epg_statistics_t *statistics);
 
 #endif

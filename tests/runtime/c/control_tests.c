@@ -90,7 +90,7 @@ TEST(first_cycle_initialises_with_its_own_inputs)
     begin();
     fake.sensor = 10.0;
     fake_cycle();
-    CHECK(strcmp(fake.calls, "rimwo") == 0);
+    CHECK(strcmp(fake.calls, "xrimwo") == 0);
     CHECK_EQUAL(fake.actuator, 11.0);
 }
 
@@ -98,7 +98,7 @@ TEST(a_cycle_reads_steps_writes_and_publishes_in_this_order)
 {
     begin();
     fake_cycles(2);
-    CHECK(strcmp(fake.calls, "rmwo") == 0);
+    CHECK(strcmp(fake.calls, "xrmwo") == 0);
     CHECK_EQUAL(fake.actuator, 2.0);
     CHECK_EQUAL(fake_published(), 2.0);
 }
@@ -158,7 +158,7 @@ TEST(enabling_runs_the_model_at_once_whatever_its_turn)
     fake_cycle();
     request(true);
     fake_cycle();
-    CHECK(strcmp(fake.calls, "rimwo") == 0);
+    CHECK(strcmp(fake.calls, "xrimwo") == 0);
     fake_cycles(4);
     CHECK_EQUAL(fake.state, 1.0);
     fake_cycle();
@@ -185,7 +185,7 @@ TEST(disabled_is_safe_within_one_cycle_while_the_model_runs_on)
     fake_cycles(3);
     request(false);
     fake_cycle();
-    CHECK(strcmp(fake.calls, "rmso") == 0);
+    CHECK(strcmp(fake.calls, "xrmso") == 0);
     CHECK_EQUAL(fake.actuator, 0.0);
     CHECK(!fake_status().enabled);
     CHECK(fake_status().fault == EPG_FAULT_NONE);
@@ -207,7 +207,7 @@ TEST(enabled_again_initialises_the_model)
     CHECK_EQUAL(fake.inits, 1);
     request(true);
     fake_cycle();
-    CHECK(strcmp(fake.calls, "rimwo") == 0);
+    CHECK(strcmp(fake.calls, "xrimwo") == 0);
     CHECK_EQUAL(fake.inits, 2);
     CHECK_EQUAL(fake.actuator, 1.0);
     CHECK(fake_status().enabled);
@@ -522,7 +522,14 @@ TEST(faults_have_names)
     CHECK(strcmp(epg_fault_name(EPG_FAULT_OVERRUN), "overrun") == 0);
     CHECK(strcmp(epg_fault_name(EPG_FAULT_SETPOINT_TIMEOUT), "setpoint timeout") == 0);
     CHECK(strcmp(epg_fault_name(EPG_FAULT_FAIL_SAFE), "fail-safe") == 0);
-    CHECK(strcmp(epg_fault_name((epg_fault_t)6), "unknown") == 0);
+    CHECK(strcmp(epg_fault_name(EPG_FAULT_STALL), "stall") == 0);
+    CHECK(strcmp(epg_fault_name(EPG_FAULT_RUNAWAY), "runaway") == 0);
+    CHECK(strcmp(epg_fault_name(EPG_FAULT_HOMING_TRAVEL), "homing travel") == 0);
+    CHECK(strcmp(epg_fault_name(EPG_FAULT_HOMING_TIME), "homing time") == 0);
+    CHECK(strcmp(epg_fault_name(EPG_FAULT_SENSOR), "sensor") == 0);
+    CHECK(strcmp(epg_fault_name(EPG_FAULT_WATCHDOG), "watchdog") == 0);
+    CHECK(strcmp(epg_fault_name(EPG_FAULT_PROCESSOR), "processor") == 0);
+    CHECK(strcmp(epg_fault_name((epg_fault_t)13), "unknown") == 0);
 }
 
 /* Statistics --------------------------------------------------------------------------------------------------- */

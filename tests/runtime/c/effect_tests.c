@@ -55,9 +55,13 @@ static void start(void)
     epg_port_input_start(PIN_FAIL_SAFE, EPG_PULL_DOWN);
 }
 
-static void read_inputs(void)
+static void sample(void)
 {
     epg_quadrature_encoder_sample(&encoder, &encoder_config);
+}
+
+static void read_inputs(void)
+{
     model.position = encoder.position + wrong.sensor;
     model.setpoint = epg_control_setpoint(&control, 0);
 }
@@ -138,6 +142,7 @@ static const epg_application_t application = {
     .overrun_limit = 5,
     .enable_at_start = true,
     .start = start,
+    .sample = sample,
     .read = read_inputs,
     .inputs_finite = inputs_finite,
     .model_init = model_init,

@@ -32,11 +32,18 @@ static void start(void)
     fake.starts++;
 }
 
+static void sample(void)
+{
+    called('x');
+    fake.sampled = fake.sensor;
+}
+
 static void read_inputs(void)
 {
     called('r');
     fake.reads++;
-    fake.input = fake.sensor + epg_control_setpoint(&fake.control, 0);
+    epg_control_check(&fake.control, fake.fault, FAKE_COMPONENT);
+    fake.input = fake.sampled + epg_control_setpoint(&fake.control, 0);
 }
 
 static bool inputs_finite(void)
@@ -105,6 +112,7 @@ void fake_reset(void)
                 .step_divider = 1,
                 .enable_at_start = true,
                 .start = start,
+                .sample = sample,
                 .read = read_inputs,
                 .inputs_finite = inputs_finite,
                 .model_init = model_init,

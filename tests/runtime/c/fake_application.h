@@ -11,6 +11,7 @@
 
 enum { FAKE_SETPOINTS = 2 };
 enum { FAKE_PERIOD_NS = 1000000 };
+enum { FAKE_COMPONENT = 5 };
 
 typedef struct fake_application {
     epg_control_t control;
@@ -18,7 +19,8 @@ typedef struct fake_application {
     epg_setpoint_t setpoints[FAKE_SETPOINTS];
 
     /* set by the test */
-    double sensor;       /**< what read() finds; the model's input is this plus setpoint 0 */
+    double sensor;       /**< what sample() finds; the model's input is this plus setpoint 0 */
+    epg_fault_t fault;   /**< what the check of component FAKE_COMPONENT finds */
     double state_error;  /**< added to the model's state at each step */
     double output_error; /**< added to the model's output */
     double limit;        /**< of the output, both ways; 0: none */
@@ -27,6 +29,7 @@ typedef struct fake_application {
     uint64_t step_ns;    /**< duration of a model step */
 
     /* seen by the test */
+    double sampled;
     double input;
     double state;
     double output;

@@ -37,6 +37,12 @@ uint32_t epg_port_quadrature_count(const epg_port_quadrature_t *decoder)
     return fake_port.counts[decoder->unit];
 }
 
+bool epg_port_quadrature_healthy(const epg_port_quadrature_t *decoder)
+{
+    CHECK(fake_port.decoders_started[decoder->unit]);
+    return !fake_port.decoders_failed[decoder->unit];
+}
+
 void epg_port_pwm_start(const epg_port_pwm_t *pwm)
 {
     fake_port.pwms_started[pwm->unit] = true;

@@ -18,6 +18,7 @@ typedef struct fake_port {
     bool inputs[FAKE_PINS];
     epg_port_pull_t pulls[FAKE_PINS];
     bool decoders_started[FAKE_UNITS];
+    bool decoders_failed[FAKE_UNITS]; /**< as they say of themselves */
     bool pwms_started[FAKE_UNITS];
     bool outputs_started[FAKE_PINS];
     bool inputs_started[FAKE_PINS];

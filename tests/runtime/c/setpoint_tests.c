@@ -276,6 +276,8 @@ TEST(one_setpoint_going_on_does_not_keep_another_fresh)
     fake_reset();
     fake.setpoints[0] = (epg_setpoint_t){.timeout_ns = TIMEOUT_NS, .action = EPG_TIMEOUT_DISABLE};
     fake.setpoints[1] = (epg_setpoint_t){.timeout_ns = TIMEOUT_NS, .action = EPG_TIMEOUT_DISABLE};
+    fake.setpoints[0].component = 7;
+    fake.setpoints[1].component = 8;
     fake_start();
     fake_receive(0, 1.0);
     for (int i = 0; i < 20; i++) {
@@ -283,6 +285,7 @@ TEST(one_setpoint_going_on_does_not_keep_another_fresh)
         fake_cycle();
     }
     CHECK(fake_status().fault == EPG_FAULT_SETPOINT_TIMEOUT);
+    CHECK_EQUAL(fake_status().fault_component, 7);
 }
 
 TEST(the_count_of_samples_may_wrap)
@@ -298,6 +301,27 @@ TEST(the_count_of_samples_may_wrap)
     CHECK_EQUAL(value(0), 0.0); /* still known to have arrived */
 }
 
+static size_t arrivals[4];
+static size_t arrival_count;
+
+static void arrived(size_t index)
+{
+    arrivals[arrival_count++] = index;
+}
+
+TEST(whoever_wants_to_know_is_told_of_each_arrival)
+{
+    fake_reset();
+    fake.application.arrived = arrived;
+    fake_start();
+    epg_control_receive(&fake.control, 1, 1.0, 0, false);
+    epg_control_receive(&fake.control, 0, NAN, 0, true);
+    CHECK(!epg_control_receive(&fake.control, FAKE_SETPOINTS, 1.0, 0, true));
+    CHECK_EQUAL(arrival_count, 2);
+    CHECK_EQUAL(arrivals[0], 1);
+    CHECK_EQUAL(arrivals[1], 0);
+}
+
 RUN(ENTRY(initial_until_the_first_one_arrives), ENTRY(not_finite_is_dropped_and_counted_and_the_value_before_it_stays),
     ENTRY(not_finite_does_not_count_as_fresh), ENTRY(values_handed_over_together_arrive_together),
     ENTRY(a_dropped_last_value_publishes_those_before_it), ENTRY(a_setpoint_that_does_not_exist_is_refused),
@@ -308,4 +332,4 @@ RUN(ENTRY(initial_until_the_first_one_arrives), ENTRY(not_finite_is_dropped_and_
     ENTRY(enabling_takes_the_value_of_a_sender_that_is_back), ENTRY(an_old_setpoint_is_no_fault_while_disabled),
     ENTRY(timeouts_start_again_when_enabled), ENTRY(a_sample_younger_than_the_cycle_is_fresh),
     ENTRY(equal_values_are_fresh_ones), ENTRY(one_setpoint_going_on_does_not_keep_another_fresh),
-    ENTRY(the_count_of_samples_may_wrap))
+    ENTRY(the_count_of_samples_may_wrap), ENTRY(whoever_wants_to_know_is_told_of_each_arrival))

@@ -21,6 +21,7 @@ enum { UNDRIVEN, DRIVEN_LOW, DRIVEN_HIGH };
 static struct {
     _Atomic int64_t signal; /* as the plant sets it */
     _Atomic int64_t origin; /* of `signal` when the decoder started */
+    atomic_bool failed;
 } decoders[UNITS];
 
 static struct {
@@ -49,6 +50,16 @@ uint32_t epg_port_quadrature_count(const epg_port_quadrature_t *decoder)
     const uint64_t signal = (uint64_t)GET(decoders[decoder->unit].signal);
     const uint64_t origin = (uint64_t)GET(decoders[decoder->unit].origin);
     return (uint32_t)((signal - origin) & UINT32_MAX);
+}
+
+bool epg_port_quadrature_healthy(const epg_port_quadrature_t *decoder)
+{
+    return !GET(decoders[decoder->unit].failed);
+}
+
+void epg_host_quadrature_fail(uint8_t unit, bool failed)
+{
+    SET(decoders[unit].failed, failed);
 }
 
 void epg_host_quadrature_set(uint8_t unit, int64_t count)

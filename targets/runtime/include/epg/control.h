@@ -18,6 +18,7 @@
  * | `overrun_limit` overruns in a row       | disabled, latched: EPG_FAULT_OVERRUN                               |
  * | setpoint older than its timeout         | hold, zero or disable (latched: EPG_FAULT_SETPOINT_TIMEOUT)        |
  * | fail-safe input inactive                | disabled, latched: EPG_FAULT_FAIL_SAFE                             |
+ * | a component finds a fault               | disabled, latched with the component's index (epg_control_fault()) |
  * | late cycle                              | runs once; cycles that were missed are counted, not made up        |
  *
  * A model that rests is not run until the target is enabled again; what it published last stays.  Of several faults
@@ -45,6 +46,7 @@ typedef struct epg_setpoint {
     double rate_limit;   /**< largest change per second of the value the model sees; 0: unlimited */
     uint64_t timeout_ns; /**< largest age, counted from the first sample and from enabling; 0: never too old */
     epg_timeout_action_t action;
+    uint16_t component; /**< index of the component it comes from, for EPG_FAULT_SETPOINT_TIMEOUT */
 } epg_setpoint_t;
 
 /** One setpoint on its way from the communication side to the control side. */
@@ -74,8 +76,9 @@ typedef struct epg_application {
     uint32_t overrun_limit; /**< overruns in a row that disable; 0: never */
     bool enable_at_start;
 
-    void (*start)(void); /**< configures all peripherals, outputs safe; before the first cycle */
-    void (*read)(void);  /**< samples all sensors, and fills the model's inputs; every cycle */
+    void (*start)(void);  /**< configures all peripherals, outputs safe; before the first cycle */
+    void (*sample)(void); /**< samples all sensors; first of all in every cycle, so that the instant does not vary */
+    void (*read)(void);   /**< fills the model's inputs and checks components; every cycle */
     bool (*inputs_finite)(void);
     void (*model_init)(void); /**< (re-)initialises the model with the inputs read last */
     void (*model_step)(void);
@@ -83,8 +86,10 @@ typedef struct epg_application {
     bool (*model_stopped)(void);     /**< the model has asked to stop; NULL: it never does */
     void (*write)(void);             /**< model outputs to actuators and resets; after each step */
     void (*safe)(void);              /**< every actuator to its safe value; every cycle while disabled */
-    void (*monitor)(double *values); /**< fills `monitor_count` values to publish; NULL: none */
+    void (*monitor)(double *values); /**< fills `monitor_count` values to publish, after actuators; NULL: none */
     bool (*fail_safe)(void);         /**< true: the target may be enabled; before read(); NULL: no such input */
+    uint16_t fail_safe_component;    /**< index of the component that is the fail-safe input */
+    void (*arrived)(size_t index);   /**< communication side: a value for setpoint `index` is here; NULL: not wanted */
 
     size_t setpoint_count;
     const epg_setpoint_t *setpoints;
@@ -105,6 +110,7 @@ typedef struct epg_control {
         epg_status_t status;
         struct {
             bool enabled;
+            uint16_t fault_component;
             epg_fault_t fault;
             uint64_t time_ns; /**< tick of the newest cycle */
             epg_statistics_t statistics;
@@ -119,13 +125,26 @@ typedef struct epg_control {
     atomic_uint request;    /**< written by the communication side: (sequence << 1) | enable */
     atomic_uint dropped;    /**< setpoints the communication side refused */
     atomic_uint reconnects; /**< written by the communication side */
+    atomic_uint alive;      /**< written by the communication side: 0 before it first showed life */
+    unsigned int alive_seen;
+    uint32_t silence; /**< control cycles since `alive` last changed */
+    struct {
+        atomic_uint used;
+        atomic_uint size;
+    } stacks[EPG_STACKS]; /**< written by the communication side */
     epg_exchange_t status_exchange;
     epg_status_t status_slots[4];
 } epg_control_t;
 
-static_assert(offsetof(epg_control_t, statistics) - offsetof(epg_control_t, status) ==
-                  offsetof(epg_status_t, statistics),
-              "a control object begins with the members of epg_status_t");
+#define EPG_STATUS_MEMBER(member)                                                                                      \
+    static_assert(offsetof(epg_control_t, member) - offsetof(epg_control_t, status) == offsetof(epg_status_t, member), \
+                  "a control object begins with the members of epg_status_t")
+EPG_STATUS_MEMBER(enabled);
+EPG_STATUS_MEMBER(fault_component);
+EPG_STATUS_MEMBER(fault);
+EPG_STATUS_MEMBER(time_ns);
+EPG_STATUS_MEMBER(statistics);
+#undef EPG_STATUS_MEMBER
 
 /*
  * One context is the control side, one other the communication side; two contexts may be the communication side if
@@ -148,6 +167,31 @@ void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed
 
 /** Counts a value that had to be limited.  Called by generated code. */
 void epg_control_count_clamped(epg_control_t *control);
+
+/**
+ * Disables and latches `fault` of `component` (an index, or EPG_NO_COMPONENT), unless one is latched already: the
+ * first is the cause of what follows.  The outputs are made safe in the cycle at hand, or in the next one if called
+ * after its outputs.  For generated checks, and for a platform that starts after a fault: between
+ * epg_control_start() and the first cycle.
+ */
+void epg_control_fault(epg_control_t *control, epg_fault_t fault, uint16_t component);
+
+/** epg_control_fault() unless `fault` is EPG_FAULT_NONE.  Called by generated code. */
+static inline void epg_control_check(epg_control_t *control, epg_fault_t fault, uint16_t component)
+{
+    if (fault != EPG_FAULT_NONE) {
+        epg_control_fault(control, fault, component);
+    }
+}
+
+/**
+ * Control cycles since the communication side last called epg_control_alive(); 0 before it has ever done so.  A
+ * platform with a watchdog feeds it after a cycle while this is small.
+ */
+static inline uint32_t epg_control_silence(const epg_control_t *control)
+{
+    return control->silence;
+}
 
 /** Value of setpoint `index` in this cycle. */
 static inline double epg_control_setpoint(const epg_control_t *control, size_t index)
@@ -179,5 +223,11 @@ void epg_control_request(epg_control_t *control, bool enable);
 
 /** Counts a reconnection of the communication. */
 void epg_control_count_reconnect(epg_control_t *control);
+
+/** The communication side is alive: once in each turn of its loop. */
+void epg_control_alive(epg_control_t *control);
+
+/** What a platform has measured of a stack (EPG_STACK_CONTROL or EPG_STACK_COMMUNICATION), in bytes. */
+void epg_control_report_stack(epg_control_t *control, unsigned int stack, uint32_t used, uint32_t size);
 
 #endif

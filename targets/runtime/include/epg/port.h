@@ -38,6 +38,12 @@ void epg_port_quadrature_start(const epg_port_quadrature_t *decoder);
  */
 uint32_t epg_port_quadrature_count(const epg_port_quadrature_t *decoder);
 
+/**
+ * False: the decoder has stopped (a state machine that left its program, a timer whose clock is gone) and its count
+ * means nothing any more.  Called once per control cycle.  A port whose decoders cannot stop returns true.
+ */
+bool epg_port_quadrature_healthy(const epg_port_quadrature_t *decoder);
+
 /** One PWM output.  The period is `prescaler * (top + 1)` clocks; `block` and `unit` name slice and channel. */
 typedef struct epg_port_pwm {
     uint8_t pin;

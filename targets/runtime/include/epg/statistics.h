@@ -11,6 +11,15 @@
 extern "C" {
 #endif
 
+/** Stacks that are watched: of the two cores, threads or tasks. */
+enum { EPG_STACK_CONTROL, EPG_STACK_COMMUNICATION, EPG_STACKS };
+
+/** Bytes of a stack; both are 0 where the platform does not know them. */
+typedef struct epg_stack {
+    uint32_t used; /**< at most so far */
+    uint32_t size;
+} epg_stack_t;
+
 /** Times are in nanoseconds; 32-bit times saturate at 4.29 s.  Counters wrap at 2^32. */
 typedef struct epg_statistics {
     uint32_t cycles;            /**< control cycles run */
@@ -25,6 +34,8 @@ typedef struct epg_statistics {
     uint32_t setpoint_timeouts; /**< times a setpoint became too old */
     uint32_t faults;            /**< times a fault was latched */
     uint32_t reconnects;        /**< times communication was lost and came back */
+    uint32_t silence_max;       /**< most control cycles in a row in which the communication side showed no life */
+    epg_stack_t stacks[EPG_STACKS];
 } epg_statistics_t;
 
 #ifdef __cplusplus

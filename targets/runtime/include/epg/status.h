@@ -18,8 +18,9 @@ extern "C" {
 /** State and fault of a target at one moment. */
 typedef struct epg_status {
     bool enabled;
-    epg_fault_t fault; /**< why it is disabled; EPG_FAULT_NONE: by request */
-    uint64_t time_ns;  /**< tick of the cycle that wrote this */
+    uint16_t fault_component; /**< index of the component that has the fault; EPG_NO_COMPONENT: none in particular */
+    epg_fault_t fault;        /**< why it is disabled; EPG_FAULT_NONE: by request */
+    uint64_t time_ns;         /**< tick of the cycle that wrote this */
     epg_statistics_t statistics;
 } epg_status_t;
 

@@ -26,10 +26,28 @@ typedef struct epg_target {
     const char *name_space;           /**< "" or "/robot1" */
     uint64_t communication_period_ns; /**< between two publications */
     const char *enable_topic;         /**< of type `std_msgs/msg/Bool`; NULL: none */
+    size_t component_count;
+    const char *const *components; /**< names of all components; a fault's component is an index into it */
+    /** Called before publication `index` is handed to the transport: epg_target_publishing().  NULL: nobody wants it. */
+    void (*publishing)(size_t index);
     size_t subscription_count;
     const epg_topic_t *subscriptions;
     size_t publication_count;
     const epg_topic_t *publications;
 } epg_target_t;
+
+/** Name of component `index` of a status; "" for EPG_NO_COMPONENT. */
+static inline const char *epg_target_component(const epg_target_t *target, uint16_t index)
+{
+    return index < target->component_count ? target->components[index] : "";
+}
+
+/** A middleware is about to send publication `index`.  Communication side. */
+static inline void epg_target_publishing(const epg_target_t *target, size_t index)
+{
+    if (target->publishing != NULL) {
+        target->publishing(index);
+    }
+}
 
 #endif

@@ -50,9 +50,13 @@ static void start(void)
     epg_port_input_start(FAIL_SAFE, EPG_PULL_UP);
 }
 
-static void read_inputs(void)
+static void sample(void)
 {
     position = (double)(int32_t)epg_port_quadrature_count(&encoder) * RADIANS_PER_COUNT;
+}
+
+static void read_inputs(void)
+{
     setpoint = epg_control_setpoint(&control, 0);
 }
 
@@ -124,6 +128,7 @@ static const epg_application_t application = {
     .overrun_limit = OVERRUN_LIMIT,
     .enable_at_start = ENABLE_AT_START,
     .start = start,
+    .sample = sample,
     .read = read_inputs,
     .inputs_finite = inputs_finite,
     .model_init = model_init,

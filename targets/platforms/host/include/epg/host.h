@@ -17,6 +17,9 @@
 /** Count of decoder `unit`, as the edges of its A and B signals would have given. */
 void epg_host_quadrature_set(uint8_t unit, int64_t count);
 
+/** Whether decoder `unit` says that it has stopped (epg_port_quadrature_healthy()); they do not by themselves. */
+void epg_host_quadrature_fail(uint8_t unit, bool failed);
+
 /** Share of the period that PWM output `unit` is high, 0 ... 1, in steps of its timer. */
 double epg_host_pwm_duty(uint8_t unit);
 
