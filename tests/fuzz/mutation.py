@@ -8,26 +8,29 @@ from collections.abc import Callable, Sequence
 from hypothesis import strategies as st
 
 ODD_SCALARS = (
-    "0", "-1", "1", "1.5", "1e999", "-1e999", "1e-400", "1e300", ".inf", "-.inf", ".nan", "0x7fffffffffffffff", "0o17",
-    "99999999999999999999999999999999999999999", "010", "null", "~", "true", "on", "yes", "''", '""', "[]", "{}", "[1, 2]",
-    "{a: 1}", "1 ms", "0 ms", "-1 ms", "1e-30 s", "1e300 s", "0.1 us", "20 kHz", "1e-9 Hz", "1e300 Hz", "180 deg", "1 rad",
-    "1e300 deg", "3.3 V", "5 m", "1/3", "1/0", "1e300/1e-300", "1e-300/1e300", "5625/361", "0 rad", "1 foot", "%", "1 %",
-    "encoder", "encoder.reset", "motor", "unconnected", "speed.value", "host", "rpi_pico", "robot.tcf", "..", "/", "/dev/null",
-    "*", "'**'", "'a**b'", "'[a'", "a.b.c", "int", "double", "class", "main", "errno", "_x", "__x", "NULL", "bool", "true_",
-    "epg_x", "EPG_X", "ROBOT_H", "SIZE_MAX", "INT8_MAX", "inputs", "robot_inputs", "start", "t", "x" * 64, "x" * 300, "x" * 5000,
-    "'*/'", "'/*'", "'// x'", "'a\\'", "'\\'", "'\\n'", "'\"'", '"\\""', "'%s%n'", "'??/'", "'??='", "'$x'", "'${x}'",
-    "'$<x>'", "'$ENV{HOME}'", "';'", "'a;b'", "'#x'", "'# x'", "'@x@'", "'[=['", "']]'", "'&amp;'", "'<b>'", "'{{ x }}'",
-    "'{% x %}'", "é", "µs", "日本", "'\u202e'", "'\u00a0'", "'\u2028'", "😀", '"\\0"', '"\\n"', '"a\\nb"', '"\\r\\n"', '"\\t"',
-    '"\\x07"', '"\\e[2J"', '"\\x7f"', '"\\x85"', '"\\u202e"', '"a\\\nb"', "|\n    a\n    b", ">\n    a\n    b", "!!str 1", "&a 1",
-    "*a", "<<", "? x", "- x", "'it''s'", "2026-01-01", "1_000", "0b1", "+1", "1.", ".5", "1e3", "'1'", "=", "!", "@x", "`x`",
+    "0", "-1", "1", "1.5", "1e999", "-1e999", "1e-400", "1e300", ".inf", "-.inf", ".nan", "0x7fffffffffffffff",
+    "0o17", "99999999999999999999999999999999999999999", "010", "null", "~", "true", "on", "yes", "''", '""', "[]",
+    "{}", "[1, 2]", "{a: 1}", "1 ms", "0 ms", "-1 ms", "1e-30 s", "1e300 s", "0.1 us", "20 kHz", "1e-9 Hz",
+    "1e300 Hz", "180 deg", "1 rad", "1e300 deg", "3.3 V", "5 m", "1/3", "1/0", "1e300/1e-300", "1e-300/1e300",
+    "5625/361", "0 rad", "1 foot", "%", "1 %", "encoder", "encoder.reset", "motor", "unconnected", "speed.value",
+    "host", "rpi_pico", "robot.tcf", "..", "/", "/dev/null", "*", "'**'", "'a**b'", "'[a'", "a.b.c", "int", "double",
+    "class", "main", "errno", "_x", "__x", "NULL", "bool", "true_", "epg_x", "EPG_X", "ROBOT_H", "SIZE_MAX",
+    "INT8_MAX", "inputs", "robot_inputs", "start", "t", "x" * 64, "x" * 300, "x" * 5000, "'*/'", "'/*'", "'// x'",
+    "'a\\'", "'\\'", "'\\n'", "'\"'", '"\\""', "'%s%n'", "'??/'", "'??='", "'$x'", "'${x}'", "'$<x>'", "'$ENV{HOME}'",
+    "';'", "'a;b'", "'#x'", "'# x'", "'@x@'", "'[=['", "']]'", "'&amp;'", "'<b>'", "'{{ x }}'", "'{% x %}'", "é",
+    "µs", "日本", "'\u202e'", "'\u00a0'", "'\u2028'", "😀", '"\\0"', '"\\n"', '"a\\nb"', '"\\r\\n"', '"\\t"', '"\\x07"',
+    '"\\e[2J"', '"\\x7f"', '"\\x85"', '"\\u202e"', '"a\\\nb"', "|\n    a\n    b", ">\n    a\n    b", "!!str 1",
+    "&a 1", "*a", "<<", "? x", "- x", "'it''s'", "2026-01-01", "1_000", "0b1", "+1", "1.", ".5", "1e3", "'1'", "=",
+    "!", "@x", "`x`",
 )  # fmt: skip
-"""Values as they may be written in YAML: numbers at every edge, words with a meaning elsewhere, text that breaks out."""
+"""Values as they may be written in YAML: numbers at every edge, words with a meaning elsewhere, text that escapes."""
 
 ODD_TEXT = (
-    "*/", "/*", "//", "\\", '"', "'", "\n", "\r", "\0", "\x1b[31m", "\x85", "\u2028", "%n", "??/", "${x}", "$<1:x>", ";", "#",
-    "#include <x.h>\n", "#define x", "&amp;", "<![CDATA[", "]]>", "<!DOCTYPE x>", "&x;", "&#0;", "&#10;", "<x>", "</token>", "{", "}",
-    "(", ")", "[", "]", ",", ":", "=", " = ", "1e999", "99999999999999999999", "²", "٣", "é", "\ufeff", "\ud7ff", "if", "return",
-    "static", "struct", "extern", "double ", "xx_P[0] = ", "u[99]", "y[0]", "xx_", "aaaaaaaaaaaaaaaaaaaaaaaa" * 20, "(" * 200, "{" * 200,
+    "*/", "/*", "//", "\\", '"', "'", "\n", "\r", "\0", "\x1b[31m", "\x85", "\u2028", "%n", "??/", "${x}", "$<1:x>",
+    ";", "#", "#include <x.h>\n", "#define x", "&amp;", "<![CDATA[", "]]>", "<!DOCTYPE x>", "&x;", "&#0;", "&#10;",
+    "<x>", "</token>", "{", "}", "(", ")", "[", "]", ",", ":", "=", " = ", "1e999", "99999999999999999999", "²", "٣",
+    "é", "\ufeff", "\ud7ff", "if", "return", "static", "struct", "extern", "double ", "xx_P[0] = ", "u[99]", "y[0]",
+    "xx_", "aaaaaaaaaaaaaaaaaaaaaaaa" * 20, "(" * 200, "{" * 200,
 )  # fmt: skip
 """Pieces to put into any other file: C, C++, XML."""
 
@@ -175,7 +178,8 @@ _GENTLE = (_near_number, _near_number, _flag, _blank_line, _swap)
 """Mutations after which a file is often right still: they lead behind the checks."""
 
 YAML_MUTATIONS = (
-    *(_GENTLE * 3), _rename_everywhere, _value, _value, _other_value, _number, _rename, _line, _token, _insert, _nest, _cut,
+    *(_GENTLE * 3), _rename_everywhere, _value, _value, _other_value, _number, _rename, _line, _token, _insert, _nest,
+    _cut,
 )  # fmt: skip
 TEXT_MUTATIONS = (*(_GENTLE * 2), _token, _token, _line, _insert, _insert, _number, _nest, _cut)
 

@@ -19,10 +19,11 @@ ARGUMENTS = ("--tcf", "robot.tcf", "--model", "model", "--bindings", "bindings.y
 
 #: names that are legal and near to something that is not: macros, types, functions, names of generated files
 ODD_NAMES = (
-    "x", "x_config", "t", "h", "H", "inputs", "outputs", "start", "read", "model", "model_init", "plant", "values", "u", "y", "i",
-    "index", "self", "samples", "signals", "setpoints", "application", "monitor", "fail_safe", "control", "target", "uint8", "size",
-    "string", "stdio", "math", "pid", "time", "none", "made", "count", "robot", "robot_h", "ROBOT_H", "in", "out", "I", "NAN_", "a1",
-    "start_", "xEPG_x", "_1", "_a", "x" * 63, "MODEL_x", "x_component", "write", "safe", "pwm", "constant",
+    "x", "x_config", "t", "h", "H", "inputs", "outputs", "start", "read", "model", "model_init", "plant", "values",
+    "u", "y", "i", "index", "self", "samples", "signals", "setpoints", "application", "monitor", "fail_safe",
+    "control", "target", "uint8", "size", "string", "stdio", "math", "pid", "time", "none", "made", "count", "robot",
+    "robot_h", "ROBOT_H", "in", "out", "I", "NAN_", "a1", "start_", "xEPG_x", "_1", "_a", "x" * 63, "MODEL_x",
+    "x_component", "write", "safe", "pwm", "constant",
 )  # fmt: skip
 
 

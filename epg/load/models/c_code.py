@@ -153,6 +153,8 @@ def function_head(head: str) -> Head | None:
 
     Takes linear time, which no regular expression for the whole does.
     """
+    if "(" not in head:
+        return None
     begin = max(head.rfind(sign) for sign in "=;{}") + 1
     for match in _PARAMETERS.finditer(head, begin):
         at = match.end()

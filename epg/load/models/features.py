@@ -264,7 +264,8 @@ def _inline_functions(text: str) -> set[str]:
     for match in re.finditer(r"[{};]", text):
         if match[0] == "{":
             head = function_head(text[max(start, match.start() - _LONGEST_HEAD) : match.start()])
-            found |= {head.name} if head else set()
+            if head:
+                found.add(head.name)
         start = match.end()
     return found
 

@@ -145,6 +145,7 @@ def _check_calls(tokens: Tokens, diagnostics: Diagnostics) -> tuple[str, ...]:
     """The helper functions the equations call; reports those that are stubs, clocks, ``dll()`` or unknown."""
     prefix = tokens.trimmed("FUNCTIONPREFIX") or "XX"
     helpers: set[str] = set()
+    judged = {*KEYWORDS, *MATH}
     for token in CODE:
         file = tokens.code(token)
         if "#" in file.without_comments or not _balanced(file.code) or not _comments_closed(file.text):
@@ -153,8 +154,9 @@ def _check_calls(tokens: Tokens, diagnostics: Diagnostics) -> tuple[str, ...]:
             continue
         for match in re.finditer(r"(?<![\w>.])([A-Za-z_]\w*)\s*\(", file.code):
             name = match[1]
-            if name in KEYWORDS or name in MATH:
+            if name in judged:
                 continue
+            judged.add(name)
             bare = re.sub(rf"^(?:{re.escape(prefix)}|XX)", "", name)
             span = file.span(match.start(1), match.end(1))
             if bare != name and bare in HELPERS:
