@@ -10,7 +10,6 @@ import argparse
 import importlib
 import os
 import sys
-import traceback
 from collections.abc import Sequence
 
 import epg
@@ -109,6 +108,8 @@ def _run(options: argparse.Namespace) -> int:
         return EXIT_MISSING
     except Exception:
         sys.stderr.write(format_diagnostics(diagnostics))
+        import traceback
+
         traceback.print_exc()
         sys.stderr.write(f"epg: this is a bug in EPG {epg.__version__}; please report it with the lines above\n")
         return EXIT_BUG
