@@ -271,7 +271,7 @@ def _top_level(code: str) -> Iterator[tuple[int, int, int]]:
         if symbol == "{":
             if depth == 0:
                 end = code[max(start, at - 300) : at].rstrip()
-                if re.search(r'\bextern\s*"[^"]*"$|\bnamespace(?:\s+\w+)?$', end):
+                if end and re.search(r'\bextern\s*"[^"]*"$|\bnamespace(?:\s+\w+)?$', end):
                     start = head_start = at + 1
                     continue
                 body_start = at
@@ -284,6 +284,9 @@ def _top_level(code: str) -> Iterator[tuple[int, int, int]]:
             if depth == 0:
                 head = code[max(start, head_start, body_start - _LONGEST_HEAD) : body_start].rstrip()
                 head_start = at + 1  # no part of the text is looked at twice
+                if not head:
+                    start, body_start = at + 1, -1
+                    continue
                 words_behind = head[max(head.rfind("("), head.rfind(")")) + 1 :]
                 if not head.endswith("=") and not re.search(r"\b(?:struct|union|enum|class)\b", words_behind):
                     yield start, body_start, at + 1
