@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection
 from pathlib import Path
 
@@ -51,6 +52,7 @@ class _Check(CatalogCheck):
         elif sort == "platform":
             check_platform(node, diagnostics)
             _files_exist(node, ("templates",), _names_in(node, ("templates",)), diagnostics)
+            _check_templates(_names_in(node, ("templates",)), diagnostics)
             if node["builds"].value is True:
                 _beside(node["builds"], "platform.cmake", "docs/adding-a-platform.md", diagnostics)
         else:
@@ -78,15 +80,41 @@ def _names_in(node: Node, path: tuple[str, ...]) -> list[Node]:
     return list(found.elements()) if found is not None else []
 
 
+_FILE = re.compile(r"(?:[A-Za-z0-9_+-][A-Za-z0-9_+.-]*/)*[A-Za-z0-9_+-][A-Za-z0-9_+.-]*")
+"""Names that can stand in ``#include`` and in CMake, and that lead nowhere else."""
+
+
 def _files_exist(node: Node, path: tuple[str, ...], names: Collection[Node], diagnostics: Diagnostics) -> None:
-    """Reports names in ``node`` that are no files beside it."""
+    """Reports names in ``node`` that are no files in its folder."""
     folder = Path(node.span.file).parent
     for name in names:
-        if not is_file(folder / str(name.value)):
+        if not _FILE.fullmatch(str(name.value)):
+            message = f"{'.'.join(path)}: '{name.value}' is no name of a file in this folder"
+            hint = "use letters, digits and '_+.-', and '/' for folders below it"
+            diagnostics.error("wrong-value", name.span, message, hint=hint)
+        elif not is_file(folder / str(name.value)):
             there = [file.name for file in folder.iterdir() if file.is_file()]
             hint = did_you_mean(str(name.value), there, "in that folder")
             message = f"{'.'.join(path)}: there is no file '{name.value}'"
             diagnostics.error("file-not-found", name.span, message, hint=hint)
+
+
+def _check_templates(names: Collection[Node], diagnostics: Diagnostics) -> None:
+    """Templates of a platform make files of their own."""
+    for name in names:
+        if not _TEMPLATE.fullmatch(str(name.value)) or str(name.value) in _TAKEN:
+            message = f"templates: '{name.value}' makes no file of the platform"
+            hint = "call it for example 'NAME_<platform>.c.j2': NAME becomes the name of the target"
+            diagnostics.error("wrong-value", name.span, message, hint=hint)
+
+
+_TEMPLATE = re.compile(r"NAME(?:_[a-z0-9_]+)?\.[a-z]+\.j2")
+_TAKEN = {
+    f"NAME_{part}.j2"
+    for of in ("model", "plant")
+    for part in (f"{of}.h", f"{of}.c", f"{of}_names.h", *(f"{of}_export.{suffix}" for suffix in ("h", "c", "cpp")))
+} | {"NAME_app.c.j2", "NAME.h.j2", "NAME.cmake.j2", "NAME.json.j2"}
+"""Names of files that every target has."""
 
 
 def _beside(node: Node, name: str, page: str, diagnostics: Diagnostics) -> None:

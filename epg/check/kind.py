@@ -6,10 +6,17 @@ from collections.abc import Iterable, Mapping
 
 from epg.check.compose import COMMON_PARAMETERS, parameter_problems
 from epg.diagnostics import Diagnostics, Note, did_you_mean
-from epg.load.items import map_of, texts_of
+from epg.load.items import flag_of, map_of, texts_of
 from epg.source import Node, Span
 
-_TOPIC_PARAMETERS = ("topic", "qos")
+_TOPIC_PARAMETERS = {"topic": "type: string", "qos": "type: string"}
+_SETPOINT_PARAMETERS = {
+    "initial": "type: number",
+    "rate_limit": "type: number",
+    "timeout": "quantity: time",
+    "on_timeout": "type: string",
+}
+_CHOICES = {"qos": ("reliable", "best_effort"), "on_timeout": ("hold", "zero", "disable")}
 _DIMENSIONS = {"frequency": "frequency", "period": "time"}
 
 
@@ -26,10 +33,36 @@ def check_kind(node: Node, diagnostics: Diagnostics) -> None:
     _ports(node, diagnostics)
     _claims(node, parameters, diagnostics)
     if "communication" in node:
-        for name in _TOPIC_PARAMETERS:
-            if name not in parameters:
-                message = f"a kind with 'communication' has a parameter '{name}'"
-                diagnostics.error("missing-key", node.key_span("communication"), message)
+        _communication(node, parameters, diagnostics)
+
+
+def _communication(node: Node, parameters: Mapping[str, Node], diagnostics: Diagnostics) -> None:
+    """What EPG itself reads of a topic's parameters has the types it expects."""
+    for name in _TOPIC_PARAMETERS:
+        if name not in parameters:
+            message = f"a kind with 'communication' has a parameter '{name}'"
+            diagnostics.error("missing-key", node.key_span("communication"), message)
+    wanted = _TOPIC_PARAMETERS | (_SETPOINT_PARAMETERS if node["communication"].value == "subscribe" else {})
+    for name, described in wanted.items():
+        parameter = parameters.get(name)
+        if parameter is None:
+            continue
+        span = node["parameters"].key_span(name)
+        key, _, value = described.partition(": ")
+        if key not in parameter or parameter[key].value != value:
+            message = f"parameter '{name}' of a kind with 'communication' has '{described}'"
+            diagnostics.error("wrong-value", span, message)
+        if name == "topic" and not flag_of(parameter, "required"):
+            message = "parameter 'topic' of a kind with 'communication' is required"
+            diagnostics.error("wrong-value", span, message, hint="add 'required: true'")
+        if name == "qos" and "default" not in parameter and not flag_of(parameter, "required"):
+            message = "parameter 'qos' of a kind with 'communication' is required or has a default"
+            diagnostics.error("wrong-value", span, message, hint="add 'default: reliable'")
+        possible = texts_of(parameter, "enum")
+        known = _CHOICES.get(name)
+        if known and not (possible and set(possible) <= set(known)):
+            message = f"parameter '{name}' of a kind with 'communication' is one of {', '.join(known)}"
+            diagnostics.error("wrong-value", span, message, hint=f"write 'enum: [{', '.join(known)}]'")
 
 
 def _relations(node: Node, parameters: Iterable[str], diagnostics: Diagnostics) -> None:

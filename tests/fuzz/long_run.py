@@ -4,7 +4,19 @@ from __future__ import annotations
 
 import os
 
+from hypothesis import HealthCheck, Phase, settings
+
 LONG = os.environ.get("HYPOTHESIS_PROFILE") == "long"
+
+PROFILE = settings(
+    derandomize=not LONG,
+    deadline=None,
+    database=None,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.function_scoped_fixture],
+    phases=tuple(Phase) if LONG else (Phase.explicit, Phase.generate),
+    print_blob=True,
+)
+"""Settings of every property test here: a normal run is the same each time."""
 
 
 def examples(normal: int) -> int:

@@ -44,6 +44,10 @@ class Outcome:
         return [line for line in self.messages.splitlines() if ": error: " in line]
 
 
+class TookTooLong(BaseException):
+    """EPG computes for too long; no handler of exceptions in EPG catches it."""
+
+
 class Project:
     """Files of one project and the command that makes outputs of them, with paths relative to the folder.
 
@@ -100,7 +104,7 @@ def project_files(folder: Path, inside: str = "") -> dict[str, bytes]:
 
 
 def run_epg(command: Sequence[str], folder: Path, seconds: float, targets: str = "") -> tuple[int, str, str]:
-    """Status, output and messages of ``epg`` run in ``folder``; TimeoutError when it takes longer than ``seconds``."""
+    """Status, output and messages of ``epg`` run in ``folder``; TookTooLong when it takes longer than ``seconds``."""
     output, messages = io.StringIO(), io.StringIO()
     here = Path.cwd()
     os.environ["EPG_TARGETS_PATH"] = targets
@@ -123,13 +127,13 @@ def check_messages(messages: str) -> None:
 
 @contextlib.contextmanager
 def time_limit(seconds: float) -> Iterator[None]:
-    """Raises TimeoutError inside the block when it computes longer than that, however busy the machine is."""
+    """Raises :class:`TookTooLong` inside the block when it computes longer than that, however busy the machine is."""
     if not hasattr(signal, "setitimer"):
         yield
         return
 
     def expired(_number: int, _frame: object) -> None:
-        raise TimeoutError(f"EPG took longer than {seconds} s")
+        raise TookTooLong(f"EPG took longer than {seconds} s")
 
     previous = signal.signal(signal.SIGPROF, expired)
     signal.setitimer(signal.ITIMER_PROF, seconds)

@@ -14,7 +14,7 @@ import pytest
 from epg.diagnostics import Diagnostics
 from epg.load.models import load_model
 from tests.fuzz.long_run import LONG
-from tests.fuzz.project import time_limit
+from tests.fuzz.project import TookTooLong, time_limit
 from tests.models.exports import Export
 
 SIZE = 1 << 20 if LONG else 1 << 15
@@ -121,7 +121,7 @@ def test_reading_takes_linear_time(form: str, file: str, place: str, tmp_path: P
         try:
             with time_limit(SECONDS):
                 model = load_model(tmp_path, diagnostics)
-        except TimeoutError:
+        except TookTooLong:
             pytest.fail(f"'{name}' in {file} takes longer than {SECONDS} s")
         assert model is not None or diagnostics.has_errors, name
 

@@ -9,12 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.fuzz.compiler import ROOT, compile_outputs, needs_compiler
-from tests.fuzz.long_run import examples
+from tests.fuzz.long_run import PROFILE, examples
 from tests.fuzz.mutation import YAML_MUTATIONS, mutated
 from tests.fuzz.project import Project, project_files
 from tests.fuzz.test_files import WITH_PLANT, all_kinds
 
-PROFILE = settings.get_profile("fuzz")
 FOLDERS = (
     "boards/host",
     "socs/simulated",
