@@ -15,6 +15,7 @@ void epg_control_start(epg_control_t *control, const epg_application_t *applicat
         .fault_component = EPG_NO_COMPONENT,
         .initialise = true,
         .status_exchange = {.slots = control->status_slots, .size = sizeof control->status_slots[0]},
+        .observer_exchange = {.slots = control->observer_slots, .size = sizeof control->observer_slots[0]},
     };
     control->setpoints_move = epg_setpoints_start(application);
     for (size_t i = 0; i < application->monitor_count; i++) {
@@ -27,6 +28,13 @@ void epg_control_start(epg_control_t *control, const epg_application_t *applicat
     application->safe(); /* whatever the peripherals start with */
 }
 
+static void stop_jog(epg_control_t *control)
+{
+    if (control->application->jog != NULL) {
+        control->application->jog->stop = true;
+    }
+}
+
 void epg_control_fault(epg_control_t *control, epg_fault_t fault, uint16_t component)
 {
     if (control->fault == EPG_FAULT_NONE) {
@@ -35,6 +43,7 @@ void epg_control_fault(epg_control_t *control, epg_fault_t fault, uint16_t compo
         control->statistics.faults++;
     }
     control->enabled = false;
+    stop_jog(control);
 }
 
 /** A fault that belongs to no component in particular. */
@@ -51,6 +60,7 @@ static void handle_request(epg_control_t *control, bool permitted, uint64_t now_
         return;
     }
     control->request_seen = request;
+    stop_jog(control);
     if ((request & 1U) == 0U) {
         control->enabled = false;
         return;
@@ -100,6 +110,9 @@ static bool run_model(epg_control_t *control)
     }
     if (control->initialise) {
         application->model_init();
+        if (application->parameters != NULL) {
+            epg_parameters_restore(application->parameters);
+        }
         control->initialise = false;
         control->model_valid = true;
         control->until_step = 0;
@@ -122,6 +135,17 @@ static bool run_model(epg_control_t *control)
         control->model_valid = false;
         latch(control, EPG_FAULT_MODEL_STOPPED);
     }
+    return true;
+}
+
+/** Drives what is moved by hand; true if something is, and the model rests meanwhile. */
+static bool move_by_hand(epg_control_t *control)
+{
+    epg_jog_t *jog = control->application->jog;
+    if (jog == NULL || !epg_jog_cycle(jog, control->enabled)) {
+        return false;
+    }
+    control->initialise = control->initialise || control->model_valid; /* one that rests after a fault goes on to */
     return true;
 }
 
@@ -171,7 +195,7 @@ static void count_silence(epg_control_t *control)
     }
 }
 
-static void publish_status(epg_control_t *control, uint64_t tick_ns)
+static void publish_status(epg_control_t *control)
 {
     control->statistics.setpoints_dropped = atomic_load(&control->dropped);
     control->statistics.reconnects = atomic_load(&control->reconnects);
@@ -179,8 +203,10 @@ static void publish_status(epg_control_t *control, uint64_t tick_ns)
         control->statistics.stacks[i].used = atomic_load_explicit(&control->stacks[i].used, memory_order_relaxed);
         control->statistics.stacks[i].size = atomic_load_explicit(&control->stacks[i].size, memory_order_relaxed);
     }
-    control->time_ns = tick_ns;
     epg_exchange_write(&control->status_exchange, &control->status);
+    if (atomic_load(&control->observed)) {
+        epg_exchange_write(&control->observer_exchange, &control->status);
+    }
 }
 
 void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed)
@@ -189,10 +215,17 @@ void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed
     const uint64_t begin_ns = epg_port_time_ns();
 
     application->sample();
+    control->time_ns = tick_ns;
     command(control, begin_ns);
     application->read();
-    const bool stepped = run_model(control);
-    if (!control->enabled) {
+    if (application->parameters != NULL) {
+        epg_parameters_apply(application->parameters, control->model_valid);
+    }
+    const bool jogging = move_by_hand(control);
+    const bool stepped = !jogging && run_model(control);
+    if (jogging) {
+        /* nothing but the actuator that is moved by hand: the others are safe since before */
+    } else if (!control->enabled) {
         application->safe();
     } else if (stepped) {
         application->write();
@@ -200,6 +233,9 @@ void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed
     if (stepped && application->monitor != NULL) {
         application->monitor(application->monitor_values);
         epg_exchange_write(application->monitor_exchange, application->monitor_values);
+    }
+    if (application->capture != NULL) {
+        epg_capture_cycle(application->capture, tick_ns, control->fault != EPG_FAULT_NONE);
     }
 
     const bool overrun = count_cycle(control, tick_ns, begin_ns, epg_port_time_ns(), missed);
@@ -209,7 +245,7 @@ void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed
         application->safe();
     }
     count_silence(control);
-    publish_status(control, tick_ns);
+    publish_status(control);
 }
 
 void epg_control_count_clamped(epg_control_t *control)
@@ -229,6 +265,12 @@ bool epg_control_monitor(epg_control_t *control, double *values)
 bool epg_control_status(epg_control_t *control, epg_status_t *status)
 {
     return epg_exchange_read(&control->status_exchange, status);
+}
+
+bool epg_control_observe(epg_control_t *control, epg_status_t *status)
+{
+    atomic_store(&control->observed, true);
+    return epg_exchange_read(&control->observer_exchange, status);
 }
 
 void epg_control_request(epg_control_t *control, bool enable)

@@ -94,30 +94,36 @@ static bool sound(const epg_parameters_t *parameters, size_t count)
     return true;
 }
 
-epg_parameters_stored_t epg_parameters_load(epg_parameters_t *parameters)
+/** Reads the store; `*count` values of it are right if it belongs to this model. */
+static epg_parameters_stored_t read_store(const epg_parameters_t *parameters, size_t *count)
 {
+    const size_t room = EPG_PARAMETERS_STORE_SIZE(parameters->count);
+    const size_t size = epg_port_store_read(parameters->store, room);
+    if (size < HEADER || get(parameters->store, 4) != MAGIC) {
+        return EPG_STORED_NOTHING;
+    }
+    if (get(parameters->store + 8, 8) != parameters->model) {
+        return EPG_STORED_FOR_OTHER;
+    }
+    *count = whole(parameters, size);
+    return *count != SIZE_MAX && sound(parameters, *count) ? EPG_STORED_LOADED : EPG_STORED_NOTHING;
+}
+
+void epg_parameters_load(epg_parameters_t *parameters)
+{
+    size_t count = 0;
     for (size_t i = 0; i < parameters->count; i++) {
         parameters->values[i] = parameters->table[i].value;
         parameters->changed[i] = false;
     }
-    const size_t room = EPG_PARAMETERS_STORE_SIZE(parameters->count);
-    const size_t size = epg_port_store_read(parameters->store, room);
-    if (size >= HEADER && size <= room && get(parameters->store, 4) == MAGIC &&
-        get(parameters->store + 8, 8) != parameters->model) {
-        return EPG_STORED_FOR_OTHER;
-    }
-    const size_t count = size <= room ? whole(parameters, size) : SIZE_MAX;
-    if (count == SIZE_MAX || !sound(parameters, count)) {
-        return EPG_STORED_NOTHING;
-    }
-    for (size_t i = 0; i < count; i++) {
+    parameters->stored = read_store(parameters, &count);
+    for (size_t i = 0; i < count && parameters->stored == EPG_STORED_LOADED; i++) {
         const unsigned char *entry = parameters->store + HEADER + i * ENTRY;
         const size_t index = (size_t)get(entry, 4);
         parameters->values[index] = get_value(entry + 4);
         parameters->applied[index] = parameters->values[index];
         parameters->changed[index] = true;
     }
-    return EPG_STORED_LOADED;
 }
 
 bool epg_parameters_save(epg_parameters_t *parameters, size_t *stored)

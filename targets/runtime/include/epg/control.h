@@ -34,7 +34,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "epg/capture.h"
 #include "epg/exchange.h"
+#include "epg/jog.h"
+#include "epg/parameters.h"
 #include "epg/status.h"
 
 /** What happens when a setpoint is older than its timeout. */
@@ -101,6 +104,10 @@ typedef struct epg_application {
     size_t monitor_count;
     double *monitor_values;           /**< `monitor_count`: the control side's copy */
     epg_exchange_t *monitor_exchange; /**< of `monitor_count` doubles; NULL: nothing to publish */
+
+    epg_parameters_t *parameters; /**< that can be changed; NULL: none */
+    epg_capture_t *capture;       /**< recording of signals; NULL: none */
+    epg_jog_t *jog;               /**< actuators that can be moved by hand; NULL: none */
 } epg_application_t;
 
 typedef struct epg_control {
@@ -131,9 +138,12 @@ typedef struct epg_control {
     struct {
         atomic_uint used;
         atomic_uint size;
-    } stacks[EPG_STACKS]; /**< written by the communication side */
-    epg_exchange_t status_exchange;
+    } stacks[EPG_STACKS];           /**< written by the communication side */
+    epg_exchange_t status_exchange; /**< for epg_control_status() */
     epg_status_t status_slots[4];
+    epg_exchange_t observer_exchange; /**< for epg_control_observe() */
+    epg_status_t observer_slots[4];
+    atomic_bool observed; /**< somebody calls epg_control_observe() */
 } epg_control_t;
 
 #define EPG_STATUS_MEMBER(member)                                                                                      \
@@ -215,8 +225,14 @@ bool epg_control_receive(epg_control_t *control, size_t index, double value, uin
  */
 bool epg_control_monitor(epg_control_t *control, double *values);
 
-/** Copies the newest status; false before the first cycle. */
+/** Copies the newest status; false before the first cycle.  For one reader. */
 bool epg_control_status(epg_control_t *control, epg_status_t *status);
+
+/**
+ * As epg_control_status(), for a second reader: a middleware, so that user code has the other one for itself.  False
+ * also before the first cycle after its first call.
+ */
+bool epg_control_observe(epg_control_t *control, epg_status_t *status);
 
 /** Requests enabling (initialises the model, clears a latched fault) or disabling; acts in the next cycle. */
 void epg_control_request(epg_control_t *control, bool enable);

@@ -12,7 +12,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/** Room for any number that epg_decimal_write() writes: "-1.2345678901234567e-300", without a terminating zero. */
+/** Room for any number that epg_decimal_write() writes: "-2.2250738585072014e-308", without a terminating zero. */
 enum { EPG_DECIMAL_SIZE = 24 };
 
 /** Most digits that epg_decimal_read() takes, zeros at the beginning apart. */

@@ -36,6 +36,13 @@ typedef struct epg_parameter_change {
 /** Bytes of a store that holds `count` changed values. */
 #define EPG_PARAMETERS_STORE_SIZE(count) (24U + 12U * (count))
 
+/** What became of stored values. */
+typedef enum epg_parameters_stored {
+    EPG_STORED_NOTHING,   /**< nothing was stored, or it is damaged */
+    EPG_STORED_FOR_OTHER, /**< it belongs to another model: refused */
+    EPG_STORED_LOADED
+} epg_parameters_stored_t;
+
 /** The parameters of one model.  The generator sets the first block of members; the arrays are its own. */
 typedef struct epg_parameters {
     size_t count;
@@ -47,23 +54,17 @@ typedef struct epg_parameters {
     bool *changed;                           /**< `count`: the control side's: which of `applied` mean something */
     unsigned char *store;                    /**< EPG_PARAMETERS_STORE_SIZE(count) bytes; the communication side's */
 
+    epg_parameters_stored_t stored;
     epg_handover_t handover; /**< of what follows */
     epg_parameter_change_t changes[EPG_PARAMETER_CHANGES];
     size_t change_count;
 } epg_parameters_t;
 
-/** What became of stored values. */
-typedef enum epg_parameters_stored {
-    EPG_STORED_NOTHING,   /**< nothing was stored, or it is damaged */
-    EPG_STORED_FOR_OTHER, /**< it belongs to another model: refused */
-    EPG_STORED_LOADED
-} epg_parameters_stored_t;
-
 /**
- * Sets all values as generated, then those that are stored for this model, all or none of them.  Before the control
- * loop and the communication start.
+ * Sets all values as generated, then those that are stored for this model, all or none of them: `stored` tells.  Before
+ * the control loop and the communication start.
  */
-epg_parameters_stored_t epg_parameters_load(epg_parameters_t *parameters);
+void epg_parameters_load(epg_parameters_t *parameters);
 
 /* Control side ----------------------------------------------------------------------------------------------- */
 

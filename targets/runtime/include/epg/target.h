@@ -19,6 +19,14 @@ typedef struct epg_topic {
     size_t index; /**< of the setpoint (subscription) or monitoring value (publication) */
 } epg_topic_t;
 
+/** A port of the model: its value can be watched and recorded. */
+typedef struct epg_signal {
+    const char *name;    /**< "inputs.position_pan" */
+    const char *unit;    /**< "" when the model states none */
+    const double *value; /**< belongs to the control side */
+    size_t index;        /**< of the monitoring value that it is copied to */
+} epg_signal_t;
+
 typedef struct epg_target {
     epg_control_t *control;
     const epg_application_t *application;
@@ -34,6 +42,14 @@ typedef struct epg_target {
     const epg_topic_t *subscriptions;
     size_t publication_count;
     const epg_topic_t *publications;
+
+    const char *version;                     /**< of the EPG that generated it */
+    const char *hash;                        /**< of everything it was generated from: 16 hexadecimal digits */
+    const struct epg_middleware *middleware; /**< as configured; NULL: none runs */
+    const void *options;                     /**< of that middleware, whose header says what */
+    size_t signal_count;                     /**< 0: signals are not monitored */
+    const epg_signal_t *signals;
+    size_t time_index; /**< of the monitoring value that is the cycle's time, in the bits of a 64-bit whole number */
 } epg_target_t;
 
 /** Name of component `index` of a status; "" for EPG_NO_COMPONENT. */

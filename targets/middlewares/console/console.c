@@ -1,0 +1,311 @@
+/**
+ * @file
+ * The session: who is there, what has come in, what goes out.
+ */
+#include "console.h"
+
+#include <string.h>
+
+#include "epg/port.h"
+#include "session.h"
+
+enum {
+    LINES = 4,          /* of an answer, written in one poll */
+    ANSWER_ROOM = 256,  /* free bytes of output before a command is carried out, */
+    PATIENCE_MS = 100,  /* unless nobody reads for that long: what is sent must act all the same */
+    ABANDON_MS = 2000,  /* an answer of several lines that nobody reads ends */
+    NO_CYCLE_MS = 1000, /* a control loop that has not run for that long does not run */
+    MS = 1000000        /* ns */
+};
+
+typedef struct handler {
+    const char *name;
+    void (*run)(epg_console_session_t *session, const epg_console_command_t *command);
+    bool lists; /**< its answer has several lines, so that it waits until those of another one are written */
+} handler_t;
+
+static const handler_t handlers[] = {
+    {"help", epg_console_help, true},       {"version", epg_console_version, false},
+    {"stats", epg_console_stats, true},     {"ports", epg_console_ports, true},
+    {"enable", epg_console_enable, false},  {"disable", epg_console_disable, false},
+    {"watch", epg_console_watch, false},    {"get", epg_console_get, true},
+    {"set", epg_console_set, false},        {"save", epg_console_save, false},
+    {"capture", epg_console_capture, true}, {"jog", epg_console_jog, false},
+    {"echo", epg_console_echo, false},
+};
+
+static epg_console_session_t session;
+
+void epg_console_ok(epg_console_session_t *self, const char *command)
+{
+    epg_console_begin(&self->output, "ok ");
+    epg_console_text(&self->output, command);
+}
+
+void epg_console_error(epg_console_session_t *self, const char *command, const char *message, const char *about)
+{
+    epg_console_begin(&self->output, "error ");
+    epg_console_text(&self->output, command);
+    epg_console_text(&self->output, " ");
+    epg_console_text(&self->output, message);
+    if (about != NULL) {
+        epg_console_text(&self->output, " '");
+        epg_console_text(&self->output, about);
+        epg_console_text(&self->output, "'");
+    }
+    epg_console_end_or_drop(&self->output);
+}
+
+void epg_console_answer(epg_console_session_t *self, const char *command, epg_console_list_t *list)
+{
+    self->list = list;
+    self->list_command = command;
+    self->list_index = 0;
+}
+
+void epg_console_wait_for(epg_console_session_t *self, const char *command, epg_console_wait_t wait)
+{
+    self->wait = wait;
+    self->wait_command = command;
+    self->wait_since_ns = self->now_ns;
+    self->wait_cycles = self->has_status ? self->status.statistics.cycles : 0U;
+}
+
+void epg_console_fault(epg_console_session_t *self, const epg_status_t *status)
+{
+    const char *name = epg_fault_name(status->fault);
+    epg_console_text(&self->output, " fault=");
+    for (size_t i = 0; name[i] != '\0'; i++) {
+        epg_console_text(&self->output, name[i] == ' ' ? "_" : (char[]){name[i], '\0'});
+    }
+    const char *component = epg_target_component(self->target, status->fault_component);
+    if (status->fault != EPG_FAULT_NONE && component[0] != '\0') {
+        epg_console_key(&self->output, "component");
+        epg_console_text(&self->output, component);
+    }
+}
+
+uint64_t epg_console_since_start(const epg_console_session_t *self, uint64_t time_ns)
+{
+    return time_ns > self->start_ns ? time_ns - self->start_ns : 0U;
+}
+
+/** A new reader, or none any more: nothing of the session before is left, and nothing moves by hand. */
+static void begin_session(bool connected)
+{
+    if (session.jogging) {
+        epg_control_request(session.target->control, false);
+        session.jogging = false;
+    }
+    epg_console_input_clear(&session.input);
+    session.input.echo = false;
+    epg_console_output_clear(&session.output);
+    session.list = NULL;
+    session.wait = EPG_CONSOLE_READY;
+    session.watching = false;
+    session.connected = connected;
+    session.progress_ns = session.now_ns;
+    if (!connected) {
+        return;
+    }
+    if (session.connected_before) {
+        epg_control_count_reconnect(session.target->control);
+    }
+    session.connected_before = true;
+    epg_console_begin(&session.output, "ready");
+    epg_console_key(&session.output, "node");
+    epg_console_text(&session.output, session.target->node);
+    epg_console_key(&session.output, "epg");
+    epg_console_text(&session.output, session.target->version);
+    epg_console_key(&session.output, "hash");
+    epg_console_text(&session.output, session.target->hash);
+    epg_console_end_or_drop(&session.output);
+}
+
+/** Tells of a change of state that nobody asked for. */
+static void poll_status(void)
+{
+    epg_status_t status;
+    if (!epg_control_observe(session.target->control, &status)) {
+        return;
+    }
+    const bool changed =
+        session.has_status && (status.enabled != session.status.enabled || status.fault != session.status.fault);
+    session.status = status;
+    session.has_status = true;
+    if (changed && session.connected) {
+        epg_console_begin(&session.output, "state");
+        epg_console_count(&session.output, "enabled", status.enabled ? 1U : 0U);
+        epg_console_fault(&session, &status);
+        epg_console_end_or_drop(&session.output);
+    }
+}
+
+/** Ends what keeps the next command waiting, if it is over. */
+static void poll_wait(void)
+{
+    bool over = false;
+    const char *problem = NULL;
+    const bool cycled = session.has_status && session.status.statistics.cycles - session.wait_cycles >= 2U;
+    switch (session.wait) {
+    case EPG_CONSOLE_READY:
+        return;
+    case EPG_CONSOLE_APPLYING:
+        over = epg_parameters_idle(session.target->application->parameters);
+        break;
+    case EPG_CONSOLE_ENABLING:
+        over = cycled;
+        problem = session.status.enabled ? NULL : "refused:";
+        break;
+    case EPG_CONSOLE_DISABLING:
+        over = cycled;
+        problem = session.status.enabled ? "was enabled again" : NULL;
+        break;
+    }
+    if (!over && session.now_ns - session.wait_since_ns > (uint64_t)NO_CYCLE_MS * MS) {
+        over = true;
+        problem = "the control loop does not run";
+    }
+    if (!over) {
+        return;
+    }
+    if (problem == NULL) {
+        epg_console_ok(&session, session.wait_command);
+    } else {
+        epg_console_begin(&session.output, "error ");
+        epg_console_text(&session.output, session.wait_command);
+        epg_console_text(&session.output, " ");
+        epg_console_text(&session.output, problem);
+        if (session.wait == EPG_CONSOLE_ENABLING && cycled) {
+            epg_console_fault(&session, &session.status);
+        }
+    }
+    epg_console_end_or_drop(&session.output);
+    session.wait = EPG_CONSOLE_READY;
+}
+
+/** Goes on with an answer of several lines. */
+static void poll_list(void)
+{
+    for (int i = 0; i < LINES && session.list != NULL; i++) {
+        const bool empty = session.output.used == 0;
+        const bool more = session.list(&session, session.list_index);
+        if (!more) {
+            epg_console_ok(&session, session.list_command);
+        }
+        if (!epg_console_end(&session.output)) {
+            if (!empty) {
+                return;
+            }
+            session.output.dropped++; /* longer than all of the output */
+        }
+        session.list_index++;
+        if (!more) {
+            session.list = NULL;
+        }
+    }
+}
+
+static const handler_t *find_handler(const char *name)
+{
+    for (size_t i = 0; i < sizeof handlers / sizeof handlers[0]; i++) {
+        if (strcmp(name, handlers[i].name) == 0) {
+            return &handlers[i];
+        }
+    }
+    return NULL;
+}
+
+/** The first word of a line, which it leaves as it is, is that of a command whose answer has several lines. */
+static bool line_lists(void)
+{
+    const char *line = session.input.line;
+    const size_t begin = strspn(line, " \t");
+    const size_t length = strcspn(line + begin, " \t");
+    for (size_t i = 0; i < sizeof handlers / sizeof handlers[0]; i++) {
+        if (handlers[i].lists && strlen(handlers[i].name) == length &&
+            memcmp(handlers[i].name, line + begin, length) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void run_line(void)
+{
+    epg_console_command_t command;
+    if (session.input.too_long) {
+        epg_console_error(&session, "line", "is too long", NULL);
+    } else if (session.input.no_text) {
+        epg_console_error(&session, "line", "holds bytes that are no text", NULL);
+    } else if (!epg_console_cut(session.input.line, &command)) {
+        epg_console_error(&session, "line", "has too many words", NULL);
+    } else if (command.count > 0) {
+        const handler_t *handler = find_handler(command.words[0]);
+        if (handler != NULL) {
+            handler->run(&session, &command);
+        } else if (strchr(command.words[0], '=') != NULL) {
+            epg_console_setpoints(&session, &command);
+        } else {
+            epg_console_error(&session, "line", "there is no command", command.words[0]);
+        }
+    }
+    epg_console_input_clear(&session.input);
+}
+
+static void poll_input(void)
+{
+    const uint64_t idle_ns = session.now_ns - session.progress_ns;
+    if (session.list != NULL && idle_ns > (uint64_t)ABANDON_MS * MS) {
+        session.list = NULL;
+        session.output.dropped++;
+    }
+    epg_console_read(&session);
+    if (!session.input.complete || session.wait != EPG_CONSOLE_READY) {
+        return;
+    }
+    session.input.line[session.input.length] = '\0';
+    const bool room = epg_console_output_room(&session.output) >= ANSWER_ROOM || idle_ns > (uint64_t)PATIENCE_MS * MS;
+    if (room && !(session.list != NULL && line_lists())) {
+        run_line();
+    }
+}
+
+static void start(const epg_target_t *target, const epg_stream_t *stream)
+{
+    const epg_console_options_t *options = target->options;
+    session = (epg_console_session_t){
+        .target = target,
+        .options = options,
+        .stream = stream,
+        .start_ns = epg_port_time_ns(),
+        .output = {.bytes = options->output, .size = options->output_size},
+    };
+}
+
+static void poll(uint64_t now_ns)
+{
+    session.now_ns = now_ns;
+    const bool connected = session.stream->connected(session.stream->context);
+    if (connected != session.connected) {
+        begin_session(connected);
+    }
+    poll_status();
+    if (!connected) {
+        char ignored[64];
+        (void)session.stream->read(session.stream->context, ignored, sizeof ignored);
+        epg_console_output_clear(&session.output);
+        return;
+    }
+    poll_wait();
+    epg_console_poll_jog(&session);
+    epg_console_poll_capture(&session);
+    poll_input();
+    poll_list();
+    epg_console_poll_watch(&session);
+    if (session.output.used == 0 || epg_console_send(&session.output, session.stream)) {
+        session.progress_ns = now_ns;
+    }
+}
+
+const epg_middleware_t epg_console = {.start = start, .poll = poll};

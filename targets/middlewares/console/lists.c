@@ -1,0 +1,201 @@
+/**
+ * @file
+ * Commands that tell: help, version, stats, ports.
+ */
+#include <stddef.h>
+#include <string.h>
+
+#include "session.h"
+
+static const char *const help[] = {
+    "ports                        what has a name",
+    "<setpoint>=<number> ...      setpoints; those of one line act in the same cycle",
+    "enable, disable              actuators on (initialises the model, clears a fault), off",
+    "watch [<port> ...], off      values at the communication period, each line of one cycle",
+    "stats                        what the control loop counts",
+    "get [<parameter> ...]        parameters of the model",
+    "set <parameter>=<number> ... changes up to 8 of them in the same cycle",
+    "save                         keeps the changes; while disabled",
+    "capture <port> ... [rows=<n>] [before=<n>] [every=<n>] [when=<port>><number>|when=fault]",
+    "capture [read|stop]          how far it is; its rows; ends it",
+    "jog <actuator> <duty> <ms>   moves it, while disabled, and tells what the encoders counted",
+    "echo on|off                  shows what is typed",
+    "version",
+};
+
+static bool help_line(epg_console_session_t *session, size_t index)
+{
+    if (index >= sizeof help / sizeof help[0]) {
+        return false;
+    }
+    epg_console_begin(&session->output, "help ");
+    epg_console_text(&session->output, help[index]);
+    return true;
+}
+
+void epg_console_help(epg_console_session_t *session, const epg_console_command_t *command)
+{
+    epg_console_answer(session, command->words[0], help_line);
+}
+
+static const char *stored_name(const epg_parameters_t *parameters)
+{
+    switch (parameters->stored) {
+    case EPG_STORED_LOADED:
+        return "loaded";
+    case EPG_STORED_FOR_OTHER:
+        return "of_another_model";
+    case EPG_STORED_NOTHING:
+        break;
+    }
+    return "nothing";
+}
+
+void epg_console_version(epg_console_session_t *session, const epg_console_command_t *command)
+{
+    const epg_target_t *target = session->target;
+    epg_console_ok(session, command->words[0]);
+    epg_console_key(&session->output, "name");
+    epg_console_text(&session->output, target->application->name);
+    epg_console_key(&session->output, "node");
+    epg_console_text(&session->output, target->node);
+    epg_console_key(&session->output, "epg");
+    epg_console_text(&session->output, target->version);
+    epg_console_key(&session->output, "hash");
+    epg_console_text(&session->output, target->hash);
+    if (target->application->parameters != NULL) {
+        epg_console_key(&session->output, "stored");
+        epg_console_text(&session->output, stored_name(target->application->parameters));
+    }
+    epg_console_end_or_drop(&session->output);
+}
+
+static const struct {
+    const char *name;
+    size_t offset; /* of a uint32_t */
+} counters[] = {
+    {"cycles", offsetof(epg_statistics_t, cycles)},
+    {"overruns", offsetof(epg_statistics_t, overruns)},
+    {"missed", offsetof(epg_statistics_t, missed)},
+    {"lateness_max_ns", offsetof(epg_statistics_t, lateness_max)},
+    {"computation_min_ns", offsetof(epg_statistics_t, computation_min)},
+    {"computation_max_ns", offsetof(epg_statistics_t, computation_max)},
+    {"clamped", offsetof(epg_statistics_t, clamped)},
+    {"setpoints_dropped", offsetof(epg_statistics_t, setpoints_dropped)},
+    {"setpoint_timeouts", offsetof(epg_statistics_t, setpoint_timeouts)},
+    {"faults", offsetof(epg_statistics_t, faults)},
+    {"reconnects", offsetof(epg_statistics_t, reconnects)},
+    {"silence_max", offsetof(epg_statistics_t, silence_max)},
+    {"control_stack_used", offsetof(epg_statistics_t, stacks[EPG_STACK_CONTROL].used)},
+    {"control_stack_size", offsetof(epg_statistics_t, stacks[EPG_STACK_CONTROL].size)},
+    {"communication_stack_used", offsetof(epg_statistics_t, stacks[EPG_STACK_COMMUNICATION].used)},
+    {"communication_stack_size", offsetof(epg_statistics_t, stacks[EPG_STACK_COMMUNICATION].size)},
+};
+
+enum { COUNTERS = sizeof counters / sizeof counters[0] };
+
+/** First the state, then the counters, then what is computed from them. */
+static bool stats_line(epg_console_session_t *session, size_t index)
+{
+    const epg_status_t *status = &session->status;
+    epg_console_output_t *output = &session->output;
+    if (index > COUNTERS + 2U) {
+        return false;
+    }
+    epg_console_begin(output, "stat");
+    if (index == 0) {
+        epg_console_count(output, "enabled", status->enabled ? 1U : 0U);
+        epg_console_fault(session, status);
+        epg_console_key(output, "time");
+        epg_console_seconds(output, epg_console_since_start(session, status->time_ns));
+    } else if (index <= COUNTERS) {
+        const unsigned char *statistics = (const unsigned char *)&status->statistics;
+        uint32_t value;
+        memcpy(&value, statistics + counters[index - 1U].offset, sizeof value);
+        epg_console_count(output, counters[index - 1U].name, value);
+    } else if (index == COUNTERS + 1U) {
+        const uint32_t cycles = status->statistics.cycles;
+        epg_console_key(output, "computation_mean_ns");
+        epg_console_integer(output, cycles == 0 ? 0 : (int64_t)(status->statistics.computation_total / cycles));
+    } else {
+        epg_console_count(output, "lines_dropped", output->dropped);
+    }
+    return true;
+}
+
+void epg_console_stats(epg_console_session_t *session, const epg_console_command_t *command)
+{
+    if (!session->has_status) {
+        epg_console_error(session, command->words[0], "no control cycle has run yet", NULL);
+        return;
+    }
+    epg_console_answer(session, command->words[0], stats_line);
+}
+
+static void port(epg_console_session_t *session, const char *sort, const char *name, const char *unit)
+{
+    epg_console_begin(&session->output, "port ");
+    epg_console_text(&session->output, sort);
+    epg_console_text(&session->output, " ");
+    epg_console_text(&session->output, name);
+    if (unit[0] != '\0') {
+        epg_console_key(&session->output, "unit");
+        epg_console_text(&session->output, unit);
+    }
+}
+
+static bool ports_line(epg_console_session_t *session, size_t index)
+{
+    const epg_target_t *target = session->target;
+    const epg_jog_t *jog = target->application->jog;
+    if (index < target->subscription_count) {
+        port(session, "setpoint", target->subscriptions[index].name, "");
+        return true;
+    }
+    index -= target->subscription_count;
+    if (index < target->publication_count) {
+        port(session, "publication", target->publications[index].name, "");
+        return true;
+    }
+    index -= target->publication_count;
+    if (index < target->signal_count) {
+        port(session, "signal", target->signals[index].name, target->signals[index].unit);
+        return true;
+    }
+    index -= target->signal_count;
+    if (jog != NULL && index < jog->actuator_count) {
+        port(session, "actuator", jog->actuators[index].name, "");
+        return true;
+    }
+    index -= jog != NULL ? jog->actuator_count : 0U;
+    if (jog != NULL && index < jog->encoder_count) {
+        port(session, "encoder", jog->encoders[index].name, jog->encoders[index].unit);
+        return true;
+    }
+    return false;
+}
+
+void epg_console_ports(epg_console_session_t *session, const epg_console_command_t *command)
+{
+    epg_console_answer(session, command->words[0], ports_line);
+}
+
+size_t epg_console_find_signal(const epg_console_session_t *session, const char *name)
+{
+    const epg_target_t *target = session->target;
+    size_t found = SIZE_MAX;
+    for (size_t i = 0; i < target->signal_count; i++) {
+        const char *signal = target->signals[i].name;
+        const char *last = strchr(signal, '.');
+        if (strcmp(signal, name) == 0) {
+            return i;
+        }
+        if (last != NULL && strcmp(last + 1, name) == 0) {
+            if (found != SIZE_MAX) {
+                return SIZE_MAX; /* an input and an output of the same name */
+            }
+            found = i;
+        }
+    }
+    return found;
+}

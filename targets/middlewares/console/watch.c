@@ -1,0 +1,108 @@
+/**
+ * @file
+ * Values at the communication period, those of a line all of one control cycle.
+ */
+#include <string.h>
+
+#include "session.h"
+
+/** Monitoring value of a publication or signal; SIZE_MAX if nothing has that name. */
+static size_t find(const epg_console_session_t *session, const char *name)
+{
+    const epg_target_t *target = session->target;
+    for (size_t i = 0; i < target->publication_count; i++) {
+        const char *topic = target->publications[i].name;
+        if (strcmp(topic, name) == 0 || (topic[0] == '/' && strcmp(topic + 1, name) == 0)) {
+            return target->publications[i].index;
+        }
+    }
+    const size_t signal = epg_console_find_signal(session, name);
+    return signal == SIZE_MAX ? SIZE_MAX : target->signals[signal].index;
+}
+
+/** What a monitoring value is called; a publication's number for epg_target_publishing(), else SIZE_MAX. */
+static const char *name_of(const epg_target_t *target, size_t index, size_t *publication)
+{
+    for (size_t i = 0; i < target->publication_count; i++) {
+        if (target->publications[i].index == index) {
+            *publication = i;
+            return target->publications[i].name;
+        }
+    }
+    *publication = SIZE_MAX;
+    for (size_t i = 0; i < target->signal_count; i++) {
+        if (target->signals[i].index == index) {
+            return target->signals[i].name;
+        }
+    }
+    return "?";
+}
+
+/** Everything that is published, or if nothing is, all signals. */
+static void watch_all(epg_console_session_t *session)
+{
+    const epg_target_t *target = session->target;
+    const bool published = target->publication_count > 0;
+    const size_t count = published ? target->publication_count : target->signal_count;
+    session->watched_count = count < EPG_CONSOLE_WATCHED ? count : EPG_CONSOLE_WATCHED;
+    for (size_t i = 0; i < session->watched_count; i++) {
+        session->watched[i] = published ? target->publications[i].index : target->signals[i].index;
+    }
+}
+
+void epg_console_watch(epg_console_session_t *session, const epg_console_command_t *command)
+{
+    const bool off = command->count == 2 && strcmp(command->words[1], "off") == 0;
+    size_t chosen[EPG_CONSOLE_WORDS];
+    for (size_t i = 1; i < command->count && !off; i++) {
+        chosen[i - 1U] = find(session, command->words[i]);
+        if (chosen[i - 1U] == SIZE_MAX) {
+            epg_console_error(session, "watch", "there is no port", command->words[i]);
+            return;
+        }
+    }
+    if (command->count == 1) {
+        watch_all(session);
+    } else if (!off) {
+        session->watched_count = command->count - 1U;
+        memcpy(session->watched, chosen, session->watched_count * sizeof chosen[0]);
+    }
+    session->watching = !off;
+    session->watch_next_ns = session->now_ns;
+    session->watch_shown_ns = UINT64_MAX;
+    epg_console_ok(session, "watch");
+    epg_console_end_or_drop(&session->output);
+}
+
+void epg_console_poll_watch(epg_console_session_t *session)
+{
+    const epg_target_t *target = session->target;
+    if (!session->watching || session->now_ns < session->watch_next_ns) {
+        return;
+    }
+    /* On its own schedule: a late line moves none of the next, and none is made up. */
+    const uint64_t period_ns = target->communication_period_ns;
+    session->watch_next_ns += ((session->now_ns - session->watch_next_ns) / period_ns + 1U) * period_ns;
+    const double *values = session->options->values;
+    uint64_t time_ns;
+    if (!epg_control_monitor(target->control, session->options->values)) {
+        return;
+    }
+    memcpy(&time_ns, &values[target->time_index], sizeof time_ns);
+    if (time_ns == session->watch_shown_ns) {
+        return; /* the model rests */
+    }
+    session->watch_shown_ns = time_ns;
+    epg_console_begin(&session->output, "watch ");
+    epg_console_seconds(&session->output, epg_console_since_start(session, time_ns));
+    for (size_t i = 0; i < session->watched_count; i++) {
+        size_t publication;
+        const char *name = name_of(target, session->watched[i], &publication);
+        if (publication != SIZE_MAX) {
+            epg_target_publishing(target, publication);
+        }
+        epg_console_key(&session->output, name);
+        epg_console_double(&session->output, values[session->watched[i]]);
+    }
+    epg_console_end_or_drop(&session->output);
+}
