@@ -17,6 +17,7 @@ from functools import cache
 from pathlib import Path as FilePath
 from typing import Any
 
+from epg.check.accept import accepts
 from epg.data import data_folder
 from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.quantity import QuantityError, parse_quantity, parse_ratio
@@ -46,10 +47,13 @@ def validate(node: Node, schema: Mapping[str, Any], diagnostics: Diagnostics, *,
 
     ``partial``: the file extends another one, so missing keys are not reported, and ``null`` deletes any key.
     """
+    plain = node.plain()
+    if accepts(plain, schema, partial=partial):
+        return True
     from jsonschema import Draft202012Validator
 
     good = True
-    errors = Draft202012Validator(schema).iter_errors(node.plain())
+    errors = Draft202012Validator(schema).iter_errors(plain)
     for error in sorted(errors, key=lambda e: ([str(step) for step in e.absolute_path], str(e.validator))):
         if partial and (error.validator in ("required", "dependentRequired") or error.instance is None):
             continue

@@ -16,7 +16,9 @@ from jinja2 import nodes
 from jinja2.compiler import CodeGenerator
 from jinja2.runtime import Macro
 
+from epg.bootstrap import cache_folder
 from epg.emit import text
+from epg.emit.bytecode import TemplateCache
 from epg.emit.text import CMakeCode, Code, DevicetreeCode, Escaped, KconfigCode
 
 FILTERS: Mapping[type[Escaped], Mapping[str, Callable[..., object]]] = {
@@ -63,6 +65,7 @@ def environment(folders: Iterable[Path], language: type[Escaped] = Code) -> jinj
         lstrip_blocks=True,
         keep_trailing_newline=True,
         extensions=["jinja2.ext.do"],
+        bytecode_cache=TemplateCache(cache_folder(), language.__name__),
     )
     env.language = language
     plain = {name: env.filters[name] for name in _PLAIN_FILTERS}
