@@ -62,6 +62,20 @@ class OutputView:
     statement: Code
 
 
+@dataclass(frozen=True)
+class OutputPin:
+    """A pin that a component drives; ``high`` is C that says whether its level is high while nothing is to move."""
+
+    component: str
+    signal: str
+    pin: int
+    high: Code
+
+
+OUTPUT_CLASSES = ("digital_output", "pwm")
+"""Classes of peripherals whose pins are outputs."""
+
+
 class Emitter:
     """Renders one application; ``roots`` are the ``targets`` folders, the user's first."""
 
@@ -100,6 +114,7 @@ class Emitter:
             "inputs": [self._input(wire) for wire in app.inputs],
             "outputs": [self._output(wire) for wire in app.outputs if wire.component.name not in publishers],
             "monitor": [self._output(wire) for wire in app.outputs if wire.component.name in publishers],
+            "output_pins": self._output_pins(),
             "fail_safe": None,
             "plant_inputs": [],
             "plant_outputs": [],
@@ -160,6 +175,18 @@ class Emitter:
             sample=_indented(self._macro(component, "sample")),
             safe=_indented(self._macro(component, "safe")),
         )
+
+    def _output_pins(self) -> list[OutputPin]:
+        return [
+            OutputPin(component.name, signal, pin, self._safe_level(component, claim.name))
+            for component in self.app.components
+            for claim in component.kind.claims
+            if claim.resource_class in OUTPUT_CLASSES
+            for signal, pin in sorted(component.claims[claim.name].pins.items())
+        ]
+
+    def _safe_level(self, component: ResolvedComponent, claim: str) -> Code:
+        return self._macro(component, "safe_level", claim).strip() or Code("false")
 
     def _input(self, wire: Wire) -> InputView:
         value = self._expression(wire.component, "read", wire.component_port.name)

@@ -117,7 +117,10 @@ class OnboardPin:
 
 @dataclass(frozen=True)
 class Board:
-    """A chip on a circuit board; ``names`` and ``prefixes`` are other ways to write its pins."""
+    """A chip on a circuit board; ``names`` and ``prefixes`` are other ways to write its pins.
+
+    ``sdks`` says what SDKs call the board: "pico_sdk" -> "pico2".
+    """
 
     name: str
     summary: str
@@ -127,6 +130,7 @@ class Board:
     names: Mapping[str, str]
     onboard: Mapping[str, OnboardPin]
     reserved: Mapping[str, str]
+    sdks: Mapping[str, str]
     node: Node
     folder: Path
     span: Span
@@ -148,7 +152,8 @@ class Platform:
     Without ``builds`` there is none yet: targets can be checked but not built.
 
     ``middlewares`` names transports; the first of each is the default.  ``tick`` is the class of the peripheral that
-    times the control loop, None where the system software does.
+    times the control loop, None where the system software does.  ``shared`` are folders beside this one whose templates
+    it uses too.
     """
 
     name: str
@@ -161,6 +166,7 @@ class Platform:
     tick: str | None
     builds: bool
     templates: tuple[str, ...]
+    shared: tuple[str, ...]
     node: Node
     folder: Path
     span: Span
@@ -229,6 +235,7 @@ def make_board(node: Node, folder: Path) -> Board:
         names=MappingProxyType({name: str(pin.value) for name, pin in map_of(node, "names").items()}),
         onboard=MappingProxyType(onboard),
         reserved=MappingProxyType({pin: str(reason.value) for pin, reason in map_of(node, "reserved").items()}),
+        sdks=MappingProxyType({sdk: str(name.value) for sdk, name in map_of(node, "sdks").items()}),
         node=node,
         folder=folder,
         span=node["board"].span,
@@ -253,6 +260,7 @@ def make_platform(node: Node, folder: Path) -> Platform:
         tick=str(tick.value) if tick is not None else None,
         builds=flag_of(node, "builds"),
         templates=texts_of(node, "templates"),
+        shared=texts_of(node, "shared"),
         node=node,
         folder=folder,
         span=node["platform"].span,

@@ -37,15 +37,14 @@ def test_everything_is_right() -> None:
     catalog, problems = builtin()
     check_all(catalog)
     assert [(p.span, p.message) for p in problems] == []
-    assert {name for sort in FOLDERS for name in catalog.names(sort)} == {
-        path.name for folder in FOLDERS.values() for path in (TARGETS / folder).iterdir() if path.is_dir()
-    }
+    folders = {path.name for folder in FOLDERS.values() for path in (TARGETS / folder).iterdir() if path.is_dir()}
+    assert {name for sort in FOLDERS for name in catalog.names(sort)} == folders - {"pico"}, "pico: shared by platforms"
 
 
 def test_the_targets_of_the_thesis_and_the_host() -> None:
     catalog, _ = builtin()
     assert catalog.target_names() == sorted(["host", *(f"{board}_{name}" for board in BOARDS for name in PLATFORMS)])
-    assert [name for name in catalog.target_names() if catalog.find_target(name).platform.builds] == ["host"]
+    assert all(catalog.find_target(name).platform.builds for name in catalog.target_names())
 
 
 def test_the_kinds() -> None:

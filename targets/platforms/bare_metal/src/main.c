@@ -1,0 +1,18 @@
+/**
+ * @file
+ * main() of an executable that holds a target and nothing else.
+ */
+#include "sdk.h"
+
+/* <name>_start() of the target; CMake names it. */
+extern bool EPG_PICO_START(void);
+
+int main(void)
+{
+    if (!EPG_PICO_START()) {
+        panic(NULL);
+    }
+    for (;;) {
+        __wfi();
+    }
+}

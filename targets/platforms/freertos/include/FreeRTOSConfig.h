@@ -1,0 +1,94 @@
+/**
+ * @file
+ * The FreeRTOS kernel as EPG runs it: one core, static memory, a tick of 1 ms.
+ *
+ * Core 1 belongs to the control loop and knows nothing of the kernel, so the kernel is that of one core, on core 0.
+ * A project that brings its own FreeRTOSConfig.h (a target FreeRTOS-Kernel of its own) uses that; src/rtos.h says what
+ * must be the same.
+ */
+#ifndef EPG_FREERTOS_CONFIG_H
+#define EPG_FREERTOS_CONFIG_H
+
+/* Scheduler */
+#define configNUMBER_OF_CORES 1
+#define configUSE_PREEMPTION 1
+#define configUSE_TIME_SLICING 1
+#define configUSE_TICKLESS_IDLE 0
+#define configUSE_PORT_OPTIMISED_TASK_SELECTION 0
+#define configTICK_RATE_HZ 1000
+#define configTICK_TYPE_WIDTH_IN_BITS TICK_TYPE_WIDTH_32_BITS
+#define configMAX_PRIORITIES 8
+#define configMINIMAL_STACK_SIZE 256 /* words */
+#define configMAX_TASK_NAME_LEN 16
+#define configIDLE_SHOULD_YIELD 1
+#define configSTACK_DEPTH_TYPE uint32_t
+
+/* Memory */
+#define configSUPPORT_STATIC_ALLOCATION 1
+#define configSUPPORT_DYNAMIC_ALLOCATION 0
+#define configKERNEL_PROVIDED_STATIC_MEMORY 1
+
+/* Services */
+#define configUSE_TASK_NOTIFICATIONS 1
+#define configTASK_NOTIFICATION_ARRAY_ENTRIES 1
+#define configUSE_MUTEXES 1
+#define configUSE_RECURSIVE_MUTEXES 1
+#define configUSE_COUNTING_SEMAPHORES 1
+#define configUSE_QUEUE_SETS 0
+#define configUSE_EVENT_GROUPS 1
+#define configUSE_STREAM_BUFFERS 1
+#define configUSE_TIMERS 1
+#define configTIMER_TASK_PRIORITY (configMAX_PRIORITIES - 1)
+#define configTIMER_QUEUE_LENGTH 10
+#define configTIMER_TASK_STACK_DEPTH configMINIMAL_STACK_SIZE
+
+/* Hooks and checks */
+#define configUSE_IDLE_HOOK 0
+#define configUSE_TICK_HOOK 0
+#define configUSE_MALLOC_FAILED_HOOK 0
+#define configUSE_DAEMON_TASK_STARTUP_HOOK 0
+#define configCHECK_FOR_STACK_OVERFLOW 2
+#define configENABLE_BACKWARD_COMPATIBILITY 0
+
+#ifndef __ASSEMBLER__
+#ifdef __cplusplus
+extern "C" {
+#endif
+void epg_freertos_assert_failed(const char *file, int line);
+#ifdef __cplusplus
+}
+#endif
+#define configASSERT(condition)                                                                                        \
+    do {                                                                                                               \
+        if (!(condition)) {                                                                                            \
+            epg_freertos_assert_failed(__FILE__, __LINE__);                                                            \
+        }                                                                                                              \
+    } while (0)
+#endif
+
+/* Ports for RP2040 and RP2350: mutexes, semaphores and sleep_ms() of the Pico SDK work in tasks. */
+#define configSUPPORT_PICO_SYNC_INTEROP 1
+#define configSUPPORT_PICO_TIME_INTEROP 1
+
+/* Port for RP2350 (Cortex-M33): all in secure state, FPU saved, kernel below the SDK's default interrupt priority. */
+#define configENABLE_FPU 1
+#define configENABLE_MPU 0
+#define configENABLE_TRUSTZONE 0
+#define configRUN_FREERTOS_SECURE_ONLY 1
+#define configMAX_SYSCALL_INTERRUPT_PRIORITY 16
+
+#define INCLUDE_vTaskPrioritySet 1
+#define INCLUDE_uxTaskPriorityGet 1
+#define INCLUDE_vTaskDelete 1
+#define INCLUDE_vTaskSuspend 1
+#define INCLUDE_xTaskDelayUntil 1
+#define INCLUDE_vTaskDelay 1
+#define INCLUDE_xTaskGetSchedulerState 1
+#define INCLUDE_xTaskGetCurrentTaskHandle 1
+#define INCLUDE_uxTaskGetStackHighWaterMark 1
+#define INCLUDE_eTaskGetState 1
+#define INCLUDE_xTimerPendFunctionCall 1
+#define INCLUDE_xTaskAbortDelay 1
+#define INCLUDE_xTaskResumeFromISR 1
+
+#endif

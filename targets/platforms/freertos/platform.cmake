@@ -1,0 +1,44 @@
+# FreeRTOS on the Raspberry Pi Pico: core 1 controls, bare; the kernel runs on core 0, where communication is a task.
+
+include("${CMAKE_CURRENT_LIST_DIR}/../pico/pico.cmake")
+set(_epg_freertos_folder "${CMAKE_CURRENT_LIST_DIR}")
+
+function(_epg_freertos_target name)
+  if(TARGET pico_runtime)
+    _epg_freertos_kernel("${name}" good)
+    if(NOT good)
+      return()
+    endif()
+  endif()
+  _epg_pico_target("${name}"
+    SERVICE "${_epg_freertos_folder}/src/service.c" "${_epg_freertos_folder}/src/hooks.c"
+    LIBRARIES FreeRTOS-Kernel-Static)
+endfunction()
+
+function(_epg_freertos_executable executable name)
+  _epg_pico_executable("${executable}" "${name}" "${_epg_freertos_folder}/src/main.c")
+endfunction()
+
+# The kernel's own CMake targets: the project's, or made here with EPG's FreeRTOSConfig.h.
+function(_epg_freertos_kernel name result)
+  set(${result} TRUE PARENT_SCOPE)
+  if(TARGET FreeRTOS-Kernel-Static)
+    return()
+  endif()
+  _epg_find_sdk(FREERTOS_KERNEL_PATH freertos_kernel)
+  set(port "portable/ThirdParty/GCC/RP2040")
+  set(problem "${FREERTOS_KERNEL_PATH_PROBLEM}")
+  if(NOT PICO_RP2040)
+    set(port "portable/ThirdParty/Community-Supported-Ports/GCC/RP2350_ARM_NTZ")
+  endif()
+  if(FREERTOS_KERNEL_PATH AND NOT EXISTS "${FREERTOS_KERNEL_PATH}/${port}/library.cmake")
+    set(problem "The FreeRTOS kernel in ${FREERTOS_KERNEL_PATH} has no port for this chip: there is no ${port}.\nGet it: git -C \"${FREERTOS_KERNEL_PATH}\" submodule update --init portable/ThirdParty/Community-Supported-Ports")
+  endif()
+  if(problem)
+    message(SEND_ERROR "epg_add_target(${name}): ${problem}")
+    set(${result} FALSE PARENT_SCOPE)
+    return()
+  endif()
+  set(FREERTOS_CONFIG_FILE_DIRECTORY "${_epg_freertos_folder}/include")
+  include("${FREERTOS_KERNEL_PATH}/${port}/library.cmake")
+endfunction()

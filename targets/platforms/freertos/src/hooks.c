@@ -1,0 +1,21 @@
+/**
+ * @file
+ * What the kernel calls when something is wrong: outputs first.  A hook of the user's own takes the place of one here.
+ */
+#include "parts.h"
+#include "rtos.h"
+
+void vApplicationStackOverflowHook(TaskHandle_t task, char *name);
+
+void __attribute__((weak)) vApplicationStackOverflowHook(TaskHandle_t task, char *name)
+{
+    (void)task;
+    epg_pico_safe_state();
+    panic("stack overflow in task %s", name);
+}
+
+void epg_freertos_assert_failed(const char *file, int line)
+{
+    epg_pico_safe_state();
+    panic("FreeRTOS: assertion in %s, line %d", file, line);
+}

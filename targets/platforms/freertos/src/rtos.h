@@ -1,0 +1,24 @@
+/**
+ * @file
+ * The headers of the FreeRTOS kernel, as system headers: the user's warnings are for the user's code.
+ */
+#ifndef EPG_FREERTOS_RTOS_H
+#define EPG_FREERTOS_RTOS_H
+
+#pragma GCC system_header
+
+#include "FreeRTOS.h"
+#include "task.h"
+
+#if !configSUPPORT_STATIC_ALLOCATION || !INCLUDE_uxTaskGetStackHighWaterMark || !INCLUDE_vTaskDelete ||                \
+    !INCLUDE_xTaskGetSchedulerState
+#error "FreeRTOSConfig.h: EPG needs configSUPPORT_STATIC_ALLOCATION 1, INCLUDE_uxTaskGetStackHighWaterMark 1, INCLUDE_vTaskDelete 1 and INCLUDE_xTaskGetSchedulerState 1"
+#endif
+#if configNUMBER_OF_CORES != 1
+#error "FreeRTOSConfig.h: EPG needs configNUMBER_OF_CORES 1, since core 1 belongs to the control loop"
+#endif
+#if configTICK_RATE_HZ != 1000
+#error "FreeRTOSConfig.h: EPG needs configTICK_RATE_HZ 1000, so that communication runs every millisecond"
+#endif
+
+#endif

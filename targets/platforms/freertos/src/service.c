@@ -1,0 +1,63 @@
+/**
+ * @file
+ * Communication on FreeRTOS: a task, from static memory, with the user's tasks beside it on core 0.
+ *
+ * It runs every millisecond and at once when a transport's interrupt asks for it.  Tasks of higher priority go before
+ * it; if they keep it waiting longer than EPG_PICO_CORE0_TIMEOUT_MS, core 0 counts as stuck.
+ */
+#include "parts.h"
+#include "rtos.h"
+
+/** Words of the task's stack. */
+#ifndef EPG_FREERTOS_STACK_WORDS
+#define EPG_FREERTOS_STACK_WORDS 768
+#endif
+
+#ifndef EPG_FREERTOS_PRIORITY
+#define EPG_FREERTOS_PRIORITY (tskIDLE_PRIORITY + 2)
+#endif
+
+static StaticTask_t memory;
+static StackType_t stack[EPG_FREERTOS_STACK_WORDS];
+static TaskHandle_t task;
+
+/** Asks for the service, from an interrupt of core 0. */
+void epg_pico_service_wake(void)
+{
+    if (task != NULL && xTaskGetSchedulerState() != taskSCHEDULER_NOT_STARTED) {
+        BaseType_t woken = pdFALSE;
+        vTaskNotifyGiveFromISR(task, &woken);
+        portYIELD_FROM_ISR(woken);
+    }
+}
+
+static void run(void *argument)
+{
+    void (*const serve)(void) = *(void (**)(void))argument;
+    for (;;) {
+        serve();
+        (void)ulTaskNotifyTake(pdTRUE, pdMS_TO_TICKS(1));
+    }
+}
+
+bool epg_pico_service_start(void (*serve)(void))
+{
+    static void (*argument)(void);
+    argument = serve;
+    task = xTaskCreateStatic(run, "epg", EPG_FREERTOS_STACK_WORDS, &argument, EPG_FREERTOS_PRIORITY, stack, &memory);
+    return task != NULL;
+}
+
+void epg_pico_service_stop(void)
+{
+    if (task != NULL) {
+        vTaskDelete(task);
+        task = NULL;
+    }
+}
+
+void epg_pico_service_stack(uint32_t *size, uint32_t *used)
+{
+    *size = sizeof stack;
+    *used = task == NULL ? 0U : (uint32_t)(sizeof stack - uxTaskGetStackHighWaterMark(task) * sizeof(StackType_t));
+}

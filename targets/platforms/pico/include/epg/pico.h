@@ -1,0 +1,108 @@
+/**
+ * @file
+ * Raspberry Pi Pico: what a generated target and the port layer know of each other.
+ *
+ * Free of the Pico SDK, as generated code is.  Core 1 runs the control cycle in the wrap interrupt of a reserved PWM
+ * slice and does nothing else; core 0 belongs to communication and to the user.  One target per executable.
+ */
+#ifndef EPG_PICO_H
+#define EPG_PICO_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "epg/middleware.h"
+#include "epg/stream.h"
+#include "epg/target.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** A pin that a component drives, and its level while nothing is to move. */
+typedef struct epg_pico_output {
+    uint8_t pin;
+    bool high;
+} epg_pico_output_t;
+
+typedef struct epg_pico_outputs {
+    size_t count;
+    const epg_pico_output_t *pins;
+} epg_pico_outputs_t;
+
+/** The PWM slice whose wrap is the tick: `prescaler * (top + 1)` clocks are one control period. */
+typedef struct epg_pico_tick {
+    uint8_t slice;
+    uint16_t prescaler;
+    uint16_t top;
+} epg_pico_tick_t;
+
+/** A way for bytes between a middleware and the world.  All functions run on the communication side. */
+typedef struct epg_pico_transport {
+    bool (*start)(void);  /**< once; false when that is impossible */
+    void (*poll)(void);   /**< at least once per millisecond */
+    epg_stream_t stream;
+} epg_pico_transport_t;
+
+/** A target as its port layer runs it. */
+typedef struct epg_pico_target {
+    const epg_target_t *target;
+    uint32_t clock;                         /**< Hz of clk_sys, which all dividers were computed for */
+    epg_pico_tick_t tick;
+    const epg_middleware_t *middleware;     /**< NULL: none */
+    const epg_pico_transport_t *transport;  /**< NULL: none */
+} epg_pico_target_t;
+
+/** Why epg_pico_start() did not start. */
+typedef enum epg_pico_error {
+    EPG_PICO_OK = 0,
+    EPG_PICO_ERROR_RUNNING,   /**< it runs already */
+    EPG_PICO_ERROR_CLOCK,     /**< clk_sys is not what the generator computed all dividers for */
+    EPG_PICO_ERROR_PLACEMENT, /**< code or tables of the control cycle lie in flash: another linker script? */
+    EPG_PICO_ERROR_RESOURCE,  /**< a PIO block, an alarm or an interrupt is taken by somebody else */
+    EPG_PICO_ERROR_CORE       /**< core 1 did not answer */
+} epg_pico_error_t;
+
+/** What the port layer counts besides the statistics of the control cycle. */
+typedef struct epg_pico_status {
+    epg_pico_error_t error;        /**< of the newest start */
+    bool after_watchdog;           /**< the watchdog ended the run before this one */
+    uint32_t control_stack_size;   /**< bytes of core 1's stack, */
+    uint32_t control_stack_used;   /**< and how many of them have ever been used */
+    uint32_t main_stack_size;      /**< of the stack that main() and interrupts of core 0 use */
+    uint32_t main_stack_used;
+    uint32_t task_stack_size;      /**< of the communication's task; 0 on bare metal */
+    uint32_t task_stack_used;
+} epg_pico_status_t;
+
+/** The transport over USB CDC, in usb/; linked where a target uses it. */
+extern const epg_pico_transport_t epg_pico_usb;
+
+/** All outputs of the target in this executable; generated.  They are made safe before main() and after each fault. */
+extern const epg_pico_outputs_t epg_pico_outputs;
+
+/**
+ * Starts the control loop on core 1, then communication on core 0.  Call it from core 0, on FreeRTOS before or after
+ * the scheduler starts.  Returns when core 1 waits for its first tick; false, with all outputs safe, when that is
+ * impossible: epg_pico_status() says why.
+ */
+bool epg_pico_start(const epg_pico_target_t *pico);
+
+/** Ends communication and control; outputs are safe and core 1 is in reset when this returns.  From core 0. */
+void epg_pico_stop(void);
+
+/** Fills `status`; takes as long as reading all stacks does, so not from an interrupt.  Core 0. */
+void epg_pico_status(epg_pico_status_t *status);
+
+/**
+ * Makes all outputs safe for good, by registers alone: pins become plain outputs at their safe levels, and unless
+ * this is core 1, core 1 is held in reset.  For fault handlers; only a reset leads out of it.
+ */
+void epg_pico_safe_state(void);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

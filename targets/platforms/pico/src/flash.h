@@ -1,0 +1,13 @@
+/**
+ * @file
+ * The SDK's headers about flash, as system headers.
+ */
+#ifndef EPG_PICO_FLASH_H
+#define EPG_PICO_FLASH_H
+
+#pragma GCC system_header
+
+#include "hardware/flash.h"
+#include "pico/flash.h"
+
+#endif

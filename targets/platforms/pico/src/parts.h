@@ -1,0 +1,85 @@
+/**
+ * @file
+ * What the parts of the port layer ask of each other.
+ */
+#ifndef EPG_PICO_PARTS_H
+#define EPG_PICO_PARTS_H
+
+#include <stdatomic.h>
+
+#include "epg/pico.h"
+#include "sdk.h"
+
+/* port.c ------------------------------------------------------------------------------------------------------- */
+
+/** PWM slices that drive outputs; they are started together with the tick's. */
+extern uint32_t epg_pico_output_slices;
+
+/** A peripheral that was taken by somebody else: set while peripherals are started. */
+extern bool epg_pico_resource_taken;
+
+/** Gives back what starting the peripherals has taken; pins keep their levels as plain outputs. */
+void epg_pico_peripherals_stop(void);
+
+/* clock.c ------------------------------------------------------------------------------------------------------ */
+
+/** Microseconds since power-on, in RAM and without a loop. */
+uint64_t epg_pico_timer_us(void);
+
+/** Prepares the fine clock of a cycle; on core 1.  `clock` is clk_sys in Hz. */
+void epg_pico_cycle_clock_start(uint32_t clock);
+
+/** Clocks of clk_sys, fewer than 2^24, in nanoseconds. */
+uint32_t epg_pico_clocks_to_ns(uint32_t clocks);
+
+/** From here on, epg_port_time_ns() on core 1 counts from `now_ns` in clocks of clk_sys. */
+void epg_pico_cycle_clock_begin(uint64_t now_ns);
+void epg_pico_cycle_clock_end(void);
+
+/* control_core.c ----------------------------------------------------------------------------------------------- */
+
+/** `fault`: what ended the run before this one; it is latched. */
+epg_pico_error_t epg_pico_control_start(const epg_pico_target_t *pico, epg_fault_t fault);
+void epg_pico_control_stop(void);
+
+/**
+ * Keeps core 1 out of flash until epg_pico_control_release().  False when the target is enabled, or when core 1 does
+ * not answer within `timeout_us`.
+ */
+bool epg_pico_control_hold(uint32_t timeout_us);
+void epg_pico_control_release(void);
+
+/* safe_state.c ------------------------------------------------------------------------------------------------- */
+
+/** What the previous run left behind: EPG_FAULT_NONE, EPG_FAULT_WATCHDOG or EPG_FAULT_PROCESSOR.  Once per reset. */
+epg_fault_t epg_pico_fault_before_reset(void);
+
+/** Puts a handler before the HardFault handler of this core's vector table, once per table. */
+void epg_pico_guard_faults(void);
+
+/* stack.c ------------------------------------------------------------------------------------------------------ */
+
+typedef struct epg_pico_stack {
+    uint32_t *bottom;
+    uint32_t *top;
+} epg_pico_stack_t;
+
+/** Fills the words from `bottom` to `end` with a pattern. */
+void epg_pico_stack_paint(uint32_t *bottom, const uint32_t *end);
+
+/** Bytes that have ever been used of `stack`, whose first `unpainted` bytes are not looked at. */
+uint32_t epg_pico_stack_used(const epg_pico_stack_t *stack, uint32_t unpainted);
+
+extern const epg_pico_stack_t epg_pico_main_stack;
+extern const epg_pico_stack_t epg_pico_control_stack;
+
+/* service.c of bare_metal and freertos -------------------------------------------------------------------------- */
+
+/** Calls `serve` on core 0 at least once per millisecond, and soon after an interrupt of `wake_irq` (-1: none). */
+bool epg_pico_service_start(void (*serve)(void));
+void epg_pico_service_stop(void);
+
+/** Fills in the stack of the task that serves; 0 where there is none. */
+void epg_pico_service_stack(uint32_t *size, uint32_t *used);
+
+#endif

@@ -1,0 +1,118 @@
+/**
+ * @file
+ * Starting and stopping a target; what core 0 does for it.
+ */
+#include "epg/port.h"
+#include "parts.h"
+
+/** Bytes at the bottom of core 0's stack that its guard may cover, rounded up to where the MPU can begin. */
+#define GUARD 64U
+/** Bytes below the stack pointer that painting must leave alone: it runs there. */
+#define IN_USE 128U
+/** How often stacks are looked at. */
+#define STACKS_PERIOD_US 250000U
+
+static const epg_pico_target_t *running;
+static epg_pico_error_t error;
+static epg_fault_t fault;
+
+/** Once per reset, before anything else has a chance to change what tells. */
+static void __attribute__((constructor)) ask_for_the_cause_of_the_reset(void)
+{
+    fault = epg_pico_fault_before_reset();
+}
+
+static void report_stacks(void)
+{
+    epg_pico_status_t status;
+    epg_pico_status(&status);
+    epg_control_t *control = running->target->control;
+    const bool task = status.task_stack_size > 0U;
+    epg_control_report_stack(control, EPG_STACK_CONTROL, status.control_stack_used, status.control_stack_size);
+    epg_control_report_stack(control, EPG_STACK_COMMUNICATION, task ? status.task_stack_used : status.main_stack_used,
+                             task ? status.task_stack_size : status.main_stack_size);
+}
+
+/** One turn of the communication side. */
+static void serve(void)
+{
+    static uint32_t stacks_us;
+    const epg_pico_target_t *pico = running;
+    epg_control_alive(pico->target->control);
+    if (pico->transport != NULL) {
+        pico->transport->poll();
+    }
+    if (pico->middleware != NULL) {
+        pico->middleware->poll(epg_port_time_ns());
+    }
+    const uint32_t now_us = timer_hw->timerawl;
+    if (now_us - stacks_us >= STACKS_PERIOD_US) {
+        stacks_us = now_us;
+        report_stacks();
+    }
+}
+
+static void paint_main_stack(void)
+{
+    static bool painted;
+    if (!painted) {
+        const uint32_t *here = (const uint32_t *)__builtin_frame_address(0);
+        epg_pico_stack_paint(epg_pico_main_stack.bottom + GUARD / sizeof(uint32_t), here - IN_USE / sizeof(uint32_t));
+        painted = true;
+    }
+}
+
+static epg_pico_error_t start(const epg_pico_target_t *pico)
+{
+    if (running != NULL) {
+        return EPG_PICO_ERROR_RUNNING;
+    }
+    paint_main_stack();
+    epg_pico_guard_faults();
+    if (pico->transport != NULL && !pico->transport->start()) {
+        return EPG_PICO_ERROR_RESOURCE;
+    }
+    const epg_pico_error_t failed = epg_pico_control_start(pico, fault);
+    if (failed != EPG_PICO_OK) {
+        return failed;
+    }
+    if (pico->middleware != NULL) {
+        pico->middleware->start(pico->target, pico->transport != NULL ? &pico->transport->stream : NULL);
+    }
+    running = pico;
+    if (!epg_pico_service_start(serve)) {
+        epg_pico_stop();
+        return EPG_PICO_ERROR_RESOURCE;
+    }
+    return EPG_PICO_OK;
+}
+
+bool epg_pico_start(const epg_pico_target_t *pico)
+{
+    error = start(pico);
+    return error == EPG_PICO_OK;
+}
+
+void epg_pico_stop(void)
+{
+    if (running != NULL) {
+        epg_pico_service_stop();
+        epg_pico_control_stop();
+        running = NULL;
+    }
+}
+
+void epg_pico_status(epg_pico_status_t *status)
+{
+    const epg_pico_stack_t *control = &epg_pico_control_stack;
+    const epg_pico_stack_t *main_stack = &epg_pico_main_stack;
+    *status = (epg_pico_status_t){
+        .error = error,
+        .after_watchdog = fault != EPG_FAULT_NONE,
+        .control_stack_size = (uint32_t)((uintptr_t)control->top - (uintptr_t)control->bottom),
+        .control_stack_used = epg_pico_stack_used(control, 0),
+        .main_stack_size = (uint32_t)((uintptr_t)main_stack->top - (uintptr_t)main_stack->bottom),
+        .main_stack_used = epg_pico_stack_used(main_stack, GUARD),
+    };
+    epg_pico_service_stack(&status->task_stack_size, &status->task_stack_used);
+}
