@@ -171,3 +171,32 @@ def test_kconfig_strings() -> None:
         kconfig_string("a\nCONFIG_B=y")
     assert isinstance(kconfig_string(""), KconfigCode) and isinstance(devicetree_string(""), DevicetreeCode)
     assert isinstance(cmake(""), CMakeCode)
+
+
+def test_compiled_templates_are_kept_and_checked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("EPG_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setattr("sys.dont_write_bytecode", False)
+    (tmp_path / "t.j2").write_text("{{ 1 + 1 }}{{ 'a'|code }}", encoding="utf-8")
+
+    def rendered(language: type[Escaped] = Code) -> str:
+        return environment([tmp_path], language).get_template("t.j2").render()
+
+    def kept() -> list[Path]:
+        return sorted(path for path in (tmp_path / "cache").rglob("*") if path.is_file())
+
+    assert rendered() == "2a"
+    (file,) = kept()
+    time = file.stat().st_mtime_ns
+    assert rendered() == "2a" and file.stat().st_mtime_ns == time
+    data = file.read_bytes()
+    for damaged in (b"", data[:-1], data[:40] + bytes([data[40] ^ 1]) + data[41:]):
+        file.write_bytes(damaged)
+        assert rendered() == "2a"
+        assert file.read_bytes() == data
+    rendered(KconfigCode)
+    assert len(kept()) == 2, "another language compiles to something else"
+    (tmp_path / "t.j2").write_text("{{ 1 + 2 }}", encoding="utf-8")
+    assert rendered() == "3"
+    (tmp_path / "file").write_text("", encoding="utf-8")
+    monkeypatch.setenv("EPG_CACHE", str(tmp_path / "file"))
+    assert rendered() == "3", "a cache that cannot be written is none"
