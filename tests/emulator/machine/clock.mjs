@@ -1,0 +1,109 @@
+// Simulated time in cycles of clk_sys, and what is to happen at which cycle.
+
+export class Alarm {
+    constructor(clock, callback, durable) {
+        this.clock = clock;
+        this.durable = durable; // outlives a reset of the chip
+        this.callback = callback;
+        this.cycle = 0;
+        this.scheduled = false;
+        this.next = null;
+    }
+
+    /** Calls back at `cycle`, or at once when that has passed; replaces an earlier request. */
+    at(cycle) {
+        if (this.scheduled) {
+            this.cancel();
+        }
+        this.cycle = cycle > this.clock.now ? cycle : this.clock.now;
+        this.scheduled = true;
+        this.clock.insert(this);
+    }
+
+    cancel() {
+        if (this.scheduled) {
+            this.scheduled = false;
+            this.clock.remove(this);
+        }
+    }
+
+    /** The package's name for it. */
+    schedule(nanoseconds) {
+        this.at(this.clock.now + Math.ceil(nanoseconds / this.clock.nanosecondsPerCycle));
+    }
+}
+
+/** Alarms of one cycle are called in the order in which they were requested. */
+export class CycleClock {
+    constructor(frequency) {
+        this.frequency = frequency;
+        this.nanosecondsPerCycle = 1e9 / frequency;
+        this.now = 0;
+        this.first = null;
+    }
+
+    get nextCycle() {
+        return this.first === null ? Infinity : this.first.cycle;
+    }
+
+    /** Moves to the next alarm and calls it. */
+    fireNext() {
+        const alarm = this.first;
+        this.first = alarm.next;
+        alarm.scheduled = false;
+        this.now = alarm.cycle;
+        alarm.callback();
+    }
+
+    /** `durable`: of something outside the chip, which a reset of the chip leaves alone. */
+    createAlarm(callback, durable = false) {
+        return new Alarm(this, callback, durable);
+    }
+
+    /** The chip is reset: what its peripherals had requested will not come. */
+    forgetChip() {
+        for (let item = this.first; item !== null; item = item.next) {
+            if (!item.durable) {
+                item.cancel();
+            }
+        }
+    }
+
+    insert(alarm) {
+        let before = null;
+        let after = this.first;
+        while (after !== null && after.cycle <= alarm.cycle) {
+            before = after;
+            after = after.next;
+        }
+        alarm.next = after;
+        if (before === null) {
+            this.first = alarm;
+        } else {
+            before.next = alarm;
+        }
+    }
+
+    remove(alarm) {
+        let before = null;
+        let item = this.first;
+        while (item !== alarm) {
+            before = item;
+            item = item.next;
+        }
+        if (before === null) {
+            this.first = alarm.next;
+        } else {
+            before.next = alarm.next;
+        }
+    }
+
+    // What the package's peripherals ask of a clock.
+    get nanos() {
+        return this.now * this.nanosecondsPerCycle;
+    }
+
+    get micros() {
+        return this.nanos / 1000;
+    }
+}

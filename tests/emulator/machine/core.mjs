@@ -1,0 +1,438 @@
+// One Cortex-M0+: the package's instructions, with exceptions, faults, sleep and the bus as the architecture has them.
+//
+// What differs from the package: exceptions take time; interrupts stay pending when their line falls; PRIMASK holds
+// interrupts back but wakes from WFI; WFE waits for its own core's event; faults (unaligned, no device, no such
+// instruction, BKPT without debugger) escalate to HardFault and lockup; NVIC, SysTick and SIO are the core's own.
+import { CortexM0Core } from './package.mjs';
+import { PrivateBus } from './private_bus.mjs';
+
+// Cortex-M0+ Technical Reference Manual, 3.2 and 5.2: 15 cycles from interrupt to the first instruction of its handler,
+// with memory that has no wait states.  The return takes 12 on top of the BX or POP.
+const EXCEPTION_ENTRY = 15;
+const EXCEPTION_RETURN = 12;
+
+const HARD_FAULT = 3;
+const SVCALL = 11;
+const PENDSV = 14;
+const SYSTICK = 15;
+const EXTERNAL = 16;
+const LOWEST = 4; // below every priority that can be set
+const WFE = 0xbf20;
+
+const SRAM_SIZE = 264 * 1024;
+const ROM_SIZE = 16 * 1024;
+const FLASH_MASK = 0xffffff;
+
+/** A fault of the running instruction. */
+export class Fault {
+    constructor(cause, address) {
+        this.cause = cause;
+        this.address = address >>> 0;
+    }
+}
+
+export class Core extends CortexM0Core {
+    constructor(machine, chip, number) {
+        super(chip);
+        this.machine = machine;
+        this.number = number;
+        this.time = 0; // cycle at which the next instruction starts
+        this.extra = 0; // cycles that the running instruction takes on top
+        this.running = false; // in reset, or in the boot ROM's wait for a launch
+        this.lockedUp = false;
+        this.waitsForEvent = false;
+        this.instructions = 0;
+        this.activeInterrupts = 0;
+        this.interruptLines = 0;
+        this.opcodePC = 0;
+        this.sram8 = chip.sram;
+        this.sram16 = new Uint16Array(chip.sram.buffer);
+        this.sram32 = new Uint32Array(chip.sram.buffer);
+        this.flash16 = chip.flash16;
+        this.flash32 = new Uint32Array(chip.flash.buffer);
+        this.flashSize = machine.flashSize;
+        this.rom32 = chip.bootrom;
+        this.rom16 = new Uint16Array(chip.bootrom.buffer);
+        this.rom8 = new Uint8Array(chip.bootrom.buffer);
+        this.privateBus = new PrivateBus(this, chip, machine.clock);
+        this.onFlash = null; // (core, address) of each access to flash, fetches included
+        this.onWrite = null; // (core, address, size, value) of writes to RAM between the two:
+        this.writeLow = 0;
+        this.writeHigh = 0;
+    }
+
+    /** Starts at `entry` with cleared state. */
+    start(entry, stack, vectors) {
+        this.registers.fill(0);
+        this.VTOR = vectors;
+        this.PM = false;
+        this.IPSR = 0;
+        this.SPSEL = 0;
+        this.nPRIV = false;
+        this.currentMode = 0;
+        this.pendingInterrupts = this.interruptLines;
+        this.enabledInterrupts = 0;
+        this.activeInterrupts = 0;
+        this.interruptPriorities = [0xffffffff, 0, 0, 0];
+        this.pendingPendSV = this.pendingSVCall = this.pendingSystick = false;
+        this.SHPR2 = this.SHPR3 = 0;
+        this.waiting = this.lockedUp = this.eventRegistered = false;
+        this.interruptsUpdated = false;
+        this.privateBus.reset();
+        this.SP = stack;
+        this.bankedSP = 0;
+        this.PC = entry & ~1;
+        this.time = this.machine.clock.now;
+        this.running = true;
+    }
+
+    stop() {
+        this.running = false;
+        this.privateBus.reset();
+    }
+
+    get runnable() {
+        return this.running && !this.waiting;
+    }
+
+    /** One instruction, or the entry into an exception.  Advances `time`. */
+    step() {
+        if (this.interruptsUpdated && this.takeException()) {
+            return;
+        }
+        const pc = this.PC & ~1;
+        this.opcodePC = pc;
+        try {
+            if (pc >>> 28 > 2) {
+                throw new Fault('execution of memory that is not executable', pc);
+            }
+            this.time += this.executeInstruction();
+        } catch (fault) {
+            if (!(fault instanceof Fault)) {
+                throw fault;
+            }
+            this.time += 1;
+            this.hardFault(fault, pc);
+        }
+        this.instructions++;
+        if (this.extra !== 0) {
+            this.time += this.extra;
+            this.extra = 0;
+        }
+        if (this.waiting) {
+            this.waitsForEvent = this.fetch(pc) === WFE;
+            this.interruptsUpdated = true; // one that is pending already ends the sleep
+            this.wake(this.time);
+        }
+    }
+
+    /** Ends WFI or WFE if there is reason to. */
+    wake(cycle) {
+        if (!this.waiting || this.lockedUp) {
+            return;
+        }
+        if (this.waitsForEvent && this.eventRegistered) {
+            this.eventRegistered = false;
+        } else if (!this.interruptsUpdated || this.highestPending(false) === 0) {
+            return;
+        }
+        this.waiting = false;
+        if (this.time < cycle) {
+            this.time = cycle;
+        }
+    }
+
+    /** An event from SEV of either core, or from an exception. */
+    signalEvent() {
+        this.eventRegistered = true;
+        this.wake(this.machine.clock.now);
+    }
+
+    // Exceptions ---------------------------------------------------------------------------------------------------
+
+    setInterrupt(irq, level) {
+        const bit = 1 << irq;
+        if (level) {
+            if (!(this.interruptLines & bit)) {
+                this.interruptLines |= bit;
+                this.pend(bit);
+            }
+        } else {
+            this.interruptLines &= ~bit;
+        }
+    }
+
+    pend(bits) {
+        this.pendingInterrupts |= bits;
+        this.interruptsUpdated = true;
+        if (this.waiting) {
+            if (this.privateBus.sendEventOnPend) {
+                this.eventRegistered = true;
+            }
+            this.wake(this.machine.clock.now);
+        }
+    }
+
+    executionPriority(masked) {
+        const active = this.IPSR === 0 ? LOWEST : this.exceptionPriority(this.IPSR);
+        return masked && this.PM ? Math.min(active, 0) : active;
+    }
+
+    /** Number of the exception that would be taken; 0 for none.  `masked`: heed PRIMASK. */
+    highestPending(masked) {
+        const current = this.executionPriority(masked);
+        const interrupts = this.pendingInterrupts & this.enabledInterrupts;
+        for (let priority = 0; priority < current; priority++) {
+            if (this.pendingSVCall && this.svCallPriority === priority) {
+                return SVCALL;
+            }
+            if (this.pendingPendSV && this.pendSVPriority === priority) {
+                return PENDSV;
+            }
+            if (this.pendingSystick && this.systickPriority === priority) {
+                return SYSTICK;
+            }
+            const level = interrupts & this.interruptPriorities[priority];
+            if (level !== 0) {
+                return EXTERNAL + 31 - Math.clz32(level & -level);
+            }
+        }
+        return 0;
+    }
+
+    takeException() {
+        const number = this.highestPending(true);
+        if (this.pendingSVCall && this.svCallPriority >= this.executionPriority(true)) {
+            this.pendingSVCall = false;
+            this.hardFault(new Fault('SVC at a priority that is too high', this.PC), this.PC & ~1);
+            return true;
+        }
+        if (number === 0) {
+            this.interruptsUpdated = false;
+            return false;
+        }
+        if (number === SVCALL) {
+            this.pendingSVCall = false;
+        } else if (number === PENDSV) {
+            this.pendingPendSV = false;
+        } else if (number === SYSTICK) {
+            this.pendingSystick = false;
+        } else {
+            const bit = 1 << (number - EXTERNAL);
+            this.pendingInterrupts &= ~bit;
+            this.activeInterrupts |= bit;
+        }
+        this.enter(number);
+        return true;
+    }
+
+    enter(number) {
+        this.extra = 0;
+        try {
+            this.exceptionEntry(number);
+            this.PC &= ~1;
+        } catch (fault) {
+            if (!(fault instanceof Fault)) {
+                throw fault;
+            }
+            if (number === HARD_FAULT) {
+                this.lockUp(fault);
+                return;
+            }
+            this.hardFault(fault, this.PC & ~1);
+        }
+        this.time += EXCEPTION_ENTRY;
+        this.machine.exceptionTaken(this, number);
+    }
+
+    exceptionReturn(value) {
+        const from = this.IPSR;
+        super.exceptionReturn(value);
+        this.extra += EXCEPTION_RETURN;
+        if (from >= EXTERNAL) {
+            const bit = 1 << (from - EXTERNAL);
+            this.activeInterrupts &= ~bit;
+            this.pendingInterrupts |= this.interruptLines & bit; // the line is still up: again
+        }
+        this.machine.exceptionLeft(this, from);
+    }
+
+    hardFault(fault, pc) {
+        this.machine.faults.push({
+            core: this.number, cycle: this.time, pc, cause: fault.cause, address: fault.address, lockup: false,
+        });
+        if (this.IPSR === HARD_FAULT) {
+            this.lockUp(fault);
+            return;
+        }
+        this.PC = pc;
+        this.waiting = false;
+        this.enter(HARD_FAULT);
+    }
+
+    lockUp(fault) {
+        this.lockedUp = true;
+        this.waiting = true;
+        this.machine.faults.push({
+            core: this.number, cycle: this.time, pc: this.PC >>> 0, cause: fault.cause, address: fault.address,
+            lockup: true,
+        });
+    }
+
+    BXWritePC(address) {
+        if (this.currentMode === 1 && address >>> 28 === 0xf) {
+            this.exceptionReturn(address & 0x0fffffff);
+        } else if (address & 1) {
+            this.PC = address & ~1;
+        } else {
+            throw new Fault('branch to ARM code', address);
+        }
+    }
+
+    // Bus ----------------------------------------------------------------------------------------------------------
+
+    /** The halfword at an address that was executed. */
+    fetch(pc) {
+        switch (pc >>> 28) {
+            case 0:
+                return this.rom16[pc >>> 1];
+            case 1:
+                return this.flash16[(pc & FLASH_MASK) >>> 1];
+            default:
+                return this.sram16[(pc - 0x20000000) >>> 1];
+        }
+    }
+
+    readUint32(address) {
+        const a = address >>> 0;
+        if (a & 3) {
+            throw new Fault('unaligned read', a);
+        }
+        const ram = a - 0x20000000;
+        if (ram >= 0 && ram < SRAM_SIZE) {
+            return this.sram32[ram >>> 2];
+        }
+        if (a >>> 26 === 4) {
+            return this.flash32[this.flashOffset(a) >>> 2];
+        }
+        if (a < ROM_SIZE) {
+            return this.rom32[a >>> 2];
+        }
+        return this.readDevice(a) >>> 0;
+    }
+
+    readUint16(address) {
+        const a = address >>> 0;
+        const ram = a - 0x20000000;
+        if (ram >= 0 && ram < SRAM_SIZE && !(a & 1)) {
+            return this.sram16[ram >>> 1];
+        }
+        if (a & 1) {
+            throw new Fault('unaligned read', a);
+        }
+        if (a >>> 26 === 4) {
+            return this.flash16[this.flashOffset(a) >>> 1];
+        }
+        if (a < ROM_SIZE) {
+            return this.rom16[a >>> 1];
+        }
+        return (this.readDevice(a & ~3) >>> ((a & 2) << 3)) & 0xffff;
+    }
+
+    readUint8(address) {
+        const a = address >>> 0;
+        const ram = a - 0x20000000;
+        if (ram >= 0 && ram < SRAM_SIZE) {
+            return this.sram8[ram];
+        }
+        if (a >>> 26 === 4) {
+            return this.rp2040.flash[this.flashOffset(a)];
+        }
+        if (a < ROM_SIZE) {
+            return this.rom8[a];
+        }
+        return (this.readDevice(a & ~3) >>> ((a & 3) << 3)) & 0xff;
+    }
+
+    writeUint32(address, value) {
+        const a = address >>> 0;
+        if (a & 3) {
+            throw new Fault('unaligned write', a);
+        }
+        const ram = a - 0x20000000;
+        if (ram >= 0 && ram < SRAM_SIZE) {
+            this.sram32[ram >>> 2] = value;
+            if (a < this.writeHigh && a + 4 > this.writeLow) {
+                this.onWrite(this, a, 4, value >>> 0);
+            }
+            return;
+        }
+        this.writeDevice(a, value, 4);
+    }
+
+    writeUint16(address, value) {
+        const a = address >>> 0;
+        if (a & 1) {
+            throw new Fault('unaligned write', a);
+        }
+        const ram = a - 0x20000000;
+        if (ram >= 0 && ram < SRAM_SIZE) {
+            this.sram16[ram >>> 1] = value;
+            if (a < this.writeHigh && a + 2 > this.writeLow) {
+                this.onWrite(this, a, 2, value & 0xffff);
+            }
+            return;
+        }
+        this.writeDevice(a, value, 2);
+    }
+
+    writeUint8(address, value) {
+        const a = address >>> 0;
+        const ram = a - 0x20000000;
+        if (ram >= 0 && ram < SRAM_SIZE) {
+            this.sram8[ram] = value;
+            if (a < this.writeHigh && a >= this.writeLow) {
+                this.onWrite(this, a, 1, value & 0xff);
+            }
+            return;
+        }
+        this.writeDevice(a, value, 1);
+    }
+
+    /** Offset into the flash; the four XIP windows (data sheet of the RP2040, 2.6.3.1) show the same. */
+    flashOffset(address) {
+        if (this.onFlash !== null) {
+            this.onFlash(this, address);
+        }
+        const offset = address & FLASH_MASK;
+        return offset < this.flashSize ? offset : offset % this.flashSize;
+    }
+
+    readDevice(a) {
+        if (a >>> 28 === 0xd) {
+            return this.machine.sio.read(this.number, a & 0xfff);
+        }
+        if (a >>> 12 === 0xe000e) {
+            return this.privateBus.readUint32(a & 0xfff);
+        }
+        return this.machine.readPeripheral(a);
+    }
+
+    writeDevice(a, value, size) {
+        if (a >>> 28 === 0xd) {
+            this.machine.sio.write(this.number, a & 0xfff, replicate(value, size));
+        } else if (a >>> 12 === 0xe000e) {
+            this.privateBus.writeUint32(a & 0xfff, value >>> 0);
+        } else {
+            this.machine.writePeripheral(this, a, value, size);
+        }
+    }
+}
+
+/** Narrow writes to peripherals reach all byte lanes (data sheet of the RP2040, 2.1.4). */
+export function replicate(value, size) {
+    if (size === 1) {
+        return ((value & 0xff) * 0x01010101) >>> 0;
+    }
+    return size === 2 ? ((value & 0xffff) * 0x10001) >>> 0 : value >>> 0;
+}

@@ -1,0 +1,29 @@
+// Command line of the emulator: JSON lines in, JSON lines out.
+//
+//   {"id": 1, "call": "run", "with": {"cycles": 125000}}   ->   {"id": 1, "result": {...}}  or  {"id": 1, "error": "..."}
+import { createInterface } from 'node:readline';
+import { Session } from './session.mjs';
+
+const COMMANDS = new Set(Object.getOwnPropertyNames(Session.prototype).filter((name) => /^[a-z_]+$/.test(name)));
+const INTERNAL = new Set(['constructor', 'receive', 'record']);
+
+const session = new Session();
+const lines = createInterface({ input: process.stdin, terminal: false });
+
+for await (const line of lines) {
+    const { id, call, with: parameters = {} } = JSON.parse(line);
+    const answer = { id };
+    try {
+        if (!COMMANDS.has(call) || INTERNAL.has(call)) {
+            throw new Error(`there is no command ${call}`);
+        }
+        if (session.machine === null && call !== 'load') {
+            throw new Error('no image is loaded');
+        }
+        answer.result = session[call](parameters) ?? null;
+    } catch (error) {
+        answer.error = error instanceof Error ? error.message : String(error.cause ?? error);
+        answer.trace = error.stack;
+    }
+    process.stdout.write(`${JSON.stringify(answer)}\n`);
+}

@@ -1,0 +1,443 @@
+// An RP2040 whose processors, PIO blocks, PWM slices and timers keep step to the cycle.
+//
+//   const machine = new Machine({ rom });
+//   machine.load(readElf('program.elf'));
+//   machine.run(125_000);                     // a millisecond at 125 MHz
+//
+// Each core has a time of its own; the one that is behind goes next, and whatever else is due first comes first.  An
+// instruction's accesses happen at its first cycle.
+import { CycleClock } from './clock.mjs';
+import { Core, Fault, replicate } from './core.mjs';
+import { Launch } from './launch.mjs';
+import { BasePeripheral, IRQ, RP2040 } from './package.mjs';
+import { Pads } from './pads.mjs';
+import { PioBlock } from './pio.mjs';
+import { Pwm } from './pwm.mjs';
+import { PowerOn, Registers, Resets } from './resets.mjs';
+import { Sio } from './sio.mjs';
+import { Timer } from './timer.mjs';
+import { UsbDevice } from './usb_device.mjs';
+import { UsbHost } from './usb_host.mjs';
+import { Watchdog, WatchdogMemory } from './watchdog.mjs';
+
+const FLASH = 0x10000000;
+const SRAM = 0x20000000;
+const SRAM_END = 0x20042000;
+const BOOT2_COPY = 0x20041f00;
+const BOOT2_SIZE = 256;
+const ROM_END = 0x4000;
+const DPRAM = 0x50100;
+const XIP_CONTROL = 0x14000;
+const XIP_SRAM = 0x15000000;
+const XIP_SRAM_SIZE = 16 * 1024;
+
+const SSI_ENABLE = 0x08;
+const CHIP_ID_B2 = 0x20002927;
+
+// Data sheet of the RP2040, 2.8.1.1 and pico-bootrom: scratch 4 to 7 ask for a jump instead of a boot from flash.
+const BOOT_MAGIC = 0xb007c0d3;
+
+export class Machine {
+    /**
+     * `rom`: image of the boot ROM.  `clock`: of clk_sys in Hz, from the first cycle on.  `flashSize` in bytes.
+     * `usb`: options of UsbHost.  `bootCycles`: from reset to the first instruction of the image's second stage.
+     */
+    constructor({ rom, romSymbols = new Map(), clock = 125e6, flashSize = 2 << 20, usb = {}, bootCycles = 0 }) {
+        this.clock = new CycleClock(clock);
+        this.rom = rom;
+        this.flashSize = flashSize;
+        this.bootCycles = bootCycles;
+        this.external = new Int8Array(30).fill(-1);
+        this.watchdogMemory = new WatchdogMemory();
+        this.symbols = new Map();
+        this.faults = [];
+        this.resets = [];
+        this.stopReason = null;
+        this.pendingReset = null;
+        this.probes = [null, null]; // per core: functions by address, called before the instruction there
+        this.onPin = []; // (pin, level, enabled)
+        this.onPwmTaken = []; // (slice)
+        this.onPwmWrap = []; // (slice)
+        this.onException = []; // (core, number, entered)
+        this.onReset = []; // (cause)
+        this.usbBootAddress = romSymbols.get('rom_reset_usb_boot')?.address ?? -1;
+        this.usbOptions = usb;
+        this.flashOff = false;
+        this.build(null);
+        this.usbHost = new UsbHost(this, usb);
+        this.usb.host = this.usbHost;
+    }
+
+    // Construction and reset -------------------------------------------------------------------------------------------
+
+    build(before) {
+        const chip = new RP2040(this.clock);
+        if (before !== null) {
+            Object.assign(chip, {
+                flash: before.flash, flash16: before.flash16, flashView: before.flashView,
+                sram: before.sram, sramView: before.sramView,
+            });
+        }
+        chip.bootrom.set(new Uint32Array(this.rom.slice().buffer));
+        this.chip = chip;
+        this.pio = [];
+        this.cores = [];
+        this.cores = [new Core(this, chip, 0), new Core(this, chip, 1)];
+        chip.core = this.cores[0];
+        chip.setInterrupt = (irq, level) => this.setInterrupt(irq, level);
+        chip.onBreak = () => {
+            throw new Fault('breakpoint or undefined instruction', this.current.opcodePC);
+        };
+        chip.logger = this.logger();
+        chip.updateClkSys = () => { // this machine's clock_sys has its frequency from the start
+            chip.clkSys = chip.clocks.sysFreq || chip.clkSys;
+        };
+        this.launch = new Launch(this);
+        this.sio = chip.sio = new Sio(this, chip);
+        this.pwm = chip.pwm = new Pwm(this, chip);
+        this.pio = chip.pio = [];
+        this.lockstepBlocks = [];
+        this.pads = new Pads(this, chip);
+        this.pio.push(new PioBlock(this, chip, 0, IRQ.PIO0_IRQ0), new PioBlock(this, chip, 1, IRQ.PIO1_IRQ0));
+        this.timer = new Timer(this, chip);
+        this.usb = chip.usbCtrl = new UsbDevice(this, chip);
+        this.usb.host = this.usbHost ?? null;
+        this.xipSram = new Uint32Array(XIP_SRAM_SIZE / 4);
+        Object.assign(chip.peripherals, {
+            0x40000: new Registers(chip, 'SYSINFO', { 0: CHIP_ID_B2, 4: 2, 0x40: 0x7f000000 }),
+            0x4000c: new Resets(this, chip),
+            0x40010: new PowerOn(this, chip),
+            0x40018: new Registers(chip, 'IO_QSPI'),
+            0x40050: this.pwm,
+            0x40054: this.timer,
+            0x40058: new Watchdog(this, chip, this.watchdogMemory),
+            0x40060: new Registers(chip, 'ROSC', { 0x18: 0x80001000 }),
+            0x40064: new Registers(chip, 'VREG_AND_CHIP_RESET', { 0: 0x1000, 8: before === null ? 0x100 : 0 }),
+            0x50110: this.usb,
+            0x50200: this.pio[0],
+            0x50300: this.pio[1],
+        });
+        this.wrapFlashInterface(chip.peripherals[0x18000]);
+        this.pads.reset(true, true);
+        this.current = this.cores[0];
+    }
+
+    logger() {
+        return {
+            debug() {},
+            error() {},
+            info: (_, message) => {
+                if (message === 'SEV') {
+                    this.cores[0].signalEvent();
+                    this.cores[1].signalEvent();
+                }
+            },
+            warn: (_, message) => {
+                if (message.startsWith('Warning: Instruction')) {
+                    throw new Fault('undefined instruction', this.current.opcodePC);
+                }
+            },
+        };
+    }
+
+    /** While the SSI is disabled or in command mode, a read of flash gives rubbish on the chip, and a fault here. */
+    wrapFlashInterface(ssi) {
+        const write = ssi.writeUint32.bind(ssi);
+        ssi.writeUint32 = (offset, value) => {
+            write(offset, value);
+            if (offset === SSI_ENABLE) {
+                this.flashOff = (value & 1) === 0;
+                this.cores.forEach((core) => this.hookFlash(core, core.recorder ?? null));
+            }
+        };
+    }
+
+    /** `recorder(core, address)` is called for each access of the core to flash. */
+    hookFlash(core, recorder) {
+        core.recorder = recorder;
+        core.onFlash = !this.flashOff ? recorder : (user, address) => {
+            if (user.opcodePC >= ROM_END) {
+                throw new Fault('flash is not readable now', address);
+            }
+        };
+    }
+
+    load(image) {
+        this.symbols = image.symbols;
+        let inFlash = false;
+        for (const { address, data } of image.segments) {
+            if (address >= FLASH && address < FLASH + this.flashSize) {
+                this.chip.flash.set(data, address - FLASH);
+                inFlash = true;
+            } else if (address >= SRAM && address + data.length <= SRAM_END) {
+                this.chip.sram.set(data, address - SRAM);
+            } else {
+                throw new Error(`the image has data for 0x${address.toString(16)}, which is neither flash nor SRAM`);
+            }
+        }
+        this.entry = inFlash ? null : image.entry;
+        this.boot();
+    }
+
+    /** What the boot ROM does before it leaves to the image. */
+    boot() {
+        const [core] = this.cores;
+        const { scratch } = this.watchdogMemory;
+        if (scratch[4] === BOOT_MAGIC && (scratch[5] ^ -BOOT_MAGIC) >>> 0 === scratch[7]) {
+            scratch[4] = 0;
+            core.start(scratch[7], scratch[6], 0);
+        } else if (this.entry !== null) {
+            core.start(this.entry, SRAM_END, 0);
+        } else {
+            this.chip.sram.set(this.chip.flash.subarray(0, BOOT2_SIZE), BOOT2_COPY - SRAM);
+            core.start(BOOT2_COPY, BOOT2_COPY, 0); // its stack is below it
+        }
+        core.time += this.bootCycles;
+    }
+
+    /** Resets the chip after the running instruction. */
+    requestReset(cause) {
+        this.pendingReset = cause;
+    }
+
+    reset(cause) {
+        this.pendingReset = null;
+        if (!cause.startsWith('watchdog')) {
+            this.watchdogMemory.reason = 0;
+            this.watchdogMemory.scratch.fill(0);
+        }
+        this.resets.push({ cause, cycle: this.clock.now });
+        const { chip } = this;
+        this.clock.forgetChip();
+        this.flashOff = false;
+        this.build(chip);
+        this.onReset.forEach((call) => call(cause));
+        this.usbHost.deviceReplaced();
+        this.boot();
+    }
+
+    // Running ----------------------------------------------------------------------------------------------------------
+
+    /** Runs until cycle `end`, or until something calls stop(). */
+    run(end) {
+        this.stopReason = null;
+        const { clock } = this;
+        while (this.stopReason === null) {
+            const [a, b] = this.cores;
+            const first = a.running && !a.waiting;
+            const second = b.running && !b.waiting;
+            const core = first ? (second && b.time < a.time ? b : a) : second ? b : null;
+            const time = core === null ? Infinity : core.time;
+            const event = clock.first === null ? Infinity : clock.first.cycle;
+            if (this.lockstepBlocks.length > 0 && !this.advanceLockstep(Math.min(time, event, end))) {
+                continue; // a core has woken up
+            }
+            if (event <= time && event < end) {
+                clock.fireNext();
+            } else if (time >= end) {
+                clock.now = end;
+                return;
+            } else {
+                clock.now = time;
+                this.current = core;
+                const probes = this.probes[core.number];
+                if (probes !== null) {
+                    probes.get(core.PC & ~1)?.(core);
+                    if (this.stopReason !== null) {
+                        return;
+                    }
+                }
+                core.step();
+            }
+            if (this.pendingReset !== null) {
+                this.reset(this.pendingReset);
+            }
+        }
+    }
+
+    stop(reason) {
+        this.stopReason = reason;
+    }
+
+    advanceLockstep(target) {
+        const { clock, lockstepBlocks } = this;
+        let cycle = Infinity;
+        for (const block of lockstepBlocks) {
+            cycle = Math.min(cycle, block.time);
+        }
+        while (cycle < target) {
+            clock.now = Math.max(clock.now, cycle);
+            const asleep = this.cores.map((core) => core.waiting);
+            cycle++;
+            for (const block of lockstepBlocks) {
+                block.advance(cycle);
+            }
+            if (this.cores.some((core, n) => asleep[n] && !core.waiting)) {
+                return false;
+            }
+        }
+        return true;
+    }
+
+    lockstepChanged() {
+        this.lockstepBlocks = this.pio.filter((block) => block.lockstep);
+    }
+
+    /** Brings everything that runs late up to now. */
+    settle() {
+        this.pio.forEach((block) => block.advance(this.clock.now));
+    }
+
+    // Peripherals ------------------------------------------------------------------------------------------------------
+
+    setInterrupt(irq, level) {
+        for (const core of this.cores) {
+            core.setInterrupt(irq, level);
+        }
+    }
+
+    readPeripheral(address) {
+        const peripheral = this.chip.findPeripheral(address);
+        if (peripheral !== undefined) {
+            return peripheral.readUint32(address & 0xfff);
+        }
+        if (address >>> 12 === DPRAM) {
+            return this.chip.usbDPRAMView.getUint32(address & 0xffc, true);
+        }
+        if (address - XIP_SRAM >= 0 && address - XIP_SRAM < XIP_SRAM_SIZE) {
+            return this.xipSram[(address - XIP_SRAM) >> 2];
+        }
+        if (address >>> 12 === XIP_CONTROL) {
+            return address & 0xff ? 0 : 3; // CTRL: the cache is on, and bad memory accesses fault
+        }
+        throw new Fault('read of an address where nothing is', address);
+    }
+
+    writePeripheral(core, address, value, size) {
+        const peripheral = this.chip.findPeripheral(address);
+        if (peripheral !== undefined) {
+            BasePeripheral.prototype.writeUint32Atomic.call(
+                peripheral, address & 0xfff, replicate(value, size), (address & 0x3000) >> 12);
+        } else if (address >>> 12 === DPRAM) {
+            this.writeBufferMemory(address & 0xfff, value, size);
+        } else if (address >>> 26 === 4 && core.opcodePC < ROM_END) {
+            this.programFlash(address & 0xffffff, value, size);
+        } else if (address - XIP_SRAM >= 0 && address - XIP_SRAM < XIP_SRAM_SIZE && size === 4) {
+            this.xipSram[(address - XIP_SRAM) >> 2] = value;
+        } else if (address >>> 12 !== XIP_CONTROL && address >= ROM_END) { // ROM takes writes, without effect
+            throw new Fault('write to an address where nothing is', address);
+        }
+    }
+
+    writeBufferMemory(offset, value, size) {
+        const { usbDPRAMView: view } = this.chip;
+        if (size === 4) {
+            view.setUint32(offset, value, true);
+        } else if (size === 2) {
+            view.setUint16(offset, value & 0xffff, true);
+        } else {
+            view.setUint8(offset, value & 0xff);
+        }
+        this.usb.DPRAMUpdated(offset);
+    }
+
+    /** The stand-in ROM's way to the flash: words erase, bytes program (which clears bits only). */
+    programFlash(offset, value, size) {
+        if (offset + size > this.flashSize) {
+            return;
+        }
+        if (size === 4) {
+            this.chip.flashView.setUint32(offset, value, true);
+        } else {
+            this.chip.flash[offset] &= value;
+        }
+    }
+
+    // Events -----------------------------------------------------------------------------------------------------------
+
+    pinChanged(pin, level, enabled) {
+        for (const call of this.onPin) {
+            call(pin, level, enabled);
+        }
+    }
+
+    pioOutput(mask) {
+        this.pads.refreshMask(mask);
+    }
+
+    pwmTaken(slice) {
+        for (const call of this.onPwmTaken) {
+            call(slice);
+        }
+    }
+
+    pwmWrapped(slice) {
+        for (const call of this.onPwmWrap) {
+            call(slice);
+        }
+    }
+
+    exceptionTaken(core, number) {
+        for (const call of this.onException) {
+            call(core, number, true);
+        }
+    }
+
+    exceptionLeft(core, number) {
+        for (const call of this.onException) {
+            call(core, number, false);
+        }
+    }
+
+    // Inspection -------------------------------------------------------------------------------------------------------
+
+    /** Calls `call(core)` before the instruction at `address` of core `number`; several calls may share an address. */
+    probe(number, address, call) {
+        this.probes[number] ??= new Map();
+        const table = this.probes[number];
+        const before = table.get(address);
+        table.set(address, before === undefined ? call : (core) => {
+            before(core);
+            call(core);
+        });
+    }
+
+    address(place) {
+        if (typeof place === 'number') {
+            return place;
+        }
+        const symbol = this.symbols.get(place);
+        if (symbol === undefined) {
+            throw new Error(`the image has no symbol ${place}`);
+        }
+        return symbol.address;
+    }
+
+    readMemory(address, length) {
+        const bytes = new Uint8Array(length);
+        for (let n = 0; n < length; n++) {
+            bytes[n] = this.byteAt(address + n);
+        }
+        return bytes;
+    }
+
+    byteAt(address) {
+        if (address >= SRAM && address < SRAM_END) {
+            return this.chip.sram[address - SRAM];
+        }
+        if (address >= FLASH && address < FLASH + this.flashSize) {
+            return this.chip.flash[address - FLASH];
+        }
+        if (address < ROM_END) {
+            return this.cores[0].rom8[address];
+        }
+        throw new Error(`0x${address.toString(16)} is no memory`);
+    }
+
+    writeMemory(address, bytes) {
+        if (address < SRAM || address + bytes.length > SRAM_END) {
+            throw new Error(`0x${address.toString(16)} is no SRAM`);
+        }
+        this.chip.sram.set(bytes, address - SRAM);
+    }
+}

@@ -1,0 +1,19 @@
+// The npm package rp2040js, from the folder that EPG_RP2040JS names (emulator.py installs it into EPG's cache).
+//
+// Only its processor core and the peripherals that the harness leaves alone (clocks, PLLs, pads, IO bank, UART, ADC,
+// I2C, SPI, RTC, DMA) are used.  Files are named one by one because the package exports no more than its index.
+import { join } from 'node:path';
+import { pathToFileURL } from 'node:url';
+
+const folder = process.env.EPG_RP2040JS;
+if (!folder) {
+    throw new Error('EPG_RP2040JS does not name the folder of the package rp2040js');
+}
+
+const load = (file) => import(pathToFileURL(join(folder, 'dist', 'esm', file)).href);
+
+export const { RP2040 } = await load('rp2040.js');
+export const { CortexM0Core } = await load('cortex-m0-core.js');
+export const { BasePeripheral } = await load('peripherals/peripheral.js');
+export const { RPSIO } = await load('sio.js');
+export const { IRQ } = await load('irq.js');

@@ -1,0 +1,474 @@
+// The commands of the driver: each method takes a command's parameters and returns what is answered.
+import { readFileSync } from 'node:fs';
+import { Encoder, ConstantSpeed, RandomWalk, ScheduledMotion } from './encoder.mjs';
+import { readElf, readUf2 } from './elf.mjs';
+import { Machine } from './machine.mjs';
+import { JIWY, Motor } from './motor.mjs';
+import { Random } from './usb_host.mjs';
+
+const LOG_LIMIT = 2_000_000;
+
+function need(value, name) {
+    if (value === undefined || value === null) {
+        throw new Error(`the parameter ${name} is missing`);
+    }
+    return value;
+}
+
+export class Session {
+    constructor() {
+        this.machine = null;
+        this.encoders = new Map();
+        this.motions = new Map();
+        this.motors = new Map();
+        this.logs = { pins: [], pwm: [], exceptions: [], writes: [] };
+        this.spans = new Map(); // name -> recorded spans
+        this.serial = [];
+    }
+
+    // Images and time --------------------------------------------------------------------------------------------------
+
+    /** {image, rom?, boot_rom?, clock?, flash_size?, boot_cycles?, usb?}; `rom` is an ELF file, `boot_rom` a binary. */
+    load({ image, rom, boot_rom: bootRom, clock, flash_size: flashSize, boot_cycles: bootCycles, usb = {} }) {
+        const [bytes, romSymbols] = bootRom ? [pad(readFileSync(bootRom)), new Map()] : romFromElf(need(rom, 'rom'));
+        const { clock_error: clockError, packet_delay: delay, ...others } = usb;
+        const packetDelay = delay === undefined ? undefined : (random) => delay[0] + random.next() * (delay[1] - delay[0]);
+        const machine = new Machine({
+            rom: bytes, romSymbols, clock, flashSize, bootCycles, usb: { clockError, packetDelay, ...others },
+        });
+        this.machine = machine;
+        machine.usbHost.onData = (data) => this.receive(data);
+        if (machine.usbBootAddress >= 0) {
+            for (const core of [0, 1]) {
+                machine.probe(core, machine.usbBootAddress, () => machine.stop('usb boot'));
+            }
+        }
+        machine.load(need(image, 'image').endsWith('.uf2') ? readUf2(image) : readElf(image));
+        return { symbols: machine.symbols.size };
+    }
+
+    receive(data) {
+        for (const byte of data) {
+            this.serial.push(byte);
+        }
+        if (this.awaited !== undefined && Buffer.from(this.serial).toString('latin1').includes(this.awaited)) {
+            this.machine.stop('text');
+        }
+    }
+
+    /**
+     * Runs {cycles} more or up to cycle {until}.  Stops early: {text} when the serial output contains it, {at} before
+     * the instruction at a symbol or address (of {core}, default either), {configured} when USB is.
+     */
+    run({ cycles, until, text, at, core, configured }) {
+        const { machine } = this;
+        const end = until ?? machine.clock.now + need(cycles, 'cycles');
+        this.awaited = text;
+        this.watched = at === undefined ? null : machine.address(at);
+        if (this.watched !== null) {
+            this.probeStop(this.watched, core);
+        }
+        if (text !== undefined && Buffer.from(this.serial).toString('latin1').includes(text)) {
+            return this.state();
+        }
+        if (configured) {
+            this.runUntilConfigured(end);
+        } else {
+            machine.run(end);
+        }
+        this.awaited = undefined;
+        this.watched = null;
+        machine.settle();
+        return this.state();
+    }
+
+    runUntilConfigured(end) {
+        const { machine } = this;
+        while (machine.clock.now < end && !(machine.usbHost.state === 'configured' && machine.usbHost.dtr)) {
+            machine.run(Math.min(end, machine.clock.now + 12_500));
+        }
+        machine.stopReason = machine.usbHost.state === 'configured' ? 'configured' : null;
+    }
+
+    probeStop(address, core) {
+        this.stopProbes ??= new Set();
+        for (const number of core === undefined ? [0, 1] : [core]) {
+            const key = `${number}:${address}`;
+            if (!this.stopProbes.has(key)) {
+                this.stopProbes.add(key);
+                let stoppedAt = -1;
+                this.machine.probe(number, address, (at) => {
+                    if (this.watched === address && stoppedAt !== at.time) {
+                        stoppedAt = at.time;
+                        this.machine.stop('at');
+                    }
+                });
+            }
+        }
+    }
+
+    state() {
+        const { machine } = this;
+        return {
+            cycle: machine.clock.now,
+            reason: machine.stopReason ?? 'end',
+            usb: machine.usbHost.state,
+            clk_sys: machine.chip.clkSys,
+            faults: machine.faults.length,
+            resets: machine.resets,
+            cores: machine.cores.map((core) => ({
+                running: core.running, waiting: core.waiting, locked_up: core.lockedUp, pc: core.PC >>> 0,
+                sp: core.SP >>> 0, exception: core.IPSR, instructions: core.instructions,
+            })),
+        };
+    }
+
+    faults() {
+        return this.machine.faults;
+    }
+
+    /** A reset from outside, as by the RUN pin. */
+    reset() {
+        this.machine.reset('run pin');
+        return null;
+    }
+
+    /** {scratch, reason}: what survives a watchdog reset. */
+    watchdog() {
+        const { reason, scratch } = this.machine.watchdogMemory;
+        return { reason, scratch: [...scratch] };
+    }
+
+    // Memory -------------------------------------------------------------------------------------------------------------
+
+    symbol({ name }) {
+        const symbol = this.machine.symbols.get(need(name, 'name'));
+        return symbol ?? null;
+    }
+
+    symbols({ contains = '' }) {
+        const found = [...this.machine.symbols].filter(([name]) => name.includes(contains));
+        return Object.fromEntries(found.map(([name, { address, size }]) => [name, { address, size }]));
+    }
+
+    /** {at: symbol or address, offset?, length} -> hex */
+    read({ at, offset = 0, length }) {
+        const size = length ?? this.machine.symbols.get(at)?.size;
+        return Buffer.from(this.machine.readMemory(this.machine.address(at) + offset, need(size, 'length'))).toString('hex');
+    }
+
+    write({ at, offset = 0, hex }) {
+        this.machine.writeMemory(this.machine.address(at) + offset, Buffer.from(need(hex, 'hex'), 'hex'));
+        return null;
+    }
+
+    /** Records writes to {at, length}: [cycle, core, address, size, value, pc]. */
+    watch_memory({ at, length }) {
+        const { machine } = this;
+        const low = machine.address(at);
+        const high = low + (length ?? machine.symbols.get(at)?.size ?? 4);
+        const install = () => machine.cores.forEach((core) => {
+            core.writeLow = low;
+            core.writeHigh = high;
+            core.onWrite = (user, address, size, value) => {
+                this.record('writes', [user.time, user.number, address, size, value, user.opcodePC]);
+            };
+        });
+        install();
+        machine.onReset.push(install);
+        return null;
+    }
+
+    record(log, entry) {
+        if (this.logs[log].length >= LOG_LIMIT) {
+            throw new Error(`the log ${log} has ${LOG_LIMIT} entries: take them earlier`);
+        }
+        this.logs[log].push(entry);
+    }
+
+    /** Takes what a log (pins, pwm, exceptions, writes) has. */
+    take({ log }) {
+        const entries = this.logs[log];
+        if (entries === undefined) {
+            throw new Error(`there is no log ${log}`);
+        }
+        this.logs[log] = [];
+        return entries;
+    }
+
+    // Pins and PWM -------------------------------------------------------------------------------------------------------
+
+    /** Drives a pin from outside: {pin, level}; level null lets go. */
+    drive({ pin, level }) {
+        this.machine.pads.drive(need(pin, 'pin'), level === null ? -1 : level);
+        return null;
+    }
+
+    pin({ pin }) {
+        return this.machine.pads.state(pin);
+    }
+
+    /** Records the edges of {pins}: [cycle, pin, level, driven by the chip]. */
+    watch_pins({ pins }) {
+        const watched = new Set(pins);
+        this.machine.onPin.push((pin, level, enabled) => {
+            if (watched.has(pin)) {
+                this.record('pins', [this.machine.clock.now, pin, level, enabled]);
+            }
+        });
+        return null;
+    }
+
+    /**
+     * Records for {slices} what takes effect: [cycle, slice, a, b, top, wrap], `wrap` the number of the wrap at which it
+     * did; with {wraps} each wrap of them too.
+     */
+    watch_pwm({ slices, wraps = false }) {
+        const watched = new Set(slices);
+        const numbers = new Map();
+        const entry = (slice, number) => [this.machine.clock.now, slice.index, slice.a, slice.b, slice.top, number];
+        this.machine.onPwmTaken.push((slice) => {
+            if (watched.has(slice.index) && !wraps) {
+                this.record('pwm', entry(slice, numbers.get(slice.index) ?? 0));
+            }
+        });
+        this.machine.onPwmWrap.push((slice) => {
+            if (watched.has(slice.index)) {
+                const number = (numbers.get(slice.index) ?? 0) + 1;
+                numbers.set(slice.index, number);
+                if (wraps) {
+                    this.record('pwm', entry(slice, number));
+                }
+            }
+        });
+        return null;
+    }
+
+    pwm({ slice }) {
+        const { a, b, top, divider, running, counter } = this.machine.pwm.slices[slice];
+        return { a, b, top, divider: divider / 16, running, counter };
+    }
+
+    /** Records entries and exits of exceptions {numbers} (16 + interrupt): [cycle, core, number, entered]. */
+    watch_exceptions({ numbers }) {
+        const watched = new Set(numbers);
+        this.machine.onException.push((core, number, entered) => {
+            if (watched.has(number)) {
+                this.record('exceptions', [core.time, core.number, number, entered]);
+            }
+        });
+        return null;
+    }
+
+    // Spans of code ------------------------------------------------------------------------------------------------------
+
+    /**
+     * Watches code of {core} from {from} up to {to} (symbols or addresses; `to: "return"` for the return of the function
+     * `from`), under {name}: cycles and instructions of each passage, and its accesses to flash.
+     */
+    watch_span({ name, core, from, to }) {
+        const { machine } = this;
+        const span = { open: null, passages: [], flash: [], flashTotal: 0 };
+        this.spans.set(need(name, 'name'), span);
+        const close = (at) => {
+            if (span.open !== null) {
+                span.passages.push([span.open.cycle, at.time - span.open.cycle, at.instructions - span.open.instructions]);
+                span.open = null;
+                machine.hookFlash(at, null);
+            }
+        };
+        const open = (at) => {
+            span.open = { cycle: at.time, instructions: at.instructions };
+            machine.hookFlash(at, (user, address) => {
+                span.flashTotal++;
+                if (span.flash.length < 1000) {
+                    span.flash.push([user.time, user.opcodePC, address]);
+                }
+            });
+            if (to === 'return') {
+                this.closeAtReturn(at, close);
+            }
+        };
+        machine.probe(core, machine.address(from), open);
+        if (to !== 'return') {
+            machine.probe(core, machine.address(to), close);
+        }
+        return null;
+    }
+
+    closeAtReturn(core, close) {
+        const address = core.LR & ~1;
+        const stack = core.SP;
+        if (core.LR >>> 28 === 0xf) { // an interrupt's handler: it ends with the exception
+            const number = core.IPSR;
+            const listener = (at, left, entered) => {
+                if (at === core && left === number && !entered) {
+                    this.machine.onException.splice(this.machine.onException.indexOf(listener), 1);
+                    close(at);
+                }
+            };
+            this.machine.onException.push(listener);
+            return;
+        }
+        const key = `${core.number}:${address}`;
+        this.returns ??= new Map();
+        const known = this.returns.get(key);
+        if (known !== undefined) {
+            known.stack = stack;
+            known.close = close;
+            return;
+        }
+        const entry = { stack, close };
+        this.returns.set(key, entry);
+        this.machine.probe(core.number, address, (at) => {
+            if (entry.close !== null && at.SP === entry.stack) {
+                entry.close(at);
+                entry.close = null;
+            }
+        });
+    }
+
+    /** {passages: [[cycle, cycles, instructions]], flash: [[cycle, pc, address]], flash_total}; forgets them. */
+    span({ name }) {
+        const span = this.spans.get(name);
+        if (span === undefined) {
+            throw new Error(`there is no span ${name}`);
+        }
+        const { passages, flash, flashTotal } = span;
+        span.passages = [];
+        span.flash = [];
+        span.flashTotal = 0;
+        return { passages, flash, flash_total: flashTotal };
+    }
+
+    // USB ----------------------------------------------------------------------------------------------------------------
+
+    usb_send({ text, hex }) {
+        this.machine.usbHost.send(hex === undefined ? Buffer.from(need(text, 'text'), 'utf8') : Buffer.from(hex, 'hex'));
+        return null;
+    }
+
+    /** Takes what came over the serial port, as hex. */
+    usb_receive() {
+        const hex = Buffer.from(this.serial).toString('hex');
+        this.serial = [];
+        return hex;
+    }
+
+    /** Floods the device with packets: {text} repeated, or printable characters by {seed}; {on: false} ends it. */
+    usb_flood({ on = true, text, seed = 1 }) {
+        const random = new Random(seed);
+        let at = 0;
+        const bytes = text === undefined ? null : Buffer.from(text, 'utf8');
+        this.machine.usbHost.setFlood(!on ? null : (length) => Array.from({ length }, () =>
+            bytes === null ? 32 + Math.floor(random.next() * 95) : bytes[at++ % bytes.length]));
+        return null;
+    }
+
+    usb_open({ open = true }) {
+        this.machine.usbHost.setLine(open);
+        return null;
+    }
+
+    usb_attach() {
+        this.machine.usbHost.attach();
+        return null;
+    }
+
+    usb_detach() {
+        this.machine.usbHost.detach();
+        return null;
+    }
+
+    usb_bus_reset() {
+        this.machine.usbHost.busReset();
+        return null;
+    }
+
+    usb() {
+        const { state, serial, port, resetInterface, dtr, device } = this.machine.usbHost;
+        const id = device === null ? null : [device[8] | (device[9] << 8), device[10] | (device[11] << 8)];
+        return { state, serial, port, reset_interface: resetInterface, dtr, id };
+    }
+
+    /** A control transfer without data: {type, request, value, index}; what `picotool reboot -f` sends, for instance. */
+    usb_control({ type, request, value = 0, index = 0 }) {
+        this.machine.usbHost.controlOut(type, request, value, index, null);
+        return null;
+    }
+
+    // Encoders and motors --------------------------------------------------------------------------------------------------
+
+    encoder({ name, a, b }) {
+        this.encoders.set(need(name, 'name'), new Encoder(this.machine, need(a, 'a'), need(b, 'b')));
+        return null;
+    }
+
+    theEncoder(name) {
+        const encoder = this.encoders.get(name);
+        if (encoder === undefined) {
+            throw new Error(`there is no encoder ${name}`);
+        }
+        return encoder;
+    }
+
+    /** {name} -> edges given so far, up minus down. */
+    encoder_count({ name }) {
+        return this.theEncoder(name).count;
+    }
+
+    /** {name, kind: random | constant | schedule, ...}: see encoder.mjs. */
+    move({ name, kind, ...parameters }) {
+        const encoder = this.theEncoder(name);
+        this.motions.get(name)?.stop();
+        const { machine } = this;
+        const kinds = {
+            random: () => new RandomWalk(machine, encoder, parameters),
+            constant: () => new ConstantSpeed(machine, encoder, parameters),
+            schedule: () => new ScheduledMotion(machine, encoder, parameters.edges),
+            rest: () => ({ stop() {} }),
+        };
+        if (kinds[kind] === undefined) {
+            throw new Error(`there is no motion ${kind}: ${Object.keys(kinds).join(', ')}`);
+        }
+        this.motions.set(name, kinds[kind]());
+        return null;
+    }
+
+    /** Breaks or mends an encoder: its pins stay where they are. */
+    encoder_dead({ name, dead = true }) {
+        this.theEncoder(name).dead = dead;
+        return null;
+    }
+
+    /** {name, encoder, bridge, axis: pan | tilt | parameters, stops, angle, coulomb}: see motor.mjs. */
+    motor({ name, encoder, bridge, axis, ...others }) {
+        const parameters = { ...(typeof axis === 'string' ? JIWY[axis] : axis), ...others };
+        this.motors.set(need(name, 'name'), new Motor(this.machine, this.theEncoder(encoder), bridge, parameters));
+        return null;
+    }
+
+    motor_state({ name }) {
+        const motor = this.motors.get(name);
+        if (motor === undefined) {
+            throw new Error(`there is no motor ${name}`);
+        }
+        motor.advance();
+        const { speed, angle, drive, encoder } = motor;
+        motor.predict();
+        return { speed, angle, duty: drive.duty, mode: drive.mode, count: encoder.count };
+    }
+}
+
+function pad(bytes) {
+    const rom = new Uint8Array(16 * 1024);
+    rom.set(bytes.subarray(0, rom.length));
+    return rom;
+}
+
+function romFromElf(path) {
+    const { segments, symbols } = readElf(path);
+    const rom = new Uint8Array(16 * 1024);
+    segments.forEach(({ address, data }) => rom.set(data, address));
+    return [rom, symbols];
+}

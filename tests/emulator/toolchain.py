@@ -1,0 +1,135 @@
+"""What emulator tests need besides Python, found where EPG looks for it, or a reason to skip.
+
+>>> # sdk = pico_sdk()            # folder of the Pico SDK
+>>> # package = rp2040js()        # folder of the npm package, installed into EPG's cache once
+>>> # rom = stand_in_rom()        # ELF of the boot ROM, compiled once per version of its sources
+"""
+
+from __future__ import annotations
+
+import fcntl
+import hashlib
+import json
+import os
+import shutil
+import subprocess
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from epg.bootstrap import cache_folder
+from epg.diagnostics import Diagnostics
+from epg.load.find_tool import Surroundings, find_tool
+from epg.load.tools import load_tools
+
+ROOT = Path(__file__).resolve().parents[2]
+HERE = Path(__file__).resolve().parent
+OLDEST_NODE = 18
+
+
+class Missing(Exception):
+    """Something is not installed; the message is one sentence with the command that gets it."""
+
+
+def skip_if_missing(*needs: object) -> None:
+    """Calls each of ``needs`` and skips the test with the reason when one is :class:`Missing`."""
+    for need in needs:
+        try:
+            need()  # type: ignore[operator]
+        except Missing as problem:
+            pytest.skip(str(problem))
+
+
+def tool(name: str) -> Path:
+    """The path of a tool of ``targets/tools``."""
+    described = load_tools([ROOT / "targets"], Diagnostics())[name]
+    found = find_tool(described, Surroundings.here(cache_folder()))
+    if found.status != "found" or found.path is None:
+        command = described.get.get("apt") or described.get.get("any", "")
+        state = {"old": "is too old", "wrong": "is not where its variable says"}.get(found.status, "is not installed")
+        raise Missing(f"{described.title} {state}: {command.replace('{cache}', str(cache_folder()))}")
+    return found.path
+
+
+def pico_sdk() -> Path:
+    """Folder of the Pico SDK, with TinyUSB."""
+    folder = tool("pico_sdk")
+    if not (folder / "lib" / "tinyusb" / "src").is_dir():
+        raise Missing(f"the Pico SDK has no TinyUSB: git -C {folder} submodule update --init lib/tinyusb")
+    return folder
+
+
+def arm_gcc() -> Path:
+    """The compiler for Arm microcontrollers."""
+    return tool("arm_gcc")
+
+
+def node() -> str:
+    """The program node."""
+    program = shutil.which("node")
+    if program is None:
+        raise Missing("Node.js is not installed: apt install nodejs npm")
+    version = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout.strip()
+    if int(version.lstrip("v").split(".")[0]) < OLDEST_NODE:
+        raise Missing(f"Node.js {version} is older than {OLDEST_NODE}: install a newer one from https://nodejs.org")
+    return program
+
+
+def rp2040js() -> Path:
+    """Folder of the npm package, which is installed into EPG's cache by the committed lock file, once."""
+    version = json.loads((HERE / "package.json").read_text(encoding="utf-8"))["dependencies"]["rp2040js"]
+    folder = cache_folder() / f"rp2040js-{version}"
+    package = folder / "node_modules" / "rp2040js"
+    with locked(folder):
+        if not (package / "package.json").is_file():
+            _install_package(folder)
+    return package
+
+
+def _install_package(folder: Path) -> None:
+    npm = shutil.which("npm")
+    if npm is None:
+        raise Missing("npm is not installed: apt install nodejs npm")
+    if os.environ.get("EPG_NO_INSTALL"):
+        raise Missing(f"rp2040js is not in EPG's cache and EPG_NO_INSTALL is set: npm ci --prefix {folder}")
+    folder.mkdir(parents=True, exist_ok=True)
+    for name in ("package.json", "package-lock.json"):
+        shutil.copy(HERE / name, folder / name)
+    command = [npm, "ci", "--no-audit", "--no-fund", "--ignore-scripts"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise Missing(f"rp2040js could not be installed ({done.stderr.strip().splitlines()[-1:]}): npm ci --prefix {folder}")
+
+
+def stand_in_rom() -> Path:
+    """ELF file of the boot ROM that EPG has written for the emulator."""
+    sources = [HERE / "rom" / name for name in ("rom.S", "rom.c", "rom.ld")]
+    digest = hashlib.sha256(b"".join(path.read_bytes() for path in sources)).hexdigest()[:16]
+    output = cache_folder() / "test-build" / f"stand-in-rom-{digest}.elf"
+    with locked(output):
+        if not output.is_file():
+            output.parent.mkdir(parents=True, exist_ok=True)
+            temporary = output.with_suffix(f".{os.getpid()}")
+            options = ["-mcpu=cortex-m0plus", "-mthumb", "-Os", "-std=c11", "-Wall", "-Wextra", "-Wconversion", "-Werror"]
+            options += ["-ffreestanding", "-fno-tree-loop-distribute-patterns", "-nostdlib"]
+            command = [str(arm_gcc()), *options, "-T", str(sources[2]), str(sources[0]), str(sources[1])]
+            subprocess.run([*command, "-o", str(temporary)], check=True)
+            temporary.rename(output)
+    return output
+
+
+def stock_rom() -> Path | None:
+    """A dump of the real boot ROM that ``EPG_RP2040_BOOTROM`` names, if it does."""
+    named = os.environ.get("EPG_RP2040_BOOTROM")
+    return Path(named) if named else None
+
+
+@contextmanager
+def locked(path: Path) -> Iterator[None]:
+    """Holds a lock beside ``path`` against other test processes."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with open(path.parent / f".{path.name}.lock", "w", encoding="utf-8") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        yield
