@@ -7,7 +7,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -85,6 +85,7 @@ def load_application(request: Request, diagnostics: Diagnostics) -> Application 
     application = resolve(request.name, configuration, model, bindings, plant, diagnostics)
     if application is not None:
         check_driver_headers(application, diagnostics)
+        check_paths((*application.files, *request.user_roots), diagnostics)
     return None if diagnostics.has_errors else application
 
 
@@ -124,6 +125,17 @@ def check_driver_headers(application: Application, diagnostics: Diagnostics) -> 
         for header in sorted(generated.intersection(component.kind.headers)):
             message = f"component '{component.name}' needs a header '{header}', and target '{name}' makes one"
             diagnostics.error("invalid-name", component.span, message, hint="choose another name for the target")
+
+
+def check_paths(paths: Iterable[Path], diagnostics: Diagnostics) -> None:
+    """Paths that CMake is told are text, and no brackets in them swallow the ``;`` of its lists."""
+    for path in sorted(paths):
+        text = str(path.absolute())
+        if not text.isprintable() or text.count("[") != text.count("]"):
+            message = f"'{text}' cannot be named in CMake: "
+            message += "brackets in it must be balanced" if text.isprintable() else "it is no printable UTF-8 text"
+            diagnostics.error("invalid-name", Span(str(path)), message, hint="rename the file or its folder")
+            return
 
 
 def check_target(request: Request, catalog: Catalog, diagnostics: Diagnostics) -> Configuration | None:

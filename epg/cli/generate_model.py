@@ -23,7 +23,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from epg.emit.cmake import PathNames
     from epg.emit.outputs import model_outputs
     from epg.load.models import load_model
-    from epg.project import check_instances, check_library_name, check_model_names
+    from epg.project import check_instances, check_library_name, check_model_names, check_paths
 
     caller = Span(options.caller or "command line")
     check_library_name(options.name, caller, diagnostics)
@@ -31,6 +31,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     if model is not None:
         check_instances(model, options.instances, caller, diagnostics)
         check_model_names(model, options.name, diagnostics)
+        check_paths(model.files, diagnostics)
     diagnostics.stop_if_errors()
     assert model is not None
     files = model_outputs(model, options.name, options.instances, PathNames(options.source_dir))
