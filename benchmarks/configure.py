@@ -61,12 +61,11 @@ def copied(output: Path) -> str:
     platform = [path for path in sorted((host / "src").glob("*.c")) if path.name != "main.c"]
     exported = [output / "jiwy_model_export.c", *sorted((JIWY / "model").glob("*.c"))]
     kinds = [str(path) for path in sorted((ROOT / "targets" / "components").iterdir()) if path.is_dir()]
-    return f"""find_package(Threads REQUIRED)
-add_library(epg_runtime STATIC EXCLUDE_FROM_ALL {listed(sorted((runtime / "src").glob("*.c")))})
+    return f"""add_library(epg_runtime STATIC EXCLUDE_FROM_ALL {listed(sorted((runtime / "src").glob("*.c")))})
 target_include_directories(epg_runtime PUBLIC "{runtime / "include"}")
 add_library(epg_host STATIC EXCLUDE_FROM_ALL {listed(platform)})
 target_include_directories(epg_host PUBLIC "{host / "include"}")
-target_link_libraries(epg_host PUBLIC epg_runtime Threads::Threads m)
+target_link_libraries(epg_host PUBLIC epg_runtime -pthread m)
 add_library(export OBJECT EXCLUDE_FROM_ALL {listed(exported)})
 target_include_directories(export PRIVATE "{JIWY / "model"}" "{output}")
 target_compile_options(export PRIVATE -w "SHELL:-include {output / "jiwy_model_names.h"}")

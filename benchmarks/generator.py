@@ -1,8 +1,7 @@
 """What EPG's Python costs when a project is configured: JIWY, from nothing, after an edit, and for no reason.
 
 The unit is ``python -c pass`` of the same interpreter, taken in turns with everything else.  ``.pyc`` files are there:
-cold means a new output folder.  ``epg generate`` refuses platforms without a port layer; for the Pico 2 this program
-brings a platform that is FreeRTOS's but for its name and an empty port layer.
+cold means a new output folder.
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ import tempfile
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from measure import EPG, JIWY, ROOT, all_in_turns, median_ratio, run
+from measure import EPG, JIWY, all_in_turns, median_ratio, run
 from report import Table, arguments, command_line, milliseconds, show
 
 PASS = "python -c pass"
@@ -42,7 +41,6 @@ def main() -> None:
 def actions(folder: Path) -> Mapping[str, Callable[[], object]]:
     """What is timed, by the name it has in the table."""
     python = [sys.executable]
-    targets, pico = pico_with_a_port_layer(folder)
     tcf = folder / "edited.tcf"
 
     def edited() -> None:
@@ -63,7 +61,7 @@ def actions(folder: Path) -> Mapping[str, Callable[[], object]]:
         "import jsonschema": lambda: run([*python, "-c", "import jsonschema"]),
         "all three": lambda: run([*python, "-c", "import yaml, jinja2, jsonschema"]),
         CHECK: lambda: run([*python, EPG, "check", *files("rpi_pico2_freertos_jiwy.tcf")]),
-        PICO: lambda: cold(folder / "pico", *pico, EPG_TARGETS_PATH=str(targets)),
+        PICO: lambda: cold(folder / "pico", *PICO_ARGUMENTS),
         HOST: lambda: cold(folder / "host", *HOST_ARGUMENTS),
         EDIT: edited,
         UNCHANGED: lambda: run([*python, EPG, *HOST_ARGUMENTS, "--output", folder / "unchanged"]),
@@ -78,18 +76,7 @@ PLANT = ["--plant", str(JIWY / "plant"), "--plant-bindings", str(JIWY / "plant.b
 HOST_ARGUMENTS = ["generate", "jiwy", *files("host_jiwy.tcf"), *PLANT]
 
 
-def pico_with_a_port_layer(folder: Path) -> tuple[Path, list[str]]:
-    """A ``targets`` folder with a platform that builds, and the arguments of ``epg generate`` for it."""
-    text = (ROOT / "targets" / "platforms" / "freertos" / "platform.yaml").read_text(encoding="utf-8")
-    text = re.sub(r"(?m)^platform: .*$", "platform: bench", text)
-    text = re.sub(r"(?m)^builds: .*$", "builds: true", text)
-    platform = folder / "targets" / "platforms" / "bench"
-    platform.mkdir(parents=True)
-    (platform / "platform.yaml").write_text(text, encoding="utf-8")
-    (platform / "platform.cmake").write_text("# An empty port layer.\n", encoding="utf-8")
-    tcf = folder / "pico.tcf"
-    tcf.write_text("version: 1\nextends: rpi_pico2_freertos_jiwy.tcf\ntarget: rpi_pico2_bench\n", encoding="utf-8")
-    return folder / "targets", ["generate", "jiwy", *files(str(tcf))]
+PICO_ARGUMENTS = ["generate", "jiwy", *files("rpi_pico2_freertos_jiwy.tcf")]
 
 
 def cost_table(times: Mapping[str, list[float]]) -> Table:
@@ -134,8 +121,7 @@ def where_the_time_goes(folder: Path) -> dict[str, float]:
     apart by their callers.  A profiler slows calls more than it slows other work: shares, not times."""
     profile = folder / "profile"
     command: list[str | Path] = [sys.executable, "-m", "cProfile", "-o", profile, EPG]
-    command += ["generate", "jiwy", *files(str(folder / "pico.tcf"))]
-    run([*command, "--output", folder / "profiled"], EPG_TARGETS_PATH=str(folder / "targets"))
+    run([*command, *PICO_ARGUMENTS, "--output", folder / "profiled"])
     stats = pstats.Stats(str(profile), stream=io.StringIO()).stats  # type: ignore[attr-defined]
     costs: dict[str, float] = {}
     for (file, _, name), (_, _, own, _, callers) in stats.items():
