@@ -8,6 +8,7 @@ from pathlib import Path
 
 from epg.check.hardware import check_board, check_platform, check_soc, check_target
 from epg.check.kind import check_kind
+from epg.check.middleware import check_middleware, check_offers
 from epg.check.schema import load_schema, validate
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.load.catalog import Catalog, CatalogCheck
@@ -18,18 +19,23 @@ from epg.source import Node, Span
 
 def check_catalog(catalog: Catalog, diagnostics: Diagnostics) -> None:
     """Makes ``catalog`` check every file it reads from now on.  Problems go to the catalog's own diagnostics."""
-    catalog.check = _Check()
+    catalog.check = _Check(catalog)
 
 
 def check_all(catalog: Catalog) -> None:
     """Reads everything in the catalog, so that all problems of all its files are reported."""
     for name in catalog.kind_names():
         catalog.find_kind(name)
+    for name in catalog.names("middleware"):
+        catalog.find_middleware(name)
     for name in catalog.target_names():
         catalog.find_target(name)
 
 
 class _Check(CatalogCheck):
+    def __init__(self, catalog: Catalog) -> None:
+        self._catalog = catalog
+
     def file(self, sort: str, node: Node, name: str, diagnostics: Diagnostics) -> bool:
         key = "kind" if sort == "component" else sort
         if not node.is_mapping:
@@ -55,15 +61,20 @@ class _Check(CatalogCheck):
             _check_templates(_names_in(node, ("templates",)), diagnostics)
             if node["builds"].value is True:
                 _beside(node["builds"], "platform.cmake", "docs/adding-a-platform.md", diagnostics)
+        elif sort == "middleware":
+            check_middleware(node, diagnostics)
         else:
             check_kind(node, diagnostics)
-            for path in (("driver", "headers"), ("driver", "sources")):
-                _files_exist(node, path, _names_in(node, path), diagnostics)
+        for path in (("driver", "headers"), ("driver", "sources")):
+            _files_exist(node, path, _names_in(node, path), diagnostics)
+        if sort == "component":
             _beside(node["kind"], "code.c.j2", "docs/adding-a-component-kind.md", diagnostics)
         return diagnostics.error_count == errors
 
     def target(self, target: Target, diagnostics: Diagnostics) -> bool:
-        return check_target(target, diagnostics)
+        errors = diagnostics.error_count
+        check_offers(target, self._catalog, diagnostics)
+        return check_target(target, diagnostics) and diagnostics.error_count == errors
 
 
 def _newer(node: Node, diagnostics: Diagnostics) -> bool:

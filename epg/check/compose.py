@@ -11,6 +11,7 @@ from typing import Any
 from epg.check.schema import extended_from, load_schema, validate
 from epg.diagnostics import Diagnostics, Note
 from epg.load.kind import Kind, KindParameter, make_parameter
+from epg.load.middleware import Middleware
 from epg.quantity import QuantityError, parse_quantity, parse_ratio
 from epg.source import Node, Span
 
@@ -52,6 +53,27 @@ def component_schema(kind: Kind, with_pins: bool) -> dict[str, Any]:
         "required": required + [parameter.name for parameter in kind.parameters if parameter.required],
         "additionalProperties": False,
     }
+
+
+def communication_schema(middleware: Middleware) -> dict[str, Any]:
+    """The JSON Schema of ``communication`` with ``middleware``: the keys of every one, and its options."""
+    common = load_schema("tcf")["properties"]["communication"]
+    options = {option.name: _parameter_schema(option) for option in middleware.options}
+    return {
+        "type": "object",
+        "properties": {**common["properties"], **options},
+        "required": [option.name for option in middleware.options if option.required],
+        "additionalProperties": False,
+    }
+
+
+def typed_options(middleware: Middleware, node: Node | None, diagnostics: Diagnostics) -> Mapping[str, object]:
+    """The options of a ``communication`` that has passed :func:`communication_schema`, as :func:`typed_parameters`."""
+    values = {
+        option.name: _typed(option, node.get(option.name) if node is not None else None, diagnostics)
+        for option in middleware.options
+    }
+    return MappingProxyType(values)
 
 
 def typed_parameters(kind: Kind, node: Node, diagnostics: Diagnostics) -> Mapping[str, object]:

@@ -8,12 +8,14 @@ from fractions import Fraction
 from pathlib import Path
 
 from epg.check.bindings import Conversion, conversion_of
-from epg.check.compose import component_schema, typed_parameters
+from epg.check.compose import communication_schema, component_schema, typed_options, typed_parameters
 from epg.check.merge import apply_settings, merge_chain
+from epg.check.middleware import check_offer
 from epg.check.names import absolute_topic, identifier_problem, namespace_problem, node_name_problem, topic_problem
 from epg.check.schema import extended_from, load_schema, validate
 from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.load.catalog import Catalog, Kind, Target
+from epg.load.middleware import Middleware
 from epg.load.tcf import TcfFile
 from epg.quantity import QuantityError, parse_quantity
 from epg.source import Node, Span
@@ -37,12 +39,13 @@ class Control:
 
 @dataclass(frozen=True)
 class Communication:
-    """How topics travel; ``period`` in seconds."""
+    """How topics travel; ``period`` in seconds, ``options`` those of the middleware."""
 
-    middleware: str
+    middleware: Middleware
     transport: str | None
     period: Fraction
-    span: Span
+    options: Mapping[str, object]
+    span: Span  # of the middleware's name, if it is written
 
 
 @dataclass(frozen=True)
@@ -99,9 +102,9 @@ def check_configuration(
     target = catalog.target(str(target_node.value), target_node.span, diagnostics)
     components = _components(root, target, catalog, diagnostics)
     control = _control(root["control"], components, diagnostics)
-    communication = _communication(root, target, diagnostics)
+    communication = _communication(root, target, catalog, diagnostics)
     _names(root, components, control, diagnostics)
-    if target is None or diagnostics.error_count > errors:
+    if target is None or communication is None or diagnostics.error_count > errors:
         return None
     namespace = root.get("namespace")
     return Configuration(
@@ -202,7 +205,10 @@ def _fail_safe(node: Node, components: Mapping[str, Component], diagnostics: Dia
         diagnostics.error("wrong-port-type", node.span, message, hint="name a digital_input")
 
 
-def _communication(root: Node, target: Target | None, diagnostics: Diagnostics) -> Communication:
+def _communication(
+    root: Node, target: Target | None, catalog: Catalog, diagnostics: Diagnostics
+) -> Communication | None:
+    """How topics travel, or None after reporting why not, or when there is no target."""
     node = root.get("communication")
     middleware = root.get("communication", "middleware")
     transport = root.get("communication", "transport")
@@ -223,9 +229,15 @@ def _communication(root: Node, target: Target | None, diagnostics: Diagnostics) 
     seconds = _time(period, diagnostics) if period is not None else Fraction(33, 1000)
     if period is not None and seconds is not None and not Fraction(1, 1000) <= seconds <= 3600:
         diagnostics.error("out-of-range", period.span, "must be from 1 ms to 3600 s")
-    span = node.span if node else root.span
-    chosen = str(transport.value) if transport else next(iter(offered.get(name, ())), None)
-    return Communication(name, chosen, seconds or Fraction(33, 1000), span)
+    found = catalog.find_middleware(name) if name in offered else None
+    if target is not None and found is not None:
+        check_offer(target, found, diagnostics)
+    if found is None or (node is not None and not validate(node, communication_schema(found), diagnostics)):
+        return None
+    options = typed_options(found, node, diagnostics)
+    written = middleware or node or root
+    chosen = str(transport.value) if transport else next(iter(offered[name]), None)
+    return Communication(found, chosen, seconds or Fraction(33, 1000), options, written.span)
 
 
 def _names(root: Node, components: Mapping[str, Component], control: Control, diagnostics: Diagnostics) -> None:

@@ -12,15 +12,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from epg.check.compose import component_schema
+from epg.check.compose import communication_schema, component_schema
 from epg.check.schema import load_schema
 from epg.load.catalog import Catalog, Kind, Target
+from epg.load.middleware import Middleware
 from epg.quantity import SPELLINGS, units_of
 
 Schema = dict[str, Any]
 
 USER_FILES = ("tcf", "bindings", "model", "scenario")
-TARGET_FILES = ("board", "component", "platform", "soc", "tool")
+TARGET_FILES = ("board", "component", "middleware", "platform", "soc", "tool")
 _NUMBER = r"([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][-+]?[0-9]+)?"
 _COMPLETE = {"required": ["target"], "not": {"required": ["extends"]}}
 
@@ -53,10 +54,14 @@ def _tcf(schema: Schema, catalog: Catalog) -> Schema:
     wired = {"properties": {"components": {"additionalProperties": {"$ref": "#/$defs/wired"}}}}
     without_pins = [target.name for target in targets if not target.has_pins]
     pins = {"not": {"properties": {"target": {"enum": without_pins}}}} if without_pins else True
+    middlewares = [found for name in catalog.names("middleware") if (found := catalog.find_middleware(name))]
+    options = {key for middleware in middlewares for key in communication_schema(middleware)["properties"]}
+    properties["communication"]["propertyNames"] = {"enum": sorted(options)}
     schema["allOf"] = [
         {"if": _COMPLETE, "then": needed},
         {"if": {"allOf": [_COMPLETE, pins]}, "then": wired},
         *_middlewares(targets),
+        *_options(middlewares),
     ]
     schema["$defs"] = _components(kinds)
     return schema
@@ -128,6 +133,21 @@ def _middlewares(targets: Iterable[Target]) -> list[Schema]:
             using = _communication({"middleware": {"const": name}}, required=["middleware"])
             possible = _communication({"transport": {"enum": [*transports, None]}})
             rules.append({"if": {"allOf": [chosen, using]}, "then": possible})
+    return rules
+
+
+def _options(middlewares: Iterable[Middleware]) -> list[Schema]:
+    """The options of each middleware, for files that name it; those that it needs, in complete files."""
+    rules: list[Schema] = []
+    for middleware in middlewares:
+        whole = _plain(communication_schema(middleware))
+        stated = _optional({"properties": {o.name: whole["properties"][o.name] for o in middleware.options}})
+        using = _communication({"middleware": {"const": middleware.name}}, required=["middleware"])
+        allowed = {**stated, "propertyNames": {"enum": sorted(whole["properties"])}}
+        rules.append({"if": using, "then": {"properties": {"communication": allowed}}})
+        if whole["required"]:
+            needed = {"properties": {"communication": {"required": whole["required"]}}}
+            rules.append({"if": {"allOf": [_COMPLETE, using]}, "then": needed})
     return rules
 
 

@@ -31,7 +31,7 @@ def describe(app: Application, names: PathNames) -> str:
             "timer": app.tick.resource if app.tick else None,
         },
         "communication": {
-            "middleware": app.communication.middleware,
+            "middleware": app.communication.middleware.name,
             "transport": app.communication.transport,
             "period": float(app.communication.period),
         },

@@ -1,4 +1,4 @@
-"""The catalog: chips, boards, platforms and component kinds of all ``targets`` folders, read when they are asked for.
+"""The catalog: chips, boards, platforms, middlewares and component kinds of all ``targets`` folders, read on demand.
 
 >>> # catalog = load_catalog(targets_roots(), diagnostics)
 >>> # catalog.target("rpi_pico2_freertos", span, diagnostics).soc.name
@@ -13,15 +13,22 @@ from typing import TypeVar
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.load.hardware import Board, Platform, Soc, Target, make_board, make_platform, make_soc
 from epg.load.kind import Kind, KindPort, make_kind
+from epg.load.middleware import Middleware, make_middleware
 from epg.load.yaml_file import load_yaml
 from epg.source import Node, Span
 
 __all__ = ["Catalog", "CatalogCheck", "Kind", "KindPort", "Target", "load_catalog"]
 
-FOLDERS = {"soc": "socs", "board": "boards", "platform": "platforms", "component": "components"}
+FOLDERS = {
+    "soc": "socs",
+    "board": "boards",
+    "platform": "platforms",
+    "middleware": "middlewares",
+    "component": "components",
+}
 """What a folder of ``targets`` holds: each item is a folder with a file of the item's sort, ``boards/x/board.yaml``."""
 
-Item = TypeVar("Item", Soc, Board, Platform, Kind)
+Item = TypeVar("Item", Soc, Board, Platform, Middleware, Kind)
 
 
 class CatalogCheck:
@@ -47,10 +54,10 @@ class Catalog:
         self.check = CatalogCheck()
         self._diagnostics = diagnostics
         self._files: dict[str, dict[str, list[Path]]] = {}
-        self._items: dict[tuple[str, str], Soc | Board | Platform | Kind | None] = {}
+        self._items: dict[tuple[str, str], Soc | Board | Platform | Middleware | Kind | None] = {}
 
     def names(self, sort: str) -> list[str]:
-        """Names of all items of a sort: "soc", "board", "platform" or "component"."""
+        """Names of all items of a sort: "soc", "board", "platform", "middleware" or "component"."""
         return sorted(self._paths(sort))
 
     def kind_names(self) -> list[str]:
@@ -80,6 +87,10 @@ class Catalog:
     def find_target(self, name: str) -> Target | None:
         """The target called ``name``, or None."""
         return self._target(name)[0]
+
+    def find_middleware(self, name: str) -> Middleware | None:
+        """The middleware called ``name``, or None."""
+        return self._item("middleware", name, make_middleware)
 
     def kind(self, name: str, span: Span, diagnostics: Diagnostics) -> Kind | None:
         """The kind that ``span`` names, or None after reporting that there is none."""
@@ -159,7 +170,7 @@ class Catalog:
         return make(node, paths[0].parent)
 
 
-_NAME_KEYS = {"soc": "soc", "board": "board", "platform": "platform", "component": "kind"}
+_NAME_KEYS = {"soc": "soc", "board": "board", "platform": "platform", "middleware": "middleware", "component": "kind"}
 
 
 def load_catalog(roots: Sequence[Path], diagnostics: Diagnostics) -> Catalog:

@@ -106,7 +106,7 @@ def make_kind(node: Node, folder: Path) -> Kind:
         summary=text_of(node, "summary"),
         communication=text_of(node, "communication") or None,
         pins=texts_of(node, "pins"),
-        parameters=_parameters(node.get("parameters")),
+        parameters=make_parameters(node.get("parameters")),
         exactly_one=tuple(exactly_one),
         only_with=tuple(only_with),
         ports=tuple(_port(name, child) for name, child in map_of(node, "ports").items()),
@@ -119,7 +119,8 @@ def make_kind(node: Node, folder: Path) -> Kind:
     )
 
 
-def _parameters(section: Node | None) -> tuple[KindParameter, ...]:
+def make_parameters(section: Node | None) -> tuple[KindParameter, ...]:
+    """The parameters of a checked map of them, or none."""
     return (
         ()
         if section is None
@@ -139,7 +140,7 @@ def make_parameter(name: str, node: Node, span: Span) -> KindParameter:
         default=node.get("default"),
         bounds=MappingProxyType({key: node[key] for key in _BOUNDS if key in node}),
         keywords=MappingProxyType(keywords),
-        properties=_parameters(node.get("properties")),
+        properties=make_parameters(node.get("properties")),
         span=span,
     )
 

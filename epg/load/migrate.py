@@ -48,7 +48,7 @@ class Format:
 
 FORMATS = {
     **{name: Format(name) for name in ("tcf", "bindings", "model", "scenario")},
-    **{name: Format(name, key="api") for name in ("soc", "board", "platform", "component")},
+    **{name: Format(name, key="api") for name in ("soc", "board", "platform", "middleware", "component")},
 }
 
 

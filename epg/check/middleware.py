@@ -1,0 +1,60 @@
+"""What the schema of middlewares cannot say: that their options make sense, and that platforms can carry them."""
+
+from __future__ import annotations
+
+from epg.check.compose import parameter_problems
+from epg.diagnostics import Diagnostics, Note, did_you_mean
+from epg.load.catalog import Catalog
+from epg.load.hardware import Target
+from epg.load.items import map_of, texts_of
+from epg.load.middleware import Middleware
+from epg.source import Node
+
+COMMON_OPTIONS = ("middleware", "transport", "period")
+"""Keys of ``communication`` that do not depend on the middleware."""
+
+
+def check_middleware(node: Node, diagnostics: Diagnostics) -> None:
+    """A middleware in itself."""
+    options = map_of(node, "options")
+    for name, option in options.items():
+        span = node["options"].key_span(name)
+        if name in COMMON_OPTIONS:
+            message = f"'{name}' is a key that every 'communication' has"
+            diagnostics.error("invalid-name", span, message, hint="choose another name for the option")
+        parameter_problems(name, option, span, diagnostics)
+    if "capture" in texts_of(node, "uses"):
+        size = options.get("capture")
+        if size is None or "type" not in size or size["type"].value != "integer" or "default" not in size:
+            message = "a middleware that uses 'capture' has an option 'capture'"
+            hint = "capture: {type: integer, minimum: 0, default: 2048, description: numbers a recording can hold}"
+            diagnostics.error("missing-key", node.key_span("uses"), message, hint=hint)
+    if node["connection"].value != "none" and "driver" not in node and not _unfinished(node):
+        message = "a middleware that connects to something has a 'driver'"
+        hint = "name its epg_middleware_t: 'driver: {symbol: ...}'; or write 'builds: false'"
+        diagnostics.error("missing-key", node["middleware"].span, message, hint=hint)
+
+
+def check_offers(target: Target, catalog: Catalog, diagnostics: Diagnostics) -> None:
+    """Whatever a platform offers in ``middlewares`` exists."""
+    offered = target.platform.node["middlewares"]
+    known = catalog.names("middleware")
+    for name in target.platform.middlewares:
+        if name not in known:
+            hint = did_you_mean(name, known, "in middlewares/")
+            message = f"there is no middleware '{name}'"
+            diagnostics.error("unknown-middleware", offered.key_span(name), message, hint=hint)
+
+
+def check_offer(target: Target, middleware: Middleware, diagnostics: Diagnostics) -> None:
+    """A platform names transports for middlewares only that use one."""
+    transports = target.platform.node["middlewares"][middleware.name]
+    if middleware.connection != "stream" and transports.elements():
+        message = f"middleware '{middleware.name}' uses no transport"
+        notes = [Note("this middleware", middleware.span)]
+        hint = f"write '{middleware.name}: []'"
+        diagnostics.error("wrong-value", transports.span, message, hint=hint, notes=notes)
+
+
+def _unfinished(node: Node) -> bool:
+    return "builds" in node and node["builds"].value is False

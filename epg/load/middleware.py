@@ -1,0 +1,64 @@
+"""Middlewares as data: ``middlewares/<name>/middleware.yaml`` below the ``targets`` folders."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from epg.load.items import flag_of, text_of, texts_of
+from epg.load.kind import KindParameter, make_parameters
+from epg.source import Node, Span
+
+TEMPLATE = "code.c.j2"
+"""What generated code holds of a middleware, if it has this file."""
+
+
+@dataclass(frozen=True)
+class Middleware:
+    """How values reach a target and leave it.
+
+    ``connection`` is "stream" (bytes, by a transport that the platform has), "own" or "none".  ``uses`` names what the
+    generator makes for it: "signals", "parameters", "capture", "jog".  ``symbol`` is its ``epg_middleware_t`` in C,
+    empty when nothing runs.  ``headers`` and ``sources`` are files in ``folder``.
+    """
+
+    name: str
+    summary: str
+    connection: str
+    uses: tuple[str, ...]
+    options: tuple[KindParameter, ...]
+    symbol: str
+    headers: tuple[str, ...]
+    sources: tuple[str, ...]
+    builds: bool
+    node: Node
+    folder: Path
+    span: Span
+
+    @property
+    def has_template(self) -> bool:
+        return (self.folder / TEMPLATE).is_file()
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """The files that describe and implement the middleware."""
+        found = [name for name in (TEMPLATE, "middleware.cmake") if (self.folder / name).is_file()]
+        return tuple(self.folder / name for name in ("middleware.yaml", *found, *self.headers, *self.sources))
+
+
+def make_middleware(node: Node, folder: Path) -> Middleware:
+    """The middleware that a checked ``middleware.yaml`` describes."""
+    return Middleware(
+        name=text_of(node, "middleware"),
+        summary=text_of(node, "summary"),
+        connection=text_of(node, "connection"),
+        uses=texts_of(node, "uses"),
+        options=make_parameters(node.get("options")),
+        symbol=text_of(node["driver"], "symbol") if "driver" in node else "",
+        headers=texts_of(node, "driver", "headers"),
+        sources=texts_of(node, "driver", "sources"),
+        builds="builds" not in node or flag_of(node, "builds"),
+        node=node,
+        folder=folder,
+        span=node["middleware"].span,
+    )
