@@ -1,7 +1,6 @@
 # FreeRTOS on the Raspberry Pi Pico: core 1 controls, bare; the kernel runs on core 0, where communication is a task.
 
 include("${CMAKE_CURRENT_LIST_DIR}/../pico/pico.cmake")
-set(_epg_freertos_folder "${CMAKE_CURRENT_LIST_DIR}")
 
 function(_epg_freertos_target name)
   if(TARGET pico_runtime)
@@ -11,12 +10,12 @@ function(_epg_freertos_target name)
     endif()
   endif()
   _epg_pico_target("${name}"
-    SERVICE "${_epg_freertos_folder}/src/service.c" "${_epg_freertos_folder}/src/hooks.c"
+    SERVICE "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/src/service.c" "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/src/hooks.c"
     LIBRARIES FreeRTOS-Kernel-Static)
 endfunction()
 
 function(_epg_freertos_executable executable name)
-  _epg_pico_executable("${executable}" "${name}" "${_epg_freertos_folder}/src/main.c")
+  _epg_pico_executable("${executable}" "${name}" "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/src/main.c")
 endfunction()
 
 # The kernel's own CMake targets: the project's, or made here with EPG's FreeRTOSConfig.h.
@@ -39,6 +38,6 @@ function(_epg_freertos_kernel name result)
     set(${result} FALSE PARENT_SCOPE)
     return()
   endif()
-  set(FREERTOS_CONFIG_FILE_DIRECTORY "${_epg_freertos_folder}/include")
+  set(FREERTOS_CONFIG_FILE_DIRECTORY "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/include")
   include("${FREERTOS_KERNEL_PATH}/${port}/library.cmake")
 endfunction()

@@ -2,8 +2,6 @@
 # executables are made.  The Pico SDK is the user's: it is there when epg_add_target() is called, or the message says
 # what to write.
 
-set(_epg_pico_folder "${CMAKE_CURRENT_LIST_DIR}")
-
 # Adds the port layer to target <name>; <service> are the sources that say how core 0 serves communication.
 function(_epg_pico_target name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SERVICE;LIBRARIES")
@@ -23,7 +21,7 @@ function(_epg_pico_target name)
     _epg_pico_usb_library()
     target_link_libraries(${name}_port INTERFACE epg_pico_usb)
   endif()
-  target_include_directories(${name} PRIVATE "${_epg_pico_folder}/include")
+  target_include_directories(${name} PRIVATE "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/include")
   target_link_libraries(${name} INTERFACE ${name}_port)
 endfunction()
 
@@ -90,7 +88,7 @@ function(_epg_pico_library)
   if(TARGET epg_pico)
     return()
   endif()
-  set(folder "${_epg_pico_folder}")
+  set(folder "${CMAKE_CURRENT_FUNCTION_LIST_DIR}")
   file(GLOB sources "${folder}/src/*.c")
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${folder}/src")
   add_library(epg_pico INTERFACE)
@@ -113,6 +111,23 @@ function(_epg_pico_library)
   target_link_options(epg_pico INTERFACE
     LINKER:--wrap=panic LINKER:--wrap=__assert_func LINKER:--wrap=_exit "${folder}/in_ram.ld")
   set_property(TARGET epg_pico APPEND PROPERTY INTERFACE_LINK_DEPENDS "${folder}/in_ram.ld")
+endfunction()
+
+# The transport over USB: its own TinyUSB device, so it excludes the SDK's stdio over USB.
+function(_epg_pico_usb_library)
+  if(TARGET epg_pico_usb)
+    return()
+  endif()
+  if(NOT TARGET tinyusb_device_unmarked)
+    message(SEND_ERROR "EPG: the transport 'usb' needs TinyUSB, which the Pico SDK in ${PICO_SDK_PATH} lacks.\nGet it: git -C \"${PICO_SDK_PATH}\" submodule update --init lib/tinyusb")
+    add_library(epg_pico_usb INTERFACE)
+    return()
+  endif()
+  set(folder "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/usb")
+  add_library(epg_pico_usb INTERFACE)
+  target_sources(epg_pico_usb INTERFACE "${folder}/descriptors.c" "${folder}/reset.c" "${folder}/serial.c")
+  target_include_directories(epg_pico_usb INTERFACE "${folder}/include")
+  target_link_libraries(epg_pico_usb INTERFACE tinyusb_device_unmarked pico_unique_id pico_usb_reset_interface_headers)
 endfunction()
 
 # An executable that holds target <name> and nothing else; <main> is its main().

@@ -51,6 +51,9 @@ void epg_pico_control_release(void);
 
 /* safe_state.c ------------------------------------------------------------------------------------------------- */
 
+/** As epg_pico_safe_state(), before a reset that is wanted: no fault is reported after it. */
+void epg_pico_outputs_off(void);
+
 /** What the previous run left behind: EPG_FAULT_NONE, EPG_FAULT_WATCHDOG or EPG_FAULT_PROCESSOR.  Once per reset. */
 epg_fault_t epg_pico_fault_before_reset(void);
 
@@ -75,9 +78,12 @@ extern const epg_pico_stack_t epg_pico_control_stack;
 
 /* service.c of bare_metal and freertos -------------------------------------------------------------------------- */
 
-/** Calls `serve` on core 0 at least once per millisecond, and soon after an interrupt of `wake_irq` (-1: none). */
+/** Calls `serve` on core 0 at least once per millisecond. */
 bool epg_pico_service_start(void (*serve)(void));
 void epg_pico_service_stop(void);
+
+/** Asks for `serve` at once; from any interrupt of core 0. */
+void epg_pico_service_wake(void);
 
 /** Fills in the stack of the task that serves; 0 where there is none. */
 void epg_pico_service_stack(uint32_t *size, uint32_t *used);

@@ -40,13 +40,12 @@ static void outputs_before_main(void)
 
 PICO_RUNTIME_INIT_FUNC_RUNTIME(outputs_before_main, "00150");
 
-void __not_in_flash_func(epg_pico_safe_state)(void)
+void __not_in_flash_func(epg_pico_outputs_off)(void)
 {
     if (sio_hw->cpuid == 0U) {
         /* Core 1 would write its outputs again: it is held in reset. */
         hw_set_bits(&psm_hw->frce_off, PSM_FRCE_OFF_PROC1_BITS);
     }
-    watchdog_hw->scratch[FAULT_WORD] = FAULT_MAGIC;
     sio_hw->gpio_clr = output_pins & ~output_levels;
     sio_hw->gpio_set = output_pins & output_levels;
     sio_hw->gpio_oe_set = output_pins;
@@ -55,6 +54,12 @@ void __not_in_flash_func(epg_pico_safe_state)(void)
             io_bank0_hw->io[pin].ctrl = GPIO_FUNC_SIO << IO_BANK0_GPIO0_CTRL_FUNCSEL_LSB;
         }
     }
+}
+
+void __not_in_flash_func(epg_pico_safe_state)(void)
+{
+    epg_pico_outputs_off();
+    watchdog_hw->scratch[FAULT_WORD] = FAULT_MAGIC;
 }
 
 epg_fault_t epg_pico_fault_before_reset(void)

@@ -45,6 +45,9 @@ static void serve(void)
     if (pico->middleware != NULL) {
         pico->middleware->poll(epg_port_time_ns());
     }
+    if (pico->transport != NULL) {
+        pico->transport->flush();
+    }
     const uint32_t now_us = timer_hw->timerawl;
     if (now_us - stacks_us >= STACKS_PERIOD_US) {
         stacks_us = now_us;

@@ -40,8 +40,9 @@ typedef struct epg_pico_tick {
 
 /** A way for bytes between a middleware and the world.  All functions run on the communication side. */
 typedef struct epg_pico_transport {
-    bool (*start)(void);  /**< once; false when that is impossible */
-    void (*poll)(void);   /**< at least once per millisecond */
+    bool (*start)(void); /**< before the control loop starts; false when that is impossible */
+    void (*poll)(void);  /**< at least once per millisecond, before the middleware */
+    void (*flush)(void); /**< after the middleware: what it has written goes out */
     epg_stream_t stream;
 } epg_pico_transport_t;
 

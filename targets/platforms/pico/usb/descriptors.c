@@ -1,0 +1,152 @@
+/**
+ * @file
+ * Descriptors: a serial port (CDC ACM) and the interface by which picotool reboots the board.
+ *
+ * The numbers are those of the Pico SDK's own serial port, by which picotool and udev rules know a board that runs
+ * firmware; the serial number is the board's unique id, so that several boards can be told apart.  Windows finds the
+ * driver of the second interface (WinUSB) through Microsoft OS 2.0 descriptors.
+ */
+#include "usb.h"
+
+#define VENDOR_RASPBERRY_PI 0x2E8A
+#if PICO_RP2040
+#define PRODUCT_CDC 0x000A
+#else
+#define PRODUCT_CDC 0x0009
+#endif
+
+#define ENDPOINT_NOTIFICATION 0x81
+#define ENDPOINT_OUT 0x02
+#define ENDPOINT_IN 0x82
+#define MAX_POWER_MA 250
+
+enum { TEXT_LANGUAGE, TEXT_MANUFACTURER, TEXT_PRODUCT, TEXT_SERIAL, TEXT_CDC, TEXT_RESET, TEXTS };
+
+/** Characters of the longest text. */
+#define TEXT_LENGTH 31
+
+static_assert(2 * PICO_UNIQUE_BOARD_ID_SIZE_BYTES <= TEXT_LENGTH, "the serial number fits");
+
+static const tusb_desc_device_t device = {
+    .bLength = sizeof device,
+    .bDescriptorType = TUSB_DESC_DEVICE,
+    .bcdUSB = 0x0210, /* the first with a BOS descriptor */
+    .bDeviceClass = TUSB_CLASS_MISC,
+    .bDeviceSubClass = MISC_SUBCLASS_COMMON,
+    .bDeviceProtocol = MISC_PROTOCOL_IAD,
+    .bMaxPacketSize0 = CFG_TUD_ENDPOINT0_SIZE,
+    .idVendor = VENDOR_RASPBERRY_PI,
+    .idProduct = PRODUCT_CDC,
+    .bcdDevice = 0x0100,
+    .iManufacturer = TEXT_MANUFACTURER,
+    .iProduct = TEXT_PRODUCT,
+    .iSerialNumber = TEXT_SERIAL,
+    .bNumConfigurations = 1,
+};
+
+#define INTERFACE_LENGTH 9
+#define CONFIGURATION_LENGTH (TUD_CONFIG_DESC_LEN + TUD_CDC_DESC_LEN + INTERFACE_LENGTH)
+
+static const uint8_t configuration[] = {
+    TUD_CONFIG_DESCRIPTOR(1, EPG_USB_INTERFACES, 0, CONFIGURATION_LENGTH, 0, MAX_POWER_MA),
+    TUD_CDC_DESCRIPTOR(EPG_USB_CDC, TEXT_CDC, ENDPOINT_NOTIFICATION, 8, ENDPOINT_OUT, ENDPOINT_IN, 64),
+    /* The reset interface has no endpoints. */
+    INTERFACE_LENGTH, TUSB_DESC_INTERFACE, EPG_USB_RESET, 0, 0, TUSB_CLASS_VENDOR_SPECIFIC, RESET_INTERFACE_SUBCLASS,
+    RESET_INTERFACE_PROTOCOL, TEXT_RESET,
+};
+
+static_assert(sizeof configuration == CONFIGURATION_LENGTH, "the length that the descriptor states");
+
+/* Microsoft OS 2.0 Descriptors Specification, tables 10 to 15. */
+#define MICROSOFT_LENGTH 166
+#define SUBSET_LENGTH (MICROSOFT_LENGTH - 10)
+#define CHARACTER(character) (character), 0
+
+static const uint8_t binary_objects[] = {
+    TUD_BOS_DESCRIPTOR(TUD_BOS_DESC_LEN + TUD_BOS_MICROSOFT_OS_DESC_LEN, 1),
+    TUD_BOS_MS_OS_20_DESCRIPTOR(MICROSOFT_LENGTH, EPG_USB_MICROSOFT_REQUEST),
+};
+
+/* clang-format off */
+static const uint8_t microsoft[] = {
+    /* set header: length, type, Windows 8.1, total length */
+    U16_TO_U8S_LE(10), U16_TO_U8S_LE(MS_OS_20_SET_HEADER_DESCRIPTOR), U32_TO_U8S_LE(0x06030000),
+    U16_TO_U8S_LE(MICROSOFT_LENGTH),
+    /* function subset header: length, type, first interface, reserved, length of the subset */
+    U16_TO_U8S_LE(8), U16_TO_U8S_LE(MS_OS_20_SUBSET_HEADER_FUNCTION), EPG_USB_RESET, 0, U16_TO_U8S_LE(SUBSET_LENGTH),
+    /* compatible id: length, type, id, sub-id */
+    U16_TO_U8S_LE(20), U16_TO_U8S_LE(MS_OS_20_FEATURE_COMPATBLE_ID), 'W', 'I', 'N', 'U', 'S', 'B', 0, 0,
+    0, 0, 0, 0, 0, 0, 0, 0,
+    /* registry property: length, type, a text, length of the name, name */
+    U16_TO_U8S_LE(128), U16_TO_U8S_LE(MS_OS_20_FEATURE_REG_PROPERTY), U16_TO_U8S_LE(1), U16_TO_U8S_LE(40),
+    CHARACTER('D'), CHARACTER('e'), CHARACTER('v'), CHARACTER('i'), CHARACTER('c'), CHARACTER('e'), CHARACTER('I'),
+    CHARACTER('n'), CHARACTER('t'), CHARACTER('e'), CHARACTER('r'), CHARACTER('f'), CHARACTER('a'), CHARACTER('c'),
+    CHARACTER('e'), CHARACTER('G'), CHARACTER('U'), CHARACTER('I'), CHARACTER('D'), CHARACTER('\0'),
+    /* length and text: the class by which picotool finds the interface, as in the SDK's serial port */
+    U16_TO_U8S_LE(78),
+    CHARACTER('{'), CHARACTER('b'), CHARACTER('c'), CHARACTER('7'), CHARACTER('3'), CHARACTER('9'), CHARACTER('8'),
+    CHARACTER('c'), CHARACTER('1'), CHARACTER('-'), CHARACTER('7'), CHARACTER('3'), CHARACTER('c'), CHARACTER('d'),
+    CHARACTER('-'), CHARACTER('4'), CHARACTER('c'), CHARACTER('b'), CHARACTER('7'), CHARACTER('-'), CHARACTER('9'),
+    CHARACTER('8'), CHARACTER('b'), CHARACTER('8'), CHARACTER('-'), CHARACTER('9'), CHARACTER('1'), CHARACTER('3'),
+    CHARACTER('a'), CHARACTER('8'), CHARACTER('f'), CHARACTER('c'), CHARACTER('a'), CHARACTER('7'), CHARACTER('b'),
+    CHARACTER('f'), CHARACTER('6'), CHARACTER('}'), CHARACTER('\0'),
+};
+/* clang-format on */
+
+static_assert(sizeof microsoft == MICROSOFT_LENGTH, "the length that the descriptor states");
+
+const uint8_t *tud_descriptor_device_cb(void)
+{
+    return (const uint8_t *)&device;
+}
+
+const uint8_t *tud_descriptor_configuration_cb(uint8_t index)
+{
+    (void)index;
+    return configuration;
+}
+
+const uint8_t *tud_descriptor_bos_cb(void)
+{
+    return binary_objects;
+}
+
+bool tud_vendor_control_xfer_cb(uint8_t port, uint8_t stage, const tusb_control_request_t *request)
+{
+    if (stage != CONTROL_STAGE_SETUP) {
+        return true;
+    }
+    /* Index 7 asks for the descriptor set. */
+    if (request->bRequest != EPG_USB_MICROSOFT_REQUEST || request->wIndex != 7) {
+        return false;
+    }
+    return tud_control_xfer(port, request, (void *)(uintptr_t)microsoft, sizeof microsoft);
+}
+
+const uint16_t *tud_descriptor_string_cb(uint8_t index, uint16_t language)
+{
+    (void)language;
+    static char serial[2 * PICO_UNIQUE_BOARD_ID_SIZE_BYTES + 1];
+    static const char *const texts[TEXTS] = {
+        [TEXT_MANUFACTURER] = "Raspberry Pi",
+        [TEXT_PRODUCT] = "Pico",
+        [TEXT_SERIAL] = serial,
+        [TEXT_CDC] = "EPG",
+        [TEXT_RESET] = "Reset",
+    };
+    static uint16_t descriptor[1 + TEXT_LENGTH];
+    size_t length = 0;
+    if (index == TEXT_LANGUAGE) {
+        descriptor[1] = 0x0409; /* English */
+        length = 1;
+    } else if (index < TEXTS) {
+        pico_get_unique_board_id_string(serial, sizeof serial);
+        for (const char *text = texts[index]; text[length] != '\0' && length < TEXT_LENGTH; length++) {
+            descriptor[1 + length] = (uint8_t)text[length];
+        }
+    } else {
+        return NULL;
+    }
+    descriptor[0] = (uint16_t)(TUSB_DESC_STRING << 8 | (2 * length + 2));
+    return descriptor;
+}

@@ -1,0 +1,20 @@
+/**
+ * @file
+ * The headers of TinyUSB and of the Pico SDK that go with it, as system headers.
+ */
+#ifndef EPG_PICO_USB_SDK_H
+#define EPG_PICO_USB_SDK_H
+
+#pragma GCC system_header
+
+#include "device/usbd_pvt.h"
+#include "pico/bootrom.h"
+#include "pico/unique_id.h"
+#include "pico/usb_reset_interface.h"
+#include "tusb.h"
+
+#if LIB_PICO_STDIO_USB
+#error "EPG's transport 'usb' and the SDK's stdio over USB want the same USB device: write pico_enable_stdio_usb(<executable> 0), or choose another transport in the .tcf"
+#endif
+
+#endif
