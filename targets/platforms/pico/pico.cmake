@@ -11,7 +11,7 @@ function(_epg_pico_target name)
   endif()
   _epg_pico_in_ram("${name}")
   _epg_pico_library()
-  include("${EPG_TARGETS_DIR}/libraries/pico_quadrature/library.cmake" OPTIONAL)
+  include("${EPG_TARGETS_DIR}/libraries/pico_quadrature/library.cmake")
 
   # Its own interface library, because the sources must not be compiled into the static library.
   add_library(${name}_port INTERFACE)

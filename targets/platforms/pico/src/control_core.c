@@ -302,7 +302,8 @@ void epg_pico_control_stop(void)
     watchdog_disable();
     multicore_reset_core1();
     hw_clear_bits(WRAP_ENABLE, loop.tick_bit);
-    epg_pico_peripherals_stop();
+    epg_pico_outputs_start();
+    epg_pico_quadrature_stop_all();
     hw_clear_bits(&pwm_hw->en, epg_pico_output_slices | loop.tick_bit);
     atomic_store(&state, STATE_OFF);
 }

@@ -18,8 +18,10 @@ extern uint32_t epg_pico_output_slices;
 /** A peripheral that was taken by somebody else: set while peripherals are started. */
 extern bool epg_pico_resource_taken;
 
-/** Gives back what starting the peripherals has taken; pins keep their levels as plain outputs. */
-void epg_pico_peripherals_stop(void);
+/* quadrature.c ------------------------------------------------------------------------------------------------- */
+
+/** Gives back all state machines. */
+void epg_pico_quadrature_stop_all(void);
 
 /* clock.c ------------------------------------------------------------------------------------------------------ */
 
@@ -50,6 +52,9 @@ bool epg_pico_control_hold(uint32_t timeout_us);
 void epg_pico_control_release(void);
 
 /* safe_state.c ------------------------------------------------------------------------------------------------- */
+
+/** Makes all outputs plain ones at their safe levels, as before main(). */
+void epg_pico_outputs_start(void);
 
 /** As epg_pico_safe_state(), before a reset that is wanted: no fault is reported after it. */
 void epg_pico_outputs_off(void);

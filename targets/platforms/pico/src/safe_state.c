@@ -26,7 +26,7 @@ static uint32_t output_levels;
  * boot ROM has handed over, plus copying where the image runs from RAM.  Until then pins float, held by the chip's weak
  * pull-downs.
  */
-static void outputs_before_main(void)
+void epg_pico_outputs_start(void)
 {
     for (size_t i = 0; i < epg_pico_outputs.count; i++) {
         const epg_pico_output_t *output = &epg_pico_outputs.pins[i];
@@ -38,7 +38,7 @@ static void outputs_before_main(void)
     }
 }
 
-PICO_RUNTIME_INIT_FUNC_RUNTIME(outputs_before_main, "00150");
+PICO_RUNTIME_INIT_FUNC_RUNTIME(epg_pico_outputs_start, "00150");
 
 void __not_in_flash_func(epg_pico_outputs_off)(void)
 {

@@ -1,0 +1,12 @@
+/**
+ * @file
+ * The library pico_quadrature and the SDK's headers about the PIO, as system headers.
+ */
+#ifndef EPG_PICO_ENCODER_SDK_H
+#define EPG_PICO_ENCODER_SDK_H
+
+#pragma GCC system_header
+
+#include "epg/pico_quadrature.h"
+
+#endif
