@@ -41,12 +41,19 @@ class Diagnostics:
 
     items: list[Diagnostic] = field(default_factory=list)
     _known: set[Diagnostic] = field(default_factory=set, repr=False, compare=False)
+    _counted: int = field(default=0, repr=False, compare=False)
+    _errors: int = field(default=0, repr=False, compare=False)
 
     def error(self, id: str, span: Span, message: str, *, hint: str = "", notes: Iterable[Note] = ()) -> None:
         self._add(Diagnostic(id, "error", span, message, hint, tuple(notes)))
 
     def warning(self, id: str, span: Span, message: str, *, hint: str = "", notes: Iterable[Note] = ()) -> None:
         self._add(Diagnostic(id, "warning", span, message, hint, tuple(notes)))
+
+    @property
+    def wants_hints(self) -> bool:
+        """Whether a hint that is searched among many names is worth its time: not for the thousandth problem."""
+        return len(self.items) < 50
 
     def _add(self, diagnostic: Diagnostic) -> None:
         if diagnostic not in self._known:
@@ -55,7 +62,10 @@ class Diagnostics:
 
     @property
     def error_count(self) -> int:
-        return sum(item.severity == "error" for item in self.items)
+        for item in self.items[self._counted :]:  # asked for at every step of the way
+            self._errors += item.severity == "error"
+        self._counted = len(self.items)
+        return self._errors
 
     @property
     def has_errors(self) -> bool:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+import re
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -23,7 +24,9 @@ _PUBLIC = frozenset("start stop enable status statistics target inputs outputs c
 STATIC_NAMES = frozenset(
     """read_inputs inputs_finite model_init model_step model_finite model_stopped write_outputs safe_outputs fail_safe
     setpoint_states setpoint_slots setpoint_exchange monitor_values monitor_slots monitor_exchange plant_init
-    plant_step""".split()
+    plant_step set_parameter parameter_table parameter_values parameter_applied parameter_changed parameter_store
+    capture_memory jog_actuators jog_encoders jog_first jog_last middleware_options middleware_output
+    middleware_values""".split()
 )
 """Names of two words in generated files: a target and a component's name could make one of them."""
 
@@ -142,6 +145,7 @@ def _components(
     claims: dict[str, dict[str, Assignment]] = {}
     for (owner, claim), found in assignments.items():
         claims.setdefault(owner, {})[claim] = found
+    beginnings = {name[: match.start()] for name in configuration.components for match in re.finditer("(?<=.)_", name)}
     for component in configuration.components.values():
         slot: int | None = None
         direction = component.kind.communication
@@ -150,7 +154,7 @@ def _components(
             slots[direction] += 1
         result[component.name] = ResolvedComponent(
             name=component.name,
-            symbol=_symbol(name, component.name, configuration.components),
+            symbol=_symbol(name, component.name, beginnings),
             kind=component.kind,
             parameters=component.parameters,
             claims=claims.get(component.name, {}),
@@ -161,16 +165,16 @@ def _components(
     return result
 
 
-def _symbol(application: str, component: str, others: Iterable[str]) -> str:
+def _symbol(application: str, component: str, beginnings: Collection[str]) -> str:
     """The C symbol of a component: prefixed, so that it meets neither the C library nor other targets' symbols.
 
-    Kinds append to it (``<symbol>_config``), so that it must not begin the name of one of the ``others`` either.
+    Kinds append to it (``<symbol>_config``), so it is none of the ``beginnings`` of other components' names.
     """
     folded = component.casefold()
     symbol = component
     if folded in _PUBLIC or folded.startswith(("model_", "plant_")) or f"{application}_{component}" in STATIC_NAMES:
         symbol += "_component"
-    while any(other.startswith(f"{symbol}_") for other in others):
+    while symbol in beginnings:
         symbol += "_component"
     return f"{application}_{symbol}"
 

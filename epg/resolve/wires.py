@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 
 from epg.check.bindings import Binding, Bindings, Conversion
@@ -34,8 +34,8 @@ def input_wires(
     _unknown_ports(bindings.inputs, model.inputs, model.outputs, model, "input", diagnostics)
     for port in model.inputs:
         if port.name not in bindings.inputs:
-            free = sorted(_possible(components.values(), direction))
-            hint = did_you_mean(port.name, free, f"add 'inputs: {{{port.name}: ...}}' with one of")
+            otherwise = f"add 'inputs: {{{port.name}: ...}}' with one of"
+            hint = _nearest(port.name, lambda: _possible(components.values(), direction), otherwise, diagnostics)
             span = bindings.root.key_span("inputs") if "inputs" in bindings.root else bindings.model_span
             diagnostics.error("unbound-input", span, f"model input '{port.name}' is not bound", hint=hint)
             continue
@@ -98,7 +98,9 @@ def parameter_overrides(bindings: Bindings, model: Model, diagnostics: Diagnosti
     result: dict[str, float] = {}
     for written, (span, value, _) in bindings.parameters.items():
         if written not in names:
-            hint = did_you_mean(written, [p.name for p in model.parameters], f"parameters of {model.name}")
+            hint = _nearest(
+                written, lambda: (p.name for p in model.parameters), f"parameters of {model.name}", diagnostics
+            )
             diagnostics.error("unknown-parameter", span, f"{model.name} has no parameter '{written}'", hint=hint)
         elif names[written] in result:
             diagnostics.error("bound-twice", span, f"parameter '{names[written]}' is set twice")
@@ -127,8 +129,12 @@ def _unknown_ports(
                 "wrong-direction", span, f"'{name}' is an {wrong} of {model.name}", hint=f"move it to '{wrong}s'"
             )
             continue
-        hint = did_you_mean(name, names, f"{what}s of {model.name}")
+        hint = _nearest(name, lambda: names, f"{what}s of {model.name}", diagnostics)
         diagnostics.error("unknown-port", span, f"{model.name} has no {what} '{name}'", hint=hint)
+
+
+def _nearest(word: str, choices: Callable[[], Iterable[str]], otherwise: str, diagnostics: Diagnostics) -> str:
+    return did_you_mean(word, choices(), otherwise) if diagnostics.wants_hints else ""
 
 
 def _possible(components: Iterable[Component], direction: str) -> list[str]:
@@ -148,7 +154,7 @@ def _end(
     """The component port a binding names, after checking that it exists and has the direction."""
     component = components.get(binding.component)
     if component is None:
-        hint = did_you_mean(binding.component, _possible(components.values(), direction), "possible")
+        hint = _nearest(binding.component, lambda: _possible(components.values(), direction), "possible", diagnostics)
         diagnostics.error("unknown-component", binding.span, f"there is no component '{binding.component}'", hint=hint)
         return None
     ports = {port.name: port for port in component.kind.ports}
@@ -179,7 +185,7 @@ def _wrong_direction(
 ) -> None:
     verb = "gives no value" if direction == "source" else "takes no value"
     message = f"'{reference}' ({component.kind.name}) {verb}"
-    possible = sorted(_possible(components.values(), direction))
+    possible = sorted(_possible(components.values(), direction)) if diagnostics.wants_hints else []
     hint = f"possible: {', '.join(possible)}" if possible else ""
     diagnostics.error("wrong-direction", binding.span, message, hint=hint)
 

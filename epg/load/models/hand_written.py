@@ -286,6 +286,7 @@ class _Reader:
             return (), ()
         parameters: list[Parameter] = []
         members: list[str] = []
+        taken: set[str] = set()
         for index, (name, value) in enumerate(node.items()):
             span = node.key_span(name)
             number = value if not value.is_mapping else value.get("value")
@@ -304,10 +305,11 @@ class _Reader:
                 self._error("invalid-name", span, f"'{member}' is no {what}", "set 'member'")
                 continue
             identifier = to_identifier(name)
-            if any(known.identifier == identifier for known in parameters):
+            if identifier in taken:
                 self._error(
                     "invalid-name", span, f"'{name}' becomes the C identifier of another parameter", "rename it"
                 )
+            taken.add(identifier)
             parameters.append(Parameter(name, identifier, float(number.value), self._word(value, "unit"), index, span))
             members.append(member)
         return tuple(parameters), tuple(members)

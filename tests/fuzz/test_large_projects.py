@@ -1,0 +1,66 @@
+"""Thousands of components, ports, wires and parameters, right and each of them wrong: time grows with their number."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.fuzz.long_run import LONG
+from tests.fuzz.project import Project
+from tests.fuzz.robots import ARGUMENTS
+
+COUNT = 10_000 if LONG else 2_000
+SECONDS = COUNT / 800  # of computing; what is quadratic takes several times that at the larger count
+
+
+def project() -> dict[str, bytes]:
+    """One constant for each input of a model, and as many parameters."""
+    numbers = range(COUNT)
+    components = "".join(f"  c{i}: {{kind: constant, value: {i}}}\n" for i in numbers)
+    inputs = "".join(f"  p{i}: {{}}\n" for i in numbers)
+    parameters = "".join(f"  q{i}: {i}\n" for i in numbers)
+    wires = "".join(f"  p{i}: c{i}\n" for i in numbers)
+    members = " ".join(f"double p{i};" for i in numbers)
+    return {
+        "robot.tcf": (
+            f"version: 1\ntarget: host\nnode: r\ncontrol: {{enable_at_start: true}}\ncomponents:\n{components}"
+            "  out: {kind: ros_publisher, topic: out}\n"
+        ).encode(),
+        "bindings.yaml": f"version: 1\nmodel: Big\noutputs: {{o: out}}\ninputs:\n{wires}".encode(),
+        "model/model.yaml": (
+            "version: 1\nname: Big\nstep: 1 ms\nheader: big.h\nsources: [big.c]\nfunctions: {step: s}\n"
+            f"types: {{inputs: i_t, outputs: o_t}}\noutputs: {{o: {{}}}}\ninputs:\n{inputs}parameters:\n{parameters}"
+        ).encode(),
+        "model/big.h": f"typedef struct {{{members}}} i_t;\ntypedef struct {{double o;}} o_t;\n".encode(),
+        "model/big.c": b'#include "big.h"\nvoid s(const i_t *i, o_t *o)\n{\n    (void)i;\n    o->o = 0;\n}\n',
+    }
+
+
+def test_right(tmp_path: Path) -> None:
+    outcome = Project(tmp_path / "p", project(), ARGUMENTS).generate(SECONDS)
+    assert outcome.good, outcome.errors[:3]
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new"),
+    [
+        ("bindings.yaml", "  p", "  z"),
+        ("bindings.yaml", ": c", ": d"),
+        ("bindings.yaml", "inputs:\n", "parameters:\n  r: 1\ninputs:\n"),
+        ("bindings.yaml", ": c", ": c.x"),
+        ("robot.tcf", "kind: constant", "kind: constants"),
+        ("robot.tcf", "value:", "valu:"),
+        ("robot.tcf", "value: ", "value: x"),
+        ("robot.tcf", "{kind: constant, value", "{kind: ros_subscriber, topic: t, initial"),
+        ("model/model.yaml", ": {}", ": {unit: V, typ: real}"),
+        ("model/model.yaml", "  q", "  if: 1\n  p"),
+    ],
+    ids=str,
+)
+def test_everything_wrong(file: str, old: str, new: str, tmp_path: Path) -> None:
+    files = project()
+    outcome = Project(
+        tmp_path / "p", files | {file: files[file].replace(old.encode(), new.encode())}, ARGUMENTS
+    ).generate(SECONDS)
+    assert not outcome.good
