@@ -13,17 +13,8 @@ from pathlib import Path
 
 from epg.bootstrap import cache_folder
 
-from .toolchain import ROOT, Missing, arm_gcc, locked, pico_sdk, tool
+from .toolchain import HERE, ROOT, Missing, arm_gcc, locked, pico_sdk, tool
 
-COMPILER_ARITHMETIC = {
-    # What the boot ROM would supply, from the compiler instead: images for the stand-in ROM.
-    "PICO_DEFAULT_FLOAT_IMPL": "pico_float_compiler",
-    "PICO_DEFAULT_DOUBLE_IMPL": "pico_double_compiler",
-    "PICO_DEFAULT_DIVIDER_IMPL": "pico_divider_compiler",
-    "PICO_DEFAULT_BIT_OPS_IMPL": "pico_bit_ops_compiler",
-    "PICO_DEFAULT_MEM_OPS_IMPL": "pico_mem_ops_compiler",
-    "PICO_DEFAULT_INT64_OPS_IMPL": "pico_int64_ops_compiler",
-}
 
 
 class BuildError(Exception):
@@ -41,7 +32,7 @@ def build(
 ) -> Path:
     """Configures and builds ``targets`` (all, if empty) and returns the build folder.
 
-    ``project`` is relative to the repository.  RP2040 images take their arithmetic from the compiler unless
+    ``project`` is relative to the repository.  RP2040 images take float and double from the compiler unless
     ``stock_arithmetic``.  Raises :class:`BuildError`, or :class:`Missing` for SDK or compiler.
     """
     source = (ROOT / project).resolve()
@@ -54,7 +45,7 @@ def build(
     except Missing:
         settings["PICO_NO_PICOTOOL"] = "1"
     if board == "pico" and not stock_arithmetic:
-        settings = {**COMPILER_ARITHMETIC, **settings}
+        settings["CMAKE_PROJECT_INCLUDE"] = str(HERE / "compiler_arithmetic.cmake")
     digest = hashlib.sha256(repr((str(source), sorted(settings.items()))).encode()).hexdigest()[:16]
     folder = cache_folder() / "test-build" / f"{source.name}-{board}-{digest}"
     with locked(folder):
