@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
 import tempfile
@@ -15,14 +16,11 @@ STRICT = ["-std=c11", "-Wall", "-Wextra", "-Wconversion", "-Wdouble-promotion", 
 needs_compiler = pytest.mark.skipif(shutil.which("gcc") is None, reason="gcc is missing: apt install gcc")
 
 
-def include_options() -> list[str]:
-    targets = ROOT / "targets"
-    folders = [
-        targets / "runtime/include",
-        targets / "platforms/host/include",
-        *sorted((targets / "components").iterdir()),
-    ]
-    return [f"-I{folder}" for folder in folders]
+def include_options(cmake: str) -> list[str]:
+    """Where the headers are that ``<name>.cmake`` lists; copies in a user's ``targets`` folder are EPG's own files."""
+    headers = re.findall(r'"\$\{(?:EPG_TARGETS_DIR|CMAKE_SOURCE_DIR\}/targets)\}?/([^"]+\.h)"', cmake)
+    inside = sorted({str(Path(header).parent) for header in headers})
+    return [f"-I{ROOT / 'targets' / folder}" for folder in ("runtime/include", "platforms/host/include", *inside)]
 
 
 def compile_outputs(name: str, files: Mapping[str, str]) -> None:
@@ -34,7 +32,14 @@ def compile_outputs(name: str, files: Mapping[str, str]) -> None:
             (folder / file).write_text(text, encoding="utf-8")
         sources = [file for file in sorted(files) if file.endswith(".c") and is_strict(file)]
         assert sources
-        command = ["gcc", "-fsyntax-only", *STRICT, *include_options(), f"-I{folder}", *sources]
+        command = [
+            "gcc",
+            "-fsyntax-only",
+            *STRICT,
+            *include_options(files.get(f"{name}.cmake", "")),
+            f"-I{folder}",
+            *sources,
+        ]
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True, errors="replace")
         assert done.returncode == 0, done.stderr[:4000]
 

@@ -52,7 +52,7 @@ def test_mutated_files_of_a_project(tmp_path: Path) -> None:
     """At least a fifth of the mutated projects compile: the mutations reach behind the checks."""
     counts: Counter[str] = Counter()
 
-    @settings(PROFILE, max_examples=examples(220))
+    @settings(PROFILE, max_examples=examples(140))
     @given(st.data())
     def run(data: st.DataObject) -> None:
         files = all_kinds()
@@ -83,7 +83,7 @@ def _compile_if_new(files: Any, name: str) -> None:
 
 
 @needs_compiler
-@settings(PROFILE, max_examples=examples(60))
+@settings(PROFILE, max_examples=examples(35))
 @given(robots(), st.one_of(st.just("robot"), names.filter(lambda name: name not in NO_TARGETS)))
 def test_robots_that_are_right_compile(tmp_path: Path, robot: Robot, name: str) -> None:
     outcome = Project(tmp_path / "p", robot.files, ARGUMENTS, name).generate()

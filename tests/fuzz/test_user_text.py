@@ -215,3 +215,28 @@ def test_what_is_seen_when_it_runs(tmp_path: Path) -> None:
     with trace.open(encoding="utf-8", newline="") as file:
         header = next(csv.reader(file))
     assert f"inputs.{strange}" in header
+
+
+@pytest.mark.parametrize("name", ['a"b', "a>b", "a<b", "a\\b", "a\nb"], ids=repr)
+def test_files_that_cannot_be_included(name: str, tmp_path: Path) -> None:
+    """C++ sources and headers are included by name, and C has no way to escape in it."""
+    needs_names(name)
+    files = all_kinds()
+    for suffix, key, old in ((".cpp", "sources", "sources: [copy.c]"), (".h", "header", "header: copy.h")):
+        new = f"{key}: [{in_yaml(name + suffix)}]" if key == "sources" else f"{key}: {in_yaml(name + suffix)}"
+        changed = replaced(files, "model/model.yaml", old, new)
+        changed = replaced(changed, "model/model.yaml", "step: 2 ms", "step: 2 ms\nlanguage: c++")
+        changed[f"model/{name}{suffix}"] = files["model/copy" + (".c" if suffix == ".cpp" else ".h")]
+        if key == "header":
+            changed = replaced(changed, "model/model.yaml", "[copy.c]", "[copy.cpp]") | {
+                "model/copy.cpp": files["model/copy.c"]
+            }
+        outcome = Project(tmp_path / "p", changed, WITH_PLANT).generate()
+        assert "[invalid-name]" in outcome.messages
+        assert len(outcome.errors) == 1, outcome.messages
+    (tmp_path / "export").mkdir()
+    from tests.fuzz.test_files import export
+
+    servo = {file.replace("Servo.cpp", f"{name}.cpp"): data for file, data in export("write_cpp").items()}
+    outcome = Project(tmp_path / "p", servo, ("--model", "model")).generate()
+    assert "[invalid-name]" in outcome.messages

@@ -127,7 +127,7 @@ class _Importer:
             if line.array in (parameter_array, f"model_instance->{parameter_array}")
         ]
         if settings and not self._exists(parameter_array):
-            code, line = settings[0]
+            _, line = settings[0]
             message = f"'{line.array}' is set, but no file of the export defines it"
             hint = "are all files there, and renamed in the same way? else export again"
             self.diagnostics.error("model-incomplete", line.span, message, hint=hint)

@@ -22,6 +22,7 @@ from epg.load.models.link import Linked, link
 from epg.load.models.metadata import cross_check, find_metadata
 from epg.load.models.model import Model, Port
 from epg.load.models.ports import check_identifiers, make_parameters, make_ports
+from epg.load.models.source_file import is_includable
 from epg.source import Span
 
 SUFFIXES = (".cpp", ".cc", ".cxx")
@@ -49,6 +50,11 @@ def load_cpp_class(main: Code, diagnostics: Diagnostics) -> Model | None:
     linked = link(main, SUFFIXES, diagnostics)
     if linked is None or diagnostics.error_count > before:
         return None
+    for code in linked.units:
+        if not is_includable(code.file.path.name):
+            message = f"'{code.file.path.name}' cannot be included"
+            diagnostics.error("invalid-name", code.file.span(0), message, hint="rename the file")
+            return None
     return _Importer(linked, submodel_classes(main)[0], diagnostics).load()
 
 

@@ -19,7 +19,7 @@ from epg.load.models.folders import source_files
 from epg.load.models.identifiers import is_reserved, to_identifier
 from epg.load.models.model import Model, Parameter, Port
 from epg.load.models.ports import check_identifiers
-from epg.load.models.source_file import read_source
+from epg.load.models.source_file import is_includable, read_source
 from epg.load.text_file import is_file, is_folder
 from epg.load.yaml_file import load_yaml
 from epg.quantity import QuantityError, parse_quantity
@@ -348,6 +348,9 @@ class _Reader:
                 self._error(
                     "file-not-found", element.span, message, did_you_mean(element.value, known, "in that folder")
                 )
+            elif suffixes and suffixes != _SUFFIXES["c"] and not is_includable(element.value):
+                message = f"'{element.value}' cannot be included"
+                self._error("invalid-name", element.span, message, "rename the file; use '/' in paths")
             else:
                 result.append(path)
         return tuple(dict.fromkeys(result))
@@ -360,7 +363,7 @@ class _Reader:
             self._error(
                 "file-not-found", node.span, f"there is no header '{name}'", did_you_mean(name, known, "headers")
             )
-        if re.search(r'["\\\n]', name):
+        if name and not is_includable(name):
             self._error(
                 "invalid-name", self.node["header"].span, f"'{name}' is no name of a header", "use '/' in paths"
             )

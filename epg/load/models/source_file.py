@@ -85,6 +85,11 @@ def read_any_text(path: Path, diagnostics: Diagnostics, wanted_by: Span | None =
     return decode(data)
 
 
+def is_includable(name: str) -> bool:
+    """Whether a name can stand between the brackets of ``#include <...>``: C has no way to escape in it."""
+    return bool(name) and name.isprintable() and re.search(r'[<>"\\]|//|/\*', name) is None
+
+
 def decode(data: bytes) -> str:
     """Text of a file; line ends become ``\\n``."""
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
