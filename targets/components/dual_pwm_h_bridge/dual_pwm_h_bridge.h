@@ -1,0 +1,98 @@
+/**
+ * @file
+ * An H-bridge with two PWM inputs, one for each direction: signed duty.
+ *
+ * | forwards input | backwards input | motor    |
+ * |----------------|-----------------|----------|
+ * | 1              | 0               | forwards |
+ * | 0              | 1               | backwards|
+ * | 0              | 0               | coasts   |
+ * | 1              | 1               | brakes   |
+ *
+ * This is the table of DRV8833, DRV8871, DRV8212 and L9110 and their relatives.  `slow_decay` says what the motor does
+ * in the rest of each PWM period: coast (the current decays fast) or brake (it decays slowly, which makes speed more
+ * nearly proportional to duty).  Needs only the port layer.  Not thread-safe: all calls from one context.
+ */
+#ifndef EPG_DUAL_PWM_H_BRIDGE_H
+#define EPG_DUAL_PWM_H_BRIDGE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "epg/bridge.h"
+#include "epg/port.h"
+
+typedef struct epg_dual_pwm_h_bridge_config {
+    epg_port_pwm_t forwards;
+    epg_port_pwm_t backwards; /**< with the same period */
+    bool slow_decay;          /**< brakes (true) or coasts between the pulses */
+    epg_bridge_config_t bridge;
+} epg_dual_pwm_h_bridge_config_t;
+
+/** State of one bridge; set by epg_dual_pwm_h_bridge_start(). */
+typedef struct epg_dual_pwm_h_bridge {
+    epg_bridge_t bridge;
+} epg_dual_pwm_h_bridge_t;
+
+/**
+ * Both levels as the bridge's state says.  The one that ends a drive comes first: when a PWM period ends between the
+ * two writes, that period has both inputs low or, with slow decay, high.
+ */
+static inline void epg_dual_pwm_h_bridge_set(const epg_dual_pwm_h_bridge_t *bridge,
+                                             const epg_dual_pwm_h_bridge_config_t *config)
+{
+    const uint32_t clocks = config->forwards.top + 1U;
+    const uint32_t high = config->slow_decay ? clocks : bridge->bridge.level;
+    const uint32_t low = config->slow_decay ? clocks - bridge->bridge.level : 0;
+    switch (bridge->bridge.state) {
+    case EPG_BRIDGE_FORWARDS:
+        epg_port_pwm_write(&config->backwards, low);
+        epg_port_pwm_write(&config->forwards, high);
+        break;
+    case EPG_BRIDGE_BACKWARDS:
+        epg_port_pwm_write(&config->forwards, low);
+        epg_port_pwm_write(&config->backwards, high);
+        break;
+    case EPG_BRIDGE_BRAKE:
+        epg_port_pwm_write(&config->forwards, clocks);
+        epg_port_pwm_write(&config->backwards, clocks);
+        break;
+    case EPG_BRIDGE_COAST:
+    default:
+        epg_port_pwm_write(&config->forwards, 0);
+        epg_port_pwm_write(&config->backwards, 0);
+        break;
+    }
+}
+
+/** Lets the motor coast, or brakes it. */
+static inline void epg_dual_pwm_h_bridge_safe(epg_dual_pwm_h_bridge_t *bridge,
+                                              const epg_dual_pwm_h_bridge_config_t *config)
+{
+    epg_bridge_make_safe(&bridge->bridge, &config->bridge);
+    epg_dual_pwm_h_bridge_set(bridge, config);
+}
+
+/** Configures both PWMs; the motor coasts until this ends, and is safe then. */
+static inline void epg_dual_pwm_h_bridge_start(epg_dual_pwm_h_bridge_t *bridge,
+                                               const epg_dual_pwm_h_bridge_config_t *config)
+{
+    *bridge = (epg_dual_pwm_h_bridge_t){0};
+    epg_port_pwm_start(&config->forwards);
+    epg_port_pwm_start(&config->backwards);
+    epg_dual_pwm_h_bridge_safe(bridge, config);
+}
+
+/**
+ * Drives with `duty` (-1 ... 1), rounded to a whole number of timer clocks.  Returns true if it had to be limited to
+ * +-max_duty.  A duty that is not finite makes the bridge safe, and counts as limited.
+ */
+static inline bool epg_dual_pwm_h_bridge_write(epg_dual_pwm_h_bridge_t *bridge,
+                                               const epg_dual_pwm_h_bridge_config_t *config, double duty)
+{
+    const bool limited = epg_bridge_command(&bridge->bridge, &config->bridge, config->forwards.top + 1U, duty);
+    epg_dual_pwm_h_bridge_set(bridge, config);
+    return limited;
+}
+
+#endif
