@@ -43,6 +43,11 @@ def component_schema(kind: Kind, with_pins: bool) -> dict[str, Any]:
         required += ["pins"] if with_pins else []
     for parameter in kind.parameters:
         properties[parameter.name] = _parameter_schema(parameter)
+    for use in kind.uses:
+        properties[use.name] = {"type": "string", "minLength": 1, "description": use.description}
+        if use.examples:
+            properties[use.name]["examples"] = list(use.examples)
+    required += [use.name for use in kind.uses if use.required]
     properties |= load_schema("bindings")["$defs"]["conversion"]
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
@@ -213,10 +218,8 @@ def _relations(kind: Kind, node: Node, diagnostics: Diagnostics) -> None:
         stated = [name for name in names if name in node]
         if not stated:
             message = f"a {kind.name} states {_alternatives(names)}"
-            hints = [
-                f"{name}: {parameter.description}" for parameter in kind.parameters if (name := parameter.name) in names
-            ]
-            diagnostics.error("exactly-one", span, message, hint="; ".join(hints), notes=extended_from(node["kind"]))
+            hint = _descriptions(kind, names)
+            diagnostics.error("exactly-one", span, message, hint=hint, notes=extended_from(node["kind"]))
         elif len(stated) > 1:
             first = Note("the other one", node.key_span(stated[0]))
             message = f"a {kind.name} states {_alternatives(names)}, not several of them"
@@ -225,11 +228,22 @@ def _relations(kind: Kind, node: Node, diagnostics: Diagnostics) -> None:
                 "remove one of the two; '" + stated[0] + ": null' removes one that a file this one extends has written"
             )
             diagnostics.error("exactly-one", node.key_span(stated[1]), message, hint=hint, notes=notes)
+    for names in kind.at_least_one:
+        if not any(name in node for name in names):
+            message = f"a {kind.name} states at least one of {', '.join(repr(name) for name in names)}"
+            hint = _descriptions(kind, names)
+            diagnostics.error("at-least-one", span, message, hint=hint, notes=extended_from(node["kind"]))
     for key, needed in kind.only_with:
         if key in node and needed not in node:
             message = f"'{key}' means something only together with '{needed}'"
             hint = f"remove '{key}', or state '{needed}'"
             diagnostics.error("only-with", node.key_span(key), message, hint=hint, notes=extended_from(node[key]))
+
+
+def _descriptions(kind: Kind, names: tuple[str, ...]) -> str:
+    described = [(parameter.name, parameter.description) for parameter in kind.parameters]
+    described += [(use.name, use.description) for use in kind.uses]
+    return "; ".join(f"{name}: {description}" for name, description in described if name in names)
 
 
 def _alternatives(names: tuple[str, ...]) -> str:

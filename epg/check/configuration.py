@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -13,6 +13,7 @@ from epg.check.merge import apply_settings, merge_chain
 from epg.check.middleware import check_offer
 from epg.check.names import absolute_topic, identifier_problem, namespace_problem, node_name_problem, topic_problem
 from epg.check.schema import extended_from, load_schema, validate
+from epg.check.uses import Used, used_components
 from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.load.catalog import Catalog, Kind, Target
 from epg.load.middleware import Middleware
@@ -50,11 +51,12 @@ class Communication:
 
 @dataclass(frozen=True)
 class Component:
-    """A component with typed parameters (numbers in SI units) and the conversion that stands on it."""
+    """A component with typed parameters (numbers in SI units), the components it uses, and its conversion."""
 
     name: str
     kind: Kind
     parameters: Mapping[str, object]
+    uses: Mapping[str, Used]
     conversion: Conversion
     node: Node
     span: Span  # of its name
@@ -164,8 +166,12 @@ def _components(root: Node, target: Target | None, catalog: Catalog, diagnostics
         if not validate(node, component_schema(kind, with_pins=with_pins), diagnostics):
             continue
         parameters = typed_parameters(kind, node, diagnostics)
-        result[name] = Component(name, kind, parameters, conversion_of(node, diagnostics), node, span)
-    return result
+        result[name] = Component(name, kind, parameters, {}, conversion_of(node, diagnostics), node, span)
+    kinds = {name: result[name].kind if name in result else None for name, _ in section.items()}
+    return {
+        name: replace(component, uses=used_components(component.kind, component.node, kinds, diagnostics))
+        for name, component in result.items()
+    }
 
 
 def _control(node: Node, components: Mapping[str, Component], diagnostics: Diagnostics) -> Control:

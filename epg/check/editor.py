@@ -105,6 +105,9 @@ def _relations(kind: Kind) -> Schema:
     relations: Schema = {}
     if kind.exactly_one:
         relations["allOf"] = [{"oneOf": [{"required": [name]} for name in names]} for names in kind.exactly_one]
+    if kind.at_least_one:
+        several = [{"anyOf": [{"required": [name]} for name in names]} for names in kind.at_least_one]
+        relations["allOf"] = [*relations.get("allOf", []), *several]
     if kind.only_with:
         needs: dict[str, list[str]] = {}
         for key, needed in kind.only_with:

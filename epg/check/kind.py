@@ -29,7 +29,17 @@ def check_kind(node: Node, diagnostics: Diagnostics) -> None:
             message = f"'{name}' is a key that every component has"
             diagnostics.error("invalid-name", span, message, hint="choose another name for the parameter")
         parameter_problems(name, parameter, span, diagnostics)
-    _relations(node, parameters, diagnostics)
+    uses = map_of(node, "uses")
+    for name in uses:
+        span = node["uses"].key_span(name)
+        if name in (*COMMON_PARAMETERS, "pins"):
+            message = f"'{name}' is a key that every component has"
+            diagnostics.error("invalid-name", span, message, hint="choose another name")
+        elif name in parameters:
+            message = f"'{name}' is a parameter already"
+            notes = [Note("the parameter", node["parameters"].key_span(name))]
+            diagnostics.error("invalid-name", span, message, hint="choose another name", notes=notes)
+    _relations(node, {**parameters, **uses}, uses, diagnostics)
     _ports(node, diagnostics)
     _claims(node, parameters, diagnostics)
     if "communication" in node:
@@ -65,10 +75,15 @@ def _communication(node: Node, parameters: Mapping[str, Node], diagnostics: Diag
             diagnostics.error("wrong-value", span, message, hint=f"write 'enum: [{', '.join(known)}]'")
 
 
-def _relations(node: Node, parameters: Iterable[str], diagnostics: Diagnostics) -> None:
+def _relations(node: Node, parameters: Iterable[str], uses: Iterable[str], diagnostics: Diagnostics) -> None:
     relations = node.get("relations")
     for relation in relations.elements() if relations else ():
-        names = list(relation["exactly_one"].elements()) if "exactly_one" in relation else []
+        names = [
+            name for key in ("exactly_one", "at_least_one") if key in relation for name in relation[key].elements()
+        ]
+        if "needs_bound" in relation:
+            names.append(relation["needs_bound"]["key"])
+            _known("use", relation["needs_bound"]["use"], uses, diagnostics)
         if "only_with" in relation:
             names += [relation["only_with"]["key"], relation["only_with"]["needs"]]
         for name in names:
@@ -85,6 +100,9 @@ def _ports(node: Node, diagnostics: Diagnostics) -> None:
             diagnostics.error(
                 "wrong-value", port["actuator"].span, "an actuator is a sink", hint="write 'direction: sink'"
             )
+        if "drive" in port and port["drive"].value is True and direction != "sink":
+            message = "what drives a motor is a sink"
+            diagnostics.error("wrong-value", port["drive"].span, message, hint="write 'direction: sink'")
         if "default" in port and port["default"].value is True:
             other, other_span = defaults.setdefault(direction, (name, span))
             if other != name:

@@ -7,7 +7,8 @@ kind, one macro per place of the generation order (docs/architecture.md lists th
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -21,8 +22,23 @@ TEMPLATES = Path(__file__).resolve().parent / "templates"
 
 
 @dataclass(frozen=True)
+class UseView:
+    """Another component that one names: the C expressions for its value, and for how often that was reset.
+
+    ``value`` is what a sensor gives or what a drive is given at present; empty for a topic.
+    """
+
+    name: str
+    value: Code
+    resets: Code
+
+
+@dataclass(frozen=True)
 class ComponentView:
-    """A component as templates of its kind see it; names that are printed are code already."""
+    """A component as templates of its kind see it; names that are printed are code already.
+
+    ``period`` is that of the control cycle, ``write_period`` the one at which actuators are written, both in seconds.
+    """
 
     name: str
     symbol: Code
@@ -30,6 +46,9 @@ class ComponentView:
     claims: Mapping[str, Any]
     slot: int | None
     application: Code
+    period: Fraction
+    write_period: Fraction
+    uses: Mapping[str, UseView] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -37,10 +56,26 @@ class Part:
     """What one component contributes to the places of the generation order."""
 
     component: ComponentView
+    number: int
     globals: Code
     start: Code
     sample: Code
+    check: Code
     safe: Code
+    probes: Mapping[str, Code]
+
+
+POINTS = ("cycle", "inputs", "model", "outputs")
+"""Points of the control cycle at which a kind may have statements: its macro ``probe(c, point)``."""
+
+
+@dataclass(frozen=True)
+class Arrival:
+    """Statements for when a setpoint has arrived, or a publication is about to leave."""
+
+    component: str
+    slot: int
+    statement: Code
 
 
 @dataclass(frozen=True)
@@ -83,8 +118,10 @@ class Emitter:
         self.app = app
         self.prefix = identifier(app.name)
         self.env = environment([TEMPLATES, *roots])
-        self.views = {component.name: self._view(component) for component in app.components}
         self.modules: dict[str, Any] = {}
+        self.components = {component.name: component for component in app.components}
+        self.views = {component.name: self._view(component) for component in app.components}
+        self.views |= {name: replace(view, uses=self._uses(name)) for name, view in self.views.items()}
 
     def files(self) -> dict[str, str]:
         """All generated C of the application by file name."""
@@ -102,7 +139,7 @@ class Emitter:
 
     def _context(self) -> dict[str, Any]:
         app = self.app
-        parts = [self._part(component) for component in app.components]
+        parts = [self._part(number, component) for number, component in enumerate(app.components)]
         publishers = {topic.component.name for topic in app.publications}
         headers = {str(header) for component in app.components for header in component.kind.headers}
         context: dict[str, Any] = {
@@ -110,7 +147,9 @@ class Emitter:
             "prefix": self.prefix,
             "headers": sorted(headers),
             "parts": parts,
-            "numbers": {component.name: number for number, component in enumerate(app.components)},
+            "numbers": {part.component.name: part.number for part in parts},
+            "arrivals": self._arrivals("subscribe"),
+            "departures": self._arrivals("publish"),
             "inputs": [self._input(wire) for wire in app.inputs],
             "outputs": [self._output(wire) for wire in app.outputs if wire.component.name not in publishers],
             "monitor": [self._output(wire) for wire in app.outputs if wire.component.name in publishers],
@@ -135,7 +174,19 @@ class Emitter:
             claims=component.claims,
             slot=component.slot,
             application=self.prefix,
+            period=self.app.period,
+            write_period=self.app.period * self.app.step_divider,
         )
+
+    def _uses(self, name: str) -> dict[str, UseView]:
+        result = {}
+        for use, used in self.components[name].uses.items():
+            other = self.components[used.component]
+            value = Code("")
+            if used.port is not None:
+                value = self._expression(other, "applied" if used.port.drive else "read", used.port.name)
+            result[use] = UseView(other.name, value, self._macro(other, "resets").strip() or Code("0"))
+        return result
 
     def _module(self, component: ResolvedComponent) -> Any:
         kind = component.kind.name
@@ -167,13 +218,16 @@ class Emitter:
             raise LookupError(f"kind '{component.kind.name}' has no macro '{macro}' for {arguments}")
         return code
 
-    def _part(self, component: ResolvedComponent) -> Part:
+    def _part(self, number: int, component: ResolvedComponent) -> Part:
         return Part(
             component=self.views[component.name],
+            number=number,
             globals=self._macro(component, "globals"),
             start=_indented(self._macro(component, "start")),
             sample=_indented(self._macro(component, "sample")),
+            check=self._macro(component, "check").strip(),
             safe=_indented(self._macro(component, "safe")),
+            probes={point: _indented(self._macro(component, "probe", point)) for point in POINTS},
         )
 
     def _output_pins(self) -> list[OutputPin]:
@@ -187,6 +241,17 @@ class Emitter:
 
     def _safe_level(self, component: ResolvedComponent, claim: str) -> Code:
         return self._macro(component, "safe_level", claim).strip() or Code("false")
+
+    def _arrivals(self, direction: str) -> list[Arrival]:
+        """What components have to do with topics of a direction besides their values."""
+        result = []
+        for component in self.app.components:
+            for used in component.uses.values():
+                topic = self.components[used.component]
+                statement = _indented(self._macro(component, "probe", "topic"), " " * 8)
+                if topic.kind.communication == direction and topic.slot is not None and statement:
+                    result.append(Arrival(component.name, topic.slot, statement))
+        return sorted(result, key=lambda arrival: arrival.slot)
 
     def _input(self, wire: Wire) -> InputView:
         value = self._expression(wire.component, "read", wire.component_port.name)

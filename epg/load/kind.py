@@ -38,6 +38,7 @@ class KindPort:
     """What a model's port can be bound to.  A "source" gives values to the model, a "sink" takes them.
 
     ``default``: meant when only the component is named.  ``actuator``: made safe while the target is disabled.
+    ``drive``: its value drives a motor, and the template's macro ``applied`` gives what it is at present.
     """
 
     name: str
@@ -46,7 +47,34 @@ class KindPort:
     unit: str
     default: bool
     actuator: bool
+    drive: bool
     description: str
+
+
+@dataclass(frozen=True)
+class KindUse:
+    """Another component that components of a kind name: by a port of it, or a ``topic``.
+
+    ``direction``, ``unit`` and ``drive`` say which ports are possible; an empty text, or false, is any.
+    """
+
+    name: str
+    direction: str
+    unit: str
+    drive: bool
+    topic: bool
+    required: bool
+    description: str
+    examples: tuple[object, ...]
+
+
+@dataclass(frozen=True)
+class NeedsBound:
+    """A parameter ``key`` that makes sense only if a model drives ``port`` of the component that ``use`` names."""
+
+    key: str
+    use: str
+    port: str
 
 
 @dataclass(frozen=True)
@@ -69,8 +97,11 @@ class Kind:
     communication: str | None  # "subscribe", "publish" or None
     pins: tuple[str, ...]
     parameters: tuple[KindParameter, ...]
+    uses: tuple[KindUse, ...]
     exactly_one: tuple[tuple[str, ...], ...]
+    at_least_one: tuple[tuple[str, ...], ...]
     only_with: tuple[tuple[str, str], ...]  # (key, what it needs)
+    needs_bound: tuple[NeedsBound, ...]
     ports: tuple[KindPort, ...]
     claims: tuple[KindClaim, ...]
     headers: tuple[str, ...]
@@ -95,10 +126,16 @@ def make_kind(node: Node, folder: Path) -> Kind:
     """The kind that a checked ``component.yaml`` describes."""
     relations = node.get("relations")
     exactly_one: list[tuple[str, ...]] = []
+    at_least_one: list[tuple[str, ...]] = []
     only_with: list[tuple[str, str]] = []
+    needs_bound: list[NeedsBound] = []
     for relation in relations.elements() if relations else ():
         if "exactly_one" in relation:
             exactly_one.append(texts_of(relation, "exactly_one"))
+        elif "at_least_one" in relation:
+            at_least_one.append(texts_of(relation, "at_least_one"))
+        elif "needs_bound" in relation:
+            needs_bound.append(NeedsBound(*(text_of(relation["needs_bound"], key) for key in ("key", "use", "port"))))
         else:
             only_with.append((text_of(relation["only_with"], "key"), text_of(relation["only_with"], "needs")))
     return Kind(
@@ -107,8 +144,11 @@ def make_kind(node: Node, folder: Path) -> Kind:
         communication=text_of(node, "communication") or None,
         pins=texts_of(node, "pins"),
         parameters=make_parameters(node.get("parameters")),
+        uses=tuple(_use(name, child) for name, child in map_of(node, "uses").items()),
         exactly_one=tuple(exactly_one),
+        at_least_one=tuple(at_least_one),
         only_with=tuple(only_with),
+        needs_bound=tuple(needs_bound),
         ports=tuple(_port(name, child) for name, child in map_of(node, "ports").items()),
         claims=tuple(_claim(name, child, node) for name, child in map_of(node, "claims").items()),
         headers=texts_of(node, "driver", "headers"),
@@ -153,7 +193,21 @@ def _port(name: str, node: Node) -> KindPort:
         unit=text_of(node, "unit"),
         default=flag_of(node, "default"),
         actuator=flag_of(node, "actuator"),
+        drive=flag_of(node, "drive"),
         description=text_of(node, "description"),
+    )
+
+
+def _use(name: str, node: Node) -> KindUse:
+    return KindUse(
+        name=name,
+        direction=text_of(node, "direction"),
+        unit=text_of(node, "unit"),
+        drive=flag_of(node, "drive"),
+        topic=flag_of(node, "topic"),
+        required=flag_of(node, "required"),
+        description=text_of(node, "description"),
+        examples=tuple(element.plain() for element in node["examples"].elements()) if "examples" in node else (),
     )
 
 

@@ -31,7 +31,8 @@ class Assignment:
 
     ``pins`` maps signals to the chip's numbers of pins, ``block`` and ``unit`` are the numbers of instance and slot
     (unit 0 where all of the instance is taken), ``settings`` holds ``prescaler`` and ``top`` where there is a divider.
-    ``resource`` is what people call it: "PWM slice 1, channel A".
+    ``resource`` is what people call it: "PWM slice 1, channel A".  ``frequency`` is what the divider makes, in Hz, and
+    ``asked`` what was asked of it; None without one.
     """
 
     pins: Mapping[str, int]
@@ -39,6 +40,8 @@ class Assignment:
     unit: int
     settings: Mapping[str, int]
     resource: str
+    frequency: Fraction | None = None
+    asked: Fraction | None = None
     pins_are_real: bool = True
     """False where EPG numbered the pins, as the target has none."""
 
@@ -210,8 +213,11 @@ def _costs(peripheral: Peripheral) -> list[int]:
 def _assignment(placed: _Placed, peripheral: Peripheral, place: Place, target: Target) -> Assignment:
     instance, slot = place
     settings: dict[str, int] = {}
+    frequency = asked = None
     if placed.division is not None:
         settings = {"prescaler": placed.division.prescaler, "top": placed.division.counter - 1}
+        frequency = target.soc.clock / placed.division.clocks
+        asked = _asked(placed)
     whole = slot == WHOLE
     return Assignment(
         pins=placed.pins,
@@ -219,8 +225,19 @@ def _assignment(placed: _Placed, peripheral: Peripheral, place: Place, target: T
         unit=0 if whole else slot,
         settings=MappingProxyType(settings),
         resource=peripheral.instance_title(instance) if whole else peripheral.slot_name(instance, slot),
+        frequency=frequency,
+        asked=asked,
         pins_are_real=target.has_pins,
     )
+
+
+def _asked(placed: _Placed) -> Fraction:
+    """The frequency that was asked of a divider, in Hz."""
+    attribute = placed.resource_class.divider_from
+    assert attribute is not None
+    value = placed.claim.attributes[attribute].value
+    assert isinstance(value, (int, float, Fraction))
+    return Fraction(value) if attribute == "frequency" else 1 / Fraction(value)
 
 
 def _pins_only(placed: _Placed, target: Target) -> Assignment:

@@ -8,6 +8,7 @@ from fractions import Fraction
 from pathlib import Path
 
 from epg.check.configuration import Communication, Control
+from epg.check.uses import Used
 from epg.load.catalog import Kind, KindPort, Target
 from epg.load.models.model import Model, Port
 from epg.resolve.allocation import Assignment
@@ -36,6 +37,7 @@ class ResolvedComponent:
     kind: Kind
     parameters: Mapping[str, object]
     claims: Mapping[str, Assignment]
+    uses: Mapping[str, Used]
     slot: int | None
     application: str
     span: Span

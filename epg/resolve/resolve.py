@@ -10,6 +10,7 @@ from pathlib import Path
 
 from epg.check.bindings import Bindings
 from epg.check.configuration import Component, Configuration
+from epg.check.schema import extended_from
 from epg.diagnostics import Diagnostics, Note
 from epg.load.models.model import Model
 from epg.quantity import dimension_of
@@ -61,10 +62,11 @@ def resolve(
     outputs = output_wires(bindings, model, configuration.components, components, diagnostics)
     parameters = parameter_overrides(bindings, model, diagnostics)
     simulated = _plant(plant, configuration, components, period, diagnostics) if plant else None
+    _bound_ports(configuration.components, outputs, diagnostics)
     fail_safe = configuration.control.fail_safe
     used = {wire.component.name for wire in (*inputs, *outputs)} | {fail_safe}
     for component in configuration.components.values():
-        if component.name not in used and diagnostics.error_count == errors:
+        if component.kind.ports and component.name not in used and diagnostics.error_count == errors:
             hint = "bind one of its ports, or remove it"
             diagnostics.warning(
                 "unused-component", component.span, f"component '{component.name}' is bound to nothing", hint=hint
@@ -94,6 +96,28 @@ def resolve(
         files=_files(configuration, model, bindings, plant),
         absent=configuration.absent,
     )
+
+
+def _bound_ports(components: Mapping[str, Component], outputs: Sequence[Wire], diagnostics: Diagnostics) -> None:
+    """Parameters that wait for a port which the model must drive: a homing for the encoder's reset."""
+    driven = {(wire.component.name, wire.component_port.name) for wire in outputs}
+    for component in components.values():
+        for needed in component.kind.needs_bound:
+            used = component.uses.get(needed.use)
+            if needed.key not in component.node or used is None or (used.component, needed.port) in driven:
+                continue
+            other = components[used.component]
+            hint = f"remove '{needed.key}' ('{needed.key}: null' if another file has written it)"
+            if needed.port in [port.name for port in other.kind.ports]:
+                message = f"'{needed.key}' needs '{other.name}.{needed.port}', which no model output is bound to"
+                hint = f"bind one to it, or {hint}"
+            else:
+                message = (
+                    f"'{needed.key}' needs a port '{needed.port}', and '{other.name}' ({other.kind.name}) has none"
+                )
+            span = component.node.key_span(needed.key)
+            notes = extended_from(component.node[needed.key])
+            diagnostics.error("needs-bound", span, message, hint=hint, notes=notes)
 
 
 def _same_model(bindings: Bindings, model: Model, diagnostics: Diagnostics) -> None:
@@ -158,6 +182,7 @@ def _components(
             kind=component.kind,
             parameters=component.parameters,
             claims=claims.get(component.name, {}),
+            uses=component.uses,
             slot=slot,
             application=name,
             span=component.span,

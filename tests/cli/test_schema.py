@@ -265,7 +265,7 @@ def test_mistakes_in_the_user_s_folders_are_reported(
     (kind / "component.yaml").write_text("api: 1\nkind: servo\n")
     monkeypatch.setenv("EPG_TARGETS_PATH", str(tmp_path / "mine"))
     assert main(["schema", "-o", str(tmp_path / "tcf.json")]) == 1
-    assert "'ports' is missing" in capsys.readouterr().err
+    assert "'summary' is missing" in capsys.readouterr().err
     assert not (tmp_path / "tcf.json").exists()
 
 

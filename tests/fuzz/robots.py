@@ -76,6 +76,7 @@ def components(draw: st.DrawFn, name: str, topic: str) -> Component:
             [
                 "quadrature_encoder",
                 "pwm_h_bridge",
+                "dual_pwm_h_bridge",
                 "pwm",
                 "digital_input",
                 "digital_output",
@@ -102,9 +103,13 @@ def components(draw: st.DrawFn, name: str, topic: str) -> Component:
             text["span"] = {"counts": draw(positive), "angle": f"{draw(st.integers(1, 720))} deg"}
         maybe("preset", st.integers(-360, 360).map(lambda angle: f"{angle} deg"))
         ends = ((name, "source", "rad"), (f"{name}.reset", "sink", "boolean"))
-    elif kind in ("pwm", "pwm_h_bridge"):
+    elif kind in ("pwm", "pwm_h_bridge", "dual_pwm_h_bridge"):
         maybe("frequency", st.sampled_from(("20 kHz", "1 kHz", "50 Hz", "1.5 kHz")))
         maybe("max_duty", st.floats(0.01, 1))
+        if kind != "pwm":
+            maybe("zero", st.sampled_from(("coast", "brake")))
+            maybe("safe", st.sampled_from(("coast", "brake")))
+            maybe("dead_time", st.sampled_from(("0 s", "10 us", "1 ms", "1 s")))
         ends = ((name, "sink", ""),)
     elif kind == "digital_input":
         maybe("pull", st.sampled_from(("none", "up", "down")))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from fractions import Fraction
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -26,7 +27,17 @@ PWM = {"prescaler": 1, "top": 6249}
 
 
 def claim(pins: Mapping[str, int], block: int = 0, unit: int = 0, **settings: int) -> SimpleNamespace:
-    return SimpleNamespace(pins=dict(pins), block=block, unit=unit, settings=settings)
+    clocks = settings.get("prescaler", 1) * (settings.get("top", 0) + 1)
+    return SimpleNamespace(
+        pins=dict(pins), block=block, unit=unit, settings=settings, frequency=Fraction(125_000_000, clocks)
+    )
+
+
+def dual_claims(forwards: int, backwards: int, units: tuple[int, int]) -> dict[str, Any]:
+    return {
+        "forwards": claim({"value": forwards}, 0, units[0], **PWM),
+        "backwards": claim({"value": backwards}, 0, units[1], **PWM),
+    }
 
 
 def bridge_claims(value: int, a: int, b: int, unit: int) -> dict[str, Any]:
@@ -45,6 +56,11 @@ class Component:
     text: str
     claims: Mapping[str, Any] = field(default_factory=dict)
     slot: int | None = None
+    uses: Mapping[str, Any] = field(default_factory=dict)
+
+
+def use(name: str, value: str = "", resets: str = "0") -> SimpleNamespace:
+    return SimpleNamespace(name=name, value=Code(value), resets=Code(resets))
 
 
 COMPONENTS_TRIED = [
@@ -70,6 +86,35 @@ COMPONENTS_TRIED = [
     ),
     Component("bridge", "{kind: pwm_h_bridge, frequency: 20 kHz, max_duty: 0.96}", bridge_claims(2, 7, 8, 1)),
     Component("bridge_inverted", "{kind: pwm_h_bridge, frequency: 20 kHz, invert: true}", bridge_claims(4, 5, 6, 2)),
+    Component(
+        "bridge_braking",
+        "{kind: pwm_h_bridge, frequency: 20 kHz, zero: brake, dead_time: 1.5 ms}",
+        bridge_claims(24, 25, 26, 9),
+    ),
+    Component("dual", "{kind: dual_pwm_h_bridge, max_duty: 0.96}", dual_claims(27, 28, (10, 11))),
+    Component(
+        "dual_inverted",
+        "{kind: dual_pwm_h_bridge, invert: true, decay: brake, safe: brake, dead_time: 1 us}",
+        dual_claims(29, 30, (12, 13)),
+    ),
+    Component(
+        "guard",
+        "{kind: motion_guard, actuator: bridge, encoder: encoder_span, stall: {time: 2.5 ms}, runaway: {angle: 1 rad}}",
+        uses={
+            "actuator": use("bridge", "bridge.bridge.duty"),
+            "encoder": use("encoder_span", "encoder_span.position", "encoder_span.resets"),
+        },
+    ),
+    Component(
+        "guard_homing",
+        "{kind: motion_guard, actuator: dual, encoder: encoder_preset, homing: {travel: 180 deg, time: 3 ms}}",
+        uses={
+            "actuator": use("dual", "dual.bridge.duty"),
+            "encoder": use("encoder_preset", "encoder_preset.position", "encoder_preset.resets"),
+        },
+    ),
+    Component("probe_model", "{kind: timing_probe, at: model}", {"pin": claim({"value": 31})}),
+    Component("probe_topic", "{kind: timing_probe, topic: subscriber}", {"pin": claim({"value": 32})}),
     Component(
         "servo",
         "{kind: pwm, frequency: 20 kHz, max_duty: 0.9, safe_duty: 0.08}",
@@ -116,6 +161,9 @@ class Renderer:
             claims=component.claims,
             slot=component.slot,
             application=Code("app"),
+            period=Fraction(1, 1000),
+            write_period=Fraction(1, 1000),
+            uses=component.uses,
         )
         env = environment([TARGETS])
         template = env.get_template(f"components/{kind.name}/code.c.j2")
@@ -134,6 +182,11 @@ class Renderer:
         for macro in ("start", "sample", "safe"):
             body = self.render(macro) if self.has(macro) else ""
             lines.append(f"static inline void {name}_{macro}(void)\n{{\n{body}\n}}")
+        if self.has("check"):
+            lines.append(f"static inline epg_fault_t {name}_check(void)\n{{\nreturn {self.render('check')};\n}}")
+        for point in ("cycle", "inputs", "model", "outputs", "topic"):
+            body = self.render("probe", point) if self.has("probe") else ""
+            lines.append(f"static inline void {name}_probe_{point}(void)\n{{\n{body}\n}}")
         value = Code("value")
         for port in self.kind.ports:
             published = self.kind.communication == "publish"
@@ -143,6 +196,9 @@ class Renderer:
                 text = self.render("read", port.name)
                 lines.append(f"static inline double {name}_read_{port.name}(void)\n{{\nreturn {text};\n}}")
             else:
+                if port.drive:
+                    text = self.render("applied", port.name)
+                    lines.append(f"static inline double {name}_applied_{port.name}(void)\n{{\nreturn {text};\n}}")
                 text = self.render("write", port.name, value)
                 lines.append(f"static inline void {name}_{write}_{port.name}({argument})\n{{\n{text}\n}}")
             if port.direction == "source" and self.has("plant_write"):

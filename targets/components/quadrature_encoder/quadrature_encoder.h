@@ -10,6 +10,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "epg/fault.h"
 #include "epg/finite.h"
 #include "epg/port.h"
 
@@ -25,6 +26,7 @@ typedef struct epg_quadrature_encoder {
     double origin;       /**< rad at `counts` = 0: 0 until the first reset, `preset` after it */
     int64_t counts;      /**< since the start or the last reset */
     uint32_t last_count; /**< of the decoder, modulo 2^32 */
+    uint32_t resets;     /**< so far, modulo 2^32: at each of them the position jumped */
     bool reset_level;    /**< of the reset signal, for its edge */
 } epg_quadrature_encoder_t;
 
@@ -58,8 +60,15 @@ static inline void epg_quadrature_encoder_reset(epg_quadrature_encoder_t *encode
     if (level && !encoder->reset_level) {
         encoder->counts = 0;
         encoder->origin = config->preset;
+        encoder->resets++;
     }
     encoder->reset_level = level;
+}
+
+/** EPG_FAULT_SENSOR when the decoder has stopped: then the position stands still, and is wrong. */
+static inline epg_fault_t epg_quadrature_encoder_check(const epg_quadrature_encoder_config_t *config)
+{
+    return epg_port_quadrature_healthy(&config->decoder) ? EPG_FAULT_NONE : EPG_FAULT_SENSOR;
 }
 
 /** While disabled: resets are withheld, and the first high signal afterwards is an edge. */

@@ -53,11 +53,14 @@ def test_the_kinds() -> None:
         "constant",
         "digital_input",
         "digital_output",
+        "dual_pwm_h_bridge",
+        "motion_guard",
         "pwm",
         "pwm_h_bridge",
         "quadrature_encoder",
         "ros_publisher",
         "ros_subscriber",
+        "timing_probe",
     ]
 
 
@@ -173,6 +176,9 @@ def test_parameters_are_typed_and_have_their_defaults() -> None:
         "frequency": Fraction(20_000),
         "invert": False,
         "max_duty": 1.0,
+        "zero": "coast",
+        "safe": "coast",
+        "dead_time": 0,
         "pins": {"value": 1, "direction_a": 2, "direction_b": "GP3"},
     }
     values, _ = typed("ros_subscriber", "{kind: ros_subscriber, topic: x, timeout: 500 ms}")

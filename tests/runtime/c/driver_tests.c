@@ -111,6 +111,26 @@ TEST(encoder_reset_acts_on_a_rising_edge_only)
     CHECK_EQUAL(position_at(42), 100.0);
 }
 
+TEST(encoder_counts_its_resets)
+{
+    begin_encoder(0);
+    CHECK_EQUAL(encoder.resets, 0);
+    reset(1.0);
+    reset(1.0);
+    CHECK_EQUAL(encoder.resets, 1);
+    reset(0.0);
+    reset(1.0);
+    CHECK_EQUAL(encoder.resets, 2);
+}
+
+TEST(encoder_whose_decoder_has_stopped)
+{
+    begin_encoder(0);
+    CHECK(epg_quadrature_encoder_check(&encoder_config) == EPG_FAULT_NONE);
+    fake_port.decoders_failed[1] = true;
+    CHECK(epg_quadrature_encoder_check(&encoder_config) == EPG_FAULT_SENSOR);
+}
+
 TEST(encoder_reset_by_nan_does_nothing)
 {
     begin_encoder(0);
@@ -155,7 +175,7 @@ static epg_pwm_h_bridge_config_t bridge_config = {
     .pwm = {.pin = 2, .unit = 3, .prescaler = 1, .top = 6249},
     .pin_a = BRIDGE_A,
     .pin_b = BRIDGE_B,
-    .max_duty = 0.9,
+    .bridge = {.max_duty = 0.9},
 };
 static epg_pwm_h_bridge_t bridge;
 
@@ -188,8 +208,7 @@ static void begin_bridge(bool invert, double max_duty)
     fake_port_reset();
     last_direction = 0;
     fake_port.on_write = watch_coasting;
-    bridge_config.invert = invert;
-    bridge_config.max_duty = max_duty;
+    bridge_config.bridge = (epg_bridge_config_t){.invert = invert, .max_duty = max_duty};
     epg_pwm_h_bridge_start(&bridge, &bridge_config);
     fake_port.on_write = watch_bridge;
 }
@@ -428,11 +447,11 @@ RUN(ENTRY(encoder_starts_at_zero_wherever_the_decoder_stands), ENTRY(encoder_wra
     ENTRY(encoder_counts_beyond_32_bits), ENTRY(encoder_reset_is_visible_in_the_next_cycle_only),
     ENTRY(encoder_reset_loses_no_counts), ENTRY(encoder_reset_acts_on_a_rising_edge_only),
     ENTRY(encoder_reset_by_nan_does_nothing), ENTRY(encoder_first_high_signal_after_withholding_is_an_edge),
-    ENTRY(encoder_of_simulated_edges), ENTRY(bridge_starts_coasting), ENTRY(bridge_started_again_drives_again),
-    ENTRY(bridge_sign_gives_the_direction), ENTRY(bridge_inverted), ENTRY(bridge_limits_and_says_so),
-    ENTRY(bridge_coasts_on_a_duty_that_is_not_finite), ENTRY(bridge_coasts_below_half_a_clock),
-    ENTRY(bridge_never_drives_the_wrong_way), ENTRY(bridge_leaves_the_direction_alone_while_the_sign_stays),
-    ENTRY(bridge_safe_writes_every_signal), ENTRY(pwm_starts_safe), ENTRY(pwm_limits_and_says_so),
-    ENTRY(pwm_is_safe_on_a_duty_that_is_not_finite), ENTRY(pwm_inverted_is_the_complement),
-    ENTRY(pwm_of_the_longest_period), ENTRY(digital_input_levels), ENTRY(digital_output_levels),
-    ENTRY(publisher_keeps_the_last_finite_value))
+    ENTRY(encoder_counts_its_resets), ENTRY(encoder_whose_decoder_has_stopped), ENTRY(encoder_of_simulated_edges),
+    ENTRY(bridge_starts_coasting), ENTRY(bridge_started_again_drives_again), ENTRY(bridge_sign_gives_the_direction),
+    ENTRY(bridge_inverted), ENTRY(bridge_limits_and_says_so), ENTRY(bridge_coasts_on_a_duty_that_is_not_finite),
+    ENTRY(bridge_coasts_below_half_a_clock), ENTRY(bridge_never_drives_the_wrong_way),
+    ENTRY(bridge_leaves_the_direction_alone_while_the_sign_stays), ENTRY(bridge_safe_writes_every_signal),
+    ENTRY(pwm_starts_safe), ENTRY(pwm_limits_and_says_so), ENTRY(pwm_is_safe_on_a_duty_that_is_not_finite),
+    ENTRY(pwm_inverted_is_the_complement), ENTRY(pwm_of_the_longest_period), ENTRY(digital_input_levels),
+    ENTRY(digital_output_levels), ENTRY(publisher_keeps_the_last_finite_value))

@@ -20,7 +20,7 @@ enum { PERIOD_NS = 1000000, PIN_A = 7, PIN_B = 8, PIN_FAIL_SAFE = 9, UNIT = 0 };
 static const epg_quadrature_encoder_config_t encoder_config = {
     .decoder = {.unit = UNIT}, .rad_per_count = 3.14159265358979323846 / 1112.0, .preset = 0.0};
 static const epg_pwm_h_bridge_config_t bridge_config = {
-    .pwm = {.unit = UNIT, .prescaler = 1, .top = 6249}, .pin_a = PIN_A, .pin_b = PIN_B, .max_duty = 0.95};
+    .pwm = {.unit = UNIT, .prescaler = 1, .top = 6249}, .pin_a = PIN_A, .pin_b = PIN_B, .bridge = {.max_duty = 0.95}};
 
 static epg_control_t control;
 static epg_quadrature_encoder_t encoder;

@@ -106,6 +106,147 @@ TEST(inverted_bridge_is_wired_the_other_way_and_moves_the_plant_the_same)
     CHECK_EQUAL(bridge_inverted_plant_read_duty(), -0.5);
 }
 
+TEST(bridge_says_what_it_applies)
+{
+    begin();
+    bridge_write_duty(2.0);
+    CHECK_EQUAL(bridge_applied_duty(), 0.96);
+    bridge_inverted_write_duty(-0.5);
+    CHECK_EQUAL(bridge_inverted_applied_duty(), -0.5);
+    safe_all();
+    CHECK_EQUAL(bridge_applied_duty(), 0.0);
+}
+
+TEST(bridge_with_dead_time_and_brake)
+{
+    begin();
+    CHECK_EQUAL(bridge_braking_config.bridge.dead_writes, 2); /* 1.5 ms in control cycles of 1 ms */
+    bridge_braking_write_duty(0.0);
+    CHECK(epg_host_output(25) && epg_host_output(26));
+    CHECK_EQUAL(bridge_braking_plant_read_duty(), 0.0); /* no voltage */
+    bridge_braking_write_duty(0.5);
+    CHECK_EQUAL(bridge_braking_plant_read_duty(), 0.5);
+    safe_all();
+    CHECK(!epg_host_output(25) && !epg_host_output(26));
+}
+
+TEST(dual_bridge_drives_the_plant_with_the_duty_written)
+{
+    begin();
+    CHECK_EQUAL(dual_plant_read_duty(), 0.0);
+    dual_write_duty(0.25 + 0.25);
+    CHECK_EQUAL(dual_plant_read_duty(), 0.5);
+    CHECK_EQUAL(epg_host_pwm_duty(10), 0.5);
+    CHECK_EQUAL(epg_host_pwm_duty(11), 0.0);
+    dual_write_duty(-2.0);
+    CHECK_EQUAL(dual_plant_read_duty(), -0.96);
+    CHECK_EQUAL(dual_applied_duty(), -0.96);
+    CHECK_EQUAL(app_control.statistics.clamped, 1);
+    safe_all();
+    CHECK_EQUAL(dual_plant_read_duty(), 0.0);
+}
+
+TEST(dual_bridge_with_slow_decay_moves_the_plant_the_same)
+{
+    begin();
+    CHECK_EQUAL(dual_inverted_config.bridge.dead_writes, 1); /* a whole cycle holds a whole period of the PWM */
+    CHECK(dual_inverted_config.slow_decay);
+    CHECK_EQUAL(epg_host_pwm_duty(12), 1.0); /* brakes when safe */
+    CHECK_EQUAL(epg_host_pwm_duty(13), 1.0);
+    dual_inverted_write_duty(0.25);
+    CHECK(fabs(dual_inverted_plant_read_duty() - 0.25) < 1e-3);
+    CHECK_EQUAL(epg_host_pwm_duty(13), 1.0); /* inverted: the other pin has the pulses' begin */
+    CHECK(fabs(epg_host_pwm_duty(12) - 0.75) < 1e-3);
+}
+
+static void check_guard(double duty, double angle)
+{
+    bridge_write_duty(duty);
+    (void)POSITION(encoder_span, angle);
+}
+
+TEST(guard_sees_duty_and_angle)
+{
+    begin();
+    CHECK_EQUAL(guard_config.stall.cycles, 3); /* 2.5 ms in control cycles of 1 ms */
+    CHECK_EQUAL(guard_config.stall.duty, 0.3);
+    CHECK_EQUAL(guard_config.homing.cycles, 0);
+    check_guard(0.5, 0.0);
+    app_control.enabled = false;
+    for (int i = 0; i < 10; i++) {
+        CHECK(guard_check() == EPG_FAULT_NONE);
+    }
+    app_control.enabled = true;
+    CHECK(guard_check() == EPG_FAULT_NONE);
+    CHECK(guard_check() == EPG_FAULT_NONE);
+    CHECK(guard_check() == EPG_FAULT_STALL);
+
+    begin();
+    app_control.enabled = true;
+    epg_fault_t found = EPG_FAULT_NONE;
+    double angle = 0.0;
+    for (int i = 0; i < 1000 && found == EPG_FAULT_NONE; i++) {
+        angle -= 0.02 + 0.001 * i;
+        check_guard(0.5, angle);
+        found = guard_check();
+    }
+    CHECK(found == EPG_FAULT_RUNAWAY);
+    CHECK(angle < -1.0 && angle > -1.1);
+}
+
+TEST(guard_knows_the_resets_of_its_encoder)
+{
+    begin();
+    app_control.enabled = true;
+    CHECK_EQUAL(guard_homing_config.homing.cycles, 3);
+    CHECK(guard_homing_config.homing.travel == pi);
+    dual_write_duty(0.1);
+    CHECK(guard_homing_check() == EPG_FAULT_NONE);
+    (void)POSITION(encoder_preset, 1.0);
+    CHECK(guard_homing_check() == EPG_FAULT_NONE);
+    encoder_preset_write_reset(1.0);
+    for (int i = 0; i < 10; i++) {
+        CHECK(guard_homing_check() == EPG_FAULT_NONE);
+    }
+    begin();
+    app_control.enabled = true;
+    dual_write_duty(0.1);
+    for (int i = 0; i < 3; i++) {
+        CHECK(guard_homing_check() == EPG_FAULT_NONE);
+    }
+    CHECK(guard_homing_check() == EPG_FAULT_HOMING_TIME);
+}
+
+TEST(encoder_whose_decoder_has_stopped)
+{
+    begin();
+    CHECK(encoder_inverted_check() == EPG_FAULT_NONE);
+    epg_host_quadrature_fail(1, true);
+    CHECK(encoder_inverted_check() == EPG_FAULT_SENSOR);
+    CHECK(encoder_span_check() == EPG_FAULT_NONE);
+    epg_host_quadrature_fail(1, false);
+    CHECK(encoder_inverted_check() == EPG_FAULT_NONE);
+}
+
+TEST(probes_toggle_at_their_point_only)
+{
+    begin();
+    CHECK(!epg_host_output(31) && !epg_host_output(32));
+    probe_model_probe_model();
+    CHECK(epg_host_output(31));
+    probe_model_probe_cycle();
+    probe_model_probe_inputs();
+    probe_model_probe_outputs();
+    probe_model_probe_topic();
+    CHECK(epg_host_output(31));
+    probe_model_probe_model();
+    CHECK(!epg_host_output(31));
+    probe_topic_probe_model();
+    CHECK(!epg_host_output(32));
+    probe_topic_probe_topic();
+    CHECK(epg_host_output(32));
+}
+
 TEST(pwm_drives_the_plant_with_the_duty_written)
 {
     begin();
@@ -169,6 +310,9 @@ TEST(topics_and_constant)
 RUN(ENTRY(span_gives_radians_at_the_load), ENTRY(inverted_span_counts_backwards_and_reads_the_same_angle),
     ENTRY(counts_per_revolution_and_gear), ENTRY(pins_and_pull_up_are_handed_on),
     ENTRY(reset_loads_the_preset_in_the_next_cycle), ENTRY(bridge_drives_the_plant_with_the_duty_written),
-    ENTRY(inverted_bridge_is_wired_the_other_way_and_moves_the_plant_the_same),
-    ENTRY(pwm_drives_the_plant_with_the_duty_written), ENTRY(digital_input_from_the_plant),
-    ENTRY(digital_output_to_the_plant), ENTRY(topics_and_constant))
+    ENTRY(inverted_bridge_is_wired_the_other_way_and_moves_the_plant_the_same), ENTRY(bridge_says_what_it_applies),
+    ENTRY(bridge_with_dead_time_and_brake), ENTRY(dual_bridge_drives_the_plant_with_the_duty_written),
+    ENTRY(dual_bridge_with_slow_decay_moves_the_plant_the_same), ENTRY(guard_sees_duty_and_angle),
+    ENTRY(guard_knows_the_resets_of_its_encoder), ENTRY(encoder_whose_decoder_has_stopped),
+    ENTRY(probes_toggle_at_their_point_only), ENTRY(pwm_drives_the_plant_with_the_duty_written),
+    ENTRY(digital_input_from_the_plant), ENTRY(digital_output_to_the_plant), ENTRY(topics_and_constant))

@@ -1,0 +1,92 @@
+"""Components that name other components: a guard its motor and its encoder, a probe its topic."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from epg.check.schema import extended_from
+from epg.diagnostics import Diagnostics, did_you_mean
+from epg.load.kind import Kind, KindPort, KindUse
+from epg.source import Node
+
+
+@dataclass(frozen=True)
+class Used:
+    """The component that is named, and its port; None where the component as a whole is meant (a topic)."""
+
+    component: str
+    port: KindPort | None
+
+
+def used_components(
+    kind: Kind, node: Node, kinds: Mapping[str, Kind | None], diagnostics: Diagnostics
+) -> Mapping[str, Used]:
+    """What a component of ``kind`` uses, by the names in its kind.
+
+    A reference is the name of a component, which means its main port, or ``component.port``.  ``kinds`` are those of
+    all components, None for one with mistakes of its own.
+    """
+    result: dict[str, Used] = {}
+    for use in kind.uses:
+        if use.name in node:
+            found = _used(use, node[use.name], kind, kinds, diagnostics)
+            if found is not None:
+                result[use.name] = found
+    return MappingProxyType(result)
+
+
+def _used(
+    use: KindUse, node: Node, kind: Kind, kinds: Mapping[str, Kind | None], diagnostics: Diagnostics
+) -> Used | None:
+    text = str(node.value)
+    possible = [reference for name, other in kinds.items() if other for reference in _references(use, name, other)]
+    name, _, port_name = text.partition(".")
+    notes = extended_from(node)
+    if name not in kinds:
+        hint = did_you_mean(text, possible, "possible")
+        diagnostics.error("unknown-component", node.span, f"there is no component '{name}'", hint=hint, notes=notes)
+        return None
+    other = kinds[name]
+    if other is None:
+        return None
+    port = _port(use, other, port_name)
+    if port_name and port_name not in [p.name for p in other.ports]:
+        hint = did_you_mean(port_name, [p.name for p in other.ports], f"ports of a {other.name}")
+        message = f"a {other.name} has no port '{port_name}'"
+        diagnostics.error("unknown-port", node.span, message, hint=hint, notes=notes)
+        return None
+    if (use.topic and (other.communication is None or port_name)) or (not use.topic and port is None):
+        what = f"a port of a {other.name}" if port_name else f"a {other.name}"
+        message = f"'{text}' is {what}; '{use.name}' of a {kind.name} is {use.description}"
+        hint = did_you_mean(text, possible, "possible")
+        diagnostics.error("wrong-component", node.span, message, hint=hint, notes=notes)
+        return None
+    return Used(name, port)
+
+
+def _references(use: KindUse, name: str, kind: Kind) -> list[str]:
+    """How a component of ``kind`` can be named, the short form where there is one."""
+    if use.topic:
+        return [name] if kind.communication else []
+    main = _port(use, kind, "")
+    return [name if port is main else f"{name}.{port.name}" for port in kind.ports if _fits(use, port)]
+
+
+def _port(use: KindUse, kind: Kind, name: str) -> KindPort | None:
+    """The port of that name, or the one that is meant without a name; None unless it is possible."""
+    fitting = [port for port in kind.ports if _fits(use, port)]
+    if name:
+        return next((port for port in fitting if port.name == name), None)
+    main = [port for port in fitting if port.default]
+    return (main or fitting)[0] if len(main or fitting) == 1 else None
+
+
+def _fits(use: KindUse, port: KindPort) -> bool:
+    return (
+        not use.topic
+        and use.direction in ("", port.direction)
+        and use.unit in ("", port.unit)
+        and (port.drive or not use.drive)
+    )
