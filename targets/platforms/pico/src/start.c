@@ -42,8 +42,8 @@ static void serve(void)
     if (pico->transport != NULL) {
         pico->transport->poll();
     }
-    if (pico->middleware != NULL) {
-        pico->middleware->poll(epg_port_time_ns());
+    if (pico->target->middleware != NULL) {
+        pico->target->middleware->poll(epg_port_time_ns());
     }
     if (pico->transport != NULL) {
         pico->transport->flush();
@@ -79,8 +79,8 @@ static epg_pico_error_t start(const epg_pico_target_t *pico)
     if (failed != EPG_PICO_OK) {
         return failed;
     }
-    if (pico->middleware != NULL) {
-        pico->middleware->start(pico->target, pico->transport != NULL ? &pico->transport->stream : NULL);
+    if (pico->target->middleware != NULL) {
+        pico->target->middleware->start(pico->target, pico->transport != NULL ? &pico->transport->stream : NULL);
     }
     running = pico;
     if (!epg_pico_service_start(serve)) {

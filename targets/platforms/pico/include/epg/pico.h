@@ -49,10 +49,9 @@ typedef struct epg_pico_transport {
 /** A target as its port layer runs it. */
 typedef struct epg_pico_target {
     const epg_target_t *target;
-    uint32_t clock;                         /**< Hz of clk_sys, which all dividers were computed for */
+    uint32_t clock; /**< Hz of clk_sys, which all dividers were computed for */
     epg_pico_tick_t tick;
-    const epg_middleware_t *middleware;     /**< NULL: none */
-    const epg_pico_transport_t *transport;  /**< NULL: none */
+    const epg_pico_transport_t *transport; /**< for the target's middleware; NULL: it needs none */
 } epg_pico_target_t;
 
 /** Why epg_pico_start() did not start. */

@@ -1,0 +1,59 @@
+"""Images of ``project/`` for a board and a platform, built once and kept in EPG's cache."""
+
+from __future__ import annotations
+
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+
+from tests.emulator.build import build
+from tests.emulator.toolchain import Missing, arm_gcc, node, pico_sdk, rp2040js, skip_if_missing, tool
+
+PROJECT = "tests/platforms/pico/project"
+BOARDS = ("pico", "pico2")
+PLATFORMS = ("bare_metal", "freertos")
+TARGETS = [(board, platform) for board in BOARDS for platform in PLATFORMS]
+
+
+def freertos_kernel() -> Path:
+    return tool("freertos_kernel")
+
+
+def skip_unless_buildable(platform: str) -> None:
+    """Skips the test when the SDK, the compiler, or the kernel of ``platform`` is missing."""
+    skip_if_missing(pico_sdk, arm_gcc, *([freertos_kernel] if platform == "freertos" else []))
+
+
+def skip_unless_emulated(platform: str) -> None:
+    skip_unless_buildable(platform)
+    skip_if_missing(node, rp2040js)
+
+
+def images(board: str, platform: str, *names: str, middleware: str = "none") -> Path:
+    """The build folder with ``names``.elf; SDK and compiler must be there."""
+    variables = {"PLATFORM": platform, "MIDDLEWARE": middleware}
+    return build(PROJECT, board=board, targets=names, variables=variables)
+
+
+@dataclass(frozen=True)
+class Size:
+    """Bytes of an image, as ``size`` counts them."""
+
+    text: int
+    data: int
+    bss: int
+
+
+def size_of(elf: Path) -> Size:
+    output = binutils("size", str(elf)).splitlines()[1].split()
+    return Size(*(int(number) for number in output[:3]))
+
+
+def binutils(program: str, *arguments: str) -> str:
+    """What a program of the toolchain prints."""
+    path = arm_gcc().parent / f"arm-none-eabi-{program}"
+    return subprocess.run([path, *arguments], capture_output=True, text=True, check=True).stdout
+
+
+__all__ = ["BOARDS", "PLATFORMS", "TARGETS", "Missing", "Size", "binutils", "images", "size_of", "skip_unless_buildable",
+           "skip_unless_emulated"]  # fmt: skip

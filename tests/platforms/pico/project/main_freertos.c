@@ -1,0 +1,25 @@
+#include "FreeRTOS.h"
+#include "mischief.h"
+#include "task.h"
+
+static StaticTask_t memory;
+static StackType_t stack[512];
+
+static void run(void *argument)
+{
+    (void)argument;
+    for (;;) {
+        obey();
+        vTaskDelay(1);
+    }
+}
+
+int main(void)
+{
+    if (!jiwy_start()) {
+        panic("jiwy_start");
+    }
+    xTaskCreateStatic(run, "user", 512, NULL, 1, stack, &memory);
+    vTaskStartScheduler();
+    return 0;
+}

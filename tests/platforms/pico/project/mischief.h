@@ -1,0 +1,67 @@
+/**
+ * @file
+ * What a test asks core 0 to do, by writing `order`.
+ */
+#ifndef MISCHIEF_H
+#define MISCHIEF_H
+
+#include <assert.h>
+#include <stdint.h>
+
+#include "hardware/flash.h"
+#include "hardware/sync.h"
+#include "jiwy.h"
+#include "pico.h"
+#include "pico/flash.h"
+
+enum { ORDER_NONE, ORDER_FAULT, ORDER_PANIC, ORDER_STUCK, ORDER_ENABLE, ORDER_DISABLE, ORDER_FLASH, ORDER_STOP, ORDER_START };
+
+volatile uint32_t order;
+volatile int32_t answer = 1000;
+volatile uint32_t turns;
+epg_status_t status;
+
+static void write_flash(void *argument)
+{
+    (void)argument;
+    answer = 0;
+}
+
+static void obey(void)
+{
+    const uint32_t now = order;
+    order = ORDER_NONE;
+    turns++;
+    (void)jiwy_status(&status);
+    switch (now) {
+    case ORDER_FAULT:
+        *(volatile uint32_t *)0xF0000000U = 0;
+        break;
+    case ORDER_PANIC:
+        panic("asked to");
+    case ORDER_STUCK:
+        (void)save_and_disable_interrupts();
+        for (;;) {
+            tight_loop_contents();
+        }
+    case ORDER_ENABLE:
+        jiwy_enable(true);
+        break;
+    case ORDER_DISABLE:
+        jiwy_enable(false);
+        break;
+    case ORDER_FLASH:
+        answer = flash_safe_execute(write_flash, NULL, 10);
+        break;
+    case ORDER_STOP:
+        jiwy_stop();
+        break;
+    case ORDER_START:
+        answer = jiwy_start() ? 1 : 0;
+        break;
+    default:
+        break;
+    }
+}
+
+#endif
