@@ -109,8 +109,9 @@ def check_library_name(name: str, span: Span, diagnostics: Diagnostics) -> None:
 
 
 def check_model_names(model: Model, library: str, diagnostics: Diagnostics) -> None:
-    """No port is called like a macro in the header of the model's ``library``."""
+    """No port is called like a macro in the header of the model's ``library`` or of the target it belongs to."""
     macros = {f"{library}_{word}".upper() for word in ("step_size", "instances", "parameters")}
+    macros |= {f"{library.rpartition('_')[0]}_{word}".upper() for word in ("epg_version", "hash")}
     for port in (*model.inputs, *model.outputs):
         if port.identifier in macros:
             message = f"{port.direction} '{port.name}' is called like a macro of the generated header"
@@ -125,6 +126,10 @@ def check_driver_headers(application: Application, diagnostics: Diagnostics) -> 
         for header in sorted(generated.intersection(component.kind.headers)):
             message = f"component '{component.name}' needs a header '{header}', and target '{name}' makes one"
             diagnostics.error("invalid-name", component.span, message, hint="choose another name for the target")
+    communication = application.communication
+    for header in sorted(generated.intersection(communication.middleware.headers)):
+        message = f"middleware '{communication.middleware.name}' needs a header '{header}', and target '{name}' makes one"
+        diagnostics.error("invalid-name", communication.span, message, hint="choose another name for the target")
 
 
 def check_paths(paths: Iterable[Path], diagnostics: Diagnostics) -> None:

@@ -44,6 +44,13 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         message = f"{app.target.name} can be checked, but this EPG has no port layer for {app.target.platform.name}"
         diagnostics.error("platform-not-built", span, message, hint="choose another target: 'epg targets' lists them")
         diagnostics.stop_if_errors()
+    communication = app.communication
+    if not communication.middleware.builds:
+        name = communication.middleware.name
+        others = ", ".join(other for other in app.target.platform.middlewares if other != name)
+        message = f"middleware '{name}' can be checked, but this EPG has no code for it"
+        diagnostics.error("middleware-not-built", communication.span, message, hint=f"choose another one: {others}")
+        diagnostics.stop_if_errors()
     try:
         files = application_outputs(app, request.roots, PathNames(options.source_dir))
     except Exception as error:

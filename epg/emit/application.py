@@ -12,7 +12,10 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+from epg import __version__
 from epg.diagnostics import Diagnostics, UserError
+from epg.emit.fingerprint import LITERAL, model_hash
+from epg.emit.service import Service, service_of
 from epg.emit.template import environment
 from epg.emit.text import Code, double, identifier
 from epg.resolve.application import Application, ResolvedComponent, Step, Wire
@@ -142,6 +145,8 @@ class Emitter:
         parts = [self._part(number, component) for number, component in enumerate(app.components)]
         publishers = {topic.component.name for topic in app.publications}
         headers = {str(header) for component in app.components for header in component.kind.headers}
+        headers.update(app.communication.middleware.headers)
+        service = service_of(app, self._service_macro)
         context: dict[str, Any] = {
             "app": app,
             "prefix": self.prefix,
@@ -154,6 +159,11 @@ class Emitter:
             "outputs": [self._output(wire) for wire in app.outputs if wire.component.name not in publishers],
             "monitor": [self._output(wire) for wire in app.outputs if wire.component.name in publishers],
             "output_pins": self._output_pins(),
+            "service": service,
+            "middleware_code": self._middleware_code(service),
+            "model_hash": model_hash(app.model, app.parameters),
+            "version": __version__,
+            "hash": LITERAL,
             "fail_safe": None,
             "plant_inputs": [],
             "plant_outputs": [],
@@ -229,6 +239,17 @@ class Emitter:
             safe=_indented(self._macro(component, "safe")),
             probes={point: _indented(self._macro(component, "probe", point)) for point in POINTS},
         )
+
+    def _service_macro(self, component: ResolvedComponent, macro: str, *arguments: object) -> Code:
+        code = self._macro(component, macro, *arguments)
+        return _indented(code) if macro == "write" else code
+
+    def _middleware_code(self, service: Service) -> Code:
+        middleware = self.app.communication.middleware
+        if service.middleware is None or not middleware.has_template:
+            return Code("")
+        template = self.env.get_template(f"middlewares/{middleware.name}/code.c.j2")
+        return Code(str(template.make_module().globals(service.middleware)).strip("\n"))  # type: ignore[attr-defined]
 
     def _output_pins(self) -> list[OutputPin]:
         return [

@@ -64,6 +64,10 @@ def application_cmake(
     lines += _set("EPG_PLATFORM_CMAKE", [names.cmake(app.target.platform.folder / "platform.cmake")])
     for sdk, board in sorted(app.target.board.sdks.items()):
         lines += _set(f"EPG_BOARD_{sdk}", [str(cmake(board))])
+    middleware = app.communication.middleware
+    lines += _set("EPG_MIDDLEWARE", [str(cmake(middleware.name))])
+    lines += _set("EPG_MIDDLEWARE_FOLDER", [names.cmake(middleware.folder)])
+    lines += _set("EPG_MIDDLEWARE_SOURCES", names.in_order(middleware.folder / name for name in middleware.sources))
     if app.communication.transport:
         lines += _set("EPG_TRANSPORT", [str(cmake(app.communication.transport))])
     lines += _set("EPG_GENERATED_SOURCES", [str(cmake(name)) for name in own])
@@ -76,10 +80,11 @@ def application_cmake(
     platform = app.target.platform
     shared = [platform.folder.parent / name for name in platform.shared]
     used += [*app.target.files, *(platform.folder / name for name in platform.templates)]
+    used += middleware.files
     used += [path for folder in shared for path in folder.glob("*.j2")]
     models = [app.model] if app.plant is None else [app.model, app.plant.model]
     searched = {folder for model in models for folder in searched_folders(model.directory)}
-    searched |= {platform.folder, *shared, *(kind.folder for kind in kinds.values())}
+    searched |= {platform.folder, middleware.folder, *shared, *(kind.folder for kind in kinds.values())}
     lines += _inputs(used, searched, app.absent, [*generated, f"{app.name}.cmake"], names)
     return "\n".join(lines) + "\n"
 

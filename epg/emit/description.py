@@ -8,16 +8,19 @@ from __future__ import annotations
 import json
 from typing import Any
 
+from epg import __version__
 from epg.emit.cmake import PathNames
 from epg.load.models.model import Model
 from epg.resolve.application import Application, ResolvedComponent, Step, Wire
 from epg.source import Span
 
 
-def describe(app: Application, names: PathNames) -> str:
-    """The description of ``app`` as JSON text."""
+def describe(app: Application, names: PathNames, hash: str = "") -> str:
+    """The description of ``app`` as JSON text; ``hash`` is empty where nothing is generated."""
     data: dict[str, Any] = {
         "name": app.name,
+        "epg": __version__,
+        "hash": hash,
         "target": {"name": app.target.name, "board": app.target.board.name, "platform": app.target.platform.name},
         "node": app.node,
         "namespace": app.namespace,

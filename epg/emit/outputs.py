@@ -8,6 +8,7 @@ from pathlib import Path
 from epg.emit.application import emit_application
 from epg.emit.cmake import PathNames, application_cmake, model_cmake
 from epg.emit.description import describe
+from epg.emit.fingerprint import PLACE, application_hash
 from epg.emit.model import emit_model, model_build
 from epg.load.models.model import Model
 from epg.resolve.application import Application
@@ -23,7 +24,9 @@ def application_outputs(app: Application, roots: Sequence[Path], names: PathName
     for model, name, parameters in parts:
         files |= emit_model(model, name, parameters)
         builds.append((name, model_build(model, name, parameters)))
-    files[f"{app.name}.json"] = describe(app, names)
+    hash = application_hash(app, files)
+    files = {name: text.replace(PLACE, hash) for name, text in files.items()}
+    files[f"{app.name}.json"] = describe(app, names, hash)
     files[f"{app.name}.cmake"] = application_cmake(app, builds, files, names)
     return files
 

@@ -21,17 +21,14 @@ enum {
 typedef struct handler {
     const char *name;
     void (*run)(epg_console_session_t *session, const epg_console_command_t *command);
-    bool lists; /**< its answer has several lines, so that it waits until those of another one are written */
 } handler_t;
 
 static const handler_t handlers[] = {
-    {"help", epg_console_help, true},       {"version", epg_console_version, false},
-    {"stats", epg_console_stats, true},     {"ports", epg_console_ports, true},
-    {"enable", epg_console_enable, false},  {"disable", epg_console_disable, false},
-    {"watch", epg_console_watch, false},    {"get", epg_console_get, true},
-    {"set", epg_console_set, false},        {"save", epg_console_save, false},
-    {"capture", epg_console_capture, true}, {"jog", epg_console_jog, false},
-    {"echo", epg_console_echo, false},
+    {"help", epg_console_help},       {"version", epg_console_version}, {"stats", epg_console_stats},
+    {"ports", epg_console_ports},     {"enable", epg_console_enable},   {"disable", epg_console_disable},
+    {"watch", epg_console_watch},     {"get", epg_console_get},         {"set", epg_console_set},
+    {"save", epg_console_save},       {"jog", epg_console_jog},         {"echo", epg_console_echo},
+    {"capture", epg_console_capture},
 };
 
 static epg_console_session_t session;
@@ -216,19 +213,14 @@ static const handler_t *find_handler(const char *name)
     return NULL;
 }
 
-/** The first word of a line, which it leaves as it is, is that of a command whose answer has several lines. */
-static bool line_lists(void)
+/** The line must act at once, whatever is being answered: setpoints, enable, disable. */
+static bool urgent(void)
 {
     const char *line = session.input.line;
-    const size_t begin = strspn(line, " \t");
-    const size_t length = strcspn(line + begin, " \t");
-    for (size_t i = 0; i < sizeof handlers / sizeof handlers[0]; i++) {
-        if (handlers[i].lists && strlen(handlers[i].name) == length &&
-            memcmp(handlers[i].name, line + begin, length) == 0) {
-            return true;
-        }
-    }
-    return false;
+    const char *word = line + strspn(line, " \t");
+    const size_t length = strcspn(word, " \t");
+    return memchr(word, '=', length) != NULL || (length == 6 && memcmp(word, "enable", length) == 0) ||
+           (length == 7 && memcmp(word, "disable", length) == 0);
 }
 
 static void run_line(void)
@@ -266,7 +258,7 @@ static void poll_input(void)
     }
     session.input.line[session.input.length] = '\0';
     const bool room = epg_console_output_room(&session.output) >= ANSWER_ROOM || idle_ns > (uint64_t)PATIENCE_MS * MS;
-    if (room && !(session.list != NULL && line_lists())) {
+    if (room && (session.list == NULL || urgent())) {
         run_line();
     }
 }

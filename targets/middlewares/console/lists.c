@@ -35,7 +35,8 @@ static bool help_line(epg_console_session_t *session, size_t index)
 
 void epg_console_help(epg_console_session_t *session, const epg_console_command_t *command)
 {
-    epg_console_answer(session, command->words[0], help_line);
+    (void)command;
+    epg_console_answer(session, "help", help_line);
 }
 
 static const char *stored_name(const epg_parameters_t *parameters)
@@ -54,7 +55,8 @@ static const char *stored_name(const epg_parameters_t *parameters)
 void epg_console_version(epg_console_session_t *session, const epg_console_command_t *command)
 {
     const epg_target_t *target = session->target;
-    epg_console_ok(session, command->words[0]);
+    (void)command;
+    epg_console_ok(session, "version");
     epg_console_key(&session->output, "name");
     epg_console_text(&session->output, target->application->name);
     epg_console_key(&session->output, "node");
@@ -125,11 +127,12 @@ static bool stats_line(epg_console_session_t *session, size_t index)
 
 void epg_console_stats(epg_console_session_t *session, const epg_console_command_t *command)
 {
+    (void)command;
     if (!session->has_status) {
-        epg_console_error(session, command->words[0], "no control cycle has run yet", NULL);
+        epg_console_error(session, "stats", "no control cycle has run yet", NULL);
         return;
     }
-    epg_console_answer(session, command->words[0], stats_line);
+    epg_console_answer(session, "stats", stats_line);
 }
 
 static void port(epg_console_session_t *session, const char *sort, const char *name, const char *unit)
@@ -177,7 +180,8 @@ static bool ports_line(epg_console_session_t *session, size_t index)
 
 void epg_console_ports(epg_console_session_t *session, const epg_console_command_t *command)
 {
-    epg_console_answer(session, command->words[0], ports_line);
+    (void)command;
+    epg_console_answer(session, "ports", ports_line);
 }
 
 size_t epg_console_find_signal(const epg_console_session_t *session, const char *name)

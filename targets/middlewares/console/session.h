@@ -67,7 +67,7 @@ struct epg_console_session {
     bool has_status;
 
     epg_console_list_t *list; /**< the answer of several lines that is being written; NULL: none */
-    const char *list_command; /**< that it answers */
+    const char *list_command; /**< that it answers; a literal */
     size_t list_index;
     size_t list_selected[EPG_CONSOLE_WORDS]; /**< what it is about, if it is not about everything */
     size_t list_count;                       /**< of `list_selected` */

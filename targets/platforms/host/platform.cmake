@@ -12,6 +12,7 @@ function(_epg_host_library)
   add_library(epg_host STATIC EXCLUDE_FROM_ALL ${sources})
   target_include_directories(epg_host PUBLIC "${folder}/include")
   target_link_libraries(epg_host PUBLIC epg_runtime "$<$<PLATFORM_ID:Linux>:-pthread>" $<$<NOT:$<BOOL:${WIN32}>>:m>)
+  target_link_libraries(epg_runtime INTERFACE epg_host) # the port layer that it calls
   set_target_properties(epg_host PROPERTIES C_STANDARD 11 C_STANDARD_REQUIRED ON C_EXTENSIONS OFF)
   target_compile_definitions(epg_host PRIVATE _POSIX_C_SOURCE=200809L)
   add_library(EPG::host ALIAS epg_host)

@@ -9,6 +9,11 @@
 
 #include <string.h>
 
+void epg_capture_clear(epg_capture_t *capture)
+{
+    epg_handover_clear(&capture->handover);
+}
+
 static double *row_at(const epg_capture_t *capture, size_t index)
 {
     return &capture->memory[index * (capture->request.columns + 1U)];

@@ -24,6 +24,12 @@ void epg_control_start(epg_control_t *control, const epg_application_t *applicat
     if (application->monitor_exchange != NULL) {
         epg_exchange_clear(application->monitor_exchange);
     }
+    if (application->capture != NULL) {
+        epg_capture_clear(application->capture);
+    }
+    if (application->jog != NULL) {
+        epg_jog_clear(application->jog);
+    }
     application->start();
     application->safe(); /* whatever the peripherals start with */
 }

@@ -4,6 +4,14 @@
  */
 #include "epg/jog.h"
 
+void epg_jog_clear(epg_jog_t *jog)
+{
+    jog->end = EPG_JOG_STOPPED;
+    jog->running = false;
+    jog->stop = false;
+    epg_handover_clear(&jog->handover);
+}
+
 static void take_readings(const epg_jog_t *jog, epg_jog_reading_t *readings)
 {
     for (size_t i = 0; i < jog->encoder_count; i++) {

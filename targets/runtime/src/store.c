@@ -112,6 +112,7 @@ static epg_parameters_stored_t read_store(const epg_parameters_t *parameters, si
 void epg_parameters_load(epg_parameters_t *parameters)
 {
     size_t count = 0;
+    epg_handover_clear(&parameters->handover);
     for (size_t i = 0; i < parameters->count; i++) {
         parameters->values[i] = parameters->table[i].value;
         parameters->changed[i] = false;

@@ -13,6 +13,8 @@
 #include "report.h"
 #include "run.h"
 #include "setpoints.h"
+#include "store.h"
+#include "terminal.h"
 
 enum { DONE = 0, FAILED = 1, WRONG_INPUT = 2, INTERRUPTED = 130 };
 
@@ -57,12 +59,15 @@ static bool close_output(const char *path, FILE *file)
 
 /** With all files open and the events read: runs, and fills the files. */
 static int run_target(const epg_host_target_t *host, const epg_host_options_t *options, const epg_host_events_t *events,
-                      const outputs_t *outputs)
+                      const outputs_t *outputs, epg_host_terminal_t *terminal)
 {
     static epg_host_run_t run; /* too large for a small stack */
     const epg_target_t *target = host->target;
     const uint64_t cycles = (options->duration_ns - 1) / target->application->period_ns + 1;
-    run = (epg_host_run_t){.host = host, .end_ns = options->duration_ns};
+    run = (epg_host_run_t){.host = host,
+                           .end_ns = options->duration_ns,
+                           .terminal = terminal,
+                           .ends_with_input = terminal != NULL && options->duration_ns == UINT64_MAX};
     if (!epg_host_communication_start(&run.communication, target, events, run.end_ns, outputs->topics)) {
         return FAILED;
     }
@@ -82,10 +87,34 @@ static int run_target(const epg_host_target_t *host, const epg_host_options_t *o
     if (status == DONE && outputs->statistics != NULL) {
         epg_host_write_statistics(outputs->statistics, &run);
     }
-    if (status == DONE && !options->quiet) {
+    if (status == DONE && !options->quiet && !options->console) {
         epg_host_print_summary(&run);
     }
     return status == DONE && epg_host_interrupted ? INTERRUPTED : status;
+}
+
+/** With a terminal for the console, if one is wanted. */
+static int run_with_terminal(const epg_host_target_t *host, const epg_host_options_t *options,
+                             const epg_host_events_t *events, const outputs_t *outputs)
+{
+    epg_host_terminal_t terminal;
+    if (!options->console && options->console_pty == NULL) {
+        return run_target(host, options, events, outputs, NULL);
+    }
+    if (host->target->middleware == NULL) {
+        fputs("error: this target has no console\n"
+              "hint: 'communication: {middleware: console}' in its .tcf gives it one\n",
+              stderr);
+        return WRONG_INPUT;
+    }
+    if (options->console) {
+        epg_host_terminal_standard(&terminal);
+    } else if (!epg_host_terminal_open(&terminal, options->console_pty)) {
+        return FAILED;
+    }
+    const int status = run_target(host, options, events, outputs, &terminal);
+    epg_host_terminal_close(&terminal);
+    return status;
 }
 
 static int run_with_files(const epg_host_target_t *host, const epg_host_options_t *options,
@@ -95,7 +124,7 @@ static int run_with_files(const epg_host_target_t *host, const epg_host_options_
     int status = FAILED;
     if (open_output(options->topics, &outputs.topics) && open_output(options->trace, &outputs.trace) &&
         open_output(options->statistics, &outputs.statistics)) {
-        status = run_target(host, options, events, &outputs);
+        status = run_with_terminal(host, options, events, &outputs);
     }
     errno = 0;
     const bool topics = close_output(options->topics, outputs.topics);
@@ -119,6 +148,7 @@ int epg_host_main(const epg_host_target_t *host, int argc, char **argv)
         !epg_host_read_setpoints(options.setpoints, host->target, options.realtime, &events)) {
         return WRONG_INPUT;
     }
+    epg_host_store_open(options.store);
     epg_host_interrupted = 0;
     signal(SIGINT, on_interrupt);
     signal(SIGTERM, on_interrupt);

@@ -12,11 +12,15 @@
 void epg_host_print_help(const char *name)
 {
     printf("usage: %s [options] --duration SECONDS\n"
+           "       %s [options] --realtime --console\n"
            "\n"
            "Runs the target '%s' against its simulated plant.\n"
            "\n"
            "  --duration SECONDS   how long to run\n"
            "  --realtime           in real time, in a thread of its own (default: simulated time)\n"
+           "  --console            commands from standard input, answers to standard output (real time)\n"
+           "  --console-pty PATH   the same on a terminal with this name, as if a board were plugged in\n"
+           "  --store FILE         where the console's 'save' keeps parameters\n"
            "  --setpoints FILE     CSV with rows time,topic,value: what arrives, and when\n"
            "  --topics FILE        writes what is published, in the same form\n"
            "  --trace FILE         writes all signals, one row per control cycle\n"
@@ -26,7 +30,7 @@ void epg_host_print_help(const char *name)
            "\n"
            "Exit status: 0 done; 1 could not run or write a file; 2 wrong options or setpoint file;\n"
            "130 interrupted (files are written up to there).\n",
-           name, name);
+           name, name, name);
 }
 
 /** One option: a flag, or a value that is kept as text. */
@@ -85,6 +89,8 @@ bool epg_host_read_options(int argc, char **argv, epg_host_options_t *options)
         {"--realtime", &options->realtime, NULL},   {"--duration", NULL, &duration},
         {"--setpoints", NULL, &options->setpoints}, {"--topics", NULL, &options->topics},
         {"--trace", NULL, &options->trace},         {"--statistics", NULL, &options->statistics},
+        {"--console", &options->console, NULL},     {"--console-pty", NULL, &options->console_pty},
+        {"--store", NULL, &options->store},
     };
     for (int i = 1; i < argc; i++) {
         const option_t *option = find(known, sizeof known / sizeof known[0], argv[i]);
@@ -97,6 +103,19 @@ bool epg_host_read_options(int argc, char **argv, epg_host_options_t *options)
         }
     }
     if (options->help) {
+        return true;
+    }
+    const bool console = options->console || options->console_pty != NULL;
+    if (console && !options->realtime) {
+        fputs("error: --console without --realtime\nhint: nobody types in simulated time: add --realtime\n", stderr);
+        return false;
+    }
+    if (options->console && options->console_pty != NULL) {
+        fputs("error: --console and --console-pty\nhint: there is one console: leave one of them out\n", stderr);
+        return false;
+    }
+    if (duration == NULL && console && options->trace == NULL) {
+        options->duration_ns = UINT64_MAX;
         return true;
     }
     if (duration == NULL) {

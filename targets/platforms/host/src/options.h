@@ -12,9 +12,12 @@ typedef struct epg_host_options {
     bool help;
     bool quiet;
     bool realtime;
-    uint64_t duration_ns;  /**< > 0 */
-    const char *setpoints; /**< path to read; NULL: none */
-    const char *topics;    /**< paths to write; NULL: not written */
+    bool console;            /**< on standard input and output */
+    uint64_t duration_ns;    /**< > 0; UINT64_MAX: until it is ended */
+    const char *console_pty; /**< name of the terminal that the console is on; NULL: none */
+    const char *store;       /**< path of the file that stored values are in; NULL: none */
+    const char *setpoints;   /**< path to read; NULL: none */
+    const char *topics;      /**< paths to write; NULL: not written */
     const char *trace;
     const char *statistics;
 } epg_host_options_t;

@@ -27,13 +27,16 @@
 #include <time.h>
 
 #include "clock.h"
+#include "epg/middleware.h"
+#include "epg/port.h"
 
 enum {
     PRIORITY = 80,                     /* above threaded interrupts (50), below the kernel's own threads (99) */
     STACK_SIZE = 2 << 20,              /* bytes; thread-local storage is taken from it, of sanitizers close to 1 MiB */
     STACK_PREFAULTED = 256 << 10,      /* bytes the cycle may use without a page fault */
     START_DELAY_NS = 20 * 1000 * 1000, /* from all being ready to the first tick: the caller gets going meanwhile */
-    LONGEST_SLEEP_NS = 100 * 1000 * 1000 /* of the communication side, so that an interrupt is seen soon */
+    LONGEST_SLEEP_NS = 100 * 1000 * 1000, /* of the communication side, so that an interrupt is seen soon */
+    MIDDLEWARE_SLEEP_NS = 1000 * 1000     /* the same when it has a middleware to call */
 };
 
 /** A control thread and what it shares with the thread that started it. */
@@ -171,9 +174,30 @@ static void join_thread(control_thread_t *self)
     sem_destroy(&self->ready);
 }
 
+/** Sleeps until monotonic time `time_ns`, less if there is a middleware with something to do. */
+static void sleep_or_serve(const epg_host_run_t *run, uint64_t time_ns)
+{
+    if (run->terminal == NULL) {
+        sleep_until(time_ns);
+        return;
+    }
+    const uint64_t soon_ns = epg_host_monotonic_ns() + MIDDLEWARE_SLEEP_NS;
+    epg_host_terminal_wait(run->terminal, time_ns < soon_ns ? time_ns : soon_ns);
+    run->host->target->middleware->poll(epg_port_time_ns());
+}
+
+static bool ended(const epg_host_run_t *run)
+{
+    return epg_host_interrupted ||
+           (run->ends_with_input && epg_host_terminal_ended(run->terminal, epg_host_monotonic_ns()));
+}
+
 bool epg_host_run_realtime(epg_host_run_t *run)
 {
     control_thread_t control;
+    if (run->terminal != NULL) {
+        run->host->target->middleware->start(run->host->target, &run->terminal->stream);
+    }
     if (!start_thread(&control, run)) {
         return false;
     }
@@ -181,15 +205,15 @@ bool epg_host_run_realtime(epg_host_run_t *run)
     uint64_t now_ns = 0;
     run->communication.start_ns = start_ns;
     sleep_until(start_ns);
-    while (now_ns < run->end_ns && !epg_host_interrupted) {
+    while (now_ns < run->end_ns && !ended(run)) {
         uint64_t until_ns = epg_host_communication_next(&run->communication);
         until_ns = until_ns < now_ns + LONGEST_SLEEP_NS ? until_ns : now_ns + LONGEST_SLEEP_NS;
-        sleep_until(start_ns + (until_ns < run->end_ns ? until_ns : run->end_ns));
+        sleep_or_serve(run, start_ns + (until_ns < run->end_ns ? until_ns : run->end_ns));
         const uint64_t monotonic_ns = epg_host_monotonic_ns();
         now_ns = monotonic_ns > start_ns ? monotonic_ns - start_ns : 0; /* a signal may have come before the start */
         epg_host_communicate_realtime(&run->communication, now_ns);
     }
-    atomic_store(&control.stop, epg_host_interrupted != 0);
+    atomic_store(&control.stop, now_ns < run->end_ns);
     join_thread(&control);
     run->wall_time_ns = epg_host_monotonic_ns() - start_ns;
     return true;

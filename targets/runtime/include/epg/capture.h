@@ -57,6 +57,9 @@ typedef struct epg_capture {
     size_t at;         /**< rows from before the trigger that are kept */
 } epg_capture_t;
 
+/** Ends a recording that a stop of the control loop has left.  While neither side is active. */
+void epg_capture_clear(epg_capture_t *capture);
+
 /* Control side ----------------------------------------------------------------------------------------------- */
 
 /** Records, if that is asked for, the cycle of `tick_ns` at its end; `fault`: a fault is latched. */

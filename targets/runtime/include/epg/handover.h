@@ -33,6 +33,13 @@ static inline void epg_handover_give(epg_handover_t *handover)
     atomic_store(&handover->given, atomic_load(&handover->given) + 1U);
 }
 
+/** Makes the block the giver's.  Only while neither side uses it. */
+static inline void epg_handover_clear(epg_handover_t *handover)
+{
+    atomic_store(&handover->given, 0U);
+    atomic_store(&handover->returned, 0U);
+}
+
 /** Taker: true while the block is the taker's. */
 static inline bool epg_handover_there(epg_handover_t *handover)
 {

@@ -60,6 +60,9 @@ typedef struct epg_jog {
     uint32_t elapsed; /**< the control side's: cycles driven so far */
 } epg_jog_t;
 
+/** Ends a movement that a stop of the control loop has left.  While neither side is active. */
+void epg_jog_clear(epg_jog_t *jog);
+
 /* Control side ----------------------------------------------------------------------------------------------- */
 
 /**

@@ -1,0 +1,155 @@
+"""What the generator makes for a middleware: the model's ports by name, parameters, recordings, actuators by hand.
+
+A middleware's ``uses`` says which of them; ``templates/service.c.j2`` lays them out.  Its own ``code.c.j2``, if it has
+one, has a macro ``globals(m)``, of which ``m`` is a :class:`MiddlewareView`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+
+from epg.emit.text import Code, identifier
+from epg.load.middleware import Middleware
+from epg.resolve.application import Application, ResolvedComponent
+
+Macro = Callable[..., Code]
+"""``macro(component, name, *arguments)``: what the template of a component's kind gives; empty when it has no such."""
+
+
+@dataclass(frozen=True)
+class SignalView:
+    """A port of the model; ``slot`` is its place among the monitoring values."""
+
+    name: str
+    unit: str
+    struct: Code
+    member: Code
+    slot: int
+
+
+@dataclass(frozen=True)
+class ParameterView:
+    """A parameter of the model with the value it is generated with."""
+
+    name: str
+    unit: str
+    value: float
+
+
+@dataclass(frozen=True)
+class ActuatorView:
+    """A port that can be driven by hand; ``statement`` drives it with ``duty``."""
+
+    name: str
+    function: Code
+    statement: Code
+
+
+@dataclass(frozen=True)
+class EncoderView:
+    """A sensor that counts; ``count`` and ``position`` are expressions."""
+
+    name: str
+    symbol: Code
+    count: Code
+    position: Code
+    unit: str
+
+
+@dataclass(frozen=True)
+class MiddlewareView:
+    """The middleware as its own template sees it; ``monitor_count`` numbers are monitored in each cycle."""
+
+    name: str
+    symbol: Code
+    options: Mapping[str, object]
+    monitor_count: int
+
+
+@dataclass(frozen=True)
+class Service:
+    """All of it; empty lists and zeros for what the middleware does not use."""
+
+    middleware: MiddlewareView | None  # None when nothing runs
+    signals: tuple[SignalView, ...]
+    time_slot: int | None
+    monitor_count: int
+    parameters: tuple[ParameterView, ...]
+    capture: int
+    actuators: tuple[ActuatorView, ...]
+    encoders: tuple[EncoderView, ...]
+
+
+def service_of(app: Application, macro: Macro) -> Service:
+    """What the middleware of ``app`` uses."""
+    middleware, options = app.communication.middleware, app.communication.options
+    uses = middleware.uses
+    published = len(app.publications)
+    signals = tuple(_signals(app, published)) if "signals" in uses else ()
+    time_slot = published + len(signals) if "signals" in uses else None
+    monitor_count = published if time_slot is None else time_slot + 1
+    jog = "jog" in uses
+    capture = options.get("capture") if "capture" in uses else 0
+    assert isinstance(capture, int)
+    return Service(
+        middleware=_view(middleware, options, monitor_count),
+        signals=signals,
+        time_slot=time_slot,
+        monitor_count=monitor_count,
+        parameters=tuple(_parameters(app)) if "parameters" in uses else (),
+        capture=capture,
+        actuators=tuple(a for c in app.components for a in _actuators(c, macro)) if jog else (),
+        encoders=tuple(e for c in app.components for e in _encoders(c, macro)) if jog else (),
+    )
+
+
+def _view(middleware: Middleware, options: Mapping[str, object], monitor_count: int) -> MiddlewareView | None:
+    if not middleware.symbol:
+        return None
+    return MiddlewareView(middleware.name, identifier(middleware.symbol), options, monitor_count)
+
+
+def _signals(app: Application, first_slot: int) -> Iterable[SignalView]:
+    slot = first_slot
+    names: set[str] = set()
+    for struct, ports in (("inputs", app.model.inputs), ("outputs", app.model.outputs)):
+        for port in ports:
+            name = _word(f"{struct}.{port.name}", names)
+            yield SignalView(name, _word(port.unit), Code(struct), identifier(port.identifier), slot)
+            slot += 1
+
+
+def _parameters(app: Application) -> Iterable[ParameterView]:
+    names: set[str] = set()
+    for parameter in app.model.parameters:
+        value = app.parameters.get(parameter.name, parameter.value)
+        yield ParameterView(_word(parameter.name, names), _word(parameter.unit), value)
+
+
+def _actuators(component: ResolvedComponent, macro: Macro) -> Iterable[ActuatorView]:
+    ports = [p for p in component.kind.ports if p.actuator and p.direction == "sink" and p.type == "real"]
+    for port in ports:
+        name = component.name if len(ports) == 1 else f"{component.name}.{port.name}"
+        function = Code(f"{identifier(component.symbol)}_jog_{identifier(port.name)}")
+        yield ActuatorView(name, function, macro(component, "write", port.name, Code("duty")))
+
+
+def _encoders(component: ResolvedComponent, macro: Macro) -> Iterable[EncoderView]:
+    count, port = macro(component, "count"), component.kind.main_port("source")
+    if count and port is not None:
+        position = macro(component, "read", port.name)
+        yield EncoderView(component.name, identifier(component.symbol), count.strip(), position.strip(), port.unit)
+
+
+def _word(text: str, taken: set[str] | None = None) -> str:
+    """``text`` as one word that a line of text can hold and name: no blanks, and none of ``=<>,``."""
+    word = re.sub(r"[\s=<>,]|[^\x21-\x7e]", "_", text)
+    if taken is not None:
+        number = 2
+        start = word
+        while word in taken:
+            word, number = f"{start}_{number}", number + 1
+        taken.add(word)
+    return word

@@ -1,0 +1,229 @@
+/**
+ * @file
+ * Streams to whoever sits at the computer.
+ */
+#if defined(__linux__)
+#define _XOPEN_SOURCE 700
+#endif
+
+#include "terminal.h"
+
+#include <stdio.h>
+
+#if defined(__linux__)
+
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include "clock.h"
+
+enum {
+    CHUNK = 1024,                 /* bytes of one write(): a pipe that is ready takes 4096 without blocking (pipe(7)) */
+    GRACE_NS = 200 * 1000 * 1000, /* from the end of input to the end of the run */
+    MS = 1000 * 1000
+};
+
+/** What is ready at `file` of `events`; POLLHUP and POLLERR come unasked. */
+static short ready(int file, short events)
+{
+    struct pollfd entry = {.fd = file, .events = events};
+    return poll(&entry, 1, 0) > 0 ? entry.revents : 0;
+}
+
+static bool connected(void *context)
+{
+    const epg_host_terminal_t *terminal = context;
+    if (!terminal->own) {
+        return !terminal->lost;
+    }
+    return (ready(terminal->input, POLLIN) & POLLHUP) == 0; /* somebody has the other end open */
+}
+
+static size_t read_bytes(void *context, void *data, size_t size)
+{
+    epg_host_terminal_t *terminal = context;
+    if (terminal->end_ns != 0 || (ready(terminal->input, POLLIN) & (POLLIN | POLLHUP)) == 0) {
+        return 0;
+    }
+    const ssize_t count = read(terminal->input, data, size);
+    if (count <= 0 && !terminal->own && !(count < 0 && (errno == EINTR || errno == EAGAIN))) {
+        terminal->end_ns = epg_host_monotonic_ns();
+    }
+    return count > 0 ? (size_t)count : 0;
+}
+
+/** Bytes taken of `size`; 0 when there is no room or nobody any more. */
+static size_t write_some(epg_host_terminal_t *terminal, const char *data, size_t size)
+{
+    if (terminal->lost || (ready(terminal->output, POLLOUT) & POLLOUT) == 0) {
+        return 0;
+    }
+    const ssize_t count = write(terminal->output, data, size < CHUNK ? size : CHUNK);
+    if (count < 0 && errno != EAGAIN && errno != EINTR && !terminal->own) {
+        terminal->lost = true;
+    }
+    return count > 0 ? (size_t)count : 0;
+}
+
+/** Standard output gets lines as files here have them: without the carriage return that a terminal of bytes needs. */
+static size_t write_lines(void *context, const void *data, size_t size)
+{
+    epg_host_terminal_t *terminal = context;
+    const char *bytes = data;
+    size_t done = 0;
+    while (done < size) {
+        const char *end = memchr(bytes + done, '\r', size - done);
+        const size_t length = end == NULL ? size - done : (size_t)(end - bytes) - done;
+        const size_t count = length == 0 ? 0 : write_some(terminal, bytes + done, length);
+        done += count;
+        if (count < length) {
+            break;
+        }
+        done += end != NULL ? 1U : 0U;
+    }
+    return done;
+}
+
+static size_t write_bytes(void *context, const void *data, size_t size)
+{
+    return write_some(context, data, size);
+}
+
+static size_t writable(void *context)
+{
+    const epg_host_terminal_t *terminal = context;
+    return !terminal->lost && (ready(terminal->output, POLLOUT) & POLLOUT) != 0 ? CHUNK : 0;
+}
+
+void epg_host_terminal_standard(epg_host_terminal_t *terminal)
+{
+    *terminal = (epg_host_terminal_t){
+        .stream = {.connected = connected,
+                   .read = read_bytes,
+                   .write = write_lines,
+                   .writable = writable,
+                   .context = terminal},
+        .input = STDIN_FILENO,
+        .output = STDOUT_FILENO,
+    };
+    signal(SIGPIPE, SIG_IGN); /* a reader that has gone is no reason to end with outputs as they are */
+}
+
+/** No echo, no lines, no signals: bytes, as over USB.  Closing it once lets the other end see that nobody is there. */
+static bool make_raw(const char *name)
+{
+    struct termios settings;
+    const int file = open(name, O_RDWR | O_NOCTTY);
+    if (file < 0) {
+        return false;
+    }
+    const bool good = tcgetattr(file, &settings) == 0;
+    settings.c_iflag &= ~(tcflag_t)(IGNBRK | BRKINT | PARMRK | ISTRIP | INLCR | IGNCR | ICRNL | IXON);
+    settings.c_oflag &= ~(tcflag_t)OPOST;
+    settings.c_lflag &= ~(tcflag_t)(ECHO | ECHONL | ICANON | ISIG | IEXTEN);
+    settings.c_cflag = (settings.c_cflag & ~(tcflag_t)(CSIZE | PARENB)) | CS8;
+    const bool set = good && tcsetattr(file, TCSANOW, &settings) == 0;
+    close(file);
+    return set;
+}
+
+/** Makes `path` a link to the terminal `name`, in place of a link that an earlier run has left. */
+static bool make_link(const char *name, const char *path)
+{
+    struct stat status;
+    if (lstat(path, &status) == 0 && S_ISLNK(status.st_mode)) {
+        unlink(path);
+    }
+    return symlink(name, path) == 0;
+}
+
+bool epg_host_terminal_open(epg_host_terminal_t *terminal, const char *path)
+{
+    const int file = posix_openpt(O_RDWR | O_NOCTTY);
+    *terminal = (epg_host_terminal_t){
+        .stream = {.connected = connected,
+                   .read = read_bytes,
+                   .write = write_bytes,
+                   .writable = writable,
+                   .context = terminal},
+        .input = file,
+        .output = file,
+        .own = true,
+    };
+    const char *name = file >= 0 && grantpt(file) == 0 && unlockpt(file) == 0 ? ptsname(file) : NULL;
+    if (name == NULL || fcntl(file, F_SETFL, O_NONBLOCK) != 0 || !make_raw(name) || !make_link(name, path)) {
+        fprintf(stderr, "%s: error: cannot make a terminal of this name: %s\n", path, strerror(errno));
+        if (file >= 0) {
+            close(file);
+        }
+        return false;
+    }
+    terminal->path = path;
+    return true;
+}
+
+void epg_host_terminal_wait(const epg_host_terminal_t *terminal, uint64_t time_ns)
+{
+    const uint64_t now_ns = epg_host_monotonic_ns();
+    const int timeout_ms = time_ns > now_ns ? (int)((time_ns - now_ns + MS - 1) / MS) : 0;
+    /* A terminal that nobody has open, and input that has ended, are always ready. */
+    const bool silent = terminal->end_ns != 0 || !terminal->stream.connected(terminal->stream.context);
+    struct pollfd entry = {.fd = terminal->input, .events = POLLIN};
+    (void)poll(&entry, silent ? 0 : 1, timeout_ms);
+}
+
+bool epg_host_terminal_ended(const epg_host_terminal_t *terminal, uint64_t now_ns)
+{
+    return terminal->end_ns != 0 && now_ns > terminal->end_ns + GRACE_NS;
+}
+
+void epg_host_terminal_close(epg_host_terminal_t *terminal)
+{
+    if (terminal->own) {
+        close(terminal->input);
+    }
+    if (terminal->path != NULL) {
+        unlink(terminal->path);
+    }
+}
+
+#else /* not Linux: there is no real time either, and nothing of this is called */
+
+void epg_host_terminal_standard(epg_host_terminal_t *terminal)
+{
+    *terminal = (epg_host_terminal_t){.lost = true};
+}
+
+bool epg_host_terminal_open(epg_host_terminal_t *terminal, const char *path)
+{
+    *terminal = (epg_host_terminal_t){.lost = true};
+    fprintf(stderr, "%s: error: a terminal needs Linux\n", path);
+    return false;
+}
+
+void epg_host_terminal_wait(const epg_host_terminal_t *terminal, uint64_t time_ns)
+{
+    (void)terminal;
+    (void)time_ns;
+}
+
+bool epg_host_terminal_ended(const epg_host_terminal_t *terminal, uint64_t now_ns)
+{
+    (void)terminal;
+    (void)now_ns;
+    return true;
+}
+
+void epg_host_terminal_close(epg_host_terminal_t *terminal)
+{
+    (void)terminal;
+}
+
+#endif
