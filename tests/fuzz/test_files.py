@@ -37,7 +37,7 @@ def yaml_files() -> list[str]:
     return sorted(name for name in all_kinds() if name.endswith((".yaml", ".tcf")))
 
 
-@settings(PROFILE, max_examples=examples(60))
+@settings(PROFILE, max_examples=examples(45))
 @given(
     st.sampled_from([*yaml_files(), "model/copy.h", "model/copy.c"]),
     st.one_of(st.binary(max_size=200), st.text(max_size=100).map(lambda text: text.encode("utf-8", "surrogatepass"))),
@@ -95,7 +95,7 @@ NO_TARGETS = ("read", "write", "safe", "pwm", "constant")
 """Legal names of components that no target can have, or not with every component."""
 
 
-@settings(PROFILE, max_examples=examples(60))
+@settings(PROFILE, max_examples=examples(45))
 @given(robots(), st.data())
 def test_mutated_robots(tmp_path: Path, robot: Robot, data: st.DataObject) -> None:
     name = data.draw(st.sampled_from(sorted(robot.files)))

@@ -48,7 +48,7 @@ def test_the_folder_is_used(tmp_path: Path) -> None:
 
 
 @needs_compiler
-@settings(PROFILE, max_examples=examples(80))
+@settings(PROFILE, max_examples=examples(60))
 @given(st.data())
 def test_mutated_descriptions(tmp_path: Path, data: st.DataObject) -> None:
     files = with_targets()

@@ -70,7 +70,7 @@ def test_descriptions_units_and_names_of_a_model(text: str, tmp_path: Path) -> N
     assert json.loads(outcome.files["robot.json"])["model"]["name"] == (text or "Copy")
 
 
-@pytest.mark.parametrize("text", [text for text in HOSTILE if text], ids=repr)
+@pytest.mark.parametrize("text", ["*/ x", '";x;//', "a\n#error", "${x}", "a;b", "é", "a\\", "{{ x }}"], ids=repr)
 @pytest.mark.parametrize(
     ("file", "old", "new"),
     [
