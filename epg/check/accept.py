@@ -69,10 +69,11 @@ def _type(value: object, wanted: Any, schema: Schema, root: Schema, partial: boo
 
 
 def _same(one: object, other: object) -> bool:
-    """Equality of JSON values that are no maps or lists: ``True`` is not 1."""
-    if isinstance(one, (dict, list)) or isinstance(other, (dict, list)):
+    """Equality of JSON values: ``True`` is not 1."""
+    structures = isinstance(one, (dict, list)), isinstance(other, (dict, list))
+    if all(structures):
         raise _Unknown("equality of structures")
-    return isinstance(one, bool) == isinstance(other, bool) and one == other
+    return not any(structures) and isinstance(one, bool) == isinstance(other, bool) and one == other
 
 
 def _enum(value: object, wanted: Any, schema: Schema, root: Schema, partial: bool) -> bool:

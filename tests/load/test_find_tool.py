@@ -171,7 +171,7 @@ CACHED = [tool for tool in TABLE.values() if "{cache}" in tool.get["any"]]
 def test_what_the_command_gets_is_found(tool: Tool, where: Surroundings) -> None:
     """The folder that a ``git clone`` of the table makes in EPG's cache is one that the lookup finds."""
     command = tool.get["any"]
-    folder = where.cache / f"{tool.name}-{tool.tested}"
+    folder = where.cache / tool.cached.partition("/")[0].replace("*", tool.tested)
     assert folder.as_posix() in command.replace("{cache}", where.cache.as_posix())
     found = folder / tool.cached.partition("/")[2]
     (found / tool.holds).parent.mkdir(parents=True)
