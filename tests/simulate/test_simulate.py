@@ -119,7 +119,7 @@ def test_in_real_time(motor: Path, tmp_path: Path) -> None:
     result = simulate(motor, path, tmp_path / "out", realtime=True)
     assert result.statistics.mode == "realtime"
     assert result.statistics.wall_time >= 1.5
-    assert [item.id for item in result.diagnostics] == ["no-stall"]
+    assert [item.id for item in result.diagnostics if item.id != "matplotlib-missing"] == ["no-stall"]
     assert "lateness of cycles" in format_table(result)
     assert result.statistics.scheduler in format_table(result)
 
