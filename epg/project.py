@@ -121,7 +121,8 @@ def check_model_names(model: Model, library: str, diagnostics: Diagnostics) -> N
 def check_driver_headers(application: Application, diagnostics: Diagnostics) -> None:
     """No generated header is called like one of a driver that it is compiled with."""
     name = application.name
-    generated = {f"{name}{end}.h" for end in ("", "_model", "_model_export", "_model_names", "_plant", "_plant_export")}
+    ends = ("", "_version", "_model", "_model_export", "_model_names", "_plant", "_plant_export")
+    generated = {f"{name}{end}.h" for end in ends}
     for component in application.components:
         for header in sorted(generated.intersection(component.kind.headers)):
             message = f"component '{component.name}' needs a header '{header}', and target '{name}' makes one"
