@@ -97,17 +97,20 @@ TEXTS: dict[str, str] = {
 }
 
 PLACES = [
-    ("write", "xxsubmod.c", "top"),
     ("write", "xxsubmod.c", "body"),
-    ("write", "xxsubmod.c", "end"),
     ("write", "xxtypes.h", "end"),
     ("write_cpp", "Servo.cpp", "top"),
-    ("write_cpp", "Servo.cpp", "body"),
     ("write_cpp", "common/xxtypes.h", "end"),
     ("write_tokens", "tokens.xml", "DYNAMIC_EQUATIONS"),
     ("write_tokens", "tokens.xml", "INITIALIZE_PARAMETERS"),
-    ("write_tokens", "tokens.xml", "INPUT_NAMES3"),
 ]
+if LONG:
+    PLACES += [
+        ("write", "xxsubmod.c", "top"),
+        ("write", "xxsubmod.c", "end"),
+        ("write_cpp", "Servo.cpp", "body"),
+        ("write_tokens", "tokens.xml", "INPUT_NAMES3"),
+    ]
 
 
 @pytest.mark.parametrize(("form", "file", "place"), PLACES, ids=lambda value: str(value))

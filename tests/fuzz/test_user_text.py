@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from tests.fuzz.compiler import ROOT, STRICT, compile_outputs, needs_compiler
-from tests.fuzz.project import Project
+from tests.fuzz.project import Project, run_epg
 from tests.fuzz.test_files import WITH_PLANT, all_kinds
 
 HOSTILE = [
@@ -59,15 +59,16 @@ def test_descriptions_units_and_names_of_a_model(text: str, tmp_path: Path) -> N
     """What a model says of itself stands in comments; none of it is compiled."""
     files = replaced(all_kinds(), "model/model.yaml", "  button: {}", f"  button: {{description: {in_yaml(text)}}}")
     files = replaced(files, "model/model.yaml", "  heat: {}", f"  heat: {{unit: {in_yaml(text)}}}")
+    shown = "".join(char if char.isprintable() else "?" for char in text) or "Copy"
     if text:
         files = replaced(files, "model/model.yaml", "name: Copy", f"name: {in_yaml(text)}")
-        files = replaced(files, "bindings.yaml", "model: Copy", f"model: {in_yaml(text)}")
+        files = replaced(files, "bindings.yaml", "model: Copy", f"model: {in_yaml(shown)}")
     outcome = Project(tmp_path / "p", files, WITH_PLANT).generate()
     if not outcome.good:  # a name of blanks is none
         assert not text.strip() or "[unit-mismatch]" in outcome.messages, outcome.messages
         return
     compile_outputs("robot", outcome.files)
-    assert json.loads(outcome.files["robot.json"])["model"]["name"] == (text or "Copy")
+    assert json.loads(outcome.files["robot.json"])["model"]["name"] == shown
 
 
 @pytest.mark.parametrize("text", ["*/ x", '";x;//', "a\n#error", "${x}", "a;b", "é", "a\\", "{{ x }}"], ids=repr)
@@ -240,3 +241,24 @@ def test_files_that_cannot_be_included(name: str, tmp_path: Path) -> None:
     servo = {file.replace("Servo.cpp", f"{name}.cpp"): data for file, data in export("write_cpp").items()}
     outcome = Project(tmp_path / "p", servo, ("--model", "model")).generate()
     assert "[invalid-name]" in outcome.messages
+
+
+def test_other_commands_show_names_on_one_line(tmp_path: Path) -> None:
+    """A name with controls in it neither moves the cursor of a terminal nor begins a line of a bindings file."""
+    from tests.fuzz.test_files import export
+
+    files = dict(export("write"))
+    del files["model/tokens.xml"]
+    source = files["model/xxsubmod.c"].replace(b"/* position {rad} */", b"/* posi\x1b[2Jtion \x9b {r\x07d} */")
+    files["model/xxsubmod.c"] = source
+    files["robot.tcf"] = all_kinds()["robot.tcf"]
+    project = Project(tmp_path / "p", files, ("--model", "model"))
+    for command in (
+        ["ports", "model"],
+        ["ports", "model", "--json"],
+        ["bind", "robot.tcf", "model"],
+    ):
+        status, printed, messages = run_epg(command, project.folder, 10)
+        assert status == 0, messages
+        assert all(char.isprintable() or char == "\n" for char in printed)
+        assert "posi?[2Jtion ?" in printed

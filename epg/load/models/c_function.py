@@ -26,6 +26,7 @@ from epg.load.models.assignments import (
 from epg.load.models.c_code import Code, Function, Variable, integer_value, parse_code, typedefs
 from epg.load.models.features import check_features, check_method, check_tokens
 from epg.load.models.folders import source_files
+from epg.load.models.identifiers import one_line
 from epg.load.models.link import Linked, link
 from epg.load.models.metadata import Metadata, cross_check, find_metadata
 from epg.load.models.model import Model
@@ -201,8 +202,8 @@ class _Importer:
         for code in (self.main, *self.linked.units, *self.linked.headers):
             match = re.search(r"^[ \t]*\*[ \t]*subm:([^\n]*)$", code.file.text[:4000], re.MULTILINE)
             if match and match[1].strip():
-                return match[1].strip()
-        return self.file.path.parent.name
+                return one_line(match[1].strip())
+        return one_line(self.file.path.parent.name)
 
     def _version(self) -> str:
         for code in (self.main, *self.linked.units, *self.linked.headers):

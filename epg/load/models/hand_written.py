@@ -16,7 +16,7 @@ from epg.load.models import details
 from epg.load.models.assignments import is_step
 from epg.load.models.c_code import parse_code
 from epg.load.models.folders import source_files
-from epg.load.models.identifiers import is_reserved, to_identifier
+from epg.load.models.identifiers import is_reserved, one_line, to_identifier
 from epg.load.models.model import Model, Parameter, Port
 from epg.load.models.ports import check_identifiers
 from epg.load.models.source_file import is_includable, read_source
@@ -100,7 +100,7 @@ class _Reader:
         read = {file for file in sources if file.is_file()}
         headers = [file for folder in directories for file in source_files(folder, (".h", ".hpp", ".hh"), 0)]
         return Model(
-            name=self._text("name") or self.path.parent.resolve().name,
+            name=one_line(self._text("name") or self.path.parent.resolve().name),
             origin="hand-written",
             language=language,
             version="",
@@ -321,7 +321,7 @@ class _Reader:
         if not isinstance(found.value, str):
             self._error("wrong-type", found.span, f"'{key}' must be text", "put it into quotes")
             return ""
-        return found.value
+        return one_line(found.value)
 
     # files ----------------------------------------------------------------------------------------------------------
 

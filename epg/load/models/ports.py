@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from epg.diagnostics import Diagnostics, Note
 from epg.load.models.assignments import Assignment, PortLine, number
 from epg.load.models.configuration import Configuration
-from epg.load.models.identifiers import to_identifier, unique_identifiers
+from epg.load.models.identifiers import one_line, to_identifier, unique_identifiers
 from epg.load.models.model import Parameter, Port
 from epg.source import Span
 
@@ -58,16 +58,17 @@ def make_ports(
                 hint="keep the comments 20-sim writes behind these lines, or tokens.xml",
             )
         configured = configuration.port(direction, name) if configuration else None
+        title = one_line(name)
         ports.append(
             Port(
-                name,
-                to_identifier(name),
+                title,
+                to_identifier(title),
                 direction,
-                line.unit or (configured.unit if configured else ""),
+                one_line(line.unit or (configured.unit if configured else "")),
                 configured.type if configured else "real",
                 index,
                 span,
-                configured.description if configured else "",
+                one_line(configured.description if configured else ""),
             )
         )
     return tuple(ports)
@@ -104,7 +105,7 @@ def make_parameters(
         if number(line.value) is not None:
             by_index.setdefault(line.index, []).append(line)
     chosen = [by_index[index][-1] for index in sorted(by_index)]
-    titles = [_title(line, names) for line in chosen]
+    titles = [one_line(_title(line, names)) for line in chosen]
     seen: dict[str, int] = {}
     for position, title in enumerate(titles):
         seen[title] = seen.get(title, 0) + 1
@@ -116,7 +117,7 @@ def make_parameters(
         value = number(line.value)
         assert value is not None
         unit = line.unit or (units[line.index] if line.index < len(units) else "")
-        parameters.append(Parameter(title, identifier, value, unit, line.index, line.span))
+        parameters.append(Parameter(title, identifier, value, one_line(unit), line.index, line.span))
     return tuple(parameters), tuple(tuple(by_index[line.index]) for line in chosen)
 
 

@@ -9,7 +9,7 @@ from epg.load.models import details
 from epg.load.models.assignments import assignments, exact_number, finite, input_lines, is_step, output_lines
 from epg.load.models.c_code import KEYWORDS
 from epg.load.models.features import FIXED_STEP_METHODS, STUBS, check_tokens
-from epg.load.models.identifiers import words
+from epg.load.models.identifiers import one_line, words
 from epg.load.models.model import Model
 from epg.load.models.ports import check_identifiers, make_parameters, make_ports
 from epg.load.models.tokens import Tokens
@@ -97,10 +97,10 @@ def load_tokens_model(tokens: Tokens, diagnostics: Diagnostics) -> Model | None:
     parameters, _ = make_parameters(lines_of_parameters, names_of_parameters, units)
     finish = exact_number(tokens.trimmed("FINISH_TIME"))
     return Model(
-        name=tokens.trimmed("SUBMODEL_NAME") or tokens.trimmed("MODEL_NAME") or tokens.path.parent.name,
+        name=one_line(tokens.trimmed("SUBMODEL_NAME") or tokens.trimmed("MODEL_NAME") or tokens.path.parent.name),
         origin="20-sim tokens",
         language="c",
-        version=tokens.trimmed("GENERATION_BUILD"),
+        version=one_line(tokens.trimmed("GENERATION_BUILD")),
         method=tokens.trimmed("INTEGRATION_METHOD_NAME"),
         step=step,
         inputs=ports[0],
