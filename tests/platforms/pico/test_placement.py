@@ -22,7 +22,7 @@ NOT_IN_A_CYCLE = frozenset({"start", "__wrap_panic", "__wrap___assert_func", "__
 @pytest.mark.parametrize(("board", "platform"), TARGETS)
 def test_no_code_and_no_table_of_the_cycle_is_in_flash(board: str, platform: str) -> None:
     skip_unless_buildable(platform)
-    image = Image(images(board, platform, "user_firmware") / "user_firmware.elf")
+    image = Image(images(board, platform, "user_jiwy") / "user_jiwy.elf")
     ways = image.reachable(*CYCLE, stop=NOT_IN_A_CYCLE)
     assert {"epg_control_cycle", "jiwy_model_step", "epg_exchange_write", "jiwy_pwm_pan_config"} <= {
         symbol.name for symbol in ways
@@ -33,13 +33,13 @@ def test_no_code_and_no_table_of_the_cycle_is_in_flash(board: str, platform: str
 @pytest.mark.parametrize(("board", "platform"), TARGETS)
 def test_the_rest_of_a_users_executable_stays_in_flash(board: str, platform: str) -> None:
     skip_unless_buildable(platform)
-    image = Image(images(board, platform, "user_firmware") / "user_firmware.elf")
+    image = Image(images(board, platform, "user_jiwy") / "user_jiwy.elf")
     assert image.named("main").address in FLASH
 
 
 def test_the_graph_finds_what_is_in_flash() -> None:
     skip_unless_buildable("bare_metal")
-    image = Image(images("pico2", "bare_metal", "user_firmware") / "user_firmware.elf")
+    image = Image(images("pico2", "bare_metal", "user_jiwy") / "user_jiwy.elf")
     found = {symbol.name for symbol in image.reachable("application") if symbol.address in FLASH}
     assert {"epg_port_pwm_start", "epg_pico_quadrature_init", "pio_add_program_at_offset"} <= found
 

@@ -28,7 +28,8 @@ void epg_port_quadrature_start(const epg_port_quadrature_t *decoder)
         .variant = EPG_PICO_QUADRATURE_COUNT,
         .pull = decoder->pull_up ? EPG_PICO_QUADRATURE_PULL_UP : EPG_PICO_QUADRATURE_PULL_NONE,
     };
-    *state = (decoder_t){.started = epg_pico_quadrature_init(&state->encoder, &config) == EPG_PICO_QUADRATURE_OK};
+    state->count = 0;
+    state->started = epg_pico_quadrature_init(&state->encoder, &config) == EPG_PICO_QUADRATURE_OK;
     state->healthy = state->started;
     if (!state->started) {
         epg_pico_resource_taken = true;

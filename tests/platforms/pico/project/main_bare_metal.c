@@ -2,8 +2,8 @@
 
 int main(void)
 {
-    if (!jiwy_start()) {
-        panic("jiwy_start");
+    if (!CALL(start)()) {
+        panic("start");
     }
     for (;;) {
         obey();

@@ -16,8 +16,8 @@ static void run(void *argument)
 
 int main(void)
 {
-    if (!jiwy_start()) {
-        panic("jiwy_start");
+    if (!CALL(start)()) {
+        panic("start");
     }
     xTaskCreateStatic(run, "user", 512, NULL, 1, stack, &memory);
     vTaskStartScheduler();

@@ -1,18 +1,23 @@
 /**
  * @file
- * What a test asks core 0 to do, by writing `order`.
+ * What a test asks core 0 to do, by writing `order`; TARGET is the target it starts.
  */
 #ifndef MISCHIEF_H
 #define MISCHIEF_H
 
-#include <assert.h>
 #include <stdint.h>
 
 #include "hardware/flash.h"
 #include "hardware/sync.h"
-#include "jiwy.h"
 #include "pico.h"
 #include "pico/flash.h"
+
+#include TARGET_HEADER
+
+/* start() is <target>_start(). */
+#define JOIN_(one, two) one##_##two
+#define JOIN(one, two) JOIN_(one, two)
+#define CALL(function) JOIN(TARGET, function)
 
 enum { ORDER_NONE, ORDER_FAULT, ORDER_PANIC, ORDER_STUCK, ORDER_ENABLE, ORDER_DISABLE, ORDER_FLASH, ORDER_STOP, ORDER_START };
 
@@ -32,7 +37,7 @@ static void obey(void)
     const uint32_t now = order;
     order = ORDER_NONE;
     turns++;
-    (void)jiwy_status(&status);
+    (void)CALL(status)(&status);
     switch (now) {
     case ORDER_FAULT:
         *(volatile uint32_t *)0xF0000000U = 0;
@@ -45,19 +50,19 @@ static void obey(void)
             tight_loop_contents();
         }
     case ORDER_ENABLE:
-        jiwy_enable(true);
+        CALL(enable)(true);
         break;
     case ORDER_DISABLE:
-        jiwy_enable(false);
+        CALL(enable)(false);
         break;
     case ORDER_FLASH:
         answer = flash_safe_execute(write_flash, NULL, 10);
         break;
     case ORDER_STOP:
-        jiwy_stop();
+        CALL(stop)();
         break;
     case ORDER_START:
-        answer = jiwy_start() ? 1 : 0;
+        answer = CALL(start)() ? 1 : 0;
         break;
     default:
         break;

@@ -1,0 +1,28 @@
+#include "bench.h"
+
+#include <stdint.h>
+
+/* Written by the test. */
+volatile uint32_t bench_loops;    /* how long a step takes */
+volatile uint32_t bench_not_finite;
+volatile uint32_t bench_fault;
+volatile double bench_duty = 0.25;
+
+void bench_init(const bench_inputs_t *inputs, bench_outputs_t *outputs)
+{
+    (void)inputs;
+    outputs->duty = 0.0;
+    outputs->lamp = 0.0;
+}
+
+void bench_step(const bench_inputs_t *inputs, bench_outputs_t *outputs)
+{
+    for (uint32_t loop = 0; loop < bench_loops; loop++) {
+        __asm volatile("nop");
+    }
+    if (bench_fault != 0U) {
+        *(volatile uint32_t *)0xF0000000U = 0;
+    }
+    outputs->duty = bench_not_finite != 0U ? 0.0 / (inputs->angle - inputs->angle) : bench_duty;
+    outputs->lamp = 1.0;
+}

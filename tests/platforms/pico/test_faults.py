@@ -1,0 +1,176 @@
+"""What happens to the outputs when something must not happen; RP2040 images in the emulator.
+
+The bench: an H-bridge driven at a quarter of full duty (pins 2, 7, 8), and a lamp that is off when pin 15 is high.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterator
+
+import pytest
+
+from tests.emulator.emulator import Emulator
+from tests.platforms.pico.images import PLATFORMS, images, skip_unless_emulated
+
+VALUE, DIRECTION_A, DIRECTION_B, LAMP = 2, 7, 8, 15
+SAFE = {VALUE: 0, DIRECTION_A: 0, DIRECTION_B: 0, LAMP: 1}
+FAULT, PANIC, STUCK, ENABLE, DISABLE, FLASH, STOP, START = range(1, 9)
+FAULT_NONE, FAULT_NOT_FINITE, FAULT_OVERRUN, FAULT_WATCHDOG, FAULT_PROCESSOR = 0, 1, 3, 11, 12
+WATCHDOG_MS, CORE0_TIMEOUT_MS = 100, 500
+MODEL = "bench_model_private_bench_"
+"""What EPG puts before the names of a model's own variables."""
+NOT_PERMITTED = -4
+"""PICO_ERROR_NOT_PERMITTED."""
+
+
+@pytest.fixture(params=PLATFORMS)
+def pico(request: pytest.FixtureRequest) -> Iterator[Emulator]:
+    """The bench after 20 ms: it drives."""
+    skip_unless_emulated(request.param)
+    with Emulator(images("pico", request.param, "user_bench") / "user_bench.elf") as emulator:
+        emulator.call("watch_pins", pins=[VALUE, DIRECTION_A, DIRECTION_B, LAMP])
+        emulator.run(milliseconds=20)
+        assert status(emulator) == (True, FAULT_NONE)
+        assert levels(emulator)[DIRECTION_A] == 1 and levels(emulator)[LAMP] == 0
+        yield emulator
+
+
+def levels(pico: Emulator) -> dict[int, int]:
+    """Level of each pin; all of them are driven."""
+    states = {pin: pico.call("pin", pin=pin) for pin in SAFE}
+    assert all(state["output"] for state in states.values()), states
+    return {pin: state["level"] for pin, state in states.items()}
+
+
+def edges(pico: Emulator, pin: int) -> list[int]:
+    """When the pin has changed since the last call."""
+    return [cycle for cycle, number, *_ in pico.call("take", log="pins") if number == pin]
+
+
+def status(pico: Emulator) -> tuple[bool, int]:
+    """Enabled and fault, as user code has read them last."""
+    enabled, fault = struct.unpack_from("<B3xI", pico.read("status", 8))
+    return bool(enabled), fault
+
+
+def missed(pico: Emulator) -> int:
+    return struct.unpack_from("<I", pico.read("status", 28), 24)[0]
+
+
+def order(pico: Emulator, what: int, milliseconds: float = 3) -> None:
+    pico.write_word("order", what)
+    pico.run(milliseconds=milliseconds)
+
+
+def assert_stays_safe(pico: Emulator, milliseconds: float) -> None:
+    """Safe now and for so long: no edge on any output."""
+    pico.call("take", log="pins")
+    assert levels(pico) == SAFE
+    pico.run(milliseconds=milliseconds)
+    assert pico.call("take", log="pins") == []
+    assert levels(pico) == SAFE
+
+
+def assert_reset_and_safe(pico: Emulator, fault: int, within: float) -> None:
+    """The watchdog resets within so many ms; afterwards everything runs, disabled, until somebody enables."""
+    before = len(pico.run(cycles=1)["resets"])
+    state = pico.run(milliseconds=within)
+    assert len(state["resets"]) == before + 1, state
+    pico.run(milliseconds=20)
+    assert status(pico) == (False, fault)
+    assert_stays_safe(pico, 20)
+    order(pico, ENABLE)
+    assert status(pico) == (True, FAULT_NONE)
+    assert levels(pico)[DIRECTION_A] == 1
+
+
+def test_outputs_are_safe_before_main() -> None:
+    skip_unless_emulated("bare_metal")
+    with Emulator(images("pico", "bare_metal", "user_bench") / "user_bench.elf") as pico:
+        pico.call("watch_pins", pins=list(SAFE))
+        pico.run_until("main", core=0)
+        assert levels(pico) == SAFE
+        driven = {pin: cycle for cycle, pin, _, is_driven in pico.call("take", log="pins") if is_driven}
+        assert set(driven) == set(SAFE)
+        start = pico.run_until("epg_pico_start", core=0)["cycle"]
+        assert max(driven.values()) < start
+
+
+@pytest.mark.parametrize("what", [FAULT, PANIC])
+def test_a_fault_on_core_0(pico: Emulator, what: int) -> None:
+    order(pico, what, milliseconds=1)
+    assert_stays_safe(pico, 20)
+    assert_reset_and_safe(pico, FAULT_PROCESSOR, within=WATCHDOG_MS)
+
+
+def test_a_fault_on_core_1(pico: Emulator) -> None:
+    pico.write_word(MODEL + "fault", 1)
+    pico.run(milliseconds=1.1)
+    assert_stays_safe(pico, 20)
+    assert_reset_and_safe(pico, FAULT_PROCESSOR, within=WATCHDOG_MS)
+
+
+def test_core_0_stuck(pico: Emulator) -> None:
+    order(pico, STUCK, milliseconds=10)
+    assert levels(pico)[DIRECTION_A] == 1, "control goes on while core 0 may come back"
+    assert_reset_and_safe(pico, FAULT_WATCHDOG, within=CORE0_TIMEOUT_MS + WATCHDOG_MS)
+
+
+def test_a_model_that_never_returns(pico: Emulator) -> None:
+    pico.write_word(MODEL + "loops", 0xFFFFFFFF)
+    assert_reset_and_safe(pico, FAULT_WATCHDOG, within=WATCHDOG_MS + 2)
+
+
+def test_a_value_that_is_not_finite(pico: Emulator) -> None:
+    pico.write_word(MODEL + "not_finite", 1)
+    pico.run(milliseconds=1.1)
+    assert_stays_safe(pico, 5)
+    assert status(pico) == (False, FAULT_NOT_FINITE)
+
+
+def test_overruns_disable_and_missed_ticks_are_counted(pico: Emulator) -> None:
+    """A step of about 2.4 ms: each cycle runs once, late, and two ticks have none."""
+    pico.write_word(MODEL + "loops", 2_400 * 125 // 5)
+    pico.run(milliseconds=30)
+    assert status(pico) == (False, FAULT_OVERRUN)
+    assert missed(pico) > 3
+    pico.write_word(MODEL + "loops", 0)
+    pico.run(milliseconds=5)
+    count = missed(pico)
+    assert_stays_safe(pico, 10)
+    assert missed(pico) == count
+
+
+def test_flash_is_written_only_while_outputs_are_safe(pico: Emulator) -> None:
+    order(pico, FLASH)
+    assert pico.word("answer", signed=True) == NOT_PERMITTED
+    order(pico, DISABLE)
+    order(pico, FLASH)
+    assert pico.word("answer", signed=True) == 0
+    assert missed(pico) == 0, "nobody waited for those ticks"
+    order(pico, ENABLE)
+    assert status(pico) == (True, FAULT_NONE)
+    pico.run(milliseconds=20)
+    assert missed(pico) == 0
+
+
+def test_stop_and_start(pico: Emulator) -> None:
+    order(pico, STOP)
+    assert_stays_safe(pico, 250)
+    assert pico.run(cycles=1)["resets"] == [], "the watchdog is off"
+    order(pico, START, milliseconds=10)
+    assert pico.word("answer") == 1
+    assert status(pico) == (True, FAULT_NONE)
+    assert levels(pico)[DIRECTION_A] == 1
+
+
+def test_no_other_core_is_needed_for_safety(pico: Emulator) -> None:
+    """A second order finds core 0 gone: after its fault nothing of it runs."""
+    order(pico, FAULT, milliseconds=1)
+    turns = pico.word("turns")
+    order(pico, ENABLE, milliseconds=10)
+    assert pico.word("turns") == turns
+    assert levels(pico) == SAFE
+
+
