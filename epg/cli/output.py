@@ -33,7 +33,7 @@ def update_folder(folder: Path, files: Mapping[str, str], report: TextIO | None)
     """Writes what changed, deletes what an earlier run wrote and this one did not; the list of files comes last."""
     try:
         owned = [str(name) for name in json.loads((folder / MANIFEST).read_text(encoding="utf-8"))]
-    except (OSError, ValueError, TypeError):
+    except (OSError, ValueError, TypeError, RecursionError):
         owned = []
     written = write_outputs(folder, files)
     removed = remove_stale(folder, files, owned)

@@ -44,7 +44,9 @@ def remove_stale(folder: Path, keep: Mapping[str, str], owned: list[str]) -> lis
     removed = []
     for name in owned:
         path = folder / name
-        if name not in keep and folder.resolve() in path.resolve().parents and path.is_file():
+        if name in keep or "\0" in name:
+            continue
+        if folder.resolve() in path.resolve().parents and path.is_file():
             path.unlink()
             removed.append(name)
     return removed

@@ -256,7 +256,7 @@ def test_other_commands_show_names_on_one_line(tmp_path: Path) -> None:
     for command in (
         ["ports", "model"],
         ["ports", "model", "--json"],
-        ["bind", "robot.tcf", "model"],
+        ["bind", "model", "robot.tcf"],
     ):
         status, printed, messages = run_epg(command, project.folder, 10)
         assert status == 0, messages
