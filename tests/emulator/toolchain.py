@@ -9,13 +9,16 @@ from __future__ import annotations
 
 import fcntl
 import hashlib
+import importlib
 import json
 import os
 import shutil
 import subprocess
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -27,6 +30,7 @@ from epg.load.tools import load_tools
 ROOT = Path(__file__).resolve().parents[2]
 HERE = Path(__file__).resolve().parent
 OLDEST_NODE = 18
+UNICORN = "2.1.4"
 
 
 class Missing(Exception):
@@ -101,6 +105,45 @@ def _install_package(folder: Path) -> None:
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     if done.returncode != 0:
         raise Missing(f"rp2040js could not be installed ({done.stderr.strip().splitlines()[-1:]}): npm ci --prefix {folder}")
+
+
+def unicorn() -> Any:
+    """The Python module of the CPU emulator, which is installed into EPG's cache once."""
+    try:
+        return importlib.import_module("unicorn")
+    except ImportError:
+        pass
+    folder = cache_folder() / f"unicorn-{UNICORN}"
+    with locked(folder):
+        if not (folder / "unicorn").is_dir():
+            command = [sys.executable, "-m", "pip", "install", "--target", str(folder), f"unicorn=={UNICORN}"]
+            if os.environ.get("EPG_NO_INSTALL"):
+                raise Missing(f"unicorn is not installed and EPG_NO_INSTALL is set: python -m pip install unicorn=={UNICORN}")
+            done = subprocess.run(command, capture_output=True, text=True, check=False)
+            if done.returncode != 0:
+                shutil.rmtree(folder, ignore_errors=True)
+                raise Missing(f"unicorn could not be installed: python -m pip install unicorn=={UNICORN}")
+    sys.path.append(str(folder))
+    importlib.invalidate_caches()
+    return importlib.import_module("unicorn")
+
+
+def pioasm() -> Path:
+    """The SDK's assembler for PIO programs, compiled once per SDK."""
+    installed = sorted((Path.home() / ".pico-sdk" / "tools").glob("*/pioasm/pioasm"))
+    if installed:
+        return installed[-1]
+    source = pico_sdk() / "tools" / "pioasm"
+    digest = hashlib.sha256(str(source).encode()).hexdigest()[:16]
+    folder = cache_folder() / "test-build" / f"pioasm-{digest}"
+    with locked(folder):
+        if not (folder / "pioasm").is_file():
+            configure = ["cmake", "-S", str(source), "-B", str(folder), "-G", "Ninja", "-DPIOASM_VERSION_STRING=test"]
+            for command in (configure, ["cmake", "--build", str(folder), "--parallel", "2"]):
+                done = subprocess.run(command, capture_output=True, text=True, check=False)
+                if done.returncode != 0:
+                    raise Missing(f"the SDK's pioasm does not compile here: {' '.join(command)}")
+    return folder / "pioasm"
 
 
 def stand_in_rom() -> Path:

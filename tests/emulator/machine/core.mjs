@@ -18,6 +18,7 @@ const SYSTICK = 15;
 const EXTERNAL = 16;
 const LOWEST = 4; // below every priority that can be set
 const WFE = 0xbf20;
+const OWN_OPERATIONS = 0b11111100; // of the opcodes 0100000xxx: LSLS, LSRS, ASRS, ADCS, SBCS, RORS
 
 const SRAM_SIZE = 264 * 1024;
 const ROM_SIZE = 16 * 1024;
@@ -106,7 +107,15 @@ export class Core extends CortexM0Core {
             if (pc >>> 28 > 2) {
                 throw new Fault('execution of memory that is not executable', pc);
             }
-            this.time += this.executeInstruction();
+            const opcode = this.fetch(pc);
+            if ((opcode & 0xfe00) === 0x4000 && OWN_OPERATIONS & (1 << ((opcode >> 6) & 7))) {
+                this.operate(opcode);
+            } else {
+                this.time += this.executeInstruction();
+                if ((opcode & 0xf700) === 0xb500) {
+                    this.time += 1; // PUSH with LR and POP with PC: the package does not count that register
+                }
+            }
         } catch (fault) {
             if (!(fault instanceof Fault)) {
                 throw fault;
@@ -124,6 +133,50 @@ export class Core extends CortexM0Core {
             this.interruptsUpdated = true; // one that is pending already ends the sleep
             this.wake(this.time);
         }
+    }
+
+    /** Shifts by a register, ADCS and SBCS, whose carry and overflow the package has wrong for some operands. */
+    operate(opcode) {
+        const { registers } = this;
+        if (this.onFlash !== null && this.opcodePC >>> 28 === 1) {
+            this.onFlash(this, this.opcodePC);
+        }
+        const value = registers[opcode & 7];
+        const by = registers[(opcode >> 3) & 7] & 0xff;
+        let result = value;
+        const operation = (opcode >> 6) & 7;
+        if (operation === 5 || operation === 6) { // subtracting is adding the complement
+            const other = operation === 5 ? registers[(opcode >> 3) & 7] : ~registers[(opcode >> 3) & 7] >>> 0;
+            const sum = value + other + (this.C ? 1 : 0);
+            result = sum >>> 0;
+            this.C = sum > 0xffffffff;
+            this.V = ((value ^ result) & (other ^ result)) < 0;
+        } else if (by !== 0) {
+            switch (operation) {
+                case 2:
+                    result = by < 32 ? value << by : 0;
+                    this.C = by <= 32 && ((value >>> (32 - by)) & 1) === 1;
+                    break;
+                case 3:
+                    result = by < 32 ? value >>> by : 0;
+                    this.C = by <= 32 && ((value >>> (by - 1)) & 1) === 1;
+                    break;
+                case 4:
+                    result = (value | 0) >> Math.min(by, 31);
+                    this.C = ((value >> Math.min(by - 1, 31)) & 1) === 1;
+                    break;
+                default:
+                    result = (value >>> (by & 31)) | (by & 31 ? value << (32 - (by & 31)) : 0);
+                    this.C = result < 0 || result > 0x7fffffff;
+            }
+        }
+        result >>>= 0;
+        registers[opcode & 7] = result;
+        this.N = result > 0x7fffffff;
+        this.Z = result === 0;
+        this.PC += 2;
+        this.time += 1;
+        this.cycles += 1;
     }
 
     /** Ends WFI or WFE if there is reason to. */

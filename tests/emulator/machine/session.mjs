@@ -162,6 +162,61 @@ export class Session {
         return null;
     }
 
+    /**
+     * Executes instructions by themselves: each of {runs} has {code: hex, registers: [r0 ... r12, sp], flags: NZCV, once} and
+     * gives [registers, flags, cycles, fault or null].  The code is put at {at}, and spoils what core 0 did.
+     */
+    execute({ at, runs }) {
+        const { machine } = this;
+        const [core] = machine.cores;
+        return runs.map(({ code, registers, flags, once }) => {
+            const bytes = Buffer.from(code, 'hex');
+            machine.writeMemory(at, bytes);
+            registers.forEach((value, n) => {
+                core.registers[n] = value;
+            });
+            core.APSR = flags << 28;
+            core.PC = at;
+            core.IPSR = 0;
+            core.currentMode = 0;
+            core.waiting = false;
+            const faults = machine.faults.length;
+            const start = core.time;
+            machine.clock.now = start;
+            let steps = once ? 1 : 1000;
+            while (steps-- > 0 && core.PC < at + bytes.length && core.PC >= at && machine.faults.length === faults) {
+                core.step();
+            }
+            const fault = machine.faults.length > faults ? machine.faults.pop().cause : null;
+            return [[...core.registers.subarray(0, 14)], core.APSR >>> 28, core.time - start, fault];
+        });
+    }
+
+    /** A register of a peripheral, as core 0 would read it. */
+    read_register({ address }) {
+        return this.machine.readPeripheral(address) >>> 0;
+    }
+
+    /** Writes a register of a peripheral, its SET, CLR and XOR aliases included. */
+    write_register({ address, value }) {
+        this.machine.writePeripheral(this.machine.cores[0], address, value, 4);
+        return null;
+    }
+
+    /** State machine {machine} of PIO {block}; {set: {x, y}} changes registers that no processor can reach. */
+    pio({ block, machine: number, set = {} }) {
+        this.machine.settle();
+        const unit = this.machine.pio[block].units[number];
+        for (const [name, value] of Object.entries(set)) {
+            if (name !== 'x' && name !== 'y') {
+                throw new Error(`${name} is not x or y`);
+            }
+            unit[name] = value >>> 0;
+        }
+        const { enabled, pc, x, y, stalled } = unit;
+        return { enabled, pc, x, y, stalled, received: unit.rx.count };
+    }
+
     /** Records writes to {at, length}: [cycle, core, address, size, value, pc]. */
     watch_memory({ at, length }) {
         const { machine } = this;

@@ -18,6 +18,7 @@ volatile uint32_t done;
 volatile uint32_t errors[ENCODERS];
 volatile uint32_t rounds;
 volatile uint32_t failures;
+volatile uint32_t skipped[ENCODERS];
 volatile int64_t positions[ENCODERS];
 volatile int64_t preset_to;
 volatile double velocities[ENCODERS];
@@ -64,6 +65,7 @@ static void __not_in_flash_func(read_all)(void)
         }
         errors[n] = error;
         positions[n] = position;
+        skipped[n] = encoders[n].skipped;
         failures += error != EPG_PICO_QUADRATURE_OK;
     }
     rounds++;

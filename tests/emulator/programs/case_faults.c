@@ -1,0 +1,66 @@
+/* Faults of the kind that arguments[0] says. */
+#include "cases.h"
+#include "pico/multicore.h"
+#include "pico/stdlib.h"
+
+volatile uint32_t fault_seen;
+
+static void cause(void)
+{
+    switch (arguments[0]) {
+    case 0:
+        __asm volatile("str %0, [%1]" : : "l"(1u), "l"(0x20000001u) : "memory"); /* unaligned */
+        break;
+    case 1:
+        *(volatile uint32_t *)(uintptr_t)0x60000000u = 1; /* nothing is there */
+        break;
+    case 2:
+        __asm volatile("udf #0");
+        break;
+    case 3:
+        __breakpoint();
+        break;
+    case 4:
+        ((void (*)(void))(uintptr_t)0x40000001u)(); /* not executable */
+        break;
+    case 5:
+        __asm volatile("mov r0, %0\n\tbx r0" : : "r"((uintptr_t)&cause & ~(uintptr_t)1u) : "r0"); /* no Thumb bit */
+        break;
+    case 6:
+        __asm volatile("cpsid i\n\tsvc #0"); /* may not be taken */
+        break;
+    default:
+        break;
+    }
+}
+
+/* The handler notes the stacked PC and cause; with arguments[1] it faults again. */
+void __attribute__((used)) note_fault(const uint32_t *frame)
+{
+    fault_seen++;
+    results[0] = frame[6];
+    results[1] = get_core_num();
+    if (arguments[1] != 0) {
+        __asm volatile("udf #1");
+    }
+    for (;;) {
+        __asm volatile("wfi");
+    }
+}
+
+void __attribute__((naked)) isr_hardfault(void)
+{
+    __asm volatile("mov r0, sp\n\tldr r1, =note_fault\n\tbx r1");
+}
+
+void case_fault(void)
+{
+    cause();
+}
+
+void case_fault_of_core_1(void)
+{
+    multicore_reset_core1();
+    multicore_launch_core1(cause);
+    busy_wait_us(100);
+}
