@@ -37,6 +37,7 @@ static void report_stacks(void)
 static void serve(void)
 {
     static uint32_t stacks_us;
+    static bool reported;
     const epg_pico_target_t *pico = running;
     epg_control_alive(pico->target->control);
     if (pico->transport != NULL) {
@@ -49,7 +50,8 @@ static void serve(void)
         pico->transport->flush();
     }
     const uint32_t now_us = timer_hw->timerawl;
-    if (now_us - stacks_us >= STACKS_PERIOD_US) {
+    if (!reported || now_us - stacks_us >= STACKS_PERIOD_US) {
+        reported = true;
         stacks_us = now_us;
         report_stacks();
     }
