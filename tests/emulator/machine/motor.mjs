@@ -40,7 +40,7 @@ export class Motor {
         this.speed = 0; // of the motor's shaft, rad/s
         this.angle = p.angle ?? 0; // of the load, rad
         this.time = machine.clock.now;
-        this.drive = { duty: 0, mode: 'coast' };
+        this.drive = this.readBridge();
         this.offset = Math.floor(this.angle * p.countsPerRadian);
         this.stepAlarm = machine.clock.createAlarm(() => this.step(), true);
         this.edgeAlarm = machine.clock.createAlarm(() => this.edge(), true);

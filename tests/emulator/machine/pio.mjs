@@ -24,7 +24,8 @@ export class PioBlock extends BasePeripheral {
         this.pinValues = 0; // names that the package's pins read
         this.pinDirections = 0;
         this.machines = []; // the package looks there for state machines that wait for a pin
-        this.shared = false;
+        this.shared = false; // state machines that share flags, or can be seen
+        this.forced = false; // lockstep on request
         this.units = [0, 1, 2, 3].map((unit) => new StateMachine(this, unit));
         this.reset();
     }
@@ -123,7 +124,7 @@ export class PioBlock extends BasePeripheral {
             }
         }
         this.shared = running && (outputs || waits);
-        this.lockstep = this.shared;
+        this.lockstep = this.shared || (running && this.forced);
         this.machine.lockstepChanged();
     }
 

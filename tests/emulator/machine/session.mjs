@@ -194,12 +194,21 @@ export class Session {
 
     /** A register of a peripheral, as core 0 would read it. */
     read_register({ address }) {
-        return this.machine.readPeripheral(address) >>> 0;
+        return this.machine.cores[0].readUint32(address) >>> 0;
     }
 
     /** Writes a register of a peripheral, its SET, CLR and XOR aliases included. */
     write_register({ address, value }) {
-        this.machine.writePeripheral(this.machine.cores[0], address, value, 4);
+        this.machine.cores[0].writeUint32(address, value);
+        return null;
+    }
+
+    /** Runs the PIO blocks cycle by cycle from now on, as if everything they do could be seen. */
+    pio_lockstep() {
+        for (const block of this.machine.pio) {
+            block.forced = true;
+            block.analyse();
+        }
         return null;
     }
 
