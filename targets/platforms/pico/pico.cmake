@@ -7,6 +7,7 @@ function(_epg_pico_target name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SERVICE;LIBRARIES")
   _epg_pico_check("${name}" good)
   if(NOT good)
+    set_property(TARGET ${name} PROPERTY EPG_FAILED TRUE) # what is said once need not be said of executables too
     return()
   endif()
   _epg_pico_in_ram("${name}")

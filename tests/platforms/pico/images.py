@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tests.emulator.build import build
-from tests.emulator.toolchain import Missing, arm_gcc, node, pico_sdk, rp2040js, skip_if_missing, tool
+from tests.emulator.toolchain import arm_gcc, node, pico_sdk, rp2040js, skip_if_missing, tool
 
 PROJECT = "tests/platforms/pico/project"
 BOARDS = ("pico", "pico2")
@@ -53,7 +53,3 @@ def binutils(program: str, *arguments: str) -> str:
     """What a program of the toolchain prints."""
     path = arm_gcc().parent / f"arm-none-eabi-{program}"
     return subprocess.run([path, *arguments], capture_output=True, text=True, check=True).stdout
-
-
-__all__ = ["BOARDS", "PLATFORMS", "TARGETS", "Missing", "Size", "binutils", "images", "size_of", "skip_unless_buildable",
-           "skip_unless_emulated"]  # fmt: skip

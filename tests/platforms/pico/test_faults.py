@@ -172,5 +172,3 @@ def test_no_other_core_is_needed_for_safety(pico: Emulator) -> None:
     order(pico, ENABLE, milliseconds=10)
     assert pico.word("turns") == turns
     assert levels(pico) == SAFE
-
-

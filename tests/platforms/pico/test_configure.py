@@ -1,0 +1,152 @@
+"""What CMake says when something is missing or does not fit: one sentence, and what mends it."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from tests.emulator.toolchain import ROOT, arm_gcc, pico_sdk, skip_if_missing, tool
+from tests.platforms.pico.images import freertos_kernel, skip_unless_buildable
+
+SDK = """
+epg_import_pico_sdk()
+project(firmware C CXX ASM)
+pico_sdk_init()
+"""
+NO_SDK = """
+project(firmware C)
+"""
+TARGET = f"""
+epg_add_target(jiwy TCF rpi_pico_{{platform}}_jiwy.tcf MODEL {ROOT}/examples/jiwy/model
+  BINDINGS {ROOT}/examples/jiwy/jiwy.bindings.yaml SET {{communication}})
+"""
+EXECUTABLE = """
+epg_add_executable(jiwy_firmware EPG::jiwy)
+"""
+NONE = "communication.middleware=none communication.transport=null"
+CONSOLE = "communication.middleware=console"
+
+
+def target(platform: str = "bare_metal", communication: str = NONE) -> str:
+    return TARGET.format(platform=platform, communication=communication)
+
+
+def configure(folder: Path, text: str, *arguments: str, bare: bool = False, **environment: str) -> str:
+    """What CMake prints for a project; ``bare``: on a computer on which nothing is installed in its usual place."""
+    (folder / "CMakeLists.txt").write_text(
+        f"cmake_minimum_required(VERSION 3.22)\ninclude({ROOT}/cmake/epg_import.cmake)\n{text}", encoding="utf-8"
+    )
+    variables = {k: v for k, v in os.environ.items() if not k.startswith(("PICO_", "EPG_", "FREERTOS_", "picotool"))}
+    if bare:
+        (folder / "home").mkdir(exist_ok=True)
+        variables |= {"HOME": str(folder / "home"), "XDG_CACHE_HOME": str(folder / "home" / "cache")}
+    command = ["cmake", "-S", str(folder), "-B", str(folder / "build"), "-G", "Ninja", f"-DEPG_PATH={ROOT}"]
+    command += [f"-DPython3_EXECUTABLE={sys.executable}", *arguments]
+    done = subprocess.run(
+        command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=variables | environment
+    )
+    assert (done.returncode == 0) == ("CMake Error" not in done.stdout)
+    return " ".join(done.stdout.split())
+
+
+def test_a_project_without_the_sdk(tmp_path: Path) -> None:
+    said = configure(tmp_path, NO_SDK + target() + EXECUTABLE)
+    assert "epg_add_target(jiwy): its target is built with the Raspberry Pi Pico SDK, which is not initialised" in said
+    assert 'set(PICO_BOARD pico CACHE STRING "Board")' in said
+    assert "pico_sdk_init()" in said
+    assert said.count("CMake Error") == 1
+
+
+def test_no_sdk_anywhere(tmp_path: Path) -> None:
+    skip_if_missing(arm_gcc)
+    said = configure(tmp_path, SDK + target(), bare=True)
+    assert "The Raspberry Pi Pico SDK was not found. Get it: git clone --depth 1 --branch 2.2.0" in said
+
+
+def test_a_variable_that_leads_elsewhere(tmp_path: Path) -> None:
+    skip_if_missing(arm_gcc)
+    said = configure(tmp_path, SDK, PICO_SDK_PATH=str(tmp_path))
+    assert "The environment variable PICO_SDK_PATH leads to no Raspberry Pi Pico SDK" in said
+
+
+def test_an_sdk_that_is_too_old(tmp_path: Path) -> None:
+    skip_if_missing(arm_gcc)
+    old = tmp_path / "sdk"
+    old.mkdir()
+    (old / "pico_sdk_init.cmake").touch()
+    version = "set(PICO_SDK_VERSION_MAJOR 1)\nset(PICO_SDK_VERSION_MINOR 5)\nset(PICO_SDK_VERSION_REVISION 1)\n"
+    (old / "pico_sdk_version.cmake").write_text(version)
+    said = configure(tmp_path, SDK, f"-DPICO_SDK_PATH={old}")
+    assert "is 1.5.1; EPG needs 2.0.0 or newer. Get it: git clone" in said
+
+
+def test_no_compiler(tmp_path: Path) -> None:
+    skip_if_missing(pico_sdk)
+    path = tmp_path / "bin"
+    path.mkdir()
+    for program in ("cmake", "ninja"):
+        (path / program).symlink_to(shutil.which(program) or "")
+    arguments = [f"-DPICO_SDK_PATH={pico_sdk()}", "-DCMAKE_FIND_USE_CMAKE_SYSTEM_PATH=FALSE"]
+    said = configure(tmp_path, SDK, *arguments, bare=True, PATH=str(path))
+    assert "The Arm GNU toolchain was not found. Get it: " in said
+
+
+def test_another_board(tmp_path: Path) -> None:
+    skip_unless_buildable("bare_metal")
+    said = configure(tmp_path, SDK + target(), "-DPICO_BOARD=pico2")
+    assert "epg_add_target(jiwy): its target is for the board 'pico', and PICO_BOARD is 'pico2'" in said
+    assert "-DPICO_BOARD=pico" in said
+
+
+def test_no_kernel(tmp_path: Path) -> None:
+    skip_unless_buildable("bare_metal")
+    said = configure(
+        tmp_path, SDK + target("freertos") + EXECUTABLE, f"-DPICO_SDK_PATH={pico_sdk()}", *picotool(), bare=True
+    )
+    assert "epg_add_target(jiwy): The FreeRTOS kernel was not found. Get it: git clone" in said
+    assert said.count("CMake Error") == 1
+
+
+def test_a_kernel_without_the_port_for_the_chip(tmp_path: Path) -> None:
+    skip_unless_buildable("freertos")
+    kernel = tmp_path / "kernel"
+    (kernel / "include").mkdir(parents=True)
+    for name in ("FreeRTOS.h", "task.h"):
+        (kernel / "include" / name).write_bytes((freertos_kernel() / "include" / name).read_bytes())
+    said = configure(tmp_path, SDK + target("freertos"), FREERTOS_KERNEL_PATH=str(kernel))
+    assert "has no port for this chip" in said
+    assert "submodule update --init" in said
+
+
+def test_no_picotool_and_no_network(tmp_path: Path) -> None:
+    skip_unless_buildable("bare_metal")
+    arguments = [f"-DPICO_SDK_PATH={pico_sdk()}", "-DFETCHCONTENT_FULLY_DISCONNECTED=ON"]
+    said = configure(tmp_path, SDK + target() + EXECUTABLE, *arguments, bare=True)
+    assert "The picotool was not found. Get it:" in said
+    assert "-DPICO_NO_PICOTOOL=1" in said
+
+
+def test_without_picotool_by_choice(tmp_path: Path) -> None:
+    skip_unless_buildable("bare_metal")
+    arguments = [f"-DPICO_SDK_PATH={pico_sdk()}", "-DFETCHCONTENT_FULLY_DISCONNECTED=ON", "-DPICO_NO_PICOTOOL=1"]
+    assert "CMake Error" not in configure(tmp_path, SDK + target() + EXECUTABLE, *arguments, bare=True)
+
+
+def test_two_owners_of_usb(tmp_path: Path) -> None:
+    skip_unless_buildable("bare_metal")
+    (tmp_path / "main.c").write_text("int main(void) { return 0; }\n")
+    user = "add_executable(user main.c)\ntarget_link_libraries(user EPG::jiwy pico_stdlib)\n"
+    user += "pico_enable_stdio_usb(user 1)\n"
+    said = configure(tmp_path, SDK + target(communication=CONSOLE) + user)
+    assert "user links EPG::jiwy, whose transport is USB, and the Pico SDK's stdio over USB" in said
+    assert "pico_enable_stdio_usb(user 0)" in said
+    fine = configure(tmp_path, SDK + target(communication=CONSOLE) + user.replace("usb(user 1)", "usb(user 0)"))
+    assert "CMake Error" not in fine
+
+
+def picotool() -> list[str]:
+    skip_if_missing(lambda: tool("picotool"))
+    return [f"-Dpicotool_DIR={tool('picotool')}"]
