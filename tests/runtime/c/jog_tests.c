@@ -1,0 +1,204 @@
+/**
+ * @file
+ * One actuator of a disabled target, moved by hand.
+ */
+#include "epg/jog.h"
+
+#include <math.h>
+
+#include "check.h"
+#include "fake_application.h"
+#include "fake_port.h"
+
+static int64_t count; /* of the encoder: it moves by ten per cycle of full duty */
+static double driven; /* duty of this cycle */
+static unsigned int drives;
+
+static void drive(double duty)
+{
+    driven = duty;
+    fake.actuator = duty;
+    count += (int64_t)(duty * 10.0);
+    drives++;
+}
+
+static int64_t read_count(void)
+{
+    return count;
+}
+
+static double read_position(void)
+{
+    return (double)count * 0.5;
+}
+
+static const epg_jog_actuator_t actuators[1] = {{"motor", drive}};
+static const epg_jog_encoder_t encoders[1] = {{"encoder", read_count, read_position, "rad"}};
+static epg_jog_reading_t first[1];
+static epg_jog_reading_t last[1];
+static epg_jog_t jog;
+
+static void begin(bool enabled)
+{
+    fake_reset();
+    count = 7;
+    driven = 0.0;
+    drives = 0;
+    jog = (epg_jog_t){.actuator_count = 1,
+                      .actuators = actuators,
+                      .encoder_count = 1,
+                      .encoders = encoders,
+                      .first = first,
+                      .last = last};
+    fake.application.enable_at_start = enabled;
+    fake.application.jog = &jog;
+    fake_start();
+    fake_cycles(3);
+}
+
+TEST(it_drives_for_as_many_cycles_as_asked_and_is_safe_afterwards)
+{
+    begin(false);
+    CHECK(epg_jog_idle(&jog));
+    CHECK(epg_jog_start(&jog, 0, -1.0, 20));
+    CHECK(!epg_jog_idle(&jog));
+    for (int i = 0; i < 20; i++) {
+        fake_cycle();
+        CHECK_EQUAL(fake.actuator, -1.0);
+        CHECK(strchr(fake.calls, 'm') == NULL); /* the model rests */
+        CHECK(strchr(fake.calls, 's') == NULL); /* nothing switches the motor off in between */
+    }
+    fake_cycle();
+    CHECK_EQUAL(fake.actuator, 0.0);
+    CHECK(epg_jog_idle(&jog));
+    CHECK(jog.end == EPG_JOG_DONE);
+    CHECK_EQUAL(drives, 20);
+    CHECK_EQUAL(jog.cycles, 20);
+    CHECK_EQUAL(last[0].count - first[0].count, -200);
+    CHECK_EQUAL(last[0].position - first[0].position, -100.0);
+}
+
+TEST(the_model_begins_again_afterwards)
+{
+    begin(false);
+    const unsigned int inits = fake.inits;
+    CHECK(epg_jog_start(&jog, 0, 1.0, 5));
+    fake_cycles(5);
+    CHECK_EQUAL(fake.inits, inits);
+    fake_cycle();
+    CHECK_EQUAL(fake.inits, inits + 1);
+    CHECK(strchr(fake.calls, 'm') != NULL);
+    CHECK_EQUAL(fake.actuator, 0.0); /* and is still disabled */
+}
+
+TEST(a_model_that_rests_after_a_fault_goes_on_resting)
+{
+    begin(false);
+    epg_control_request(&fake.control, true);
+    fake_cycle();
+    fake.output_error = NAN;
+    fake_cycle();
+    CHECK(fake_status().fault == EPG_FAULT_NOT_FINITE);
+    fake.output_error = 0.0;
+    fake_cycle();
+    const unsigned int steps = fake.steps;
+    CHECK(epg_jog_start(&jog, 0, 1.0, 5));
+    fake_cycles(10);
+    CHECK(jog.end == EPG_JOG_DONE);
+    CHECK_EQUAL(fake.steps, steps);
+    CHECK(fake_status().fault == EPG_FAULT_NOT_FINITE);
+}
+
+TEST(an_enabled_target_refuses)
+{
+    begin(true);
+    CHECK(epg_jog_start(&jog, 0, 1.0, 5));
+    fake_cycle();
+    CHECK(epg_jog_idle(&jog));
+    CHECK(jog.end == EPG_JOG_REFUSED);
+    CHECK_EQUAL(drives, 0);
+    CHECK(fake_status().enabled);
+}
+
+TEST(any_request_ends_it_in_the_same_cycle)
+{
+    for (int enable = 0; enable < 2; enable++) {
+        begin(false);
+        CHECK(epg_jog_start(&jog, 0, 1.0, 100));
+        fake_cycles(4);
+        CHECK_EQUAL(drives, 4);
+        epg_control_request(&fake.control, enable != 0);
+        fake_cycle();
+        CHECK_EQUAL(drives, 4);
+        CHECK(jog.end == EPG_JOG_STOPPED);
+        CHECK_EQUAL(jog.cycles, 4);
+        CHECK(fake_status().enabled == (enable != 0));
+        if (enable == 0) {
+            CHECK_EQUAL(fake.actuator, 0.0);
+        }
+    }
+}
+
+static bool fail_safe(void)
+{
+    return fake.fail_safe;
+}
+
+TEST(the_fail_safe_input_ends_it_and_refuses_it)
+{
+    begin(false);
+    fake.application.fail_safe = fail_safe;
+    CHECK(epg_jog_start(&jog, 0, 1.0, 100));
+    fake_cycles(4);
+    fake.fail_safe = false;
+    fake_cycle();
+    CHECK_EQUAL(fake.actuator, 0.0);
+    CHECK(jog.end == EPG_JOG_STOPPED);
+    CHECK(epg_jog_start(&jog, 0, 1.0, 100));
+    fake_cycles(2);
+    CHECK(jog.end == EPG_JOG_REFUSED);
+    CHECK_EQUAL(drives, 4);
+}
+
+TEST(overruns_end_it)
+{
+    begin(false);
+    fake.application.overrun_limit = 2;
+    CHECK(epg_jog_start(&jog, 0, 1.0, 100));
+    fake_cycles(3);
+    fake_late_cycle(2 * FAKE_PERIOD_NS, 0);
+    fake_late_cycle(2 * FAKE_PERIOD_NS, 0);
+    CHECK(fake_status().fault == EPG_FAULT_OVERRUN);
+    CHECK_EQUAL(fake.actuator, 0.0);
+    fake_cycle();
+    CHECK(jog.end == EPG_JOG_STOPPED);
+    CHECK_EQUAL(fake.actuator, 0.0);
+}
+
+TEST(one_at_a_time_and_of_those_there_are)
+{
+    begin(false);
+    CHECK(!epg_jog_start(&jog, 1, 1.0, 5));
+    CHECK(epg_jog_start(&jog, 0, 1.0, 5));
+    CHECK(!epg_jog_start(&jog, 0, -1.0, 5));
+    fake_cycles(6);
+    CHECK_EQUAL(driven, 1.0);
+    CHECK(epg_jog_start(&jog, 0, -1.0, 5));
+}
+
+TEST(a_stop_of_the_loop_ends_it)
+{
+    begin(false);
+    CHECK(epg_jog_start(&jog, 0, 1.0, 100));
+    fake_cycles(3);
+    fake_start();
+    CHECK(epg_jog_idle(&jog));
+    CHECK(jog.end == EPG_JOG_STOPPED);
+    fake_cycles(3);
+    CHECK_EQUAL(drives, 3);
+}
+
+RUN(ENTRY(it_drives_for_as_many_cycles_as_asked_and_is_safe_afterwards), ENTRY(the_model_begins_again_afterwards),
+    ENTRY(a_model_that_rests_after_a_fault_goes_on_resting), ENTRY(an_enabled_target_refuses),
+    ENTRY(any_request_ends_it_in_the_same_cycle), ENTRY(the_fail_safe_input_ends_it_and_refuses_it),
+    ENTRY(overruns_end_it), ENTRY(one_at_a_time_and_of_those_there_are), ENTRY(a_stop_of_the_loop_ends_it))

@@ -1,0 +1,308 @@
+/**
+ * @file
+ * Parameters: changed between cycles, kept over enabling, stored.
+ */
+#include "epg/parameters.h"
+
+#include <math.h>
+
+#include "check.h"
+#include "fake_application.h"
+#include "fake_port.h"
+
+enum { COUNT = 10 };
+
+static double model[COUNT]; /* as the model has them */
+static unsigned int sets;   /* calls of set() */
+static unsigned int steps_at_set;
+
+static void set(size_t index, double value)
+{
+    CHECK(index < COUNT);
+    model[index] = value;
+    sets++;
+    steps_at_set = fake.steps;
+}
+
+static const epg_parameter_t table[COUNT] = {
+    {"PID\\kp", "", 2.6}, {"PID\\tauD", "s", 0.05}, {"a", "", 0.0}, {"b", "", 0.0}, {"c", "", 0.0},
+    {"d", "", 0.0},       {"e", "", 0.0},           {"f", "", 0.0}, {"g", "", 0.0}, {"h", "", 0.0},
+};
+static double values[COUNT];
+static double applied[COUNT];
+static bool changed[COUNT];
+static unsigned char store[EPG_PARAMETERS_STORE_SIZE(COUNT)];
+static epg_parameters_t parameters;
+
+static void make(uint64_t model_id)
+{
+    sets = 0;
+    for (size_t i = 0; i < COUNT; i++) {
+        model[i] = table[i].value;
+    }
+    parameters = (epg_parameters_t){.count = COUNT,
+                                    .table = table,
+                                    .model = model_id,
+                                    .set = set,
+                                    .values = values,
+                                    .applied = applied,
+                                    .changed = changed,
+                                    .store = store};
+    epg_parameters_load(&parameters);
+}
+
+static void begin(void)
+{
+    fake_reset();
+    make(1);
+    fake.application.parameters = &parameters;
+    fake_start();
+}
+
+static bool change(size_t index, double value)
+{
+    const epg_parameter_change_t one = {index, value};
+    return epg_parameters_change(&parameters, &one, 1);
+}
+
+TEST(changes_act_between_two_steps_and_all_in_one_cycle)
+{
+    begin();
+    fake_cycles(3);
+    CHECK(change(0, 3.5));
+    CHECK(!epg_parameters_idle(&parameters));
+    CHECK_EQUAL(model[0], 2.6);
+    fake_cycle();
+    CHECK(epg_parameters_idle(&parameters));
+    CHECK_EQUAL(model[0], 3.5);
+    CHECK_EQUAL(steps_at_set, 3);
+
+    epg_parameter_change_t several[EPG_PARAMETER_CHANGES];
+    for (size_t i = 0; i < EPG_PARAMETER_CHANGES; i++) {
+        several[i] = (epg_parameter_change_t){i + 1, 100.0 + (double)i};
+    }
+    CHECK(epg_parameters_change(&parameters, several, EPG_PARAMETER_CHANGES));
+    fake_cycle();
+    for (size_t i = 0; i < EPG_PARAMETER_CHANGES; i++) {
+        CHECK_EQUAL(model[i + 1], 100.0 + (double)i);
+        CHECK_EQUAL(epg_parameters_value(&parameters, i + 1), 100.0 + (double)i);
+    }
+    CHECK_EQUAL(sets, 1 + EPG_PARAMETER_CHANGES);
+    fake_cycles(5);
+    CHECK_EQUAL(sets, 1 + EPG_PARAMETER_CHANGES);
+}
+
+TEST(all_changes_or_none)
+{
+    begin();
+    fake_cycle();
+    const epg_parameter_change_t with_nan[2] = {{0, 1.0}, {1, NAN}};
+    const epg_parameter_change_t with_infinity[2] = {{0, 1.0}, {1, -INFINITY}};
+    const epg_parameter_change_t unknown[2] = {{0, 1.0}, {COUNT, 1.0}};
+    epg_parameter_change_t many[EPG_PARAMETER_CHANGES + 1] = {{0, 1.0}};
+    CHECK(!epg_parameters_change(&parameters, with_nan, 2));
+    CHECK(!epg_parameters_change(&parameters, with_infinity, 2));
+    CHECK(!epg_parameters_change(&parameters, unknown, 2));
+    CHECK(!epg_parameters_change(&parameters, many, EPG_PARAMETER_CHANGES + 1));
+    CHECK(!epg_parameters_change(&parameters, many, 0));
+    fake_cycles(2);
+    CHECK_EQUAL(model[0], 2.6);
+    CHECK_EQUAL(epg_parameters_value(&parameters, 0), 2.6);
+    CHECK_EQUAL(sets, 0);
+}
+
+TEST(a_change_waits_for_the_one_before)
+{
+    begin();
+    fake_cycle();
+    CHECK(change(0, 1.0));
+    CHECK(!change(0, 2.0));
+    CHECK_EQUAL(epg_parameters_value(&parameters, 0), 1.0);
+    fake_cycle();
+    CHECK_EQUAL(model[0], 1.0);
+    CHECK(change(0, 2.0));
+    fake_cycle();
+    CHECK_EQUAL(model[0], 2.0);
+}
+
+/** model_init() of a real model sets its parameters as they were generated. */
+static void forget(void)
+{
+    for (size_t i = 0; i < COUNT; i++) {
+        model[i] = table[i].value;
+    }
+}
+
+TEST(changes_outlive_enabling)
+{
+    begin();
+    fake_cycle();
+    CHECK(change(1, 0.07));
+    fake_cycle();
+    epg_control_request(&fake.control, false);
+    fake_cycles(2);
+    CHECK(change(2, 5.0)); /* while disabled: the model runs on */
+    fake_cycle();
+    CHECK_EQUAL(model[2], 5.0);
+    epg_control_request(&fake.control, true);
+    forget();
+    const unsigned int inits = fake.inits;
+    fake_cycle();
+    CHECK_EQUAL(fake.inits, inits + 1);
+    CHECK_EQUAL(model[1], 0.07);
+    CHECK_EQUAL(model[2], 5.0);
+    CHECK_EQUAL(model[0], 2.6);
+}
+
+TEST(a_model_that_rests_is_not_touched_until_it_is_initialised)
+{
+    begin();
+    fake_cycle();
+    fake.output_error = NAN;
+    fake_cycle();
+    CHECK(!fake_status().enabled);
+    fake.output_error = 0.0;
+    CHECK(change(0, 9.0));
+    fake_cycle();
+    CHECK(epg_parameters_idle(&parameters));
+    CHECK_EQUAL(sets, 0);
+    epg_control_request(&fake.control, true);
+    fake_cycle();
+    CHECK_EQUAL(model[0], 9.0);
+}
+
+TEST(stored_values_are_back_after_a_restart)
+{
+    size_t stored = 99;
+    begin();
+    CHECK(parameters.stored == EPG_STORED_NOTHING);
+    fake_cycle();
+    CHECK(change(0, 0.1));
+    fake_cycle();
+    CHECK(change(9, -1e-300));
+    fake_cycle();
+    CHECK(epg_parameters_save(&parameters, &stored));
+    CHECK_EQUAL(stored, 2);
+
+    make(1); /* the next start: the store is as it was */
+    CHECK(parameters.stored == EPG_STORED_LOADED);
+    CHECK_EQUAL(epg_parameters_value(&parameters, 0), 0.1);
+    CHECK_EQUAL(epg_parameters_value(&parameters, 1), 0.05);
+    CHECK_EQUAL(epg_parameters_value(&parameters, 9), -1e-300);
+    epg_control_start(&fake.control, &fake.application);
+    fake_cycle();
+    CHECK_EQUAL(model[0], 0.1); /* from the first cycle on */
+    CHECK_EQUAL(model[9], -1e-300);
+    CHECK_EQUAL(sets, 2);
+}
+
+TEST(a_value_that_is_as_generated_again_is_not_stored)
+{
+    size_t stored = 99;
+    begin();
+    CHECK(change(0, 0.1));
+    fake_cycle();
+    CHECK(change(0, 2.6));
+    fake_cycle();
+    CHECK(epg_parameters_save(&parameters, &stored));
+    CHECK_EQUAL(stored, 0);
+    make(1);
+    CHECK(parameters.stored == EPG_STORED_LOADED);
+    CHECK(!changed[0]);
+}
+
+static void store_some(void)
+{
+    size_t stored;
+    begin();
+    fake_cycle();
+    CHECK(change(0, 0.1));
+    fake_cycle();
+    CHECK(epg_parameters_save(&parameters, &stored));
+}
+
+static void check_as_generated(epg_parameters_stored_t expected)
+{
+    CHECK(parameters.stored == expected);
+    for (size_t i = 0; i < COUNT; i++) {
+        CHECK_EQUAL(epg_parameters_value(&parameters, i), table[i].value);
+        CHECK(!changed[i]);
+    }
+}
+
+TEST(values_of_another_model_are_refused)
+{
+    store_some();
+    make(2);
+    check_as_generated(EPG_STORED_FOR_OTHER);
+}
+
+TEST(a_store_with_any_wrong_bit_is_refused)
+{
+    store_some();
+    for (size_t bit = 0; bit < fake_port.store_size * 8U; bit++) {
+        fake_port.store[bit / 8U] ^= (unsigned char)(1U << bit % 8U);
+        make(1);
+        check_as_generated(bit / 8U >= 8U && bit / 8U < 16U ? EPG_STORED_FOR_OTHER : EPG_STORED_NOTHING);
+        fake_port.store[bit / 8U] ^= (unsigned char)(1U << bit % 8U);
+    }
+    make(1);
+    CHECK(parameters.stored == EPG_STORED_LOADED);
+}
+
+TEST(a_store_that_is_cut_off_is_refused)
+{
+    store_some();
+    for (size_t size = 0; size < fake_port.store_size; size++) {
+        const size_t whole = fake_port.store_size;
+        fake_port.store_size = size;
+        make(1);
+        check_as_generated(EPG_STORED_NOTHING);
+        fake_port.store_size = whole;
+    }
+}
+
+TEST(random_bytes_are_no_store)
+{
+    fake_reset();
+    srand(1);
+    for (int i = 0; i < 20000; i++) {
+        fake_port.store_size = (size_t)rand() % 200U;
+        for (size_t k = 0; k < fake_port.store_size; k++) {
+            fake_port.store[k] = (unsigned char)rand();
+        }
+        if (i % 2 == 0) { /* with a beginning that is right */
+            static const unsigned char head[20] = {'E', 'P', 'G', 'P', 1, 0, 0, 0, 1};
+            memcpy(fake_port.store, head, sizeof head);
+            fake_port.store[16] = (unsigned char)(rand() % 16);
+        }
+        make(1);
+        check_as_generated(parameters.stored);
+        CHECK(parameters.stored != EPG_STORED_LOADED);
+    }
+}
+
+TEST(a_port_that_stores_nothing_says_so)
+{
+    size_t stored;
+    begin();
+    fake_port.store_refuses = true;
+    CHECK(!epg_parameters_save(&parameters, &stored));
+}
+
+TEST(a_change_that_a_stop_has_left_is_forgotten)
+{
+    begin();
+    CHECK(change(0, 1.0));
+    make(1);
+    CHECK(epg_parameters_idle(&parameters));
+    CHECK_EQUAL(epg_parameters_value(&parameters, 0), 2.6);
+}
+
+RUN(ENTRY(changes_act_between_two_steps_and_all_in_one_cycle), ENTRY(all_changes_or_none),
+    ENTRY(a_change_waits_for_the_one_before), ENTRY(changes_outlive_enabling),
+    ENTRY(a_model_that_rests_is_not_touched_until_it_is_initialised), ENTRY(stored_values_are_back_after_a_restart),
+    ENTRY(a_value_that_is_as_generated_again_is_not_stored), ENTRY(values_of_another_model_are_refused),
+    ENTRY(a_store_with_any_wrong_bit_is_refused), ENTRY(a_store_that_is_cut_off_is_refused),
+    ENTRY(random_bytes_are_no_store), ENTRY(a_port_that_stores_nothing_says_so),
+    ENTRY(a_change_that_a_stop_has_left_is_forgotten))
