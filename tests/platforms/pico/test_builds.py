@@ -1,0 +1,30 @@
+"""Images for all four targets: they build, EPG's part without a warning, and how large they are."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.platforms.pico.compiled import own_sources, problems
+from tests.platforms.pico.images import TARGETS, images, size_of, skip_unless_buildable
+
+RAM = {"pico": 256 * 1024, "pico2": 512 * 1024}
+"""Bytes, without the two scratch banks for stacks."""
+
+
+@pytest.mark.parametrize(("board", "platform"), TARGETS)
+def test_jiwy_builds(board: str, platform: str) -> None:
+    skip_unless_buildable(platform)
+    folder = images(board, platform, "jiwy_firmware")
+    for suffix in ("elf", "uf2", "bin", "hex", "elf.map"):
+        assert (folder / f"jiwy_firmware.{suffix}").stat().st_size > 0
+    size = size_of(folder / "jiwy_firmware.elf")
+    print(f"{board} {platform}: text {size.text}, data {size.data}, bss {size.bss}")
+    assert size.text + size.data + size.bss < RAM[board] / 3, "from RAM, with room for the user"
+
+
+@pytest.mark.parametrize(("board", "platform"), TARGETS)
+def test_epgs_c_has_no_warning(board: str, platform: str) -> None:
+    skip_unless_buildable(platform)
+    sources = own_sources(images(board, platform, "jiwy_firmware"))
+    assert {"control_core.c", "service.c", "jiwy_app.c", "jiwy_pico.c", "control.c"} <= {file.name for file in sources}
+    assert {file.name: said for file, command in sources.items() if (said := problems(command))} == {}
