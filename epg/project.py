@@ -129,7 +129,8 @@ def check_driver_headers(application: Application, diagnostics: Diagnostics) -> 
             diagnostics.error("invalid-name", component.span, message, hint="choose another name for the target")
     communication = application.communication
     for header in sorted(generated.intersection(communication.middleware.headers)):
-        message = f"middleware '{communication.middleware.name}' needs a header '{header}', and target '{name}' makes one"
+        needed = f"middleware '{communication.middleware.name}' needs a header '{header}'"
+        message = f"{needed}, and target '{name}' makes one"
         diagnostics.error("invalid-name", communication.span, message, hint="choose another name for the target")
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import tempfile
 from collections.abc import Mapping
@@ -17,8 +18,10 @@ def write_outputs(folder: Path, files: Mapping[str, str]) -> list[str]:
     written = []
     for name, text in sorted(files.items()):
         path = folder / name
-        if folder.resolve() not in path.resolve().parents:
+        if os.path.normpath(name).startswith(("..", "/")):
             raise ValueError(f"{name!r} is outside the output folder")
+        if folder.resolve() not in path.resolve().parents:
+            raise PermissionError(errno.EPERM, "a link leads out of the output folder: remove it", str(path))
         data = text.encode("utf-8")
         try:
             if path.read_bytes() == data:

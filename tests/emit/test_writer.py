@@ -48,3 +48,11 @@ def test_what_is_no_longer_generated_is_deleted_and_nothing_else(tmp_path: Path)
     (tmp_path / "mine").write_text("of the user")
     update_folder(tmp_path, {"a": "1"}, None)
     assert sorted(path.name for path in tmp_path.iterdir()) == [".epg-outputs.json", "a", "mine"]
+
+
+def test_a_link_that_leads_out_of_the_folder_is_no_bug_of_epg(tmp_path: Path) -> None:
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out/a").symlink_to(tmp_path / "elsewhere")
+    with pytest.raises(PermissionError, match="a link leads out of the output folder"):
+        write_outputs(tmp_path / "out", {"a": "1"})
+    assert not (tmp_path / "elsewhere").exists()

@@ -1,4 +1,6 @@
-"""How much is tried: HYPOTHESIS_PROFILE=long tries twenty times as much, and other things in each run."""
+"""How much is tried: HYPOTHESIS_PROFILE=longer tries four times as much, the same in each run; HYPOTHESIS_PROFILE=long
+twenty times as much, and other things in each run.
+"""
 
 from __future__ import annotations
 
@@ -21,4 +23,4 @@ PROFILE = settings(
 
 def examples(normal: int) -> int:
     """Examples of a property test that has ``normal`` ones in a normal run."""
-    return normal * 20 if LONG else normal
+    return normal * {"long": 20, "longer": 4}.get(os.environ.get("HYPOTHESIS_PROFILE", ""), 1)
