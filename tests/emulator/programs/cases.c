@@ -8,15 +8,16 @@ volatile uint32_t arguments[8];
 volatile uint32_t results[64];
 volatile uint32_t request; /* address of a case */
 volatile uint32_t done;
-volatile uint32_t starts __attribute__((section(".uninitialized_data.starts"))); /* what a reset by the watchdog keeps */
+volatile uint32_t starts
+    __attribute__((section(".uninitialized_data.starts"))); /* what a reset by the watchdog keeps */
 
 typedef void (*case_t)(void);
 
 static const case_t all_cases[] = {
-    case_two_cores, case_divide_on_both,  case_events,    case_interrupt_of_core_1, case_masked_sleep, case_nested,
-    case_fault,     case_fault_of_core_1, case_flash,     case_from_flash,          case_from_ram,     case_pio_wave,
-    case_pio_shift, case_pio_flags,       case_pwm,       case_pwm_registers,       case_pwm_tick,     case_alarm,
-    case_systick,   case_watchdog,        case_pins,      case_pio_latency,
+    case_two_cores, case_divide_on_both,  case_events, case_interrupt_of_core_1, case_masked_sleep, case_nested,
+    case_fault,     case_fault_of_core_1, case_flash,  case_from_flash,          case_from_ram,     case_pio_wave,
+    case_pio_shift, case_pio_flags,       case_pwm,    case_pwm_registers,       case_pwm_tick,     case_alarm,
+    case_systick,   case_watchdog,        case_pins,   case_pio_latency,
 };
 
 /* Pins as the arguments say: pin, direction, level, pulls. */

@@ -1,0 +1,3 @@
+// The headers in C++, twice.
+#include "epg/pico_quadrature.h"
+#include "epg/pico_quadrature_velocity.h"
