@@ -4,16 +4,31 @@
  *
  * A hardware alarm of its own (not the SDK's alarm pool) asks for it every millisecond, and a transport's interrupt
  * asks for it at once.  All other interrupts, and whatever they do for the user, go before it.
+ *
+ * It has a stack of its own, so that the user's need not be larger for it.
  */
 #include "parts.h"
 
 #define PERIOD_US 1000U
+
+/** Bytes; epg_pico_status() tells how many are used. */
+#ifndef EPG_PICO_SERVICE_STACK_SIZE
+#define EPG_PICO_SERVICE_STACK_SIZE 3072
+#endif
 
 static struct {
     void (*serve)(void);
     uint irq;
     uint alarm;
 } service;
+
+/* Used from assembler. */
+__attribute__((used, aligned(8))) uint32_t epg_pico_service_memory[EPG_PICO_SERVICE_STACK_SIZE / sizeof(uint32_t)];
+
+static const epg_pico_stack_t stack = {
+    .bottom = epg_pico_service_memory,
+    .top = epg_pico_service_memory + EPG_PICO_SERVICE_STACK_SIZE / sizeof(uint32_t),
+};
 
 /** Asks for the service, from any interrupt of core 0. */
 void epg_pico_service_wake(void)
@@ -23,9 +38,46 @@ void epg_pico_service_wake(void)
     }
 }
 
-static void on_service(void)
+__attribute__((used)) void epg_pico_service_run(void)
 {
     service.serve();
+    if (epg_pico_stack_full(&stack)) {
+        panic("EPG_PICO_SERVICE_STACK_SIZE is too small");
+    }
+}
+
+/* Runs epg_pico_service_run() on the service's stack; other interrupts that come meanwhile use it too. */
+static void __attribute__((naked)) on_service(void)
+{
+    pico_default_asm_volatile("push {r4, r5, r6, lr}\n"
+                              "mov r4, sp\n"
+                              "ldr r0, =epg_pico_service_memory\n"
+                              "ldr r1, =%c[size]\n"
+                              "adds r1, r0, r1\n"
+#if !PICO_RP2040
+                              /* Armv8-M checks the stack pointer against a limit. */
+                              "mrs r5, msplim\n"
+                              "movs r2, #0\n"
+                              "msr msplim, r2\n"
+                              "mov sp, r1\n"
+                              "msr msplim, r0\n"
+#else
+                              "mov sp, r1\n"
+#endif
+                              "ldr r0, =epg_pico_service_run\n"
+                              "blx r0\n"
+#if !PICO_RP2040
+                              "movs r2, #0\n"
+                              "msr msplim, r2\n"
+                              "mov sp, r4\n"
+                              "msr msplim, r5\n"
+#else
+                              "mov sp, r4\n"
+#endif
+                              "pop {r4, r5, r6, pc}\n"
+                              ".ltorg\n"
+                              :
+                              : [size] "i"(EPG_PICO_SERVICE_STACK_SIZE));
 }
 
 /** Next time in whole periods from the present one: it may have passed already when an interrupt came in between. */
@@ -57,6 +109,7 @@ bool epg_pico_service_start(void (*serve)(void))
         }
         return false;
     }
+    epg_pico_stack_paint(stack.bottom, stack.top);
     service.serve = serve;
     service.alarm = (uint)alarm;
     service.irq = (uint)irq;
@@ -82,6 +135,6 @@ void epg_pico_service_stop(void)
 
 void epg_pico_service_stack(uint32_t *size, uint32_t *used)
 {
-    *size = 0;
-    *used = 0;
+    *size = EPG_PICO_SERVICE_STACK_SIZE;
+    *used = epg_pico_stack_used(&stack, 0);
 }

@@ -78,6 +78,9 @@ void epg_pico_stack_paint(uint32_t *bottom, const uint32_t *end);
 /** Bytes that have ever been used of `stack`, whose first `unpainted` bytes are not looked at. */
 uint32_t epg_pico_stack_used(const epg_pico_stack_t *stack, uint32_t unpainted);
 
+/** Whether all of a painted stack has been used, and perhaps more. */
+bool epg_pico_stack_full(const epg_pico_stack_t *stack);
+
 extern const epg_pico_stack_t epg_pico_main_stack;
 extern const epg_pico_stack_t epg_pico_control_stack;
 
@@ -90,7 +93,7 @@ void epg_pico_service_stop(void);
 /** Asks for `serve` at once; from any interrupt of core 0. */
 void epg_pico_service_wake(void);
 
-/** Fills in the stack of the task that serves; 0 where there is none. */
+/** Fills in the stack on which `serve` runs. */
 void epg_pico_service_stack(uint32_t *size, uint32_t *used);
 
 #endif

@@ -27,3 +27,8 @@ uint32_t epg_pico_stack_used(const epg_pico_stack_t *stack, uint32_t unpainted)
     }
     return (uint32_t)((uintptr_t)stack->top - (uintptr_t)word);
 }
+
+bool epg_pico_stack_full(const epg_pico_stack_t *stack)
+{
+    return *stack->bottom != PATTERN;
+}

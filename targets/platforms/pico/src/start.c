@@ -27,10 +27,8 @@ static void report_stacks(void)
     epg_pico_status_t status;
     epg_pico_status(&status);
     epg_control_t *control = running->target->control;
-    const bool task = status.task_stack_size > 0U;
     epg_control_report_stack(control, EPG_STACK_CONTROL, status.control_stack_used, status.control_stack_size);
-    epg_control_report_stack(control, EPG_STACK_COMMUNICATION, task ? status.task_stack_used : status.main_stack_used,
-                             task ? status.task_stack_size : status.main_stack_size);
+    epg_control_report_stack(control, EPG_STACK_COMMUNICATION, status.service_stack_used, status.service_stack_size);
 }
 
 /** One turn of the communication side. */
@@ -119,5 +117,5 @@ void epg_pico_status(epg_pico_status_t *status)
         .main_stack_size = (uint32_t)((uintptr_t)main_stack->top - (uintptr_t)main_stack->bottom),
         .main_stack_used = epg_pico_stack_used(main_stack, GUARD),
     };
-    epg_pico_service_stack(&status->task_stack_size, &status->task_stack_used);
+    epg_pico_service_stack(&status->service_stack_size, &status->service_stack_used);
 }

@@ -72,8 +72,8 @@ typedef struct epg_pico_status {
     uint32_t control_stack_used;   /**< and how many of them have ever been used */
     uint32_t main_stack_size;      /**< of the stack that main() and interrupts of core 0 use */
     uint32_t main_stack_used;
-    uint32_t task_stack_size;      /**< of the communication's task; 0 on bare metal */
-    uint32_t task_stack_used;
+    uint32_t service_stack_size;   /**< of communication: of its interrupt on bare metal, of its task on FreeRTOS */
+    uint32_t service_stack_used;
 } epg_pico_status_t;
 
 /** The transport over USB CDC, in usb/; linked where a target uses it. */
