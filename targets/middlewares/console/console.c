@@ -257,8 +257,9 @@ static void poll_input(void)
         return;
     }
     session.input.line[session.input.length] = '\0';
+    const bool starting = !session.has_status && session.now_ns - session.start_ns < (uint64_t)NO_CYCLE_MS * MS;
     const bool room = epg_console_output_room(&session.output) >= ANSWER_ROOM || idle_ns > (uint64_t)PATIENCE_MS * MS;
-    if (room && (session.list == NULL || urgent())) {
+    if (room && ((session.list == NULL && !starting) || urgent())) {
         run_line();
     }
 }

@@ -1,0 +1,83 @@
+"""The console's protocol: each ``TEST(name)`` of ``c/console_tests.c``, under sanitizers."""
+
+from __future__ import annotations
+
+import importlib.util
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+CONSOLE = ROOT / "targets" / "middlewares" / "console"
+HERE = Path(__file__).resolve().parent / "c"
+TESTS = HERE / "console_tests.c"
+
+
+def _runtime_tests() -> ModuleType:
+    """How tests of the runtime are compiled: the same flags, the same fake port and application."""
+    path = ROOT / "tests" / "runtime" / "program.py"
+    spec = importlib.util.spec_from_file_location("runtime_program", path)
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+program = _runtime_tests()
+
+
+@pytest.fixture(scope="session")
+def console_tests(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    fakes = [program.SOURCES / "fake_port.c", program.SOURCES / "fake_application.c"]
+    sources = [TESTS, HERE / "console_bench.c", *fakes, *sorted(CONSOLE.glob("*.c")), *program.runtime_sources()]
+    output: Path = program.compile_program(
+        tmp_path_factory.mktemp("console") / "console_tests", sources, includes=[CONSOLE, HERE]
+    )
+    return output
+
+
+@pytest.mark.parametrize("name", program.names_in(TESTS))
+def test_in_c(console_tests: Path, name: str) -> None:
+    done = program.run_program([console_tests, name])
+    assert done.returncode == 0, done.stderr
+
+
+def test_it_needs_no_heap_and_no_printf(tmp_path: Path) -> None:
+    """What the console leaves for the linker besides EPG's runtime: copying and comparing bytes."""
+    undefined: set[str] = set()
+    defined: set[str] = set()
+    for source in [*CONSOLE.glob("*.c"), *program.runtime_sources()]:
+        output = tmp_path / f"{source.parent.name}_{source.stem}.o"
+        command = ["gcc", "-std=c11", "-Os", "-fno-stack-protector", "-fno-builtin", f"-I{program.RUNTIME / 'include'}"]
+        subprocess.run([*command, "-c", str(source), "-o", str(output)], check=True)
+        for line in subprocess.run(["nm", str(output)], capture_output=True, text=True, check=True).stdout.splitlines():
+            sort, name = line.split()[-2:]
+            (undefined if sort == "U" else defined).add(name)
+    port = {"epg_port_time_ns", "epg_port_store_read", "epg_port_store_write"}
+    text = {"memcpy", "memset", "memchr", "memcmp", "strchr", "strcmp", "strcspn", "strlen", "strspn"}
+    assert undefined - defined <= {*port, *text, "_GLOBAL_OFFSET_TABLE_"}
+
+
+@pytest.mark.skipif(shutil.which("cppcheck") is None, reason="cppcheck is not installed: apt install cppcheck")
+def test_cppcheck_finds_nothing() -> None:
+    command = ["cppcheck", "--std=c11", "--language=c", "--enable=warning,style,performance,portability"]
+    command += ["--inline-suppr", "--error-exitcode=1", "--quiet", "--suppress=missingIncludeSystem"]
+    command += [f"-I{program.RUNTIME / 'include'}", *map(str, sorted(CONSOLE.glob("*.c")))]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.mark.skipif(shutil.which("clang-format") is None, reason="clang-format is missing: apt install clang-format-14")
+def test_files_are_formatted() -> None:
+    shown = subprocess.run(["clang-format", "--version"], capture_output=True, text=True, check=True).stdout
+    if " version 14" not in f" {shown}":
+        pytest.skip("clang-format 14 is not installed: apt install clang-format-14")
+    files = [*sorted(CONSOLE.glob("*.[ch]")), *sorted(HERE.glob("*.[ch]"))]
+    command = ["clang-format", f"--style=file:{ROOT / '.clang-format'}", "--dry-run", "--Werror", *map(str, files)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr

@@ -1,0 +1,281 @@
+"""The console of a real executable: JIWY with its simulated plant, in real time."""
+
+from __future__ import annotations
+
+import csv
+import itertools
+import os
+import random
+import re
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+
+from .client import Host, Lines, stat, values
+
+
+def test_setpoints_reach_the_model(jiwy_host: Path) -> None:
+    with Host(jiwy_host) as console:
+        assert console.ask("pan_subscriber=0.1 tilt_subscriber=-2.5e-3") == ["ok setpoint"]
+        assert console.ask("watch setpoint_pan setpoint_tilt") == ["ok watch"]
+        console.lines.clear()
+        time.sleep(0.1)
+        console.receive(1)
+        assert values(console.until("watch ")[-1]).keys() == {"inputs.setpoint_pan", "inputs.setpoint_tilt"}
+        last = [values(line) for line in console.lines if line.startswith("watch ")][-1]
+        assert last == {"inputs.setpoint_pan": 0.1, "inputs.setpoint_tilt": -0.0025}
+        assert console.close() == (0, "")
+
+
+def test_values_of_a_watch_line_are_of_one_cycle(jiwy_host: Path) -> None:
+    with Host(jiwy_host) as console:
+        console.ask("watch setpoint_pan setpoint_tilt")
+        lines: list[str] = []
+        for number in range(500):
+            value = number / 7 + 1
+            console.send(f"pan_subscriber={value!r} tilt_subscriber={value!r}\n")
+            lines += console.receive(0.002)
+        seen = {tuple(values(line).values()) for line in lines if line.startswith("watch ")}
+        assert len(seen) > 5
+        assert all(pan == tilt for pan, tilt in seen)
+        times = [float(line.split()[1]) for line in lines if line.startswith("watch ")]
+        assert times == sorted(set(times))
+
+
+def test_parameters_are_set_saved_and_back_after_a_restart(jiwy_host: Path, tmp_path: Path) -> None:
+    store = tmp_path / "store"
+    with Host(jiwy_host, "--store", str(store)) as console:
+        assert console.ask("get Pan\\PID\\kp") == ["parameter Pan\\PID\\kp=2.6", "ok get"]
+        assert console.ask("set Pan\\PID\\kp=0.1 Tilt\\PID\\tauI=12") == ["ok set"]
+        assert console.ask("set Pan\\PID\\kp=nan")[-1] == "error set this is no number: 'nan'"
+        assert console.ask("save")[-1].startswith("error save")
+        assert console.ask("disable")[-1] == "ok disable"
+        assert console.ask("save") == ["ok save values=2"]
+        assert "stored=nothing" in console.ask("version")[-1]
+        assert console.close() == (0, "")
+    with Host(jiwy_host, "--store", str(store)) as console:
+        assert console.ask("get Pan\\PID\\kp") == ["parameter Pan\\PID\\kp=0.1 generated=2.6", "ok get"]
+        assert "stored=loaded" in console.ask("version")[-1]
+    data = bytearray(store.read_bytes())
+    data[8] ^= 1  # as if another model had saved it
+    store.write_bytes(data)
+    with Host(jiwy_host, "--store", str(store)) as console:
+        assert console.ask("get Pan\\PID\\kp") == ["parameter Pan\\PID\\kp=2.6", "ok get"]
+        assert "stored=of_another_model" in console.ask("version")[-1]
+    with Host(jiwy_host) as console:
+        console.ask("disable")
+        assert console.ask("save") == ["error save nothing can be stored here"]
+
+
+def test_a_parameter_takes_effect(jiwy_host: Path) -> None:
+    """Homing drives with this duty."""
+    with Host(jiwy_host) as console:
+        assert console.ask("set Pan\\Homing\\duty=0.125") == ["ok set"]
+        console.ask("watch pwm_pan")
+        console.lines.clear()
+        seen = {values(line)["outputs.pwm_pan"] for _ in range(20) for line in console.receive(0.1) if "watch" in line}
+        assert -0.125 in seen
+        console.ask("disable")
+        assert console.ask("enable") == ["ok enable"]  # which initialises the model
+        console.lines.clear()
+        seen = {values(line)["outputs.pwm_pan"] for _ in range(20) for line in console.receive(0.1) if "watch" in line}
+        assert -0.125 in seen and -0.05 not in seen
+
+
+def test_a_capture_has_every_cycle_around_its_trigger(jiwy_host: Path) -> None:
+    with Host(jiwy_host) as console:
+        console.ask("disable")
+        assert console.ask("capture setpoint_pan position_pan rows=200 before=50 when=setpoint_pan>0.5") == [
+            "ok capture rows=200"
+        ]
+        time.sleep(0.1)
+        console.ask("pan_subscriber=0.75")
+        told = console.until("captured ")[-1]
+        assert told == "captured state=ready rows=200 trigger=50"
+        answer = console.ask("capture read")
+        assert answer[-1] == "ok capture"
+        rows = list(csv.reader(line.removeprefix("csv ") for line in answer[:-1]))
+        assert rows[0] == ["time", "inputs.setpoint_pan", "inputs.position_pan"]
+        numbers = [[float(cell) for cell in row] for row in rows[1:]]
+        assert len(numbers) == 200
+        assert [row[1] for row in numbers] == [0.0] * 50 + [0.75] * 150
+        steps = [round((after[0] - before[0]) * 1000, 6) for before, after in itertools.pairwise(numbers)]
+        assert set(steps) <= {float(n) for n in range(1, 200)}  # whole periods; more than one where a tick was missed
+        assert steps.count(1.0) > 150
+
+
+def moved(answer: list[str]) -> dict[str, int]:
+    """Counts that a jog has told of, by encoder."""
+    found = [re.match(r"moved (\w+) count=([-+]?\d+) ", line) for line in answer]
+    return {match[1]: int(match[2]) for match in found if match}
+
+
+def test_jog_moves_one_axis_and_tells_count_and_sign(jiwy_host: Path) -> None:
+    with Host(jiwy_host) as console:
+        assert console.ask("jog pwm_pan 0.1 100")[-1] == "error jog the target is enabled: disable it"
+        console.ask("disable")
+        forwards = console.ask("jog pwm_pan 0.1 200")
+        assert forwards[-1] == "ok jog"
+        assert moved(forwards)["encoder_pan"] > 20
+        assert moved(forwards)["encoder_tilt"] == 0
+        assert re.match(r"moved encoder_pan count=\+\d+ position=\+0\.\d+ unit=rad$", forwards[0])
+        time.sleep(0.3)
+        assert moved(console.ask("jog pwm_pan -0.1 300"))["encoder_pan"] < -20
+        tilt = moved(console.ask("jog pwm_tilt 0.1 200"))
+        assert tilt["encoder_tilt"] > 5
+        assert console.ask("jog pwm_pan 0.5 100")[-1] == "error jog a duty is at most 0.2 here"
+        assert stat(console.ask("stats"), "faults") == "0"
+        assert console.ask("enable") == ["ok enable"]
+        assert console.close() == (0, "")
+
+
+def test_random_bytes_do_no_harm(jiwy_host: Path) -> None:
+    """ASan and UBSan would end the program."""
+    chance = random.Random(5)
+    words = [
+        b"watch",
+        b"capture position_pan",
+        b"set Pan\\PID\\kp=",
+        b"jog pwm_pan 0.1 5",
+        b"\n",
+        b"get",
+        b"=",
+        b"read",
+    ]
+    with Host(jiwy_host) as console:
+        for _ in range(300):
+            blob = chance.randbytes(chance.randrange(300))
+            console.send(blob + b" ".join(chance.choices(words, k=chance.randrange(6))))
+            console.receive(0.001)
+        console.send(b"\n\x03disable\n")
+        console.until("ok disable")
+        console.lines.clear()
+        assert console.ask("watch off")[-1] == "ok watch"
+        assert console.ask("version")[-1].startswith("ok version name=jiwy")
+        status, errors = console.close()
+        assert (status, errors) == (0, "")
+
+
+def cycles_of(console: Host) -> tuple[int, int]:
+    """Cycles run and ticks missed so far."""
+    answer = console.ask("stats")
+    return int(stat(answer, "cycles")), int(stat(answer, "missed"))
+
+
+def test_the_loop_keeps_its_cycles_under_a_flood(jiwy_host: Path) -> None:
+    """100 kB/s of what a console can do worst: setpoints, questions, garbage."""
+    with Host(jiwy_host) as console:
+        quiet = cycles_of(console)
+        time.sleep(1.0)
+        before = cycles_of(console)
+        end = time.monotonic() + 2.0
+        sent = 0
+        block = b"pan_subscriber=0.5 tilt_subscriber=0.25\nstats\nnonsense\x80\n" * 40
+        began = time.monotonic()
+        while time.monotonic() < end:
+            console.send(block)
+            sent += len(block)
+            console.receive(0.001)
+            time.sleep(max(0.0, began + sent / 100_000 - time.monotonic()))
+        assert sent > 150_000
+        console.send(b"\x03")
+        while console.receive(0.3):
+            console.lines.clear()
+        after = cycles_of(console)
+        ticks = sum(after) - sum(before)
+        assert ticks > 1900
+        idle_share = (before[1] - quiet[1]) / (sum(before) - sum(quiet))
+        assert (after[1] - before[1]) / ticks <= idle_share + 0.05
+
+
+@pytest.fixture
+def terminal(jiwy_host: Path, tmp_path: Path) -> Path:
+    path = tmp_path / "jiwy"
+    process = subprocess.Popen([str(jiwy_host), "--realtime", "--quiet", "--console-pty", str(path)])
+    end = time.monotonic() + 20
+    while not path.exists() and time.monotonic() < end:
+        time.sleep(0.01)
+    yield path  # type: ignore[misc]
+    process.send_signal(signal.SIGINT)
+    assert process.wait(20) == 130
+    assert not path.is_symlink()
+
+
+def test_a_terminal_of_its_own(terminal: Path) -> None:
+    """As a board that is plugged in, looked at, left and looked at again."""
+    for visit in range(3):
+        file = os.open(terminal, os.O_RDWR | os.O_NOCTTY)
+        console = Lines(file, file)
+        assert console.until("ready ")[-1].startswith("ready node=JIWY_node epg=")
+        assert console.ask("pan_subscriber=0.5") == ["ok setpoint"]
+        assert stat(console.ask("stats"), "reconnects") == str(visit)
+        console.send("watch\n")
+        os.close(file)
+        time.sleep(0.05)
+
+
+def test_an_old_link_is_replaced_and_a_file_is_not(jiwy_host: Path, tmp_path: Path) -> None:
+    link, file = tmp_path / "link", tmp_path / "file"
+    link.symlink_to("/dev/pts/gone")
+    file.write_text("mine")
+    command = [str(jiwy_host), "--realtime", "--quiet", "--duration", "0.1", "--console-pty"]
+    assert subprocess.run([*command, str(link)], check=False).returncode == 0
+    assert not link.is_symlink()
+    done = subprocess.run([*command, str(file)], capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    assert "cannot make a terminal of this name: File exists" in done.stderr
+    assert file.read_text() == "mine"
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--console"], "error: --console without --realtime\nhint: nobody types in simulated time: add --realtime\n"),
+        (
+            ["--realtime", "--console", "--console-pty", "x"],
+            "error: --console and --console-pty\nhint: there is one console: leave one of them out\n",
+        ),
+        (
+            ["--realtime", "--console", "--trace", "x.csv"],
+            "error: no --duration\nhint: say how many seconds to run, for example --duration 10\n",
+        ),
+    ],
+)
+def test_options_that_do_not_go_together(jiwy_host: Path, options: list[str], message: str) -> None:
+    done = subprocess.run([str(jiwy_host), *options], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (2, message)
+
+
+def test_the_input_of_a_script_is_carried_out_to_its_end(jiwy_host: Path) -> None:
+    script = "disable\njog pwm_pan 0.1 50\n" + "get Pan\\PID\\kp\n" * 300 + "version\n"
+    command = [str(jiwy_host), "--realtime", "--console"]
+    done = subprocess.run(command, input=script, capture_output=True, text=True, check=False, timeout=60)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.count("parameter Pan\\PID\\kp=2.6\n") == 300
+    assert "ok jog\n" in done.stdout
+    assert "\nok version " in done.stdout
+    assert "\r" not in done.stdout
+
+
+@pytest.mark.long
+def test_both_sides_race_for_nothing(jiwy_host_for_races: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """All that control and communication side share, under ThreadSanitizer."""
+    monkeypatch.setenv("TSAN_OPTIONS", "halt_on_error=1 exitcode=66")
+    with Host(jiwy_host_for_races) as console:
+        console.ask("watch")
+        for number in range(20):
+            console.ask(f"set Pan\\PID\\kp={number} Tilt\\PID\\kp={number}")
+            console.ask(f"pan_subscriber={number} tilt_subscriber={number}")
+            console.ask("capture position_pan pwm_pan rows=50 before=10 when=fault")
+            console.ask("capture stop")
+            console.ask("disable")
+            console.ask("jog pwm_pan 0.1 20")
+            console.ask("capture position_pan rows=20")
+            console.until("captured state=ready rows=20")
+            console.ask("capture read")
+            console.ask("stats")
+            console.ask("enable")
+        assert console.close() == (0, "")
