@@ -67,10 +67,11 @@ static epg_statistics_t statistics;
 static epg_fault_t fault;
 static bool enabled, initialise, model_valid;
 static uint32_t consecutive_overruns;
-static unsigned int request_seen;
+static unsigned int request_seen, alive_seen;
+static uint32_t silence;
 
 /* Between the sides. */
-static atomic_uint request, dropped, reconnects;
+static atomic_uint request, dropped, reconnects, alive;
 static exchange_t setpoint_exchange, monitor_exchange, status_exchange;
 static double setpoint_slots[4][GLUE_SETPOINTS];
 static double monitor_slots[4][GLUE_MONITORED];
@@ -302,6 +303,21 @@ static void count_cycle(uint64_t tick_ns, uint64_t begin_ns, uint64_t end_ns, ui
     }
 }
 
+/** How long the communication side has shown no life: a watchdog asks. */
+static void count_silence(void)
+{
+    const unsigned int newest = atomic_load(&alive);
+    if (newest != alive_seen) {
+        alive_seen = newest;
+        silence = 0;
+    } else if (newest != 0u) {
+        silence++;
+        if (silence > statistics.silence_max) {
+            statistics.silence_max = silence;
+        }
+    }
+}
+
 void glue_cycle(uint64_t tick_ns, uint32_t missed)
 {
     const uint64_t begin_ns = epg_port_time_ns();
@@ -314,6 +330,9 @@ void glue_cycle(uint64_t tick_ns, uint32_t missed)
 
     u[POSITION_PAN] = encoder_sample(&encoder_pan, &decoder_pan, PAN_RAD_PER_COUNT);
     u[POSITION_TILT] = encoder_sample(&encoder_tilt, &decoder_tilt, TILT_RAD_PER_COUNT);
+    if (!epg_port_quadrature_healthy(&decoder_pan) || !epg_port_quadrature_healthy(&decoder_tilt)) {
+        latch(EPG_FAULT_SENSOR);
+    }
     u[SETPOINT_PAN] = setpoints[0];
     u[SETPOINT_TILT] = setpoints[1];
     const bool stepped = run_model();
@@ -334,6 +353,7 @@ void glue_cycle(uint64_t tick_ns, uint32_t missed)
     }
 
     count_cycle(tick_ns, begin_ns, epg_port_time_ns(), missed);
+    count_silence();
     statistics.setpoints_dropped = atomic_load(&dropped);
     statistics.reconnects = atomic_load(&reconnects);
     const unsigned int slot = write_begin(&status_exchange);

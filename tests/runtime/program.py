@@ -44,6 +44,11 @@ def runtime_sources() -> list[Path]:
     return sorted((RUNTIME / "src").glob("*.c"))
 
 
+def component_sources() -> list[Path]:
+    """All C files of the component kinds."""
+    return sorted(COMPONENTS.glob("*/*.c"))
+
+
 def names_in(source: Path) -> list[str]:
     """Names of the ``TEST(name)`` in a C file, in order."""
     return re.findall(r"^TEST\((\w+)\)", source.read_text(), flags=re.MULTILINE)

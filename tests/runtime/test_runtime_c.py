@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from .program import SOURCES, compile_program, names_in, run_program, runtime_sources
+from .program import SOURCES, compile_program, component_sources, names_in, run_program, runtime_sources
 
 HELPERS = [SOURCES / "fake_port.c", SOURCES / "fake_application.c", SOURCES / "motor.c"]
 PROGRAMS = sorted(SOURCES.glob("*_tests.c"))
@@ -28,7 +28,7 @@ def program_of(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Path], Pat
 
     def build(source: Path) -> Path:
         if source not in programs:
-            programs[source] = compile_program(folder / source.stem, [source, *HELPERS, *runtime_sources()])
+            programs[source] = compile_program(folder / source.stem, [source, *HELPERS, *runtime_sources(), *component_sources()])
         return programs[source]
 
     return build

@@ -18,7 +18,16 @@ from epg.emit.text import Code, identifier
 from epg.load.catalog import Catalog, load_catalog
 from epg.load.yaml_file import parse_yaml
 
-from .program import COMPONENTS, ROOT, SOURCES, compile_program, names_in, run_program, runtime_sources
+from .program import (
+    COMPONENTS,
+    ROOT,
+    SOURCES,
+    compile_program,
+    component_sources,
+    names_in,
+    run_program,
+    runtime_sources,
+)
 
 TARGETS = ROOT / "targets"
 HOST = TARGETS / "platforms" / "host"
@@ -227,7 +236,7 @@ def program(catalog: Catalog, tmp_path_factory: pytest.TempPathFactory) -> Path:
     renderers = [Renderer(catalog, component) for component in COMPONENTS_TRIED]
     (folder / "generated.h").write_text(header(renderers))
     port = [HOST / "src" / f"{name}.c" for name in ("port", "clock", "store")]
-    sources = [HARNESS, *port, *runtime_sources()]
+    sources = [HARNESS, *port, *runtime_sources(), *component_sources()]
     return compile_program(folder / "templates", sources, includes=[folder, HOST / "include", HOST / "src"])
 
 

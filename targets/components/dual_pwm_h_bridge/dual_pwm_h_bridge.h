@@ -69,7 +69,7 @@ static inline void epg_dual_pwm_h_bridge_set(const epg_dual_pwm_h_bridge_t *brid
 static inline void epg_dual_pwm_h_bridge_safe(epg_dual_pwm_h_bridge_t *bridge,
                                               const epg_dual_pwm_h_bridge_config_t *config)
 {
-    epg_bridge_make_safe(&bridge->bridge, &config->bridge);
+    epg_bridge_make_safe(&bridge->bridge, &config->bridge, config->forwards.top + 1U);
     epg_dual_pwm_h_bridge_set(bridge, config);
 }
 

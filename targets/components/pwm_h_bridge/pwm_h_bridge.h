@@ -28,58 +28,19 @@ typedef struct epg_pwm_h_bridge_config {
     epg_bridge_config_t bridge;
 } epg_pwm_h_bridge_config_t;
 
-/** State of one bridge; set by epg_pwm_h_bridge_start(). */
+/** State of one bridge; set by epg_pwm_h_bridge_start().  Between two calls the pins are as it says. */
 typedef struct epg_pwm_h_bridge {
     epg_bridge_t bridge;
-    epg_bridge_state_t pins; /**< as they are written */
 } epg_pwm_h_bridge_t;
 
-/** Direction pins as the bridge's state says. */
-static inline void epg_pwm_h_bridge_set_pins(epg_pwm_h_bridge_t *bridge, const epg_pwm_h_bridge_config_t *config)
-{
-    const epg_bridge_state_t state = bridge->bridge.state;
-    epg_port_output_write(config->pin_a, state == EPG_BRIDGE_FORWARDS || state == EPG_BRIDGE_BRAKE);
-    epg_port_output_write(config->pin_b, state == EPG_BRIDGE_BACKWARDS || state == EPG_BRIDGE_BRAKE);
-    bridge->pins = state;
-}
-
-/** The PWM's level as the bridge's state says. */
-static inline void epg_pwm_h_bridge_set_level(const epg_pwm_h_bridge_t *bridge, const epg_pwm_h_bridge_config_t *config)
-{
-    const bool brake = bridge->bridge.state == EPG_BRIDGE_BRAKE;
-    epg_port_pwm_write(&config->pwm, brake ? config->pwm.top + 1U : bridge->bridge.level);
-}
-
-/** All signals low, whatever they were. */
-static inline void epg_pwm_h_bridge_off(epg_pwm_h_bridge_t *bridge, const epg_pwm_h_bridge_config_t *config)
-{
-    epg_port_pwm_write(&config->pwm, 0);
-    epg_port_output_write(config->pin_a, false);
-    epg_port_output_write(config->pin_b, false);
-    bridge->pins = EPG_BRIDGE_COAST;
-}
+/** Configures pins and PWM; the motor coasts until this ends, and is safe then. */
+void epg_pwm_h_bridge_start(epg_pwm_h_bridge_t *bridge, const epg_pwm_h_bridge_config_t *config);
 
 /** Lets the motor coast, or brakes it.  Writes all signals whatever they were. */
-static inline void epg_pwm_h_bridge_safe(epg_pwm_h_bridge_t *bridge, const epg_pwm_h_bridge_config_t *config)
-{
-    epg_bridge_make_safe(&bridge->bridge, &config->bridge);
-    if (bridge->bridge.state == EPG_BRIDGE_BRAKE) {
-        epg_pwm_h_bridge_set_pins(bridge, config);
-        epg_pwm_h_bridge_set_level(bridge, config);
-    } else {
-        epg_pwm_h_bridge_off(bridge, config);
-    }
-}
+void epg_pwm_h_bridge_safe(epg_pwm_h_bridge_t *bridge, const epg_pwm_h_bridge_config_t *config);
 
-/** Configures pins and PWM; the motor coasts until this ends, and is safe then. */
-static inline void epg_pwm_h_bridge_start(epg_pwm_h_bridge_t *bridge, const epg_pwm_h_bridge_config_t *config)
-{
-    *bridge = (epg_pwm_h_bridge_t){0};
-    epg_port_output_start(config->pin_a, false);
-    epg_port_output_start(config->pin_b, false);
-    epg_port_pwm_start(&config->pwm);
-    epg_pwm_h_bridge_safe(bridge, config);
-}
+/** Direction pins as the bridge's state says; off in between, with the PWM low. */
+void epg_pwm_h_bridge_change(const epg_pwm_h_bridge_t *bridge, const epg_pwm_h_bridge_config_t *config);
 
 /**
  * Drives with `duty` (-1 ... 1), rounded to a whole number of timer clocks.  Returns true if it had to be limited to
@@ -92,12 +53,12 @@ static inline void epg_pwm_h_bridge_start(epg_pwm_h_bridge_t *bridge, const epg_
 static inline bool epg_pwm_h_bridge_write(epg_pwm_h_bridge_t *bridge, const epg_pwm_h_bridge_config_t *config,
                                           double duty)
 {
+    const epg_bridge_state_t before = bridge->bridge.state;
     const bool limited = epg_bridge_command(&bridge->bridge, &config->bridge, config->pwm.top + 1U, duty);
-    if (bridge->bridge.state != bridge->pins) {
-        epg_pwm_h_bridge_off(bridge, config);
-        epg_pwm_h_bridge_set_pins(bridge, config);
+    if (bridge->bridge.state != before) {
+        epg_pwm_h_bridge_change(bridge, config);
     }
-    epg_pwm_h_bridge_set_level(bridge, config);
+    epg_port_pwm_write(&config->pwm, bridge->bridge.level);
     return limited;
 }
 

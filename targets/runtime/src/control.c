@@ -85,15 +85,14 @@ static void handle_request(epg_control_t *control, bool permitted, uint64_t now_
 }
 
 /** Everything that may enable or disable before a sensor is read, and the setpoints the model will see. */
-static void command(epg_control_t *control, uint64_t now_ns)
+static void command(epg_control_t *control, const epg_application_t *application, uint64_t now_ns)
 {
-    const epg_application_t *application = control->application;
     const bool taken = application->setpoint_exchange != NULL &&
                        epg_exchange_take(application->setpoint_exchange, application->samples) &&
                        epg_setpoints_take(application);
-    const bool permitted = application->fail_safe == NULL || application->fail_safe();
-    handle_request(control, permitted, now_ns);
-    if (!permitted) {
+    const bool refused = application->fail_safe != NULL && !application->fail_safe();
+    handle_request(control, !refused, now_ns);
+    if (refused) {
         epg_control_fault(control, EPG_FAULT_FAIL_SAFE, application->fail_safe_component);
     }
     if (taken || control->setpoints_move) {
@@ -145,9 +144,8 @@ static bool run_model(epg_control_t *control)
 }
 
 /** Drives what is moved by hand; true if something is, and the model rests meanwhile. */
-static bool move_by_hand(epg_control_t *control)
+static bool move_by_hand(epg_control_t *control, epg_jog_t *jog)
 {
-    epg_jog_t *jog = control->application->jog;
     if (jog == NULL || !epg_jog_cycle(jog, control->enabled)) {
         return false;
     }
@@ -160,13 +158,14 @@ static uint32_t saturated(uint64_t value)
     return value < UINT32_MAX ? (uint32_t)value : UINT32_MAX;
 }
 
-/** Counts a cycle that ran from `begin_ns` to `end_ns`; true if it was an overrun. */
-static bool count_cycle(epg_control_t *control, uint64_t tick_ns, uint64_t begin_ns, uint64_t end_ns, uint32_t missed)
+/** Counts a cycle that ran from `begin_ns` to `end_ns`; true if it was an overrun, not over at `next_ns`. */
+static bool count_cycle(epg_control_t *control, uint64_t tick_ns, uint64_t next_ns, uint64_t begin_ns, uint64_t end_ns,
+                        uint32_t missed)
 {
     epg_statistics_t *statistics = &control->statistics;
     const uint32_t lateness = begin_ns > tick_ns ? saturated(begin_ns - tick_ns) : 0U;
     const uint32_t computation = saturated(end_ns - begin_ns);
-    const bool overrun = end_ns > tick_ns + control->application->period_ns || missed > 0;
+    const bool overrun = end_ns > next_ns || missed > 0;
 
     statistics->cycles++;
     statistics->missed += missed;
@@ -186,13 +185,17 @@ static bool count_cycle(epg_control_t *control, uint64_t tick_ns, uint64_t begin
     return overrun;
 }
 
-/** How long the communication side has shown no life. */
+/** How long the communication side has shown no life; when it has, what it knows of the stacks. */
 static void count_silence(epg_control_t *control)
 {
     const unsigned int alive = atomic_load(&control->alive);
     if (alive != control->alive_seen) {
         control->alive_seen = alive;
         control->silence = 0;
+        for (unsigned int i = 0; i < EPG_STACKS; i++) {
+            control->statistics.stacks[i].used = atomic_load(&control->stacks[i].used);
+            control->statistics.stacks[i].size = atomic_load(&control->stacks[i].size);
+        }
     } else if (alive != 0U && control->silence < UINT32_MAX) {
         control->silence++;
         if (control->silence > control->statistics.silence_max) {
@@ -205,10 +208,6 @@ static void publish_status(epg_control_t *control)
 {
     control->statistics.setpoints_dropped = atomic_load(&control->dropped);
     control->statistics.reconnects = atomic_load(&control->reconnects);
-    for (unsigned int i = 0; i < EPG_STACKS; i++) {
-        control->statistics.stacks[i].used = atomic_load_explicit(&control->stacks[i].used, memory_order_relaxed);
-        control->statistics.stacks[i].size = atomic_load_explicit(&control->stacks[i].size, memory_order_relaxed);
-    }
     epg_exchange_write(&control->status_exchange, &control->status);
     if (atomic_load(&control->observed)) {
         epg_exchange_write(&control->observer_exchange, &control->status);
@@ -222,12 +221,12 @@ void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed
 
     application->sample();
     control->time_ns = tick_ns;
-    command(control, begin_ns);
+    command(control, application, begin_ns);
     application->read();
     if (application->parameters != NULL) {
         epg_parameters_apply(application->parameters, control->model_valid);
     }
-    const bool jogging = move_by_hand(control);
+    const bool jogging = move_by_hand(control, application->jog);
     const bool stepped = !jogging && run_model(control);
     if (jogging) {
         /* nothing but the actuator that is moved by hand: the others are safe since before */
@@ -244,7 +243,8 @@ void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed
         epg_capture_cycle(application->capture, tick_ns, control->fault != EPG_FAULT_NONE);
     }
 
-    const bool overrun = count_cycle(control, tick_ns, begin_ns, epg_port_time_ns(), missed);
+    const uint64_t next_ns = tick_ns + application->period_ns;
+    const bool overrun = count_cycle(control, tick_ns, next_ns, begin_ns, epg_port_time_ns(), missed);
     control->consecutive_overruns = overrun ? control->consecutive_overruns + 1U : 0U;
     if (application->overrun_limit > 0 && control->consecutive_overruns >= application->overrun_limit) {
         latch(control, EPG_FAULT_OVERRUN);
@@ -299,7 +299,7 @@ void epg_control_alive(epg_control_t *control)
 void epg_control_report_stack(epg_control_t *control, unsigned int stack, uint32_t used, uint32_t size)
 {
     if (stack < EPG_STACKS) {
-        atomic_store_explicit(&control->stacks[stack].used, used, memory_order_relaxed);
-        atomic_store_explicit(&control->stacks[stack].size, size, memory_order_relaxed);
+        atomic_store(&control->stacks[stack].used, used);
+        atomic_store(&control->stacks[stack].size, size);
     }
 }

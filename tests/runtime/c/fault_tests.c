@@ -172,6 +172,7 @@ TEST(stacks_are_reported)
     epg_control_report_stack(&fake.control, EPG_STACK_CONTROL, 700, 2048);
     epg_control_report_stack(&fake.control, EPG_STACK_COMMUNICATION, 1500, 4096);
     epg_control_report_stack(&fake.control, EPG_STACKS, 1, 1); /* there is no such stack */
+    epg_control_alive(&fake.control);
     fake_cycle();
     const epg_statistics_t statistics = fake_status().statistics;
     CHECK_EQUAL(statistics.stacks[EPG_STACK_CONTROL].used, 700);

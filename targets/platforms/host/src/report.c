@@ -118,6 +118,7 @@ void epg_host_write_statistics(FILE *file, const epg_host_run_t *run)
     write_count(file, "faults", statistics.faults);
     write_flag(file, "enabled", target->control->enabled);
     write_string(file, "fault", epg_fault_name(target->control->fault));
+    write_string(file, "fault_component", epg_target_component(target, target->control->fault_component));
     write_histogram(file, run);
     fputs("}\n", file);
 }
@@ -178,6 +179,8 @@ void epg_host_print_summary(const epg_host_run_t *run)
     }
     printf("  values       clamped %" PRIu32 ", setpoints dropped %" PRIu32 ", setpoint timeouts %" PRIu32 "\n",
            statistics.clamped, statistics.setpoints_dropped, statistics.setpoint_timeouts);
-    printf("  state        %s, faults %" PRIu32 ", fault: %s\n", target->control->enabled ? "enabled" : "disabled",
-           statistics.faults, epg_fault_name(target->control->fault));
+    const char *component = epg_target_component(target, target->control->fault_component);
+    printf("  state        %s, faults %" PRIu32 ", fault: %s%s%s%s\n",
+           target->control->enabled ? "enabled" : "disabled", statistics.faults, epg_fault_name(target->control->fault),
+           component[0] != '\0' ? " (" : "", component, component[0] != '\0' ? ")" : "");
 }

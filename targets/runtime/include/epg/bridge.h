@@ -32,28 +32,23 @@ typedef struct epg_bridge_config {
 /** Zero-initialised memory is a bridge that coasts and has never driven. */
 typedef struct epg_bridge {
     double duty;               /**< applied now, -1 ... 1, positive as asked for; 0 unless the motor is driven */
-    uint32_t level;            /**< applied now, in clocks of the PWM; 0 unless the motor is driven */
+    uint32_t level;            /**< of the PWM now, in clocks; while braking all of a period */
     epg_bridge_state_t state;  /**< now */
     epg_bridge_state_t driven; /**< direction of the last drive; EPG_BRIDGE_COAST before the first */
     uint32_t coasted;          /**< commands in a row that left it coasting; stops at `dead_writes` */
 } epg_bridge_t;
 
-static inline void epg_bridge_rest(epg_bridge_t *bridge, const epg_bridge_config_t *config, epg_bridge_state_t state)
-{
-    bridge->duty = 0.0;
-    bridge->level = 0;
-    bridge->state = state;
-    if (state != EPG_BRIDGE_COAST) {
-        bridge->coasted = 0;
-    } else if (bridge->coasted < config->dead_writes) {
-        bridge->coasted++;
-    }
-}
+/** Not driven from now on: coasts or brakes, with a PWM period of `clocks`. */
+void epg_bridge_rest(epg_bridge_t *bridge, const epg_bridge_config_t *config, uint32_t clocks,
+                     epg_bridge_state_t state);
 
-/** State and level for the safe value. */
-static inline void epg_bridge_make_safe(epg_bridge_t *bridge, const epg_bridge_config_t *config)
+/** Takes a direction; false, and coasting, unless the dead time since the other one is over. */
+bool epg_bridge_turn(epg_bridge_t *bridge, const epg_bridge_config_t *config, epg_bridge_state_t direction);
+
+/** State and level for the safe value, with a PWM period of `clocks`. */
+static inline void epg_bridge_make_safe(epg_bridge_t *bridge, const epg_bridge_config_t *config, uint32_t clocks)
 {
-    epg_bridge_rest(bridge, config, config->safe);
+    epg_bridge_rest(bridge, config, clocks, config->safe);
 }
 
 /**
@@ -64,7 +59,7 @@ static inline bool epg_bridge_command(epg_bridge_t *bridge, const epg_bridge_con
                                       double duty)
 {
     if (!epg_is_finite(duty)) {
-        epg_bridge_make_safe(bridge, config);
+        epg_bridge_make_safe(bridge, config, clocks);
         return true;
     }
     const bool negative = duty < 0.0;
@@ -73,18 +68,11 @@ static inline bool epg_bridge_command(epg_bridge_t *bridge, const epg_bridge_con
     const double magnitude = limited ? config->max_duty : asked;
     const uint32_t level = (uint32_t)(magnitude * (double)clocks + 0.5);
     const epg_bridge_state_t direction = negative == config->invert ? EPG_BRIDGE_FORWARDS : EPG_BRIDGE_BACKWARDS;
-
     if (level == 0) {
-        epg_bridge_rest(bridge, config, config->zero);
-    } else if (config->dead_writes > 0 && bridge->driven != EPG_BRIDGE_COAST && bridge->driven != direction &&
-               bridge->coasted < config->dead_writes) {
-        epg_bridge_rest(bridge, config, EPG_BRIDGE_COAST);
-    } else {
+        epg_bridge_rest(bridge, config, clocks, config->zero);
+    } else if (direction == bridge->state || epg_bridge_turn(bridge, config, direction)) {
         bridge->duty = negative ? -magnitude : magnitude;
         bridge->level = level;
-        bridge->state = direction;
-        bridge->driven = direction;
-        bridge->coasted = 0;
     }
     return limited;
 }

@@ -243,7 +243,10 @@ void epg_control_count_reconnect(epg_control_t *control);
 /** The communication side is alive: once in each turn of its loop. */
 void epg_control_alive(epg_control_t *control);
 
-/** What a platform has measured of a stack (EPG_STACK_CONTROL or EPG_STACK_COMMUNICATION), in bytes. */
+/**
+ * What a platform has measured of a stack (EPG_STACK_CONTROL or EPG_STACK_COMMUNICATION), in bytes.  In the statistics
+ * after the next epg_control_alive().
+ */
 void epg_control_report_stack(epg_control_t *control, unsigned int stack, uint32_t used, uint32_t size);
 
 #endif

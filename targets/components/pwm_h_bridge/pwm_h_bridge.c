@@ -1,0 +1,45 @@
+/**
+ * @file
+ * What an H-bridge with two direction pins does less often than every cycle.
+ */
+#include "pwm_h_bridge.h"
+
+static void set_pins(const epg_pwm_h_bridge_t *bridge, const epg_pwm_h_bridge_config_t *config)
+{
+    const epg_bridge_state_t state = bridge->bridge.state;
+    epg_port_output_write(config->pin_a, state == EPG_BRIDGE_FORWARDS || state == EPG_BRIDGE_BRAKE);
+    epg_port_output_write(config->pin_b, state == EPG_BRIDGE_BACKWARDS || state == EPG_BRIDGE_BRAKE);
+}
+
+static void off(const epg_pwm_h_bridge_config_t *config)
+{
+    epg_port_pwm_write(&config->pwm, 0);
+    epg_port_output_write(config->pin_a, false);
+    epg_port_output_write(config->pin_b, false);
+}
+
+void epg_pwm_h_bridge_start(epg_pwm_h_bridge_t *bridge, const epg_pwm_h_bridge_config_t *config)
+{
+    *bridge = (epg_pwm_h_bridge_t){0};
+    epg_port_output_start(config->pin_a, false);
+    epg_port_output_start(config->pin_b, false);
+    epg_port_pwm_start(&config->pwm);
+    epg_pwm_h_bridge_safe(bridge, config);
+}
+
+void epg_pwm_h_bridge_safe(epg_pwm_h_bridge_t *bridge, const epg_pwm_h_bridge_config_t *config)
+{
+    epg_bridge_make_safe(&bridge->bridge, &config->bridge, config->pwm.top + 1U);
+    if (config->bridge.safe == EPG_BRIDGE_BRAKE) {
+        set_pins(bridge, config);
+        epg_port_pwm_write(&config->pwm, bridge->bridge.level);
+    } else {
+        off(config);
+    }
+}
+
+void epg_pwm_h_bridge_change(const epg_pwm_h_bridge_t *bridge, const epg_pwm_h_bridge_config_t *config)
+{
+    off(config);
+    set_pins(bridge, config);
+}
