@@ -1,6 +1,6 @@
-"""Builds Pico SDK projects for tests, in folders of EPG's cache that are used again: a second build takes half a second.
+"""Builds Pico SDK projects for tests, in folders of EPG's cache used again: a second build takes half a second.
 
->>> # build("tests/emulator/programs", board="pico", targets=["harness"]) / "harness.elf"
+>>> # build("tests/emulator/programs", board="pico", targets=["serial"]) / "serial.elf"
 """
 
 from __future__ import annotations
@@ -14,7 +14,6 @@ from pathlib import Path
 from epg.bootstrap import cache_folder
 
 from .toolchain import HERE, ROOT, Missing, arm_gcc, locked, pico_sdk, tool
-
 
 
 class BuildError(Exception):
@@ -36,7 +35,8 @@ def build(
     ``stock_arithmetic``.  Raises :class:`BuildError`, or :class:`Missing` for SDK or compiler.
     """
     source = (ROOT / project).resolve()
-    settings = {"PICO_BOARD": board, "PICO_SDK_PATH": str(pico_sdk()), "CMAKE_BUILD_TYPE": "Release", **(variables or {})}
+    settings = {"PICO_BOARD": board, "PICO_SDK_PATH": str(pico_sdk()), "CMAKE_BUILD_TYPE": "Release"}
+    settings.update(variables or {})
     settings.setdefault("EPG_PATH", str(ROOT))
     settings["PICO_COMPILER"] = "pico_arm_cortex_m33_gcc" if board == "pico2" else "pico_arm_cortex_m0plus_gcc"
     settings["PICO_TOOLCHAIN_PATH"] = str(arm_gcc().parent)

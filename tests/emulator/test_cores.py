@@ -60,6 +60,7 @@ CAUSES = {
     4: "execution of memory that is not executable",
     5: "branch to ARM code",
     6: "SVC at a priority that is too high",
+    7: "write that the MPU forbids",
 }
 
 

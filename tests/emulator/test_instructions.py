@@ -80,11 +80,10 @@ def test_random_instructions(board: Board) -> None:
     runs = []
     for _ in range(20_000):
         registers = [random_value(source) for _ in range(13)] + [0x20031000]
-        if source.random() < 0.2:
-            instruction = random_access(source, registers)
-        else:
-            instruction = random_instruction(source)
-        runs.append({"code": instruction.to_bytes(2, "little").hex(), "registers": registers, "flags": source.randrange(16)})
+        instruction = random_access(source, registers) if source.random() < 0.2 else random_instruction(source)
+        runs.append(
+            {"code": instruction.to_bytes(2, "little").hex(), "registers": registers, "flags": source.randrange(16)}
+        )
     answers = board.pico.call("execute", at=CODE, runs=runs)
     wrong = []
     for run, (registers, flags, _, fault) in zip(runs, answers, strict=True):

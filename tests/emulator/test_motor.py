@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 
@@ -129,5 +130,5 @@ def test_edges_come_when_the_shaft_passes_them(board: Board) -> None:
     after = state(board)
     speed = (before["speed"] + after["speed"]) / 2 * PAN["gear"] * PAN["countsPerRadian"]  # counts/s, all but constant
     assert len(edges) == pytest.approx(speed * 0.02, abs=1.5)
-    gaps = [(later[0] - earlier[0]) / 125e6 for earlier, later in zip(edges, edges[1:], strict=False)]
+    gaps = [(later[0] - earlier[0]) / 125e6 for earlier, later in itertools.pairwise(edges)]
     assert all(gap == pytest.approx(1 / speed, rel=0.02) for gap in gaps)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import pytest
 
 from .conftest import Board
@@ -30,9 +32,9 @@ def test_pwm_levels(board: Board, top: int, a: int, b: int, divider: int) -> Non
             continue
         rises = [cycle for cycle, high in edges if high]
         assert len(rises) >= 18
-        assert all(abs(later - earlier - period) < 1 for earlier, later in zip(rises, rises[1:], strict=False))
+        assert all(abs(later - earlier - period) < 1 for earlier, later in itertools.pairwise(rises))
         assert abs((rises[-1] - rises[0]) / (len(rises) - 1) - period) < 0.1
-        pairs = [(x, y) for x, y in zip(edges, edges[1:], strict=False) if x[1] and not y[1]]
+        pairs = [(x, y) for x, y in itertools.pairwise(edges) if x[1] and not y[1]]
         assert all(abs(y[0] - x[0] - level * divider / 16) < 1 for x, y in pairs)
 
 
@@ -49,7 +51,7 @@ def test_phase_correct_and_inverted(board: Board) -> None:
     assert all(x != y for (_, x), (_, y) in zip(a, b, strict=True))
     falls = [cycle for cycle, level in b if not level]
     rises = [cycle for cycle, level in b if level and cycle > falls[0]]
-    assert {later - earlier for earlier, later in zip(falls, falls[1:], strict=False)} == {2000}
+    assert {later - earlier for earlier, later in itertools.pairwise(falls)} == {2000}
     assert {rise - fall for fall, rise in zip(falls, rises, strict=False)} == {1400}
 
 
@@ -70,7 +72,7 @@ def test_a_tick_and_what_it_writes(board: Board, tick: int, period: int) -> None
     board.case("case_pwm_tick", tick, period)
     entries = [cycle for cycle, core, _, entered in board.pico.call("take", log="exceptions") if entered and core == 0]
     assert len(entries) == 50
-    assert {later - earlier for earlier, later in zip(entries, entries[1:], strict=False)} == {tick}
+    assert {later - earlier for earlier, later in itertools.pairwise(entries)} == {tick}
     taken = [entry[0] for entry in board.pico.call("take", log="pwm") if entry[2] > 0]
     assert len(taken) == 50  # the last one when the slices stop
     # The entry is 15 cycles after the wrap: hardware's own latency.
@@ -85,7 +87,7 @@ def test_wraps_are_reported_with_the_levels_in_effect(board: Board) -> None:
     log = board.pico.call("take", log="pwm")
     assert len(log) == 10
     assert {tuple(entry[1:5]) for entry in log} == {(1, 300, 700, 999)}
-    assert {later[0] - earlier[0] for earlier, later in zip(log, log[1:], strict=False)} == {1000}
+    assert {later[0] - earlier[0] for earlier, later in itertools.pairwise(log)} == {1000}
     assert [entry[5] for entry in log] == list(range(log[0][5], log[0][5] + 10))
 
 
@@ -135,7 +137,7 @@ def test_systick_has_a_period_of_rvr_plus_1(board: Board) -> None:
     results = board.case("case_systick", 1250, 205)
     assert results[0] in (20, 21)
     entries = [cycle for cycle, _, _, entered in board.pico.call("take", log="exceptions") if entered]
-    assert {later - earlier for earlier, later in zip(entries, entries[1:], strict=False)} <= set(range(1245, 1256))
+    assert {later - earlier for earlier, later in itertools.pairwise(entries)} <= set(range(1245, 1256))
     assert abs((entries[-1] - entries[0]) / (len(entries) - 1) - 1250) < 1
     assert 0 < results[1] < 20
 

@@ -7,7 +7,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import hashlib
 import importlib
 import json
@@ -104,7 +103,8 @@ def _install_package(folder: Path) -> None:
     command = [npm, "ci", "--no-audit", "--no-fund", "--ignore-scripts"]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     if done.returncode != 0:
-        raise Missing(f"rp2040js could not be installed ({done.stderr.strip().splitlines()[-1:]}): npm ci --prefix {folder}")
+        said = (done.stderr.strip().splitlines() or ["npm has failed"])[-1]
+        raise Missing(f"rp2040js could not be installed ({said}): npm ci --prefix {folder}")
 
 
 def unicorn() -> Any:
@@ -117,12 +117,13 @@ def unicorn() -> Any:
     with locked(folder):
         if not (folder / "unicorn").is_dir():
             command = [sys.executable, "-m", "pip", "install", "--target", str(folder), f"unicorn=={UNICORN}"]
+            remedy = f"python -m pip install unicorn=={UNICORN}"
             if os.environ.get("EPG_NO_INSTALL"):
-                raise Missing(f"unicorn is not installed and EPG_NO_INSTALL is set: python -m pip install unicorn=={UNICORN}")
+                raise Missing(f"unicorn is not installed and EPG_NO_INSTALL is set: {remedy}")
             done = subprocess.run(command, capture_output=True, text=True, check=False)
             if done.returncode != 0:
                 shutil.rmtree(folder, ignore_errors=True)
-                raise Missing(f"unicorn could not be installed: python -m pip install unicorn=={UNICORN}")
+                raise Missing(f"unicorn could not be installed: {remedy}")
     sys.path.append(str(folder))
     importlib.invalidate_caches()
     return importlib.import_module("unicorn")
@@ -155,8 +156,8 @@ def stand_in_rom() -> Path:
         if not output.is_file():
             output.parent.mkdir(parents=True, exist_ok=True)
             temporary = output.with_suffix(f".{os.getpid()}")
-            options = ["-mcpu=cortex-m0plus", "-mthumb", "-Os", "-std=c11", "-Wall", "-Wextra", "-Wconversion", "-Werror"]
-            options += ["-ffreestanding", "-fno-tree-loop-distribute-patterns", "-nostdlib"]
+            options = ["-mcpu=cortex-m0plus", "-mthumb", "-Os", "-std=c11", "-ffreestanding", "-nostdlib"]
+            options += ["-fno-tree-loop-distribute-patterns", "-Wall", "-Wextra", "-Wconversion", "-Werror"]
             command = [str(arm_gcc()), *options, "-T", str(sources[2]), str(sources[0]), str(sources[1])]
             subprocess.run([*command, "-o", str(temporary)], check=True)
             temporary.rename(output)
@@ -174,5 +175,8 @@ def locked(path: Path) -> Iterator[None]:
     """Holds a lock beside ``path`` against other test processes."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with open(path.parent / f".{path.name}.lock", "w", encoding="utf-8") as file:
-        fcntl.flock(file, fcntl.LOCK_EX)
+        if os.name != "nt":
+            import fcntl
+
+            fcntl.flock(file, fcntl.LOCK_EX)
         yield

@@ -55,11 +55,12 @@ export class Core extends CortexM0Core {
         this.rom32 = chip.bootrom;
         this.rom16 = new Uint16Array(chip.bootrom.buffer);
         this.rom8 = new Uint8Array(chip.bootrom.buffer);
-        this.privateBus = new PrivateBus(this, chip, machine.clock);
         this.onFlash = null; // (core, address) of each access to flash, fetches included
-        this.onWrite = null; // (core, address, size, value) of writes to RAM between the two:
-        this.writeLow = 0;
+        this.watches = []; // of writes to RAM: {low, high, call(core, address, size, value)}
+        this.forbidden = []; // ranges [low, high) that the MPU protects
+        this.writeLow = 0; // all of them lie between these
         this.writeHigh = 0;
+        this.privateBus = new PrivateBus(this, chip, machine.clock);
     }
 
     /** Starts at `entry` with cleared state. */
@@ -414,10 +415,10 @@ export class Core extends CortexM0Core {
         }
         const ram = a - 0x20000000;
         if (ram >= 0 && ram < SRAM_SIZE) {
-            this.sram32[ram >>> 2] = value;
             if (a < this.writeHigh && a + 4 > this.writeLow) {
-                this.onWrite(this, a, 4, value >>> 0);
+                this.checkWrite(a, 4, value >>> 0);
             }
+            this.sram32[ram >>> 2] = value;
             return;
         }
         this.writeDevice(a, value, 4);
@@ -430,10 +431,10 @@ export class Core extends CortexM0Core {
         }
         const ram = a - 0x20000000;
         if (ram >= 0 && ram < SRAM_SIZE) {
-            this.sram16[ram >>> 1] = value;
             if (a < this.writeHigh && a + 2 > this.writeLow) {
-                this.onWrite(this, a, 2, value & 0xffff);
+                this.checkWrite(a, 2, value & 0xffff);
             }
+            this.sram16[ram >>> 1] = value;
             return;
         }
         this.writeDevice(a, value, 2);
@@ -443,13 +444,45 @@ export class Core extends CortexM0Core {
         const a = address >>> 0;
         const ram = a - 0x20000000;
         if (ram >= 0 && ram < SRAM_SIZE) {
-            this.sram8[ram] = value;
             if (a < this.writeHigh && a >= this.writeLow) {
-                this.onWrite(this, a, 1, value & 0xff);
+                this.checkWrite(a, 1, value & 0xff);
             }
+            this.sram8[ram] = value;
             return;
         }
         this.writeDevice(a, value, 1);
+    }
+
+    /** Calls `call(core, address, size, value)` for each write to [low, high) in RAM. */
+    watchWrites(low, high, call) {
+        this.watches.push({ low, high, call });
+        this.boundWrites();
+    }
+
+    forbidWrites(ranges) {
+        this.forbidden = ranges;
+        this.boundWrites();
+    }
+
+    boundWrites() {
+        const ranges = [...this.forbidden, ...this.watches.map(({ low, high }) => [low, high])];
+        this.writeLow = Math.min(...ranges.map(([low]) => low));
+        this.writeHigh = ranges.length === 0 ? 0 : Math.max(...ranges.map(([, high]) => high));
+    }
+
+    checkWrite(address, size, value) {
+        const end = address + size;
+        const unprotected = this.IPSR === HARD_FAULT && !this.privateBus.mpu.protectsHardFault;
+        for (const [low, high] of this.forbidden) {
+            if (address < high && end > low && !unprotected) {
+                throw new Fault('write that the MPU forbids', address);
+            }
+        }
+        for (const { low, high, call } of this.watches) {
+            if (address < high && end > low) {
+                call(this, address, size, value);
+            }
+        }
     }
 
     /** Offset into the flash; the four XIP windows (data sheet of the RP2040, 2.6.3.1) show the same. */

@@ -1,4 +1,5 @@
-// What each Cortex-M0+ has for itself: NVIC, SysTick and system control (data sheet of the RP2040, 2.4.8).
+// What each Cortex-M0+ has for itself: NVIC, SysTick, MPU and system control (data sheet of the RP2040, 2.4.8).
+import { Mpu } from './mpu.mjs';
 
 const SYST_CSR = 0x010;
 const SYST_RVR = 0x014;
@@ -19,8 +20,7 @@ const CCR = 0xd14;
 const SHPR2 = 0xd1c;
 const SHPR3 = 0xd20;
 const SHCSR = 0xd24;
-const MPU_TYPE = 0xd90;
-const MPU_FIRST = 0xd94;
+const MPU_FIRST = 0xd90;
 const MPU_LAST = 0xda0;
 
 const SEVONPEND = 1 << 4;
@@ -118,13 +118,13 @@ export class PrivateBus {
         this.core = core;
         this.chip = chip;
         this.sysTick = new SysTick(core, clock);
-        this.mpu = new Uint32Array((MPU_LAST - MPU_FIRST) / 4 + 1);
+        this.mpu = new Mpu((ranges) => core.forbidWrites(ranges));
         this.systemControl = 0;
     }
 
     reset() {
         this.sysTick.reset();
-        this.mpu.fill(0);
+        this.mpu.reset();
         this.systemControl = 0;
     }
 
@@ -138,7 +138,7 @@ export class PrivateBus {
             return this.readPriorities((offset - NVIC_IPR0) & ~3);
         }
         if (offset >= MPU_FIRST && offset <= MPU_LAST) {
-            return this.mpu[(offset - MPU_FIRST) >> 2];
+            return this.mpu.read(offset);
         }
         switch (offset) {
             case SYST_CSR:
@@ -176,8 +176,6 @@ export class PrivateBus {
                 return core.SHPR3;
             case SHCSR:
                 return core.pendingSVCall ? 1 << 15 : 0;
-            case MPU_TYPE:
-                return 0x800; // eight regions
             default:
                 return 0;
         }
@@ -190,7 +188,7 @@ export class PrivateBus {
             return;
         }
         if (offset >= MPU_FIRST && offset <= MPU_LAST) {
-            this.mpu[(offset - MPU_FIRST) >> 2] = value;
+            this.mpu.write(offset, value);
             return;
         }
         switch (offset) {

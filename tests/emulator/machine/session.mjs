@@ -231,13 +231,9 @@ export class Session {
         const { machine } = this;
         const low = machine.address(at);
         const high = low + (length ?? machine.symbols.get(at)?.size ?? 4);
-        const install = () => machine.cores.forEach((core) => {
-            core.writeLow = low;
-            core.writeHigh = high;
-            core.onWrite = (user, address, size, value) => {
-                this.record('writes', [user.time, user.number, address, size, value, user.opcodePC]);
-            };
-        });
+        const install = () => machine.cores.forEach((core) => core.watchWrites(low, high, (user, address, size, value) => {
+            this.record('writes', [user.time, user.number, address, size, value, user.opcodePC]);
+        }));
         install();
         machine.onReset.push(install);
         return null;

@@ -1,5 +1,6 @@
 /* Faults of the kind that arguments[0] says. */
 #include "cases.h"
+#include "hardware/structs/mpu.h"
 #include "pico/multicore.h"
 #include "pico/stdlib.h"
 
@@ -26,6 +27,15 @@ static void cause(void)
     case 5:
         __asm volatile("mov r0, %0\n\tbx r0" : : "r"((uintptr_t)&cause & ~(uintptr_t)1u) : "r0"); /* no Thumb bit */
         break;
+    case 7: { /* a stack that grows into its guard */
+        mpu_hw->rbar = (0x20030000u & ~0xffu) | M0PLUS_MPU_RBAR_VALID_BITS;
+        mpu_hw->rasr = 1u | (7u << 1) | (0xfbu << 8) | 0x10000000u; /* 256 bytes, of which only the third 32 */
+        mpu_hw->ctrl = 5;
+        *(volatile uint32_t *)(uintptr_t)0x2003003cu = 1;
+        *(volatile uint32_t *)(uintptr_t)0x20030060u = 2;
+        *(volatile uint32_t *)(uintptr_t)0x2003005cu = 3;
+        break;
+    }
     case 6:
         __asm volatile("cpsid i\n\tsvc #0"); /* may not be taken */
         break;

@@ -38,6 +38,9 @@ int main(void)
     results[60] = watchdog_caused_reboot();
     results[61] = watchdog_enable_caused_reboot();
     for (;;) {
+        if (request == 0) {
+            continue;
+        }
         const uintptr_t wanted = request | 1u;
         request = 0;
         for (size_t n = 0; n < sizeof all_cases / sizeof all_cases[0]; n++) {

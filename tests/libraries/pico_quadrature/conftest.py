@@ -44,11 +44,11 @@ class Board:
 
     def ask(self, request: int) -> None:
         """Has the program do something, and waits until it has."""
-        for name, value in (("request", 0), ("done", 0), ("request", request)):
-            self.pico.write_word(name, value)
+        self.pico.write_word("done", 0)
+        self.pico.write_word("request", request)
         for _ in range(200):
             self.pico.run(cycles=1000)
-            if self.pico.word("done") == request:
+            if self.pico.word("done") == request and self.pico.word("request") == 0:
                 return
         raise AssertionError(f"request {request} was not answered: {self.pico.call('faults')}")
 

@@ -40,7 +40,8 @@ def test_header_matches_source(assembled: str, variant: str) -> None:
     assert array
     assert words(variant) == [int(word, 16) for word in re.findall(r"0x[0-9a-f]{4}", array[1])]
     constants = {
-        key: int(value) for key, value in re.findall(rf"#define {name}_(wrap_target|wrap|offset_sample) (\d+)", assembled)
+        key: int(value)
+        for key, value in re.findall(rf"#define {name}_(wrap_target|wrap|offset_sample) (\d+)", assembled)
     }
     upper = variant.upper()
     assert number(f"{upper}_WRAP_TARGET") == constants["wrap_target"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from .conftest import HALTED, OK, PRESET, Board, Config
 
 PIO0_CTRL = 0x50200000
-# Bound of epg_pico_quadrature_read() on a Cortex-M0+, in cycles: what is asserted here, with the polls that find nothing.
+# Bounds of epg_pico_quadrature_read() on a Cortex-M0+, in cycles, as docs/pico-quadrature.md states them.
 LONGEST_READ = 200
 LONGEST_FAILURE = 500
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import struct
 
 import pytest
@@ -42,7 +43,7 @@ def test_at_rest_the_estimate_falls_to_0(board: Board) -> None:
     assert read_each_millisecond(board, 20)[-1] == pytest.approx(2000, rel=0.004)
     board.rest()
     values = read_each_millisecond(board, 105)
-    assert all(later <= earlier for earlier, later in zip(values, values[1:], strict=False))
+    assert all(later <= earlier for earlier, later in itertools.pairwise(values))
     assert 30 < values[30] < 34  # no edge for 31 ms: at most one count in that time
     assert values[-1] == 0.0
 

@@ -1,6 +1,6 @@
 /*
  * Up to twelve encoders through the public API.  The test writes `parameters` and `request`, and waits for `done` to
- * become the same.
+ * become the same; `request` is 0 again then.
  */
 #include "epg/pico_quadrature.h"
 #include "epg/pico_quadrature_velocity.h"
@@ -104,7 +104,7 @@ int main(void)
 {
     for (;;) {
         const uint32_t wanted = request;
-        if (wanted == done) {
+        if (wanted == REQUEST_NONE) {
             continue;
         }
         switch (wanted) {
@@ -137,5 +137,6 @@ int main(void)
             break;
         }
         done = wanted;
+        request = REQUEST_NONE;
     }
 }
