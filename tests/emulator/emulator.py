@@ -29,7 +29,7 @@ class EmulatorError(Exception):
 
 
 class Emulator:
-    """One RP2040 with an image.  Commands are those of ``machine/session.mjs``; times are cycles at 125 MHz."""
+    """One RP2040 with an image.  Commands are those of ``machine/commands.mjs``; times are cycles at 125 MHz."""
 
     def __init__(self, image: Path, *, stock: bool = False, **options: Any) -> None:
         """Loads ``image`` (ELF or UF2) and stands before its first instruction.
@@ -87,7 +87,7 @@ class Emulator:
     # Time -------------------------------------------------------------------------------------------------------------
 
     def run(self, *, cycles: int = 0, milliseconds: float = 0, **stops: Any) -> dict[str, Any]:
-        """Runs so long, or until one of ``stops`` (text, at, configured; see session.mjs); returns the state."""
+        """Runs so long, or until one of ``stops`` (text, at, configured; see commands.mjs); returns the state."""
         state: dict[str, Any] = self.call("run", cycles=cycles + round(milliseconds * CYCLES_PER_MILLISECOND), **stops)
         self.cycle = state["cycle"]
         return state

@@ -2,12 +2,12 @@
 //
 //   {"id": 1, "call": "run", "with": {"cycles": 125000}}   ->   {"id": 1, "result": {...}}  or  {"id": 1, "error": "..."}
 import { createInterface } from 'node:readline';
-import { Session } from './session.mjs';
+import { Commands } from './commands.mjs';
 
-const COMMANDS = new Set(Object.getOwnPropertyNames(Session.prototype).filter((name) => /^[a-z_]+$/.test(name)));
+const COMMANDS = new Set(Object.getOwnPropertyNames(Commands.prototype).filter((name) => /^[a-z_]+$/.test(name)));
 const INTERNAL = new Set(['constructor', 'receive', 'record']);
 
-const session = new Session();
+const commands = new Commands();
 const lines = createInterface({ input: process.stdin, terminal: false });
 
 for await (const line of lines) {
@@ -17,10 +17,10 @@ for await (const line of lines) {
         if (!COMMANDS.has(call) || INTERNAL.has(call)) {
             throw new Error(`there is no command ${call}`);
         }
-        if (session.machine === null && call !== 'load') {
+        if (commands.machine === null && call !== 'load') {
             throw new Error('no image is loaded');
         }
-        answer.result = session[call](parameters) ?? null;
+        answer.result = commands[call](parameters) ?? null;
     } catch (error) {
         answer.error = error instanceof Error ? error.message : String(error.cause ?? error);
         answer.trace = error.stack;

@@ -15,7 +15,7 @@ function need(value, name) {
     return value;
 }
 
-export class Session {
+export class Commands {
     constructor() {
         this.machine = null;
         this.encoders = new Map();
