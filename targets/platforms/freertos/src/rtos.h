@@ -10,9 +10,11 @@
 #include "FreeRTOS.h"
 #include "task.h"
 
-#if !configSUPPORT_STATIC_ALLOCATION || !INCLUDE_uxTaskGetStackHighWaterMark || !INCLUDE_vTaskDelete ||                \
-    !INCLUDE_xTaskGetSchedulerState
-#error "FreeRTOSConfig.h: EPG needs configSUPPORT_STATIC_ALLOCATION 1, INCLUDE_uxTaskGetStackHighWaterMark 1, INCLUDE_vTaskDelete 1 and INCLUDE_xTaskGetSchedulerState 1"
+#if !configSUPPORT_STATIC_ALLOCATION
+#error "FreeRTOSConfig.h: EPG needs configSUPPORT_STATIC_ALLOCATION 1"
+#endif
+#if !INCLUDE_uxTaskGetStackHighWaterMark || !INCLUDE_vTaskDelete || !INCLUDE_xTaskGetSchedulerState
+#error "FreeRTOSConfig.h: EPG needs INCLUDE_uxTaskGetStackHighWaterMark, _vTaskDelete and _xTaskGetSchedulerState 1"
 #endif
 #if configNUMBER_OF_CORES != 1
 #error "FreeRTOSConfig.h: EPG needs configNUMBER_OF_CORES 1, since core 1 belongs to the control loop"

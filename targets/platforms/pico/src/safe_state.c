@@ -132,20 +132,20 @@ void epg_pico_guard_faults(void)
  * The linker leads calls of <name> to __wrap_<name> (--wrap), so that outputs are safe before the SDK's functions
  * print, break into the debugger or wait for ever, and whichever of them the user has replaced.
  */
-#define SAFE_BEFORE(name)                                                                                             \
-    void __attribute__((naked, used)) __not_in_flash_func(__wrap_##name)(void)                                        \
-    {                                                                                                                 \
-        pico_default_asm_volatile("push {r0, r1, r2, r3, r4, lr}\n"                                                   \
-                                  "ldr r4, =epg_pico_safe_state\n"                                                    \
-                                  "blx r4\n"                                                                          \
-                                  "ldr r4, =__real_" #name "\n"                                                       \
-                                  "mov ip, r4\n"                                                                      \
-                                  "pop {r0, r1, r2, r3, r4}\n"                                                        \
-                                  "pop {r4}\n"                                                                        \
-                                  "mov lr, r4\n"                                                                      \
-                                  "bx ip\n"                                                                           \
-                                  ".ltorg\n");                                                                        \
-    }                                                                                                                 \
+#define SAFE_BEFORE(name)                                                                                              \
+    void __attribute__((naked, used)) __not_in_flash_func(__wrap_##name)(void)                                         \
+    {                                                                                                                  \
+        pico_default_asm_volatile("push {r0, r1, r2, r3, r4, lr}\n"                                                    \
+                                  "ldr r4, =epg_pico_safe_state\n"                                                     \
+                                  "blx r4\n"                                                                           \
+                                  "ldr r4, =__real_" #name "\n"                                                        \
+                                  "mov ip, r4\n"                                                                       \
+                                  "pop {r0, r1, r2, r3, r4}\n"                                                         \
+                                  "pop {r4}\n"                                                                         \
+                                  "mov lr, r4\n"                                                                       \
+                                  "bx ip\n"                                                                            \
+                                  ".ltorg\n");                                                                         \
+    }                                                                                                                  \
     _Static_assert(true, "")
 
 SAFE_BEFORE(panic);

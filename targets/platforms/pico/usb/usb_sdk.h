@@ -14,7 +14,8 @@
 #include "tusb.h"
 
 #if LIB_PICO_STDIO_USB
-#error "EPG's transport 'usb' and the SDK's stdio over USB want the same USB device: write pico_enable_stdio_usb(<executable> 0), or choose another transport in the .tcf"
+#error                                                                                                                 \
+    "EPG's transport 'usb' and the SDK's stdio over USB want the same USB device: write pico_enable_stdio_usb(<executable> 0), or choose another transport in the .tcf"
 #endif
 
 #endif

@@ -66,13 +66,13 @@ typedef enum epg_pico_error {
 
 /** What the port layer counts besides the statistics of the control cycle. */
 typedef struct epg_pico_status {
-    epg_pico_error_t error;        /**< of the newest start */
-    bool after_watchdog;           /**< the watchdog ended the run before this one */
-    uint32_t control_stack_size;   /**< bytes of core 1's stack, */
-    uint32_t control_stack_used;   /**< and how many of them have ever been used */
-    uint32_t main_stack_size;      /**< of the stack that main() and interrupts of core 0 use */
+    epg_pico_error_t error;      /**< of the newest start */
+    bool after_watchdog;         /**< the watchdog ended the run before this one */
+    uint32_t control_stack_size; /**< bytes of core 1's stack, */
+    uint32_t control_stack_used; /**< and how many of them have ever been used */
+    uint32_t main_stack_size;    /**< of the stack that main() and interrupts of core 0 use */
     uint32_t main_stack_used;
-    uint32_t service_stack_size;   /**< of communication: of its interrupt on bare metal, of its task on FreeRTOS */
+    uint32_t service_stack_size; /**< of communication: of its interrupt on bare metal, of its task on FreeRTOS */
     uint32_t service_stack_used;
 } epg_pico_status_t;
 
