@@ -1,4 +1,4 @@
-"""An application as C: ``<name>.h``, ``<name>_version.h``, ``<name>_app.c`` and what its platform adds.
+"""An application as C: ``<name>.h``, ``<name>_version.c`` and ``.h``, ``<name>_app.c`` and what its platform adds.
 
 The layout of the files stands in ``templates/``; what each component contributes stands in the ``code.c.j2`` of its
 kind, one macro per place of the generation order (docs/architecture.md lists them).
@@ -132,6 +132,7 @@ class Emitter:
         name = str(self.prefix)
         result = {
             f"{name}.h": self.env.get_template("app.h.j2").render(context),
+            f"{name}_version.c": self.env.get_template("version.c.j2").render(context),
             f"{name}_version.h": self.env.get_template("version.h.j2").render(context),
             f"{name}_app.c": self.env.get_template("app.c.j2").render(context),
         }

@@ -19,7 +19,9 @@ from epg.resolve.application import Application, Plant, ResolvedComponent, Setpo
 from epg.resolve.claims import TICK, component_claims, tick_claims
 from epg.resolve.wires import input_wires, output_wires, parameter_overrides
 
-_PUBLIC = frozenset("start stop enable status statistics target inputs outputs control host model plant".split())
+_PUBLIC = frozenset(
+    "start stop enable status statistics target inputs outputs control host model plant hash epg_version".split()
+)
 """What follows ``<name>_`` in names that every application has."""
 
 STATIC_NAMES = frozenset(

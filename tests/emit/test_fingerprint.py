@@ -70,9 +70,9 @@ def original(tmp_path_factory: pytest.TempPathFactory) -> str:
 def test_it_is_in_all_that_names_it(tmp_path: Path) -> None:
     files = generate(copy(tmp_path / "jiwy"))
     hash = hash_of(files)
-    assert f'.hash = "{hash}",' in files["jiwy_app.c"]
+    assert f'#define JIWY_HASH "{hash}"' in files["jiwy_version.h"]
     assert f'"hash": "{hash}"' in files["jiwy.json"]
-    assert hash not in files["jiwy.h"]  # which would compile everything again
+    assert hash not in files["jiwy.h"] + files["jiwy_app.c"]  # which would be compiled again
     assert not any("\ue000" in text for text in files.values())
 
 
