@@ -16,6 +16,7 @@ import epg
 from epg import bootstrap
 
 COMMANDS = {
+    "new": "write a complete project for a model and a target",
     "check": "check files without generating anything",
     "generate": "write the sources of a target (CMake calls this)",
     "generate-model": "write the library of one model (CMake calls this)",

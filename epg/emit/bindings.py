@@ -28,7 +28,8 @@ def new_bindings(model: Model, matches: Mapping[str, Match]) -> str:
     lines = ["version: 1", f"model: {_scalar(model.name)}"]
     for section, ports in (("inputs", model.inputs), ("outputs", model.outputs)):
         if ports:
-            lines.append(f"{section}:")
+            is_empty = all(matches[port.name].reference is None for port in ports)
+            lines.append(f"# {section}:    # remove this '#' with the first below it" if is_empty else f"{section}:")
             lines += [_line(matches[port.name]) for port in ports]
     return "\n".join(lines) + "\n"
 

@@ -19,7 +19,7 @@ from jinja2.runtime import Macro
 from epg.bootstrap import cache_folder
 from epg.emit import text
 from epg.emit.bytecode import TemplateCache
-from epg.emit.text import CMakeCode, Code, DevicetreeCode, Escaped, KconfigCode
+from epg.emit.text import CMakeCode, Code, DevicetreeCode, Escaped, KconfigCode, ProjectText
 
 FILTERS: Mapping[type[Escaped], Mapping[str, Callable[..., object]]] = {
     Code: {
@@ -40,6 +40,13 @@ FILTERS: Mapping[type[Escaped], Mapping[str, Callable[..., object]]] = {
         "code": DevicetreeCode,
     },
     KconfigCode: {"string": text.kconfig_string, "bool": text.kconfig_bool, "code": KconfigCode},
+    ProjectText: {
+        "cmake": lambda value: ProjectText(text.cmake(value)),
+        "identifier": lambda value: ProjectText(text.identifier(value)),
+        "line": text.line,
+        "word": text.word,
+        "code": ProjectText,
+    },
 }
 """What makes text of an output language.  ``code`` takes constants of the template only."""
 

@@ -53,6 +53,10 @@ class KconfigCode(Escaped):
     """A Kconfig fragment."""
 
 
+class ProjectText(Escaped):
+    """A file of a new project: CMake, YAML, JSON or Markdown, with a filter for each."""
+
+
 class NotFinite(ArithmeticError, ValueError):
     """A number that no literal of C has: infinite or NaN."""
 
@@ -145,3 +149,16 @@ def kconfig_string(text: object) -> KconfigCode:
 
 def kconfig_bool(value: object) -> KconfigCode:
     return KconfigCode("y" if value else "n")
+
+
+def word(value: object) -> ProjectText:
+    """A name or version that needs no quotes in any language."""
+    name = str(value)
+    if not re.fullmatch(r"[A-Za-z0-9_.+-]+", name):
+        raise ValueError(f"{name!r} is no word")
+    return ProjectText(name)
+
+
+def line(value: object) -> ProjectText:
+    """Text in a comment or in prose: one line of printable characters, and none that ends a span of code."""
+    return ProjectText("".join(char if char.isprintable() and char != "`" else " " for char in str(value)))

@@ -1,14 +1,16 @@
 """Which component a model port is probably meant for, by the words of their names.
 
 ``encoder_reset_pan`` and ``encoder_pan.reset`` have the same words; ``position_pan`` has only words of
-``encoder_pan.position``.  A match must be the only one of its quality; everything else is left to the user.
+``encoder_pan.position``.  A match must be the only one of its quality.  What is left then may still meet by its
+nature: ``setpoint_pan`` and ``pan_subscriber`` share ``pan`` with no other port and no other topic that is left.  Only
+topics are given away so lightly, never what moves something.  Everything else is left to the user.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 from epg.check.configuration import Component
 from epg.load.models.model import Model, Port
@@ -27,6 +29,7 @@ def match_ports(model: Model, components: Mapping[str, Component]) -> dict[str, 
     """The match of every port of ``model``, in its order; no component port is given to two outputs."""
     result: dict[str, Match] = {}
     taken: set[str] = set()
+    used: set[str] = set()
     for port in (*model.inputs, *model.outputs):
         direction = "source" if port.direction == "input" else "sink"
         ends = _ends(components, direction)
@@ -34,10 +37,25 @@ def match_ports(model: Model, components: Mapping[str, Component]) -> dict[str, 
             reference: words for reference, words in ends.items() if direction == "source" or reference not in taken
         }
         reference = _best(_words(port.name), free)
+        if reference:
+            used.add(reference)
         if reference and direction == "sink":
             taken.add(reference)
         result[port.name] = Match(port, reference, tuple(sorted(ends)))
+    for direction, communication in (("input", "subscribe"), ("output", "publish")):
+        ports = [port for port in model.inputs + model.outputs if port.direction == direction]
+        left = [port for port in ports if result[port.name].reference is None]
+        topics = [c.name for c in components.values() if c.kind.communication == communication and c.name not in used]
+        for port, topic in _meet(left, topics):
+            result[port.name] = replace(result[port.name], reference=topic)
     return result
+
+
+def _meet(ports: Sequence[Port], topics: Sequence[str]) -> list[tuple[Port, str]]:
+    """Pairs of ports and topics that share a word with each other and with nobody else."""
+    near = {port.name: [topic for topic in topics if _words(port.name) & _words(topic)] for port in ports}
+    found = [(port, near[port.name][0]) for port in ports if len(near[port.name]) == 1]
+    return [(port, topic) for port, topic in found if sum(topic in names for names in near.values()) == 1]
 
 
 def _ends(components: Mapping[str, Component], direction: str) -> dict[str, tuple[frozenset[str], frozenset[str]]]:

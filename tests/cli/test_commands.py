@@ -205,7 +205,7 @@ def test_bind_writes_what_matches_and_comments_the_rest(robot: Path, capsys: pyt
     assert text == (
         "version: 1\n"
         "model: Controller\n"
-        "inputs:\n"
+        "# inputs:    # remove this '#' with the first below it\n"
         "  # angle:    # no name matches; possible: button, encoder, target\n"
         "  # go:    # no name matches; possible: button, encoder, target\n"
         "  # setpoint:    # no name matches; possible: button, encoder, target\n"

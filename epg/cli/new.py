@@ -1,0 +1,69 @@
+"""``epg new``: a complete project for a model and a target, which builds as it is."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from epg.cli.arguments import user_roots
+from epg.cli.report import to_json
+from epg.diagnostics import Diagnostics
+from epg.source import Span
+
+if TYPE_CHECKING:
+    from epg.new_project import NewProject
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("folder", type=Path, metavar="DIR", help="folder of the project; made if there is none")
+    target = "a target, or one of EPG's .tcf files; 'epg targets' lists both"
+    parser.add_argument("--target", required=True, metavar="NAME", help=target)
+    model = "the model; what lies outside of DIR is copied into DIR/model"
+    parser.add_argument("--model", required=True, type=Path, metavar="FOLDER", help=model)
+    parser.add_argument("--name", help="name of the project, a C identifier; default: after DIR")
+    middleware = "how topics travel; default: as the .tcf says, or the console"
+    parser.add_argument("--middleware", metavar="NAME", help=middleware)
+
+
+def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
+    from epg.emit.folder import present_files, write_folder
+    from epg.new_project import ProjectRequest, check_project, new_project
+
+    request = ProjectRequest(
+        options.name, options.folder, options.target, options.model, options.middleware, user_roots()
+    )
+    project = new_project(request, diagnostics)
+    diagnostics.stop_if_errors()
+    assert project is not None
+    for path in present_files(options.folder, project.files):
+        hint = "nothing was written: 'epg new' replaces no file"
+        diagnostics.error("file-exists", Span(str(path)), "this file exists", hint=hint)
+    diagnostics.stop_if_errors()
+    write_folder(options.folder, project.files)
+    check_project(project, request, diagnostics)
+    if not options.json:
+        _print(options.folder, project)
+    elif not diagnostics.has_errors:
+        plan = project.plan
+        data = {
+            "folder": options.folder.as_posix(),
+            "name": plan.name,
+            "target": plan.target.name,
+            "model": plan.model,
+            "model_copied": project.model_copied,
+            "open": list(project.open),
+            "files": list(project.files),
+        }
+        sys.stdout.write(to_json(data))
+    return 0
+
+
+def _print(folder: Path, project: NewProject) -> None:
+    plan = project.plan
+    print(f"wrote {folder}: {len(project.files)} files of the project {plan.name}, for {plan.target.name}")
+    print(f"model:   {folder / plan.model} ({'a copy' if project.model_copied else 'where it is'})")
+    for port in project.open:
+        print(f"to bind: {port} (in {folder / plan.name}.bindings.yaml)")
+    print(f"next:    {folder / 'README.md'}")

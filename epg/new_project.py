@@ -1,0 +1,257 @@
+"""A complete project for a model and a target: which files, with what in them.
+
+>>> # project = new_project(ProjectRequest("jiwy", Path("jiwy"), "rpi_pico_freertos_jiwy", Path("export")), diagnostics)
+>>> # project.files["jiwy.tcf"], project.open
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import epg
+from epg.check.configuration import Configuration
+from epg.check.names import identifier_problem
+from epg.data import data_folder, targets_roots
+from epg.diagnostics import Diagnostics, did_you_mean
+from epg.emit.bindings import new_bindings
+from epg.emit.folder import write_folder
+from epg.emit.project import ProjectPlan, StandIn, project_files, project_folder, project_names
+from epg.load.catalog import Catalog, Target
+from epg.load.models import Model, load_model
+from epg.load.tcf import predefined_tcf_names
+from epg.load.tools import load_tools
+from epg.project import Request, check_name, load_application, load_configuration, make_catalog
+from epg.resolve.matching import Match, match_ports
+from epg.source import Span
+
+MODEL = "model"
+"""Where a model goes that lies outside of the project."""
+IMPORT = "epg_import.cmake"
+
+UNBOUND = frozenset(("unbound-input", "unbound-output", "needs-bound"))
+"""Messages that come of ports without a component."""
+
+
+@dataclass(frozen=True)
+class ProjectRequest:
+    """A project as it is asked for.  ``name`` None: that of ``folder``; ``middleware`` None: the one that will do."""
+
+    name: str | None
+    folder: Path
+    target: str
+    model: Path
+    middleware: str | None = None
+    user_roots: Sequence[Path] = ()
+
+    @property
+    def roots(self) -> tuple[Path, ...]:
+        return targets_roots(self.user_roots)
+
+
+@dataclass(frozen=True)
+class NewProject:
+    """Contents of all files by their names below the project's folder; ``open`` are ports that could not be bound."""
+
+    plan: ProjectPlan
+    files: Mapping[str, bytes]
+    open: tuple[str, ...]
+    model_copied: bool
+
+
+@dataclass(frozen=True)
+class _Base:
+    """What a project begins with: a target, with the predefined configuration ``extends`` if one was named.
+
+    ``middleware`` is the one to write into the project's ``.tcf``, empty where the configuration's own stays.
+    """
+
+    target: Target
+    templates: Path
+    extends: str
+    configuration: Configuration | None
+    middleware: str
+
+
+def new_project(request: ProjectRequest, diagnostics: Diagnostics) -> NewProject | None:
+    """The project, nothing of it written yet, or None after reporting why there is none."""
+    name = project_name(request.folder) if request.name is None else request.name
+    check_name(name, _argument(name), diagnostics)
+    catalog = make_catalog(request.roots, diagnostics)
+    base = _find_base(request, catalog, diagnostics)
+    model = load_model(request.model, diagnostics)
+    if base is None or model is None:
+        return None
+    place, copied = _model_files(request, model, diagnostics)
+    if diagnostics.has_errors:
+        return None
+    if copied:
+        model = _copied_model(copied, place)
+    return _make(_plan(name, base, model, place, request), base, copied, model, request.roots)
+
+
+def check_project(project: NewProject, request: ProjectRequest, diagnostics: Diagnostics) -> None:
+    """What ``epg check`` says about a project that was written, but for the ports that nobody has bound."""
+    problems = Diagnostics()
+    load_application(_application_request(project.plan, request.folder, request), problems)
+    diagnostics.items.extend(problem for problem in problems if not project.open or problem.id not in UNBOUND)
+
+
+def project_name(folder: Path) -> str:
+    """A C identifier after the name of a folder: ``my robot`` gives ``my_robot``."""
+    name = re.sub(r"[^A-Za-z0-9]+", "_", Path(os.path.abspath(folder)).name).strip("_")
+    return f"robot_{name}".rstrip("_") if not name or name[0].isdigit() else name
+
+
+def _argument(text: str) -> Span:
+    return Span("command line", 1, 1, len(text) + 1, text=text)
+
+
+def _find_base(request: ProjectRequest, catalog: Catalog, diagnostics: Diagnostics) -> _Base | None:
+    """The target or the predefined configuration that was named, or None after reporting what is wrong with it."""
+    name = request.target
+    targets, files = catalog.target_names(), predefined_tcf_names(request.roots)
+    extends = "" if name in targets else f"{name.removesuffix('.tcf')}.tcf"
+    configuration = None
+    if not extends:
+        target = catalog.find_target(name)
+    elif extends in files:
+        predefined = Request("new", extends, Path(), Path(), user_roots=request.user_roots, beside=request.roots[-1])
+        configuration = load_configuration(predefined, catalog, diagnostics)
+        target = configuration.target if configuration is not None else None
+    else:
+        hint = did_you_mean(name, [*targets, *(file.removesuffix(".tcf") for file in files)], "targets and .tcf files")
+        diagnostics.error("unknown-target", _argument(name), f"there is no target '{name}'", hint=hint)
+        return None
+    if target is None:
+        return None
+    templates = project_folder((target.platform.name, *target.platform.shared), request.roots)
+    if templates is None:
+        message = f"there are no files of a new project for the platform '{target.platform.name}'"
+        hint = f"there are some for {', '.join(project_names(request.roots))}; docs/cmake.md says what to write instead"
+        diagnostics.error("no-project", _argument(name), message, hint=hint)
+        return None
+    middleware = _choose_middleware(target, configuration, request.middleware, catalog, diagnostics)
+    return _Base(target, templates, extends, configuration, middleware)
+
+
+def _choose_middleware(
+    target: Target,
+    configuration: Configuration | None,
+    wanted: str | None,
+    catalog: Catalog,
+    diagnostics: Diagnostics,
+) -> str:
+    """The one ``wanted``; else "" where the configuration's own has code; else one that a person can type."""
+    offered = target.platform.middlewares
+    if wanted is not None:
+        if wanted not in offered:
+            hint = did_you_mean(wanted, offered, "possible")
+            message = f"{target.platform.name} has no middleware '{wanted}'"
+            diagnostics.error("unknown-middleware", _argument(wanted), message, hint=hint)
+        return wanted
+    if configuration is not None and configuration.communication.middleware.builds:
+        return ""
+    good = [name for name in offered if (found := catalog.find_middleware(name)) is not None and found.builds]
+    return "console" if "console" in good else next(iter(good), "none")
+
+
+def _model_files(request: ProjectRequest, model: Model, diagnostics: Diagnostics) -> tuple[str, dict[str, bytes]]:
+    """Where the model will be, relative to the project, and the files to copy there: none if it is there already."""
+    place, root = Path(os.path.realpath(request.model)), Path(os.path.realpath(request.folder))
+    if place == root or root in place.parents:
+        return place.relative_to(root).as_posix(), {}
+    around = place if place.is_dir() else place.parent
+    copied = {}
+    for file in model.files:
+        path = Path(os.path.realpath(file))
+        if around in path.parents:
+            copied[f"{MODEL}/{path.relative_to(around).as_posix()}"] = path.read_bytes()
+        else:
+            message = f"the model needs this file, which is not in its folder '{around.name}'"
+            hint = f"put all of it into '{request.folder}' and name it there: then nothing is copied"
+            diagnostics.error("model-outside", Span(str(file)), message, hint=hint)
+    return (MODEL if place.is_dir() else f"{MODEL}/{place.name}"), copied
+
+
+def _plan(name: str, base: _Base, model: Model, place: str, request: ProjectRequest) -> ProjectPlan:
+    target, configuration = base.target, base.configuration
+    transports = target.platform.middlewares.get(base.middleware, ())
+    components = list(configuration.components.values()) if configuration is not None else []
+    kept = configuration.communication.middleware.name if configuration is not None else ""
+    tools = load_tools(request.roots, Diagnostics())
+    return ProjectPlan(
+        name=name,
+        target=target,
+        extends=base.extends,
+        middleware=base.middleware,
+        transport=transports[0] if transports else "null",
+        console=(base.middleware or kept) == "console",
+        model=place,
+        model_name=model.name,
+        stand_ins=(),
+        subscriptions=[str(c.parameters["topic"]) for c in components if c.kind.communication == "subscribe"],
+        actuators=[c.name for c in components if any(port.drive for port in c.kind.ports)],
+        versions={"epg": epg.__version__, **{tool.name: tool.tested for tool in tools.values() if tool.tested}},
+    )
+
+
+def _make(
+    plan: ProjectPlan, base: _Base, copied: Mapping[str, bytes], model: Model, roots: Sequence[Path]
+) -> NewProject:
+    """The project with its text; ``model`` as it will be there."""
+    ports = (*model.inputs, *model.outputs)
+    if base.configuration is not None:
+        matches = match_ports(model, base.configuration.components)
+    else:
+        stand_ins = _stand_ins(model)
+        heard = [stand_in.name for stand_in in stand_ins.values() if stand_in.kind == "ros_subscriber"]
+        plan = replace(plan, stand_ins=list(stand_ins.values()), subscriptions=heard)
+        names = {port: stand_in.name for port, stand_in in stand_ins.items()}
+        matches = {port.name: Match(port, names.get(port.name), ()) for port in ports}
+    texts = project_files(plan, base.templates, roots)
+    texts[IMPORT] = (data_folder("cmake") / IMPORT).read_text(encoding="utf-8")
+    texts[f"{plan.name}.bindings.yaml"] = new_bindings(model, matches)
+    files = {**copied, **{name: text.encode() for name, text in texts.items()}}
+    left = tuple(name for name, match in matches.items() if match.reference is None)
+    return NewProject(plan, dict(sorted(files.items())), left, bool(copied))
+
+
+def _copied_model(files: Mapping[str, bytes], place: str) -> Model:
+    """A model as it is after copying: one written by hand may be called after its folder."""
+    with tempfile.TemporaryDirectory(prefix="epg-new-") as temporary:
+        write_folder(Path(temporary) / "project", files)
+        model = load_model(Path(temporary) / "project" / place, Diagnostics())
+    assert model is not None, "it was loaded from its own place before"
+    return model
+
+
+def _component_name(port: str) -> str:
+    """The port's own name, unless a component may not be called so."""
+    return port if identifier_problem(port) is None else f"port_{port}"
+
+
+def _stand_ins(model: Model) -> dict[str, StandIn]:
+    """A topic for every port of the model that a topic can serve, by the port's name."""
+    kinds = {"input": "ros_subscriber", "output": "ros_publisher"}
+    return {
+        port.name: StandIn(_component_name(port.identifier), kinds[port.direction])
+        for port in (*model.inputs, *model.outputs)
+        if port.direction == "output" or port.type == "real"
+    }
+
+
+def _application_request(plan: ProjectPlan, folder: Path, request: ProjectRequest) -> Request:
+    """The project in ``folder`` as CMake will ask for it."""
+    inside = folder / plan.model
+    return Request(
+        plan.name,
+        str(folder / f"{plan.name}.tcf"),
+        inside if inside.exists() else request.model,
+        folder / f"{plan.name}.bindings.yaml",
+        user_roots=request.user_roots,
+    )

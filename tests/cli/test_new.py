@@ -1,0 +1,412 @@
+"""``epg new``: the project it writes, what it does with the model, and what it leaves alone."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+
+import epg
+from epg.cli.main import main
+from epg.data import targets_roots
+from epg.diagnostics import Diagnostics
+from epg.emit.folder import write_folder
+from epg.load.tools import load_tools
+from tests.cmake.project import snapshot
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+JIWY = ROOT / "examples/jiwy/model"
+RELBOT = ROOT / "examples/relbot/model"
+TURNTABLE = ROOT / "examples/existing_firmware/station/model"
+TARGETS = [
+    "rpi_pico_bare_metal",
+    "rpi_pico2_freertos",
+    "host",
+    "rpi_pico_bare_metal_jiwy",
+    "rpi_pico_freertos_jiwy",
+    "rpi_pico2_bare_metal_jiwy",
+    "rpi_pico2_freertos_jiwy",
+    "host_jiwy",
+]
+EXTENSION_HEADER = "# == DO NOT EDIT THE FOLLOWING LINES for the Raspberry Pi Pico VS Code Extension to work =="
+
+
+def new(folder: Path, target: str, model: Path = JIWY, *options: str) -> int:
+    return main(["new", str(folder), "--target", target, "--model", str(model), *options])
+
+
+def check(folder: Path, name: str, model: str = "model") -> int:
+    files = ["--tcf", str(folder / f"{name}.tcf"), "--bindings", str(folder / f"{name}.bindings.yaml")]
+    return main(["check", *files, "--model", str(folder / model)])
+
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_a_project_is_complete_and_right(target: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = tmp_path / "robot"
+    assert new(folder, target) == 0
+    assert "to bind" not in capsys.readouterr().out
+    assert check(folder, "robot") == 0
+    assert capsys.readouterr() == ("no errors\n", "")
+    assert main(["check", str(folder / "robot.tcf")]) == 0
+    assert "enable_at_start: false" in (folder / "robot.tcf").read_text()
+    names = set(snapshot(folder))
+    assert {"README.md", "CMakeLists.txt", "CMakePresets.json", "epg_import.cmake", ".gitignore"} <= names
+    if not target.startswith("host"):
+        assert {"pico_sdk_import.cmake", ".vscode/launch.json", "simulation/CMakeLists.txt"} <= names
+        assert main(["check", str(folder / "simulation/robot_host.tcf")]) == 0
+
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_enabling_is_for_people(target: str, tmp_path: Path) -> None:
+    """Whatever the robot's configuration says: a new project does not move anything by itself."""
+    from epg.new_project import ProjectRequest
+    from epg.project import Request, load_configuration, make_catalog
+
+    folder = tmp_path / "robot"
+    assert new(folder, target) == 0
+    request = ProjectRequest(None, folder, target, JIWY)
+    catalog = make_catalog(request.roots, Diagnostics())
+    found = load_configuration(Request("robot", str(folder / "robot.tcf"), JIWY, JIWY), catalog, Diagnostics())
+    assert found is not None
+    assert found.control.enable_at_start is False
+    assert found.communication.middleware.builds
+
+
+@pytest.mark.parametrize("target", ["rpi_pico2_freertos_jiwy", "rpi_pico_bare_metal", "host"])
+def test_two_runs_write_the_same_bytes(target: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    projects = []
+    for place in ("one", "another place"):
+        (tmp_path / place).mkdir()
+        monkeypatch.chdir(tmp_path / place)
+        monkeypatch.setenv("TMPDIR", str(tmp_path / place))
+        assert new(Path("robot"), target) == 0
+        projects.append(snapshot(Path("robot")))
+        assert sorted(entry.name for entry in (tmp_path / place).iterdir()) == ["robot"], "nothing else is left"
+    assert projects[0] == projects[1]
+    for name, data in projects[0].items():
+        assert str(tmp_path).encode() not in data
+        assert str(ROOT).encode() not in data
+        assert b"\r" not in data or name.startswith("model/")
+        assert data.endswith(b"\n"), name
+
+
+def test_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = tmp_path / "my robot"
+    assert new(folder, "rpi_pico_freertos_jiwy", JIWY, "--json") == 0
+    data = json.loads(capsys.readouterr().out)
+    assert data["files"] == sorted(snapshot(folder))
+    del data["files"]
+    assert data == {
+        "folder": folder.as_posix(),
+        "name": "my_robot",
+        "target": "rpi_pico_freertos",
+        "model": "model",
+        "model_copied": True,
+        "open": [],
+    }
+
+
+def test_errors_as_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert new(tmp_path / "robot", "nonsense", JIWY, "--json") == 1
+    assert json.loads(capsys.readouterr().out)["diagnostics"][0]["id"] == "unknown-target"
+    assert not (tmp_path / "robot").exists()
+
+
+# names and places ---------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("folder", "name"), [("my robot", "my_robot"), ("2nd-robot", "robot_2nd_robot"), ("Größe", "Gr_e"), ("--", "robot")]
+)
+def test_the_name_is_an_identifier(folder: str, name: str, tmp_path: Path) -> None:
+    assert new(tmp_path / folder, "rpi_pico2_bare_metal") == 0
+    assert (tmp_path / folder / f"{name}.tcf").is_file()
+    assert f"project({name}_firmware C CXX ASM)" in (tmp_path / folder / "CMakeLists.txt").read_text()
+
+
+def test_a_name_of_ones_own(tmp_path: Path) -> None:
+    assert new(tmp_path / "robot", "host", JIWY, "--name", "pan_tilt") == 0
+    assert (tmp_path / "robot/pan_tilt.bindings.yaml").is_file()
+    assert new(tmp_path / "another", "host", JIWY, "--name", "string") == 1, "its header would hide the C library's"
+    assert not (tmp_path / "another").exists()
+
+
+def test_folders_above_are_made(tmp_path: Path) -> None:
+    assert new(tmp_path / "a/b/robot", "host") == 0
+    assert (tmp_path / "a/b/robot/CMakeLists.txt").is_file()
+
+
+# the model ----------------------------------------------------------------------------------------------------------
+
+
+def test_a_model_elsewhere_is_copied_with_all_that_it_needs(tmp_path: Path) -> None:
+    export = shutil.copytree(RELBOT, tmp_path / "export")
+    (export / "notes.txt").write_text("not the model's")
+    assert new(tmp_path / "robot", "host", export) == 0
+    assert (tmp_path / "robot/model/common/xxtypes.h").read_bytes() == (RELBOT / "common/xxtypes.h").read_bytes()
+    assert not (tmp_path / "robot/model/notes.txt").exists()
+    shutil.rmtree(export)
+    assert check(tmp_path / "robot", "robot") == 0
+
+
+def test_a_model_in_the_project_stays_where_it_is(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = tmp_path / "robot"
+    shutil.copytree(JIWY, folder / "my model; $x")
+    before = snapshot(folder)
+    assert new(folder, "rpi_pico2_freertos_jiwy", folder / "my model; $x") == 0
+    after = snapshot(folder)
+    assert {name: after[name] for name in before} == before
+    assert not (folder / "model").exists()
+    assert '  MODEL "my model\\; \\$x"\n' in after["CMakeLists.txt"].decode()
+    assert '  MODEL "../my model\\; \\$x"\n' in after["simulation/CMakeLists.txt"].decode()
+    capsys.readouterr()
+    assert check(folder, "robot", "my model; $x") == 0
+
+
+def test_a_file_can_name_the_model(tmp_path: Path) -> None:
+    assert new(tmp_path / "robot", "host_jiwy", JIWY / "xxsubmod.c") == 0
+    assert '  MODEL "model/xxsubmod.c"\n' in (tmp_path / "robot/CMakeLists.txt").read_text()
+    assert check(tmp_path / "robot", "robot", "model/xxsubmod.c") == 0
+
+
+def test_a_model_that_cannot_be_used_leaves_no_project(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "empty").mkdir()
+    assert new(tmp_path / "robot", "host", tmp_path / "empty") == 1
+    assert "[model-not-recognised]" in capsys.readouterr().err
+    assert not (tmp_path / "robot").exists()
+
+
+def test_ports_that_nobody_can_bind_are_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert new(tmp_path / "robot", "rpi_pico2_freertos_jiwy", TURNTABLE) == 0
+    output = capsys.readouterr()
+    assert "to bind: setpoint (in " in output.out
+    assert output.err == "", "what is left to do is no error"
+    assert "# setpoint:" in (tmp_path / "robot/robot.bindings.yaml").read_text()
+
+
+def test_a_robot_of_which_no_port_has_a_name_in_common(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert new(tmp_path / "robot", "host_relbot", RELBOT) == 0
+    assert capsys.readouterr().err == ""
+    assert check(tmp_path / "robot", "robot") == 1
+    errors = [line for line in capsys.readouterr().err.splitlines() if ": error: " in line]
+    assert len(errors) == 4
+    assert all("[unbound-input]" in line for line in errors)
+    file = tmp_path / "robot/robot.bindings.yaml"
+    text = re.sub(r"^# (inputs|outputs):.*$", r"\1:", file.read_text(), flags=re.M)
+    text = re.sub(r"^  # PosLeft:.*$", "  PosLeft: encoder_left", text, flags=re.M)
+    file.write_text(re.sub(r"^  # SteerLeft:.*$", "  SteerLeft: pwm_left", text, flags=re.M))
+    assert check(tmp_path / "robot", "robot") == 1
+    assert capsys.readouterr().err.count("[unbound-input]") == 3
+
+
+def test_what_does_not_fit_is_said_at_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A step of 1.5 ms is no multiple of JIWY's period of 1 ms: the project is written, and says what to change."""
+    model = shutil.copytree(TURNTABLE, tmp_path / "odd")
+    for file in model.iterdir():
+        text = file.read_text()
+        file.write_text(re.sub(r"\b0\.001\b", "0.0015", text))
+    assert new(tmp_path / "robot", "rpi_pico_bare_metal_jiwy", model) == 1
+    assert "[step-not-multiple]" in capsys.readouterr().err
+    assert (tmp_path / "robot/robot.tcf").is_file()
+
+
+MODEL_YAML = """version: 1
+name: Odd
+step: 1 ms
+sources: [odd.c]
+header: odd.h
+functions: {step: odd_step}
+types: {inputs: odd_inputs_t, outputs: odd_outputs_t}
+inputs: {start: {}, epg_level: {}, on: {type: boolean}, level: {type: integer}}
+outputs: {inputs: {}, status: {type: boolean}, velocity: {unit: rad/s}}
+"""
+ODD_H = """#include <stdbool.h>
+typedef struct odd_inputs { double start; double epg_level; bool on; int level; } odd_inputs_t;
+typedef struct odd_outputs { double inputs; bool status; double velocity; } odd_outputs_t;
+void odd_step(const odd_inputs_t *in, odd_outputs_t *out);
+"""
+ODD_C = """#include "odd.h"
+void odd_step(const odd_inputs_t *in, odd_outputs_t *out)
+{
+    out->inputs = in->start + in->level;
+    out->status = in->on;
+    out->velocity = 0.0;
+}
+"""
+
+
+def test_a_model_that_is_called_after_its_folder(tmp_path: Path) -> None:
+    model = tmp_path / "controller"
+    model.mkdir()
+    yaml = MODEL_YAML.replace("name: Odd\n", "").replace(", on: {type: boolean}, level: {type: integer}", "")
+    for name, text in (("model.yaml", yaml), ("odd.h", ODD_H), ("odd.c", ODD_C)):
+        (model / name).write_text(text)
+    assert new(tmp_path / "robot", "host", model) == 0
+    assert "model: model\n" in (tmp_path / "robot/robot.bindings.yaml").read_text()
+    assert check(tmp_path / "robot", "robot") == 0
+
+
+def test_ports_with_names_of_epgs_own(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """`robot_inputs`, `robot_start` and `epg_...` are EPG's; no topic is boolean."""
+    model = tmp_path / "odd"
+    model.mkdir()
+    for name, text in (("model.yaml", MODEL_YAML), ("odd.h", ODD_H), ("odd.c", ODD_C)):
+        (model / name).write_text(text)
+    assert new(tmp_path / "robot", "rpi_pico_freertos", model) == 0
+    output = capsys.readouterr()
+    assert output.err == ""
+    assert re.findall(r"^to bind: (\w+)", output.out, re.M) == ["on", "level"]
+    assert "  port_epg_level: {kind: ros_subscriber, " in (tmp_path / "robot/robot.tcf").read_text()
+    (model / "model.yaml").write_text(MODEL_YAML.replace(", on: {type: boolean}, level: {type: integer}", ""))
+    assert new(tmp_path / "another", "rpi_pico_freertos", model, "--name", "robot") == 0
+    assert check(tmp_path / "another", "robot") == 0
+
+
+# what is there ------------------------------------------------------------------------------------------------------
+
+
+def test_nothing_is_replaced(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = tmp_path / "robot"
+    folder.mkdir()
+    (folder / "README.md").write_text("mine")
+    assert new(folder, "host_jiwy") == 1
+    assert "README.md: error: this file exists [file-exists]" in capsys.readouterr().err
+    assert snapshot(folder) == {"README.md": b"mine"}
+    (folder / "README.md").unlink()
+    (folder / "notes.txt").write_text("mine")
+    assert new(folder, "host_jiwy") == 0
+    assert (folder / "notes.txt").read_text() == "mine"
+    before = snapshot(folder)
+    assert new(folder, "host_jiwy") == 1
+    assert snapshot(folder) == before
+
+
+def test_a_file_in_the_place_of_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "robot").write_text("mine")
+    assert new(tmp_path / "robot", "host") == 1
+    assert "robot: error: this file exists" in capsys.readouterr().err
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other/.vscode").write_text("mine")
+    assert new(tmp_path / "other", "host") == 1
+    assert ".vscode: error: this file exists" in capsys.readouterr().err
+    assert [entry.name for entry in (tmp_path / "other").iterdir()] == [".vscode"]
+
+
+@pytest.mark.parametrize("present", [False, True])
+@pytest.mark.parametrize("broken", [1, 3])
+def test_a_project_is_whole_or_not_there(
+    present: bool, broken: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / "above/robot"
+    if present:
+        folder.mkdir(parents=True)
+        (folder / "notes.txt").write_text("mine")
+    before = snapshot(tmp_path)
+    rename, count = os.rename, 0
+
+    def full(source: Path, place: Path) -> None:
+        nonlocal count
+        count += 1
+        if count == (broken if present else 1):
+            raise OSError(28, "No space left on device", str(place))
+        rename(source, place)
+
+    monkeypatch.setattr(os, "rename", full)
+    with pytest.raises(OSError):
+        write_folder(folder, {"a": b"1", "sub/b": b"2", "sub/c/d": b"3"})
+    assert snapshot(tmp_path) == before
+    assert sorted(path.name for path in tmp_path.rglob("*")) == (["above", "notes.txt", "robot"] if present else [])
+
+
+# the VS Code extension, versions ------------------------------------------------------------------------------------
+
+
+def cmakelists(tmp_path: Path, target: str) -> str:
+    assert new(tmp_path / "robot", target) == 0
+    return (tmp_path / "robot/CMakeLists.txt").read_text()
+
+
+@pytest.mark.parametrize(("target", "board"), [("rpi_pico_bare_metal", "pico"), ("rpi_pico2_freertos_jiwy", "pico2")])
+def test_the_vs_code_extension_recognises_the_project(target: str, board: str, tmp_path: Path) -> None:
+    """What the extension (0.21) looks for: files, its header, and lines that its regular expressions match."""
+    text = cmakelists(tmp_path, target)
+    assert (tmp_path / "robot/pico_sdk_import.cmake").is_file(), "it is activated by this file"
+    assert (tmp_path / "robot/.vscode").is_dir()
+    assert "pico_sdk_init()" in text
+    assert text.count(EXTENSION_HEADER) == 1
+    assert re.search(r"^set\(PICO_BOARD\s+([^)]+)\)$", text, re.M)[1] == f'{board} CACHE STRING "Board type"'  # type: ignore[index]
+    versions = [re.search(rf"^set\({name}Version\s+([^)]+)\)", text, re.M) for name in ("sdk", "toolchain", "picotool")]
+    assert [found[1] for found in versions if found] == ["2.2.0", "14_2_Rel1", "2.2.0-a4"]
+    assert re.search(r"project\(([^)\s]+)", text)[1] == "robot_firmware", "it debugs build/<project>.elf"  # type: ignore[index]
+    assert "epg_add_executable(robot_firmware " in text
+
+
+def test_choosing_another_sdk_in_the_extension_keeps_the_rest(tmp_path: Path) -> None:
+    """The extension replaces everything from its header to the last line of a rule."""
+    text = cmakelists(tmp_path, "rpi_pico2_freertos_jiwy")
+    replaced = re.search(rf"^{re.escape(EXTENSION_HEADER)}.*# =+$", text, re.M | re.S)
+    assert replaced
+    kept = text.replace(replaced[0], "")
+    for line in ("set(freertosVersion 11.3.0)", f"set(epgVersion {epg.__version__})", "set(PICO_BOARD", "project("):
+        assert line in kept
+
+
+@pytest.mark.parametrize("target", ["rpi_pico_freertos", "rpi_pico2_freertos_jiwy", "rpi_pico_bare_metal", "host"])
+def test_versions_stand_in_one_file(target: str, tmp_path: Path) -> None:
+    text = cmakelists(tmp_path, target)
+    stated = dict(re.findall(r"^set\((\w+)Version (.+)\)$", text, re.M))
+    assert stated["epg"] == epg.__version__
+    assert ("sdk" in stated) == (target != "host")
+    assert ("freertos" in stated) == ("freertos" in target)
+    tools = load_tools(targets_roots(), Diagnostics())
+    for name, tool in (("sdk", "pico_sdk"), ("freertos", "freertos_kernel")):
+        assert name not in stated or stated[name] == tools[tool].tested
+    for name, data in snapshot(tmp_path / "robot").items():
+        if name != "CMakeLists.txt" and not name.startswith("model/"):
+            for version in stated.values():
+                assert not re.search(rf"(?<![\d.]){re.escape(version)}(?![\d.])", data.decode()), name
+
+
+def test_settings_for_editors_are_json(tmp_path: Path) -> None:
+    for target in ("rpi_pico2_bare_metal", "host"):
+        folder = tmp_path / target
+        assert new(folder, target) == 0
+        files = [*folder.glob(".vscode/*.json"), folder / "CMakePresets.json"]
+        assert len(files) >= 3
+        for file in files:
+            json.loads(re.sub(r"^\s*//.*$", "", file.read_text(), flags=re.M))  # as VS Code reads it
+    tasks = json.loads(
+        re.sub(r"^\s*//.*$", "", (tmp_path / "rpi_pico2_bare_metal/.vscode/tasks.json").read_text(), flags=re.M)
+    )
+    assert {"Compile Project", "Run Project", "Flash"} <= {task["label"] for task in tasks["tasks"]}
+
+
+# what people read ---------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("target", ["rpi_pico_bare_metal", "rpi_pico2_freertos", "host"])
+def test_the_examples_in_a_fresh_configuration_are_right(target: str, tmp_path: Path) -> None:
+    """The components that stand in it as comments, taken out of the comment."""
+    assert new(tmp_path / "robot", target, TURNTABLE) == 0
+    file = tmp_path / "robot/robot.tcf"
+    text, count = re.subn(r"^  # (\w+: \{kind: )", r"  \1", file.read_text(), flags=re.M)
+    text, more = re.subn(r"^  # (period: 1 ms|overrun_limit: 10) .*$", r"  \1", text, flags=re.M)
+    assert count >= 3 and more == 2
+    file.write_text(text)
+    assert main(["check", str(file)]) == 0
+
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_the_readme_names_files_that_are_there(target: str, tmp_path: Path) -> None:
+    assert new(tmp_path / "robot", target) == 0
+    readme = (tmp_path / "robot/README.md").read_text()
+    table = re.findall(r"^\| (`.+?) \|", readme, re.M)
+    assert len(table) >= 6
+    for name in re.findall(r"`([^`]+)`", " ".join(table)):
+        assert (tmp_path / "robot" / name).exists(), name
+    for line in readme.splitlines():
+        assert len(line) <= 130, line
