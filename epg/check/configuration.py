@@ -10,7 +10,7 @@ from pathlib import Path
 from epg.check.bindings import Conversion, conversion_of
 from epg.check.compose import communication_schema, component_schema, typed_options, typed_parameters
 from epg.check.merge import apply_settings, merge_chain
-from epg.check.middleware import check_offer
+from epg.check.middleware import check_offer, offered
 from epg.check.names import absolute_topic, identifier_problem, namespace_problem, node_name_problem, topic_problem
 from epg.check.schema import extended_from, load_schema, validate
 from epg.check.uses import Used, used_components
@@ -219,30 +219,32 @@ def _communication(
     middleware = root.get("communication", "middleware")
     transport = root.get("communication", "transport")
     period = root.get("communication", "period")
-    offered = dict(target.platform.middlewares) if target else {}
-    name = str(middleware.value) if middleware else next(iter(offered), "none")
-    if target and name not in offered:
+    possible = dict(target.platform.middlewares) if target else {}
+    name = str(middleware.value) if middleware else next(iter(possible), "none")
+    if target and name not in possible:
+        possible = offered(target, catalog)
+    if target and name not in possible:
         assert middleware is not None
         message = f"{target.platform.name} has no middleware '{name}'"
-        hint = did_you_mean(name, offered, "it has")
+        hint = did_you_mean(name, possible, "it has")
         diagnostics.error("unknown-middleware", middleware.span, message, hint=hint, notes=extended_from(middleware))
-    elif target and transport is not None and str(transport.value) not in offered[name]:
+    elif target and transport is not None and str(transport.value) not in possible[name]:
         message = f"'{name}' on {target.platform.name} has no transport '{transport.value}'"
-        hint = did_you_mean(str(transport.value), offered[name], "it has")
-        if not offered[name]:
+        hint = did_you_mean(str(transport.value), possible[name], "it has")
+        if not possible[name]:
             hint = "remove it: there is nothing to choose"
         diagnostics.error("unknown-transport", transport.span, message, hint=hint, notes=extended_from(transport))
     seconds = _time(period, diagnostics) if period is not None else Fraction(33, 1000)
     if period is not None and seconds is not None and not Fraction(1, 1000) <= seconds <= 3600:
         diagnostics.error("out-of-range", period.span, "must be from 1 ms to 3600 s")
-    found = catalog.find_middleware(name) if name in offered else None
+    found = catalog.find_middleware(name) if name in possible else None
     if target is not None and found is not None:
         check_offer(target, found, diagnostics)
     if found is None or (node is not None and not validate(node, communication_schema(found), diagnostics)):
         return None
     options = typed_options(found, node, diagnostics)
     written = middleware or node or root
-    chosen = str(transport.value) if transport else next(iter(offered[name]), None)
+    chosen = str(transport.value) if transport else next(iter(possible[name]), None)
     return Communication(found, chosen, seconds or Fraction(33, 1000), options, written.span)
 
 

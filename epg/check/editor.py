@@ -13,6 +13,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from epg.check.compose import communication_schema, component_schema
+from epg.check.middleware import offered
 from epg.check.schema import load_schema
 from epg.load.catalog import Catalog, Kind, Target
 from epg.load.middleware import Middleware
@@ -60,7 +61,7 @@ def _tcf(schema: Schema, catalog: Catalog) -> Schema:
     schema["allOf"] = [
         {"if": _COMPLETE, "then": needed},
         {"if": {"allOf": [_COMPLETE, pins]}, "then": wired},
-        *_middlewares(targets),
+        *_middlewares(targets, catalog),
         *_options(middlewares),
     ]
     schema["$defs"] = _components(kinds)
@@ -122,20 +123,20 @@ def _pins_needed(kind: Kind) -> Schema:
     return {"required": ["pins"], "properties": {"pins": {"required": list(kind.pins)}}}
 
 
-def _middlewares(targets: Iterable[Target]) -> list[Schema]:
+def _middlewares(targets: Iterable[Target], catalog: Catalog) -> list[Schema]:
     """What each platform offers in ``communication``, for files that name one of its targets."""
     platforms: dict[str, list[Target]] = {}
     for target in targets:
         platforms.setdefault(target.platform.name, []).append(target)
     rules: list[Schema] = []
     for group in platforms.values():
-        offered = group[0].platform.middlewares
+        possible = offered(group[0], catalog)
         chosen = {"properties": {"target": {"enum": [target.name for target in group]}}, "required": ["target"]}
-        rules.append({"if": chosen, "then": _communication({"middleware": {"enum": [*offered, None]}})})
-        for name, transports in offered.items():
+        rules.append({"if": chosen, "then": _communication({"middleware": {"enum": [*possible, None]}})})
+        for name, transports in possible.items():
             using = _communication({"middleware": {"const": name}}, required=["middleware"])
-            possible = _communication({"transport": {"enum": [*transports, None]}})
-            rules.append({"if": {"allOf": [chosen, using]}, "then": possible})
+            transport = _communication({"transport": {"enum": [*transports, None]}})
+            rules.append({"if": {"allOf": [chosen, using]}, "then": transport})
     return rules
 
 

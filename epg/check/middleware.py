@@ -46,9 +46,21 @@ def check_offers(target: Target, catalog: Catalog, diagnostics: Diagnostics) -> 
             diagnostics.error("unknown-middleware", offered.key_span(name), message, hint=hint)
 
 
+def offered(target: Target, catalog: Catalog) -> dict[str, tuple[str, ...]]:
+    """Middlewares of a target with their transports: those its platform names, then those that name the platform."""
+    result = dict(target.platform.middlewares)
+    for name in catalog.names("middleware"):
+        middleware = catalog.find_middleware(name) if name not in result else None
+        if middleware is not None and target.platform.name in middleware.platforms:
+            result[name] = middleware.platforms[target.platform.name]
+    return result
+
+
 def check_offer(target: Target, middleware: Middleware, diagnostics: Diagnostics) -> None:
-    """A platform names transports for middlewares only that use one."""
-    transports = target.platform.node["middlewares"][middleware.name]
+    """Transports are named for middlewares only that use one."""
+    transports = target.platform.node.get("middlewares", middleware.name)
+    if transports is None:
+        transports = middleware.node["platforms"][target.platform.name]
     if middleware.connection != "stream" and transports.elements():
         message = f"middleware '{middleware.name}' uses no transport"
         notes = [Note("this middleware", middleware.span)]

@@ -16,6 +16,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
+    from epg.check.middleware import offered
     from epg.data import targets_roots
     from epg.load.tcf import predefined_tcf_names
     from epg.project import make_catalog
@@ -35,9 +36,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
                             "board": t.board.name,
                             "platform": t.platform.name,
                             "builds": t.platform.builds,
-                            "middlewares": {
-                                name: list(transports) for name, transports in t.platform.middlewares.items()
-                            },
+                            "middlewares": {name: list(transports) for name, transports in offered(t, catalog).items()},
                         }
                         for t in targets
                     ],
@@ -73,7 +72,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
             t.name,
             t.board.summary,
             t.platform.summary,
-            ", ".join(t.platform.middlewares),
+            ", ".join(offered(t, catalog)),
             "yes" if t.platform.builds else "check only",
         )
         for t in targets

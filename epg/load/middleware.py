@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 
-from epg.load.items import flag_of, text_of, texts_of
+from epg.load.items import flag_of, map_of, text_of, texts_of
 from epg.load.kind import KindParameter, make_parameters
 from epg.source import Node, Span
 
@@ -17,6 +19,7 @@ TEMPLATE = "code.c.j2"
 class Middleware:
     """How values reach a target and leave it.
 
+    ``platforms`` are those that it offers itself to, with transports, besides those that name it.
     ``connection`` is "stream" (bytes, by a transport that the platform has), "own" or "none".  ``uses`` names what the
     generator makes for it: "signals", "parameters", "capture", "jog".  ``symbol`` is its ``epg_middleware_t`` in C,
     empty when nothing runs.  ``headers`` and ``sources`` are files in ``folder``.
@@ -25,6 +28,7 @@ class Middleware:
     name: str
     summary: str
     connection: str
+    platforms: Mapping[str, tuple[str, ...]]
     uses: tuple[str, ...]
     options: tuple[KindParameter, ...]
     symbol: str
@@ -52,6 +56,7 @@ def make_middleware(node: Node, folder: Path) -> Middleware:
         name=text_of(node, "middleware"),
         summary=text_of(node, "summary"),
         connection=text_of(node, "connection"),
+        platforms=MappingProxyType({name: texts_of(node, "platforms", name) for name in map_of(node, "platforms")}),
         uses=texts_of(node, "uses"),
         options=make_parameters(node.get("options")),
         symbol=text_of(node["driver"], "symbol") if "driver" in node else "",

@@ -18,7 +18,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[3]
-PAGES = ["adding-a-board", "adding-a-component-kind", "adding-a-platform"]
+PAGES = ["adding-a-board", "adding-a-component-kind", "adding-a-middleware", "adding-a-platform"]
 _BLOCK = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 _FILE = re.compile(r"`([^`\s]+)`[^`\n]*:\s*\Z")
 

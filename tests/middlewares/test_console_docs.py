@@ -1,0 +1,72 @@
+"""``docs/console.md`` is true: its sessions are held with a real executable, and it names everything there is.
+
+In a ``session`` block ``> command`` is typed; the lines below are what comes, in that order.  ``...`` in a line stands
+for any text, a line ``...`` for any lines.
+"""
+
+from __future__ import annotations
+
+import re
+import time
+from pathlib import Path
+
+import pytest
+
+from .client import PATIENCE, Host
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGE = (ROOT / "docs" / "console.md").read_text(encoding="utf-8")
+CONSOLE = ROOT / "targets" / "middlewares" / "console"
+SESSIONS = re.findall(r"^```session\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
+
+
+def pattern(line: str) -> str:
+    return ".*".join(re.escape(part) for part in line.split("..."))
+
+
+def hold(console: Host, session: str) -> None:
+    """Says what the session says, and finds what it shows; notices of other things may come in between."""
+    for exchange in re.split(r"^> ", session, flags=re.MULTILINE)[1:]:
+        command, *lines = exchange.splitlines()
+        time.sleep(0.1)  # people need longer
+        console.send(command + "\n")
+        for line in lines:
+            if line == "...":
+                continue
+            end = time.monotonic() + PATIENCE
+            while not re.fullmatch(pattern(line), got := console.until("")[0]):
+                assert time.monotonic() < end, f"> {command}\n{line} does not come"
+                assert got.startswith(("watch ", "state ", "csv ")) or "..." in lines, f"> {command}\n{got}"
+
+
+@pytest.mark.parametrize("number", range(len(SESSIONS)))
+def test_sessions(jiwy_host: Path, number: int) -> None:
+    with Host(jiwy_host) as console:
+        console.ask("version")  # the loop runs from here on
+        hold(console, SESSIONS[number])
+
+
+def test_a_wrong_session_is_noticed(jiwy_host: Path) -> None:
+    with Host(jiwy_host) as console, pytest.raises(AssertionError):
+        hold(console, "> jog pwm_pan 0.5 1\nerror jog something else\n")
+
+
+def test_all_commands_are_there() -> None:
+    handlers = re.findall(r'\{"(\w+)", epg_console_\w+\}', (CONSOLE / "console.c").read_text())
+    assert len(handlers) > 10
+    table = PAGE[PAGE.index("| command |") : PAGE.index("A `<setpoint>`")]
+    helped = (CONSOLE / "lists.c").read_text()
+    helped = helped[helped.index("help[]") : helped.index("};")]
+    for name in handlers:
+        assert re.search(rf"`{name}\b", table), name
+        assert re.search(rf"\b{name}\b", helped) or name == "help", name
+
+
+def test_all_first_words_are_there() -> None:
+    grammar = PAGE[PAGE.index("line      =") : PAGE.index("value     =")]
+    words = set()
+    for source in CONSOLE.glob("*.c"):
+        words |= {
+            word.split()[0] for word in re.findall(r'(?:epg_console_begin|tell)\([^"]*"(\w[^"]*)"', source.read_text())
+        }
+    assert words == set(re.findall(r'"(\w+)"', grammar))
