@@ -7,7 +7,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -21,9 +21,14 @@ from epg.load.catalog import Catalog, load_catalog
 from epg.load.models import load_model
 from epg.load.models.model import Model
 from epg.load.tcf import load_tcf_chain, settings_node
+from epg.resolve.allocation import Assignment
 from epg.resolve.application import Application
+from epg.resolve.claims import TICK, ClaimKey
 from epg.resolve.resolve import STATIC_NAMES, PlantFiles, allocate_hardware, resolve
 from epg.source import Span
+
+Hardware = Mapping[ClaimKey, Assignment]
+"""What each claim of a component, or of the control loop, got."""
 
 
 @dataclass(frozen=True)
@@ -89,6 +94,12 @@ def load_application(request: Request, diagnostics: Diagnostics) -> Application 
     return None if diagnostics.has_errors else application
 
 
+def hardware_of(application: Application) -> Hardware:
+    """The hardware of all components and of the control loop."""
+    found = {(c.name, claim): assignment for c in application.components for claim, assignment in c.claims.items()}
+    return found | ({TICK: application.tick} if application.tick else {})
+
+
 def check_name(name: str, span: Span, diagnostics: Diagnostics) -> None:
     """A target's name becomes the prefix of C symbols, the name of a header and a CMake target."""
     problem = identifier_problem(name)
@@ -145,12 +156,15 @@ def check_paths(paths: Iterable[Path], diagnostics: Diagnostics) -> None:
             return
 
 
-def check_target(request: Request, catalog: Catalog, diagnostics: Diagnostics) -> Configuration | None:
-    """Checks a ``.tcf`` by itself, hardware included; without a model the control period may be unknown."""
+def check_target(request: Request, catalog: Catalog, diagnostics: Diagnostics) -> Hardware | None:
+    """Checks a ``.tcf`` by itself; the hardware of its components and of the control loop.
+
+    Without a model the control period may be unknown, and the loop's timer then has no settings.
+    """
     configuration = load_configuration(request, catalog, diagnostics)
-    if configuration is not None:
-        allocate_hardware(configuration, configuration.control.period, diagnostics)
-    return configuration
+    if configuration is None:
+        return None
+    return allocate_hardware(configuration, configuration.control.period, diagnostics)
 
 
 def check_instances(model: Model, instances: int, span: Span, diagnostics: Diagnostics) -> None:

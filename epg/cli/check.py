@@ -4,15 +4,23 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 from epg.cli.arguments import add_target_arguments, request_of
 from epg.diagnostics import Diagnostics
+
+if TYPE_CHECKING:
+    from epg.project import Hardware
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("files", nargs="*", metavar="FILE", help=".tcf files to check by themselves")
     parser.add_argument(
         "--format", choices=("text", "json", "sarif"), help="what is printed; sarif: SARIF 2.1.0, for CI and editors"
+    )
+    parser.add_argument(
+        "--hardware", action="store_true", help="also list peripherals, pins, and the frequencies that are reached"
     )
     add_target_arguments(parser, required=False)
 
@@ -22,16 +30,19 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
 
     from epg.check.bindings import load_bindings
     from epg.load.models import load_model
-    from epg.project import check_target, load_application, make_catalog
+    from epg.project import check_target, hardware_of, load_application, make_catalog
 
     options.json = options.json or options.format == "json"
     request = request_of(options, "target")
+    hardware: dict[str, Hardware] = {}
     if options.tcf and options.model and options.bindings:
-        load_application(request, diagnostics)
+        application = load_application(request, diagnostics)
+        hardware = {options.tcf: hardware_of(application)} if application is not None else {}
     else:
         catalog = make_catalog(request.roots, diagnostics)
         for name in [*options.files, *([options.tcf] if options.tcf else [])]:
-            check_target(replace(request, tcf=name), catalog, diagnostics)
+            found = check_target(replace(request, tcf=name), catalog, diagnostics)
+            hardware |= {name: found} if found is not None else {}
         if options.model:
             load_model(options.model, diagnostics)
         if options.bindings:
@@ -42,9 +53,21 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     if diagnostics.has_errors or options.format == "sarif":
         return 0  # the caller prints what there is
     if not options.json:
+        _print_hardware(hardware if options.hardware else {})
         print("no errors")
     else:
+        from epg.cli.hardware import hardware_data
         from epg.cli.report import diagnostics_json, to_json
 
-        sys.stdout.write(to_json({"diagnostics": diagnostics_json(diagnostics)}))
+        data: dict[str, Any] = {"diagnostics": diagnostics_json(diagnostics)}
+        if options.hardware:
+            data["hardware"] = {name: hardware_data(found) for name, found in hardware.items()}
+        sys.stdout.write(to_json(data))
     return 0
+
+
+def _print_hardware(hardware: Mapping[str, Hardware]) -> None:
+    from epg.cli.hardware import hardware_table
+
+    for name, found in hardware.items():
+        print(f"{name}\n\n{hardware_table(found)}\n")

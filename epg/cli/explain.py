@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from epg.cli.arguments import add_target_arguments, request_of
+from epg.cli.hardware import divider_text
 from epg.cli.report import to_json
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.source import Span
@@ -93,7 +94,7 @@ def _wires(description: dict[str, Any], name: str) -> list[dict[str, Any]]:
 
 def _hardware(description: dict[str, Any], wire: dict[str, Any]) -> dict[str, Any]:
     component = description["components"][wire["component"]]
-    return {"resources": component["resources"], "pins": component["pins"]}
+    return {key: component[key] for key in ("resources", "pins", "dividers")}
 
 
 def _text(description: dict[str, Any], wire: dict[str, Any]) -> str:
@@ -121,6 +122,9 @@ def _text(description: dict[str, Any], wire: dict[str, Any]) -> str:
     rows.append(("C symbol", component["symbol"], ""))
     rows += [("hardware", resource, claim) for claim, resource in component["resources"].items()]
     rows += [("pin", f"GPIO {pin}", signal) for signal, pin in component["pins"].items()]
+    for claim, divider in component["dividers"].items():
+        frequency, remark = divider_text(divider)
+        rows.append(("frequency", frequency, f"{claim}: {remark}"))
     width = max(len(row[0]) for row in rows)
     second = max(len(row[1]) for row in rows)
     lines = [f"{a.ljust(width)}  {b.ljust(second)}  {c}".rstrip() for a, b, c in rows]

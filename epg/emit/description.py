@@ -11,6 +11,7 @@ from typing import Any
 from epg import __version__
 from epg.emit.cmake import PathNames
 from epg.load.models.model import Model
+from epg.resolve.allocation import Assignment
 from epg.resolve.application import Application, ResolvedComponent, Step, Wire
 from epg.source import Span
 
@@ -75,11 +76,27 @@ def _component(component: ResolvedComponent, names: PathNames) -> dict[str, Any]
         "written": _span(component.span, names),
         "resources": {claim: found.resource for claim, found in component.claims.items()},
         "pins": {
-            signal: pin
-            for found in component.claims.values()
-            for signal, pin in sorted(found.pins.items())
-            if found.pins_are_real
+            pin: component.claims[claim.name].pins[signal]
+            for claim in component.kind.claims
+            for signal, pin in sorted(claim.signals.items())
+            if component.claims[claim.name].pins_are_real
         },
+        "dividers": {
+            claim: divider for claim, found in component.claims.items() if (divider := describe_divider(found))
+        },
+        "uses": {use: used.component for use, used in component.uses.items()},
+    }
+
+
+def describe_divider(found: Assignment) -> dict[str, Any] | None:
+    """The frequency that was asked for and the one that is reached, in Hz, and the steps of a period; None without."""
+    if found.frequency is None or found.asked is None:
+        return None
+    return {
+        "asked": float(found.asked),
+        "reached": float(found.frequency),
+        "error": float(found.frequency / found.asked - 1),
+        "steps": found.settings["top"] + 1,
     }
 
 

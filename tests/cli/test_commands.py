@@ -142,6 +142,38 @@ def test_explain_shows_the_whole_way(capsys: pytest.CaptureFixture[str]) -> None
         assert words in text
 
 
+def test_explain_tells_the_frequency_that_is_reached(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = (robot / "robot.tcf").read_text()
+    assert text.count("frequency: 20 kHz") == 1
+    files = ["--tcf", "robot.tcf", "--model", "model", "--bindings", "bindings.yaml"]
+    assert main(["explain", "motor", *files]) == 0
+    assert "frequency     20 kHz                  pwm: 6250 steps\n" in capsys.readouterr().out + "\n"
+    (robot / "robot.tcf").write_text(text.replace("20 kHz", "1.5 MHz"))
+    assert main(["explain", "motor", *files]) == 0
+    shown = capsys.readouterr().out
+    assert "1.50602 MHz" in shown  # 125 MHz / 83
+    assert "pwm: 83 steps; 1.5 MHz asked for, +0.4 %" in shown
+    for pin in ("GPIO 2                  value", "GPIO 7                  direction_a", "direction_b"):
+        assert pin in shown
+    assert main(["explain", "motor", "--json", *files]) == 0
+    divider = json.loads(capsys.readouterr().out)[0]["resources"]["dividers"]["pwm"]
+    assert divider["reached"] == 125e6 / 83
+    assert divider["error"] == pytest.approx(125 / 83 / 1.5 - 1)
+
+
+def test_check_lists_the_hardware(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", "--hardware", "rpi_pico2_freertos_jiwy.tcf"]) == 0
+    lines = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert "encoder_pan.encoder PIO block 0, state machine 0 a 10, b 11".split() in lines
+    assert "pwm_pan.pwm PWM slice 1, channel A value 2 20 kHz 7500 steps".split() in lines
+    assert "(control loop) PWM slice 8 1 kHz exactly".split() in lines
+    assert ["no", "errors"] in lines
+    assert main(["check", "--hardware", "--json", *FILES]) == 0
+    (hardware,) = json.loads(capsys.readouterr().out)["hardware"].values()
+    loop = next(entry for entry in hardware if entry["component"] is None)
+    assert loop["divider"] == {"asked": 1000.0, "reached": 1000.0, "error": 0.0, "steps": 50000}
+
+
 def test_explain_a_component_as_json(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["explain", "encoder_pan", "--json", *FILES]) == 0
     wires = json.loads(capsys.readouterr().out)

@@ -28,7 +28,9 @@ def program_of(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Path], Pat
 
     def build(source: Path) -> Path:
         if source not in programs:
-            programs[source] = compile_program(folder / source.stem, [source, *HELPERS, *runtime_sources(), *component_sources()])
+            programs[source] = compile_program(
+                folder / source.stem, [source, *HELPERS, *runtime_sources(), *component_sources()]
+            )
         return programs[source]
 
     return build

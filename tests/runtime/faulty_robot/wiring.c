@@ -2,12 +2,15 @@
  * @file
  * Wires of the pan axis that break, or that somebody has swapped, from a moment on.
  *
- * The environment says what happens: `WIRING=encoder-dead@8.5` and so on.  The functions stand between the simulated
- * plant and the simulated peripherals; the linker puts them there (--wrap).
+ * The environment says what happens: `WIRING=encoder-dead@8.5` and so on.  With `SIGNALS=<file>` each access of the
+ * program to the hardware is recorded there.  The functions stand between program, simulated peripherals and simulated
+ * plant; the linker puts them there (--wrap).
  */
+#include <inttypes.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -19,6 +22,12 @@ void __wrap_epg_host_quadrature_set(uint8_t unit, int64_t count);
 double __wrap_epg_host_pwm_duty(uint8_t unit);
 bool __real_epg_port_quadrature_healthy(const epg_port_quadrature_t *decoder);
 bool __wrap_epg_port_quadrature_healthy(const epg_port_quadrature_t *decoder);
+uint32_t __real_epg_port_quadrature_count(const epg_port_quadrature_t *decoder);
+uint32_t __wrap_epg_port_quadrature_count(const epg_port_quadrature_t *decoder);
+void __real_epg_port_pwm_write(const epg_port_pwm_t *pwm, uint32_t level);
+void __wrap_epg_port_pwm_write(const epg_port_pwm_t *pwm, uint32_t level);
+void __real_epg_port_output_write(uint8_t pin, bool level);
+void __wrap_epg_port_output_write(uint8_t pin, bool level);
 
 enum { PAN = 0 };
 
@@ -64,4 +73,35 @@ bool __wrap_epg_port_quadrature_healthy(const epg_port_quadrature_t *decoder)
 {
     const bool halted = decoder->unit == PAN && wired("decoder-halted") && epg_port_time_ns() < 12000000000U;
     return !halted && __real_epg_port_quadrature_healthy(decoder);
+}
+
+/* Signals in the order in which the program reads and writes them. */
+
+static void record(const char *what, unsigned int number, uint32_t value)
+{
+    static FILE *file;
+    if (file == NULL && getenv("SIGNALS") != NULL) {
+        file = fopen(getenv("SIGNALS"), "w");
+    }
+    if (file != NULL) {
+        fprintf(file, "%" PRIu64 " %s%u %" PRIu32 "\n", epg_port_time_ns(), what, number, value);
+    }
+}
+
+uint32_t __wrap_epg_port_quadrature_count(const epg_port_quadrature_t *decoder)
+{
+    record("encoder", decoder->unit, 0);
+    return __real_epg_port_quadrature_count(decoder);
+}
+
+void __wrap_epg_port_pwm_write(const epg_port_pwm_t *pwm, uint32_t level)
+{
+    record("pwm", pwm->unit, level);
+    __real_epg_port_pwm_write(pwm, level);
+}
+
+void __wrap_epg_port_output_write(uint8_t pin, bool level)
+{
+    record("pin", pin, level);
+    __real_epg_port_output_write(pin, level);
 }

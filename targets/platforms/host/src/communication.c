@@ -75,6 +75,7 @@ static void publish(epg_host_communication_t *communication, uint64_t time_ns)
         return;
     }
     for (size_t i = 0; i < target->publication_count; i++) {
+        epg_target_publishing(target, i);
         epg_host_write_number(communication->topics, epg_host_seconds(time_ns));
         fprintf(communication->topics, ",%s,", target->publications[i].name);
         epg_host_write_number(communication->topics, communication->values[target->publications[i].index]);
@@ -101,6 +102,7 @@ void epg_host_communicate_simulated(epg_host_communication_t *communication, uin
 
 void epg_host_communicate_realtime(epg_host_communication_t *communication, uint64_t time_ns)
 {
+    epg_control_alive(communication->target->control);
     while (next_event_ns(communication) <= time_ns && next_event_ns(communication) < communication->end_ns) {
         deliver(communication, time_ns);
     }

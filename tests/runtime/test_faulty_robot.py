@@ -1,4 +1,4 @@
-"""What broken and swapped wires do to JIWY: a real executable, its simulated plant, and wires in between."""
+"""A real executable and its simulated robot: what broken and swapped wires do, and where timing probes toggle."""
 
 from __future__ import annotations
 
@@ -182,3 +182,54 @@ def test_axis_that_is_turned_by_hand_while_disabled(robot: Path, tmp_path: Path)
     positions = found.trace["inputs.position_pan"][9_500:]
     assert max(positions) - min(positions) > 5.0
     assert max(map(abs, found.trace["outputs.pwm_pan"][9_500:])) > 0.9, "the model would have driven"
+
+
+def signals(robot: Path, folder: Path, seconds: float, *events: str) -> list[tuple[int, str, int]]:
+    """All that the program did to its hardware: time in ns, what, and its value; probes by their names."""
+    # the host numbers pins in the order of the .tcf: four of the encoders, six of the bridges
+    names = {10 + number: name for number, name in enumerate(PROBES)}
+    (folder / "in.csv").write_text("time,topic,value\n" + "".join(f"{event}\n" for event in events))
+    command = [
+        robot / "jiwy_host",
+        "--quiet",
+        "--duration",
+        str(seconds),
+        "--setpoints",
+        "in.csv",
+        "--topics",
+        "topics.csv",
+    ]
+    subprocess.run(command, cwd=folder, env=os.environ | {"SIGNALS": "signals"}, check=True)
+    result = []
+    for line in (folder / "signals").read_text().splitlines():
+        time, what, value = line.split()
+        pin = int(what[3:]) if what.startswith("pin") else -1
+        result.append((int(time), names.get(pin, what), int(value)))
+    return result
+
+
+PROBES = ["cycle", "inputs", "model", "outputs", "setpoint", "position"]
+
+
+def test_probes_stand_between_what_they_separate(robot: Path, tmp_path: Path) -> None:
+    found = signals(robot, tmp_path, 0.1)
+    cycles: dict[int, list[str]] = {}
+    for time, what, _ in found:
+        cycles.setdefault(time // 1_000_000, []).append(what)
+    for number in range(2, 99):
+        order = [what for what in cycles[number] if not what.startswith("pin") and what != "position"]
+        assert order[:4] == ["cycle", "encoder0", "encoder1", "inputs"], number
+        assert order[4] == "model"
+        assert sorted(order[5:-1]) == ["pwm0", "pwm1"], number
+        assert order[-1] == "outputs"
+    levels = [value for _, what, value in found if what == "cycle"]
+    assert levels == [k % 2 ^ 1 for k in range(100)], "one toggle per cycle"
+
+
+def test_probes_of_topics(robot: Path, tmp_path: Path) -> None:
+    events = ["0.0101,pan_subscriber,0.5", "0.0202,tilt_subscriber,0.5", "0.0303,pan_subscriber,0.25"]
+    found = signals(robot, tmp_path, 0.1, *events)
+    arrived = [(time, value) for time, what, value in found if what == "setpoint"]
+    assert [value for _, value in arrived] == [1, 0]
+    assert [round(time / 1e6) for time, _ in arrived] in ([10, 30], [11, 31])
+    assert [round(time / 1e6) for time, what, _ in found if what == "position"] == [0, 33, 66, 99]
