@@ -201,7 +201,7 @@ def test_statistics(motor: Program, tmp_path: Path) -> None:
         "overruns", "missed", "lateness_min", "lateness_mean", "lateness_p99", "lateness_p999", "lateness_max",
         "interval_deviation_min", "interval_deviation_rms", "interval_deviation_max", "computation_min",
         "computation_mean", "computation_max", "clamped", "setpoints_dropped", "setpoint_timeouts", "faults",
-        "enabled", "fault", "lateness_histogram",
+        "enabled", "fault", "fault_component", "lateness_histogram",
     ]  # fmt: skip
     assert (statistics["name"], statistics["mode"], statistics["scheduler"]) == ("motor", "simulated", "simulated")
     assert (statistics["period"], statistics["duration"]) == (0.001, 0.5)

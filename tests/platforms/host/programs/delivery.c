@@ -28,6 +28,11 @@ void epg_control_request(epg_control_t *control, bool enable)
     puts(enable ? "enable" : "disable");
 }
 
+void epg_control_alive(epg_control_t *control)
+{
+    (void)control;
+}
+
 bool epg_control_monitor(epg_control_t *control, double *values)
 {
     (void)control;
