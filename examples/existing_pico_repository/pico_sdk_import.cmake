@@ -1,0 +1,10 @@
+# Brings the Pico SDK that PICO_SDK_PATH names, a variable of CMake or of the environment; include it before project().
+if(NOT PICO_SDK_PATH)
+  file(TO_CMAKE_PATH "$ENV{PICO_SDK_PATH}" PICO_SDK_PATH)
+endif()
+get_filename_component(PICO_SDK_PATH "${PICO_SDK_PATH}" ABSOLUTE BASE_DIR "${CMAKE_BINARY_DIR}")
+if(NOT EXISTS "${PICO_SDK_PATH}/pico_sdk_init.cmake")
+  message(FATAL_ERROR "PICO_SDK_PATH is not the folder of a Pico SDK: ${PICO_SDK_PATH}")
+endif()
+set(PICO_SDK_PATH "${PICO_SDK_PATH}" CACHE PATH "Folder of the Pico SDK" FORCE)
+include("${PICO_SDK_PATH}/pico_sdk_init.cmake")

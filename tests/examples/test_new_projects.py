@@ -1,0 +1,251 @@
+"""Projects that ``epg new`` has written, as their users configure, build and run them."""
+
+from __future__ import annotations
+
+import csv
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+
+import epg
+from epg.cli.main import main
+from tests.emulator.toolchain import pico_sdk
+from tests.examples.pico_project import (
+    ROOT,
+    configure,
+    run,
+    sdk_of_new_projects,
+    skip_unless_buildable,
+)
+
+JIWY = ROOT / "examples/jiwy/model"
+
+
+def new(folder: Path, target: str, model: Path = JIWY, name: str = "robot") -> Path:
+    assert main(["new", str(folder), "--target", target, "--model", str(model), "--name", name]) == 0
+    return folder
+
+
+def readme_commands(project: Path, beginning: str) -> list[str]:
+    """Commands of the README that begin so."""
+    readme = (project / "README.md").read_text(encoding="utf-8")
+    return re.findall(rf"^({re.escape(beginning)}.*)$", readme, re.MULTILINE)
+
+
+def simulate(project: Path, command: str) -> list[dict[str, str]]:
+    """The trace of the README's first run."""
+    assert command.endswith("--trace trace.csv")
+    assert "enabled, faults 0" in run(project, "sh", "-c", command)
+    with (project / "trace.csv").open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def talk(project: Path, command: str) -> str:
+    """What the README's second run, the console, answers."""
+    assert command.endswith("--realtime --console")
+    answers = run(project, "sh", "-c", f"printf 'stats\\nenable\\nports\\n' | {command}")
+    assert "stat enabled=0" in answers, "nothing moves until somebody enables"
+    assert "ok enable" in answers
+    return answers
+
+
+@pytest.mark.parametrize(
+    ("target", "model", "port"),
+    [("host_jiwy", JIWY, "setpoint_pan"), ("host", ROOT / "examples/relbot/model", "SetPosLeft")],
+)
+def test_a_project_for_the_host(target: str, model: Path, port: str, tmp_path: Path) -> None:
+    project = new(tmp_path / "my robot", target, model)
+    configure(project)
+    run(project, "cmake", "--build", "build")
+    first, second = readme_commands(project, "build/robot_host")
+    rows = simulate(project, first)
+    assert len(rows) == 5 / (float(rows[1]["time"]) - float(rows[0]["time"]))
+    assert float(rows[-1][f"inputs.{port}"]) == 0.1
+    talk(project, second)
+
+
+@pytest.mark.parametrize("target", ["rpi_pico2_freertos_jiwy", "rpi_pico_bare_metal"])
+def test_the_simulation_of_a_project_for_a_board(target: str, tmp_path: Path) -> None:
+    project = new(tmp_path / "my robot", target)
+    configure(project / "simulation")
+    run(project, "cmake", "--build", "simulation/build")
+    first, second = readme_commands(project, "simulation/build/robot_host")
+    assert float(simulate(project, first)[-1]["inputs.setpoint_pan"]) == 0.1
+    talk(project, second)
+    assert not re.search(r"^ *MODEL .*build", (project / "simulation/CMakeLists.txt").read_text(), re.M)
+
+
+# what is missing ------------------------------------------------------------------------------------------------------
+
+
+def fake_sdk(home: Path, version: str) -> Path:
+    folder = home / ".pico-sdk/sdk" / version
+    folder.mkdir(parents=True)
+    (folder / "pico_sdk_init.cmake").write_text('message(STATUS "the SDK was taken")\n')
+    names = zip(("MAJOR", "MINOR", "REVISION"), version.split("."))
+    (folder / "pico_sdk_version.cmake").write_text("".join(f"set(PICO_SDK_VERSION_{n} {v})\n" for n, v in names))
+    return folder
+
+
+def fake_compiler(home: Path, version: str = "14_2_Rel1") -> Path:
+    folder = home / ".pico-sdk/toolchain" / version
+    (folder / "bin").mkdir(parents=True)
+    (folder / "bin/arm-none-eabi-gcc").touch()
+    return folder
+
+
+def programs(folder: Path, *names: str) -> str:
+    """A PATH with these programs only."""
+    folder.mkdir(parents=True)
+    for name in names:
+        found = shutil.which(name)
+        assert found, name
+        (folder / name).symlink_to(found)
+    return str(folder)
+
+
+class User:
+    """Somebody with a new project, a home folder of their own, and what is put into it."""
+
+    def __init__(self, folder: Path, target: str) -> None:
+        self.home = folder / "home"
+        self.home.mkdir()
+        self.project = new(folder / "robot", target)
+
+    def configure(self, *options: str, check: bool = False, **variables: str) -> str:
+        from tests.examples.pico_project import environment
+
+        env = environment(HOME=str(self.home), XDG_CACHE_HOME=None, EPG_CACHE=None)
+        output = configure(self.project, *options, check=check, env={**env, **variables})
+        return re.sub(r"\n\s*", " ", output)
+
+
+@pytest.fixture
+def user(tmp_path: Path) -> User:
+    return User(tmp_path, "rpi_pico2_freertos_jiwy")
+
+
+def errors(output: str) -> int:
+    return output.count("CMake Error")
+
+
+def test_no_sdk(user: User) -> None:
+    fake_compiler(user.home)
+    output = user.configure()
+    assert "The Raspberry Pi Pico SDK was not found. Get it: git clone --depth 1 --branch 2.2.0 " in output
+    assert f"pico-sdk.git {user.home}/.cache/epg/pico-sdk-2.2.0" in output
+    assert errors(output) == 1
+
+
+def test_no_compiler(user: User, tmp_path: Path) -> None:
+    fake_sdk(user.home, "2.2.0")
+    output = user.configure(PATH=programs(tmp_path / "bin", "cmake", "ninja"))
+    assert "The Arm GNU toolchain was not found. Get it: " in output
+    assert errors(output) == 1
+
+
+def test_another_sdk(user: User) -> None:
+    """The installed one is not the one the project is written for: it says both ways out."""
+    folder = fake_sdk(user.home, "2.1.1")
+    output = user.configure()
+    assert (
+        "This project is written for version 2.2.0 of the Raspberry Pi Pico SDK, and the one in"
+        f" {folder} is 2.1.1. Get it: git clone --depth 1 --branch 2.2.0 "
+    ) in output
+    assert "Or write 2.1.1 in place of 2.2.0 in CMakeLists.txt." in output
+    assert errors(output) == 1
+    for options, variables in (([f"-DPICO_SDK_PATH={folder}"], {}), ([], {"PICO_SDK_PATH": str(folder)})):
+        shutil.rmtree(user.project / "build")
+        output = user.configure(*options, **variables)
+        assert (
+            f"This project is written for version 2.2.0 of the Raspberry Pi Pico SDK, and the one in {folder}" in output
+        )
+
+
+def test_an_sdk_that_is_too_old(user: User) -> None:
+    file = user.project / "CMakeLists.txt"
+    file.write_text(file.read_text().replace("set(sdkVersion 2.2.0)", "set(sdkVersion 1.5.1)"))
+    folder = fake_sdk(user.home, "1.5.1")
+    fake_compiler(user.home)
+    output = user.configure()
+    assert f"The Raspberry Pi Pico SDK in {folder} is 1.5.1; EPG needs 2.0.0 or newer. Get it: git clone" in output
+    assert errors(output) == 1
+
+
+def test_of_several_sdks_the_projects_is_taken(user: User) -> None:
+    for version in ("2.1.1", "2.2.0", "2.3.0"):
+        fake_sdk(user.home, version)
+    wanted = user.home / ".pico-sdk/sdk/2.2.0"
+    (wanted / "pico_sdk_init.cmake").write_text(
+        'message(FATAL_ERROR "taken: ${PICO_SDK_PATH} ${PICO_TOOLCHAIN_PATH}")\n'
+    )
+    fake_compiler(user.home, "15_2_Rel1")
+    compiler = fake_compiler(user.home)
+    assert f"taken: {wanted} {compiler}" in user.configure()
+
+
+def test_the_vs_code_extensions_file_is_heeded(user: User) -> None:
+    """It names the folders that the extension fills; where it has not yet, that is said."""
+    extension = user.home / ".pico-sdk/cmake/pico-vscode.cmake"
+    extension.parent.mkdir(parents=True)
+    extension.write_text('set(PICO_SDK_PATH "${USERHOME}/.pico-sdk/sdk/${sdkVersion}")\n')
+    fake_compiler(user.home)
+    assert f"there is no {user.home}/.pico-sdk/sdk/2.2.0/pico_sdk_init.cmake. Get it: git clone" in user.configure()
+    (fake_sdk(user.home, "2.2.0") / "pico_sdk_init.cmake").write_text(
+        'message(FATAL_ERROR "taken: ${PICO_SDK_PATH}")\n'
+    )
+    assert f"taken: {user.home}/.pico-sdk/sdk/2.2.0" in user.configure()
+
+
+def cache_without(folder: Path, name: str) -> str:
+    """EPG's cache as it is, but for one thing."""
+    from epg.bootstrap import cache_folder
+
+    folder.mkdir()
+    for entry in cache_folder().iterdir():
+        if not entry.name.startswith(name):
+            (folder / entry.name).symlink_to(entry)
+    return str(folder)
+
+
+def test_no_kernel(user: User, tmp_path: Path) -> None:
+    skip_unless_buildable(sdk_of_new_projects)
+    (user.home / ".pico-sdk").symlink_to(Path.home() / ".pico-sdk")
+    cache = cache_without(tmp_path / "cache", "FreeRTOS-Kernel")
+    output = user.configure(f"-DPICO_SDK_PATH={pico_sdk()}", EPG_CACHE=cache)
+    assert "The FreeRTOS kernel was not found. Get it: git clone --depth 1 --branch V11.3.0 " in output
+    assert f"{cache}/FreeRTOS-Kernel-11.3.0" in output
+    assert errors(output) == 1
+
+
+def test_another_kernel(user: User) -> None:
+    kernel = user.home / ".cache/epg/FreeRTOS-Kernel-10.6.2"
+    (kernel / "include").mkdir(parents=True)
+    (kernel / "include/FreeRTOS.h").touch()
+    (kernel / "include/task.h").write_text('#define tskKERNEL_VERSION_NUMBER       "V10.6.2"\n')
+    fake_sdk(user.home, "2.2.0")
+    output = user.configure()
+    assert f"version 11.3.0 of the FreeRTOS kernel, and the one in {kernel} is 10.6.2. Get it: git clone" in output
+    assert errors(output) == 1
+
+
+def test_no_picotool_and_no_network(user: User) -> None:
+    fake_sdk(user.home, "2.2.0")
+    fake_compiler(user.home)
+    output = user.configure("-DFETCHCONTENT_FULLY_DISCONNECTED=ON")
+    assert "The picotool was not found. Get it: " in output
+    assert "Or configure with -DPICO_NO_PICOTOOL=1" in output
+    assert errors(output) == 1
+
+
+@pytest.mark.parametrize("target", ["host", "rpi_pico_bare_metal"])
+def test_another_epg(target: str, tmp_path: Path) -> None:
+    project = new(tmp_path / "robot", target)
+    file = project / "CMakeLists.txt"
+    file.write_text(file.read_text().replace(f"set(epgVersion {epg.__version__})", "set(epgVersion 9.8.7)"))
+    output = " ".join(configure(project, check=False).split())
+    assert f"This project is written for EPG 9.8.7, and the EPG in {ROOT}/cmake is {epg.__version__}. " in output
+    assert "Get it: python -m pip install epg==9.8.7 Or write " in output
+    assert errors(output) == 1
