@@ -1,0 +1,102 @@
+"""When ticks, encoder reads and outputs of JIWY come on an RP2040: EPG's images, and other sorts of tick.
+
+Everything runs in EPG's emulator, which times every control cycle from outside.  Simulated are both cores to the cycle,
+PIO, PWM and USB; not simulated are contention for the bus and the flash cache.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections import Counter
+from collections.abc import Iterator
+
+from measure import ROOT
+from report import Table, arguments, command_line, show
+
+sys.path.insert(0, str(ROOT))
+
+from tests.emulator.toolchain import Missing, arm_gcc, node, pico_sdk, rp2040js
+from tests.platforms.pico.images import freertos_kernel
+from tests.platforms.pico.timing.many import measure_many
+from tests.platforms.pico.timing.measure import LOADS, Load, Timing
+from tests.platforms.pico.timing.programs import Program, by_hand, generated
+
+HEAD = ["tick", "communication", "cycles", "lost", "overruns", "entry", "first encoder", "second encoder", "written",
+        "output"]  # fmt: skip
+NOT_HARDWARE = (
+    "All figures are simulated, of images with the compiler's doubles. Contention of the two cores for a memory bank "
+    "or a peripheral and the flash cache are not simulated, so a board deviates more. The thesis's 75 us (bare metal) and "
+    "400 us (FreeRTOS) were measured on Pico 2 boards by other means, and cannot be compared with these."
+)
+AIM_ENTRY, AIM_OUTPUT = 3, 0
+
+
+def main() -> None:
+    options = arguments(__doc__, seeds=20, milliseconds=3000, programs=5, loads=4)
+    try:
+        for need in (pico_sdk, arm_gcc, node, rp2040js, freertos_kernel):
+            need()
+    except Missing as missing:
+        raise SystemExit(str(missing)) from None
+    measured = [
+        (program, load, measure_many(program, load, range(options.seeds), options.milliseconds / 1000))
+        for program, load in chosen(options.programs, options.loads)
+    ]
+    rows = [row(program, load, timing) for program, load, timing in measured]
+    ours = [timing for program, _, timing in measured if program.title.startswith("EPG")]
+    notes = [
+        "Deviations from t0 + k T in cycles of 8 ns, smallest ... largest, and the share of cycles that deviate. "
+        "Entry: the first instruction of the tick's handler. Encoders: the start of each read. Written: the end of the "
+        "last PWM write, in microseconds from the tick. Output: the PWM wrap (every 6,250 cycles) at which a level "
+        "takes effect, against the wrap at which most do.",
+        f"Each row: {options.seeds} USB hosts with random phase and a clock within 500 ppm, "
+        f"{options.milliseconds / 1000:g} s from reset each. Flooded: packets both ways as fast as USB takes them.",
+        *judged(ours),
+        NOT_HARDWARE,
+    ]
+    show("pico_timing", [Table("Deviation of a 1 ms control cycle, RP2040, simulated", HEAD, rows, notes)],
+         options.write, command_line("pico_timing"))  # fmt: skip
+
+
+def chosen(programs: int, loads: int) -> Iterator[tuple[Program, Load]]:
+    """The first ``programs`` of all, under the first ``loads``."""
+    ours = [lambda load, platform=platform: generated(platform, load.period) for platform in ("bare_metal", "freertos")]
+    others = ("by_hand_alarm_core0", "by_hand_alarm_core1", "by_hand_smp")
+    hands = [lambda load, executable=executable: by_hand(executable) for executable in others]
+    for make in [*ours, *hands][:programs]:
+        for load in LOADS[:loads]:
+            yield make(load), load
+
+
+def row(program: Program, load: Load, timing: Timing) -> list[str]:
+    counts = [f"{timing.cycles:,}", f"{timing.missed:,}", f"{timing.overruns:,}"]
+    second = extent(timing.last_read) if program.period is not None else ""
+    written = f"{min(timing.written) * 0.008:.0f} ... {max(timing.written) * 0.008:.0f}"
+    reads = [extent(timing.entry), extent(timing.first_read), second]
+    return [program.title, load.title, *counts, *reads, written, extent(timing.actuation)]
+
+
+def extent(deviations: Counter[int]) -> str:
+    low, high = min(deviations), max(deviations)
+    if low == high == 0:
+        return "0"
+    share = 1 - deviations[0] / deviations.total()
+    return f"{low:,} ... {high:,} ({share:.1%})"
+
+
+def judged(timings: list[Timing]) -> list[str]:
+    entry = max(max(map(abs, timing.entry)) for timing in timings)
+    output = max(max(map(abs, timing.actuation)) for timing in timings)
+    lost = sum(timing.missed + timing.overruns for timing in timings)
+    return [
+        f"Aims of EPG's rows: no tick lost and no overrun: {verdict(lost == 0)}; entry within {AIM_ENTRY} cycles: "
+        f"{verdict(entry <= AIM_ENTRY)}; outputs within {AIM_OUTPUT} cycles: {verdict(output <= AIM_OUTPUT)}."
+    ]
+
+
+def verdict(held: bool) -> str:
+    return "holds" if held else "does not hold"
+
+
+if __name__ == "__main__":
+    main()
