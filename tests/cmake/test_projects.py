@@ -50,7 +50,7 @@ def test_a_changed_value_is_noticed_and_compiles_the_tables_only(robot: Project)
     robot.edit("robot.tcf", "counts_per_revolution: 4096", "counts_per_revolution: 2048")
     assert "robot_app.c" in compiled(robot.build())
     robot.edit("robot.tcf", "node: robot", "node: robot2")
-    assert compiled(robot.build()) == {"robot_app.c"}
+    assert compiled(robot.build()) == {"robot_app.c", "robot_version.c"}
 
 
 def test_a_changed_model_is_noticed(robot: Project) -> None:
