@@ -1,0 +1,151 @@
+"""The pages of the boards: wiring and limits are what EPG makes of its own configurations.
+
+``EPG_UPDATE_GOLDEN=1`` writes the tables anew.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from collections.abc import Callable
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from epg.cli.main import main
+from epg.data import targets_roots
+from epg.diagnostics import Diagnostics
+from epg.load.catalog import Target
+from epg.project import make_catalog
+from epg.resolve.divider import clock_range, divide, show
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+BOARDS = ("rpi_pico", "rpi_pico2")
+ROBOTS = ("jiwy", "relbot")
+PLATFORMS = ("bare_metal", "freertos")
+FREQUENCIES = (1_000, 5_000, 10_000, 20_000, 25_000, 50_000, 100_000)
+DRIVEN = ("pwm", "digital_output")
+"""Classes whose pins the chip drives."""
+
+
+def page(board: str) -> Path:
+    return ROOT / f"docs/boards/{board}.md"
+
+
+def target(board: str) -> Target:
+    found = make_catalog(targets_roots(), Diagnostics()).find_target(f"{board}_bare_metal")
+    assert found is not None
+    return found
+
+
+def board_pin(gpio: int) -> int:
+    """The number of a GPIO's pin at the edge of the board: Pico data sheet, 2.1; Pico 2 has the same."""
+    edge = [0, 1, None, 2, 3, 4, 5, None, 6, 7, 8, 9, None, 10, 11, 12, 13, None, 14, 15]
+    edge += [16, 17, None, 18, 19, 20, 21, None, 22, "RUN", 26, 27, None, 28]
+    return edge.index(gpio) + 1
+
+
+def hardware(name: str, capsys: pytest.CaptureFixture[str]) -> list[dict[str, Any]]:
+    """What `epg check --hardware` says of a predefined configuration."""
+    capsys.readouterr()
+    assert main(["check", name, "--hardware", "--json"]) == 0
+    (found,) = json.loads(capsys.readouterr().out)["hardware"].values()
+    return list(found)
+
+
+def wiring(board: str, robot: str, capsys: pytest.CaptureFixture[str]) -> str:
+    tables = [hardware(f"{board}_{platform}_{robot}", capsys) for platform in PLATFORMS]
+    assert tables[0] == tables[1], "one table for both platforms"
+    lines = [
+        f"`{board}_bare_metal_{robot}.tcf`, `{board}_freertos_{robot}.tcf`:",
+        "",
+        "| component | wire | GPIO | pin of the board | pull-down | hardware |",
+        "|---|---|---|---|---|---|",
+    ]
+    for row in tables[0]:
+        resource = row["resource"]
+        driven = not resource.startswith("PIO")
+        if not row["pins"]:
+            lines.append(f"| (control loop) | | | | | {resource} |")
+        for signal, gpio in row["pins"].items():
+            wire = signal if not driven or row["claim"] == "pwm" else row["claim"]
+            is_pin = resource.startswith("pin ")
+            cells = [f"`{row['component']}`", wire, f"GP{gpio}", str(board_pin(gpio)), "10 kΩ" if driven else ""]
+            lines.append(f"| {' | '.join([*cells, 'GPIO' if is_pin else resource])} |".replace("|  |", "| |"))
+    return "\n".join(lines) + "\n"
+
+
+def pwm(board: str) -> str:
+    soc = target(board).soc
+    divider = soc.peripherals["pwm"].divider
+    assert divider is not None
+    lines = ["| frequency | steps | reached |", "|---|---|---|"]
+    for frequency in FREQUENCIES:
+        found = divide(soc.clock / frequency, divider, exact=False)
+        assert found is not None
+        reached = show(soc.clock / found.clocks, "frequency")
+        lines.append(f"| {show(Fraction(frequency), 'frequency')} | {found.counter} | {reached} |")
+    return "\n".join(lines) + "\n"
+
+
+@pytest.mark.parametrize("board", BOARDS)
+def test_tables_are_true(board: str, capsys: pytest.CaptureFixture[str]) -> None:
+    makers: dict[str, Callable[[], str]] = {
+        f"wiring {robot}": lambda r=robot: wiring(board, r, capsys) for robot in ROBOTS
+    }  # type: ignore[misc]
+    makers["pwm"] = lambda: pwm(board)
+    text = page(board).read_text(encoding="utf-8")
+    blocks = re.findall(r"<!-- (\w[\w ]*) -->\n(.*?)<!-- end -->", text, re.DOTALL)
+    assert [name for name, _ in blocks] == list(makers)
+    wanted = {name: make() for name, make in makers.items()}
+    if os.environ.get("EPG_UPDATE_GOLDEN"):
+        for name, old in blocks:
+            text = text.replace(f"<!-- {name} -->\n{old}<!-- end -->", f"<!-- {name} -->\n{wanted[name]}<!-- end -->")
+        page(board).write_text(text, encoding="utf-8")
+        blocks = list(wanted.items())
+    assert dict(blocks) == wanted
+
+
+@pytest.mark.parametrize("board", BOARDS)
+def test_numbers_in_the_text_are_true(board: str) -> None:
+    text = page(board).read_text(encoding="utf-8")
+    found = target(board)
+    soc = found.soc
+    pio, slices = soc.peripherals["pio"], soc.peripherals["pwm"]
+    assert f"`PICO_BOARD` | `{found.board.sdks['pico_sdk']}`" in text
+    assert f"{soc.clock // 1_000_000} MHz" in text
+    assert f"{len(pio.instances) * len(pio.slots)}: 4 for each of {len(pio.instances)} PIO blocks" in text
+    assert found.board.pins == tuple(str(pin) for pin in (*range(23), 26, 27, 28)), "the row of pins for components"
+    assert slices.divider is not None
+    longest = Fraction(clock_range(slices.divider)[1]) / soc.clock
+    assert f"| control period | up to {show(longest, 'time', -1)};" in text
+    clocks_per_edge = 10  # targets/libraries/pico_quadrature/src/pico_quadrature.pio
+    assert f"{float(soc.clock / clocks_per_edge / 1_000_000):g} million edges per second" in text
+    reached = {slice_ for slice_, _ in slices.pins}
+    assert len(reached) == 8 and "16 channels on 8 slices" in text
+    extra = len(slices.instances) - len(reached)
+    assert (f"{extra} more slices" in text) == (extra > 0)
+
+
+def test_gpios_on_both_boards_have_their_places() -> None:
+    places = {gpio: board_pin(gpio) for gpio in (0, 2, 10, 13, 15, 16, 22, 26, 28)}
+    assert places == {0: 1, 2: 4, 10: 14, 13: 17, 15: 20, 16: 21, 22: 29, 26: 31, 28: 34}
+
+
+def test_the_pages_have_the_same_sections() -> None:
+    """What is said of one board is said of the other; the second has an erratum besides."""
+    sections = [re.findall(r"^##+ (.+)$", page(board).read_text(encoding="utf-8"), re.M) for board in BOARDS]
+    assert [title for title in sections[1] if "E9" not in title] == sections[0]
+    assert len(sections[1]) == len(sections[0]) + 1
+
+
+@pytest.mark.parametrize("file", ["boards/rpi_pico.md", "boards/rpi_pico2.md", "new-project.md"])
+def test_links_lead_somewhere(file: str) -> None:
+    path = ROOT / "docs" / file
+    links = re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", path.read_text(encoding="utf-8"))
+    assert links
+    for link in links:
+        assert (path.parent / link).exists(), link
