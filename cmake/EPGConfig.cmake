@@ -3,6 +3,7 @@
 #   epg_add_target(<name> TCF <file> MODEL <folder> BINDINGS <file> ...)   library EPG::<name>: model, tables, runtime
 #   epg_add_executable(<executable> EPG::<name>)                           firmware with EPG's own main()
 #   epg_add_model(<name> MODEL <folder> [INSTANCES <n>])                   library EPG::<name>: a model alone
+#   epg_import_pico_sdk(), epg_use_versions(...)                           the Pico SDK, and which versions of it
 #   epg_add_simulation(<name> EXECUTABLE <host executable> SCENARIO <file>) target that runs and judges a simulation
 #
 # The package defines functions only (and, when they are first needed, libraries guarded by if(NOT TARGET)), so that it
