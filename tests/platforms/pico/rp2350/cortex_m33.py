@@ -4,9 +4,8 @@
 >>> # processor.call("epg_control_start", processor.address("jiwy_control"), processor.address("application"))
 
 The image is loaded as its start-up code leaves it.  There is no time and there are no interrupts: whoever calls a
-function says what the microsecond timer and the PIO's FIFOs show.  unicorn has none of the chip's coprocessors: that for
-pins is simulated here; instead of that for doubles, images have the compiler's own (build(..., variables=
-COMPILER_ARITHMETIC)).
+function says what the microsecond timer and the PIO's FIFOs show.  unicorn has none of the chip's coprocessors: that
+for pins is simulated here; instead of that for doubles, images have the compiler's own (COMPILER_ARITHMETIC).
 """
 
 from __future__ import annotations
@@ -123,7 +122,7 @@ class Processor:
     def pin(self, pin: int) -> int:
         return self.outputs >> pin & 1
 
-    # Registers: what is written is read, through SET, CLR and XOR aliases too ------------------------------------------
+    # Registers: what is written is read, through SET, CLR and XOR aliases too -----------------------------------------
 
     def _read(self, _: Any, offset: int, size: int, __: Any) -> int:
         address = (PERIPHERALS + offset) & ~0x3000

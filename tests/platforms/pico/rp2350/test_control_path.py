@@ -74,13 +74,14 @@ def test_a_cycle_executes_few_thousand_instructions(host: Columns) -> None:
         else:
             run()
 
-    for _ in cycles(processor, host, around):
+    first = {name: values[:7_000] for name, values in host.items()}
+    for _ in cycles(processor, first, around):
         pass
-    assert len(counts) == 90
-    assert 1_000 < min(counts.values()) <= max(list(counts.values())[1:]) < 10_000
-    print(
-        f"instructions in a cycle: {min(counts.values())} ... {max(counts.values())}, {sorted(counts.values())[45]} median"
-    )
+    initialising, *others = (counts[number] for number in sorted(counts))
+    print(f"instructions in a cycle: {min(others)} ... {max(others)}, in the first {initialising}")
+    assert len(others) == 34
+    assert 1_000 < min(others) <= max(others) < 12_000
+    assert initialising < 20_000
 
 
 def test_counts_before_resets_are_found() -> None:
