@@ -71,7 +71,7 @@ target_include_directories(export PRIVATE "{JIWY / "model"}" "{output}")
 target_compile_options(export PRIVATE -w "SHELL:-include {output / "jiwy_model_names.h"}")
 add_library(model STATIC "{output / "jiwy_model.c"}" $<TARGET_OBJECTS:export>)
 target_include_directories(model PUBLIC "{output}")
-add_library(jiwy STATIC {listed([output / "jiwy_app.c", output / "jiwy_host.c"])})
+add_library(jiwy STATIC {listed(sorted(output / f"jiwy_{part}.c" for part in ("app", "host", "version")))})
 target_include_directories(jiwy PRIVATE {" ".join(kinds)})
 target_link_libraries(jiwy PUBLIC epg_host model)
 """

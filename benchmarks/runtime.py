@@ -71,6 +71,9 @@ def main() -> None:
     show("runtime", tables, options.write, command_line("runtime"))
 
 
+GLUE = ("jiwy_app.c", "jiwy_model.c", "jiwy_version.c")
+
+
 def build_generated(folder: Path, configuration: str) -> Program:
     """JIWY as ``epg generate`` writes it, without the host's own port layer."""
     folder.mkdir()
@@ -89,7 +92,7 @@ def build_generated(folder: Path, configuration: str) -> Program:
     includes = [RUNTIME / "include", SOURCES, output, *kinds]
     names = ["-include", str(output / "jiwy_model_names.h")]
     model = [compile_c(s, folder / "gm", [JIWY / "model"], ["-w", *names]) for s in model_sources()]
-    glue = [compile_c(output / name, folder / "g", includes, WARNINGS) for name in ("jiwy_app.c", "jiwy_model.c")]
+    glue = [compile_c(output / name, folder / "g", includes, WARNINGS) for name in GLUE]
     glue.append(compile_c(output / "jiwy_model_export.c", folder / "g", includes, ["-w", *names]))
     others = [compile_c(SOURCES / name, folder / "g", includes, WARNINGS) for name in ("generated.c", "driver.c")]
     shared = sorted([*(RUNTIME / "src").glob("*.c"), *(source for kind in kinds for source in kind.glob("*.c"))])
