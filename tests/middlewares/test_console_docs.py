@@ -28,7 +28,7 @@ def hold(console: Host, session: str) -> None:
     """Says what the session says, and finds what it shows; notices of other things may come in between."""
     for exchange in re.split(r"^> ", session, flags=re.MULTILINE)[1:]:
         command, *lines = exchange.splitlines()
-        time.sleep(0.1)  # people need longer
+        time.sleep(0.5)  # as people do, and until what moves stands
         console.send(command + "\n")
         for line in lines:
             if line == "...":
