@@ -25,8 +25,8 @@ HEAD = ["tick", "communication", "cycles", "lost", "overruns", "entry", "first e
         "output"]  # fmt: skip
 NOT_HARDWARE = (
     "All figures are simulated, of images with the compiler's doubles. Contention of the two cores for a memory bank "
-    "or a peripheral and the flash cache are not simulated, so a board deviates more. The thesis's 75 us (bare metal) and "
-    "400 us (FreeRTOS) were measured on Pico 2 boards by other means, and cannot be compared with these."
+    "or a peripheral and the flash cache are not simulated, so a board deviates more. The thesis's 75 us (bare metal) "
+    "and 400 us (FreeRTOS) were measured on Pico 2 boards by other means, and cannot be compared with these."
 )
 AIM_ENTRY, AIM_OUTPUT = 3, 0
 

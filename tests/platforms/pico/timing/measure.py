@@ -67,7 +67,8 @@ class Timing:
 def measure(program: Program, load: Load, seed: int, seconds: float, *, image: Path | None = None) -> Timing:
     """Runs ``program`` from reset for so many simulated seconds: homing, then a motion of both axes.
 
-    ``image``: of the program, if it has been built before.  Phase and clock error (+-500 ppm) of the USB host are drawn by ``seed``.
+    ``image``: of the program, if it has been built before.  Phase and clock error (+-500 ppm) of the USB host are drawn
+    by ``seed``.
     """
     draw = random.Random(seed)
     phase, clock_error = draw.uniform(0, 1000), draw.uniform(-500, 500)
