@@ -16,7 +16,7 @@
 #include "pico/stdlib.h"
 #include "xxsubmod.h"
 
-#define PWM_TOP 6249u
+#define PWM_TOP (SYS_CLK_HZ / 20000u - 1u) /* 20 kHz */
 #define OVERRUN_LIMIT 10u
 
 enum { POSITION, SETPOINT = 2, INPUTS = 4 };

@@ -42,9 +42,13 @@ GPIO_OUT, GPIO_OUT_SET, GPIO_OUT_CLR = 0x010, 0x018, 0x020
 
 
 class Processor:
-    """One core, its memories and its registers; ``counts`` are what the state machines of PIO0 show."""
+    """One core, its memories and its registers; ``counts`` are what the state machines of PIO0 show.
 
-    def __init__(self, elf: Path) -> None:
+    ``target``: the name of the image's target, with which the names of its variables begin.
+    """
+
+    def __init__(self, elf: Path, target: str = "jiwy") -> None:
+        self.target = target
         self.module: Any = unicorn()
         self.arm = self.module.arm_const
         self.cpu = self.module.Uc(self.module.UC_ARCH_ARM, self.module.UC_MODE_THUMB | self.module.UC_MODE_MCLASS)

@@ -41,7 +41,8 @@ def decoder_counts(columns: Mapping[str, Sequence[float]], axis: Axis) -> list[i
 
 def start(processor: Processor) -> None:
     """As core 1 does, without its tick."""
-    processor.call("epg_control_start", processor.address("jiwy_control"), processor.address("application"))
+    control = processor.address(f"{processor.target}_control")
+    processor.call("epg_control_start", control, processor.address("application"))
 
 
 def cycles(
@@ -50,7 +51,7 @@ def cycles(
     around: Callable[[int, Callable[[], object]], object] = lambda number, run: run(),
 ) -> Iterator[Cycle]:
     """Runs a cycle for each row of a host's trace, with its counts and setpoints; ``around(number, run)`` runs it."""
-    control = processor.address("jiwy_control")
+    control = processor.address(f"{processor.target}_control")
     counts = [decoder_counts(columns, axis) for axis in AXES]
     given = {axis.name: 0.0 for axis in AXES}
     for number in range(len(columns["time"])):
@@ -67,8 +68,8 @@ def cycles(
         words = (control, 0, tick_ns & 0xFFFFFFFF, tick_ns >> 32)
         around(number, partial(processor.call, "epg_control_cycle", *words, stacked=(0,)))
         yield Cycle(
-            processor.doubles("jiwy_inputs", len(INPUTS)),
-            processor.doubles("jiwy_outputs", len(OUTPUTS)),
+            processor.doubles(f"{processor.target}_inputs", len(INPUTS)),
+            processor.doubles(f"{processor.target}_outputs", len(OUTPUTS)),
             tuple(duty(processor, axis) for axis in AXES),
         )
 

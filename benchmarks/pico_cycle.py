@@ -1,0 +1,201 @@
+"""What a control cycle of JIWY costs on a Pico: instructions and time by part, and the size of images.
+
+RP2040: EPG's images and JIWY written by hand on the bare SDK (pico/handwritten.c) in EPG's emulator.  RP2350: EPG's
+image on an emulated Cortex-M33, which counts instructions and knows no time.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from statistics import fmean
+
+from measure import ROOT
+from report import Table, arguments, command_line, show
+
+sys.path.insert(0, str(ROOT))
+
+from tests.emulator.build import build
+from tests.emulator.emulator import Emulator
+from tests.emulator.toolchain import Missing, arm_gcc, node, pico_sdk, rp2040js, unicorn
+from tests.platforms.pico.closed_loop.recording import INPUTS
+from tests.platforms.pico.closed_loop.robot import AXES, connect
+from tests.platforms.pico.images import freertos_kernel, size_of
+from tests.platforms.pico.rp2350.cortex_m33 import COMPILER_ARITHMETIC, RETURN, Processor
+from tests.platforms.pico.rp2350.profile import cycles, start
+from tests.platforms.pico.timing.programs import PROJECT, Program, by_hand, generated
+
+GENERATED = {
+    "inputs": ("sample", "read_inputs", "inputs_finite"),
+    "model": ("model_step", "model_finite", "model_stopped"),
+    "outputs": ("write_outputs",),
+}
+HANDWRITTEN = {"inputs": ("read_inputs",), "model": ("step_model",), "outputs": ("write_outputs",)}
+HOMED = 900
+"""ms from reset, after which both axes have homed from 0.12 rad."""
+SETPOINTS = "pan_subscriber=0.8 tilt_subscriber=0.5\n"
+SIMULATED = (
+    "Simulated, with the compiler's doubles: a board has those of the boot ROM (RP2040) or a coprocessor (RP2350), "
+    "which are faster, and waits for the bus, which the simulation does not."
+)
+
+
+@dataclass(frozen=True)
+class Cost:
+    """Of one control cycle, the mean: instructions and time by part; "all" from tick to end."""
+
+    instructions: Mapping[str, float]
+    microseconds: Mapping[str, float]
+
+
+def main() -> None:
+    options = arguments(__doc__, cycles=500)
+    try:
+        for need in (pico_sdk, arm_gcc, node, rp2040js, freertos_kernel, unicorn):
+            need()
+    except Missing as missing:
+        raise SystemExit(str(missing)) from None
+    programs = {
+        "EPG, bare metal": (generated("bare_metal", 33), GENERATED),
+        "EPG, FreeRTOS": (generated("freertos", 33), GENERATED),
+        "by hand": (by_hand("by_hand_alarm_core1"), HANDWRITTEN),
+    }
+    costs = {title: rp2040(program, parts, options.cycles) for title, (program, parts) in programs.items()}
+    tables = [rp2040_table(costs, options.cycles), rp2350_table(options.cycles), size_table()]
+    show("pico_cycle", tables, options.write, command_line("pico_cycle"))
+
+
+# RP2040 ---------------------------------------------------------------------------------------------------------------
+
+
+def rp2040(program: Program, parts: Mapping[str, Sequence[str]], count: int) -> Cost:
+    """The mean of ``count`` cycles in which both axes move to a setpoint."""
+    with Emulator(program.image(), usb={"seed": 1}) as pico:
+        connect(pico, {"pan": 0.12, "tilt": 0.12})
+        pico.run(milliseconds=HOMED)
+        functions = {"all": (program.tick,), **parts}
+        for name in (name for names in functions.values() for name in names):
+            pico.call("watch_span", name=name, core=program.core, **{"from": name, "to": "return"})
+        pico.send(SETPOINTS)
+        pico.run(milliseconds=count)
+        spans = {name: pico.call("span", name=name)["passages"] for names in functions.values() for name in names}
+    ran = len(spans[program.tick])
+
+    def mean(names: Sequence[str], column: int) -> float:
+        return sum(passage[column] for name in names for passage in spans[name]) / ran
+
+    return Cost(
+        instructions={part: mean(names, 2) for part, names in functions.items()},
+        microseconds={part: 0.008 * mean(names, 1) for part, names in functions.items()},
+    )
+
+
+def rp2040_table(costs: Mapping[str, Cost], count: int) -> Table:
+    head = ["part", *(f"{title}: {unit}" for title in costs for unit in ("instructions", "us"))]
+    rows = []
+    for part in ("inputs", "model", "outputs", "rest", "all"):
+        cells = []
+        for cost in costs.values():
+            cells += [f"{of(part, cost.instructions):.0f}", f"{of(part, cost.microseconds):.1f}"]
+        rows.append([part, *cells])
+    notes = [
+        f"Means of {count} cycles in which both axes move. EPG's inputs hold the motion guards, which by hand are "
+        "missing. Rest: the tick, exchanges, statistics, and of EPG parameters, capture, moving by hand, watched "
+        "signals, stacks, and times to a clock.",
+        SIMULATED,
+    ]
+    return Table("A control cycle on RP2040, simulated", head, rows, notes)
+
+
+def of(part: str, numbers: Mapping[str, float]) -> float:
+    if part == "rest":
+        return numbers["all"] - sum(value for name, value in numbers.items() if name != "all")
+    return numbers[part]
+
+
+# RP2350 ---------------------------------------------------------------------------------------------------------------
+
+
+def rp2350_table(count: int) -> Table:
+    variables = {"PLATFORM": "bare_metal", **COMPILER_ARITHMETIC}
+    folder = build(PROJECT, board="pico2", targets=["jiwy_firmware_33"], variables=variables)
+    processor = Processor(folder / "jiwy_firmware_33.elf", target="jiwy_33")
+    start(processor)
+    counted: list[Counter[str]] = []
+
+    def around(number: int, run: Callable[[], object]) -> None:
+        parts = Parts(processor)
+        processor.trace(parts.seen, run)
+        counted.append(parts.counts)
+
+    for _ in cycles(processor, motion(count), around):
+        pass
+    counted = counted[1:]  # the first one initialises the model
+    means = {part: fmean(counts[part] for counts in counted) for part in ("inputs", "model", "outputs", "rest")}
+    rows = [[part, f"{mean:.0f}"] for part, mean in means.items()]
+    rows.append(["all", f"{sum(means.values()):.0f}"])
+    notes = [
+        f"Means of {len(counted)} cycles of homing, with encoders that turn; from the runtime's epg_control_cycle() "
+        "on, without tick and interrupt.",
+        SIMULATED,
+    ]
+    return Table("A control cycle on RP2350, instructions, simulated", ["part", "EPG, bare metal"], rows, notes)
+
+
+def motion(count: int) -> dict[str, list[float]]:
+    """A host's trace, as far as it is needed: positions that change."""
+    columns: dict[str, list[float]] = {"time": [number / 1000 for number in range(count)]}
+    columns |= {f"inputs.{name}": [0.0] * count for name in INPUTS}
+    for axis in AXES:
+        columns[f"inputs.position_{axis.name}"] = [-axis.rad_per_count * (number // 3) for number in range(count)]
+        columns[f"outputs.encoder_reset_{axis.name}"] = [0.0] * count
+    return columns
+
+
+class Parts:
+    """Tells whose an instruction is: the part whose function was called last and has not returned."""
+
+    def __init__(self, processor: Processor) -> None:
+        self.processor = processor
+        self.entries = {processor.address(name): part for part, names in GENERATED.items() for name in names}
+        self.counts: Counter[str] = Counter()
+        self.part, self.back = "rest", RETURN
+
+    def seen(self, pc: int) -> None:
+        if self.part != "rest" and pc == self.back:
+            self.part = "rest"
+        if self.part == "rest" and pc in self.entries:
+            self.part = self.entries[pc]
+            self.back = self.processor.cpu.reg_read(self.processor.arm.UC_ARM_REG_LR) & ~1
+        self.counts[self.part] += 1
+
+
+# Size -----------------------------------------------------------------------------------------------------------------
+
+
+def size_table() -> Table:
+    rows = []
+    for board, title in (("pico", "Pico"), ("pico2", "Pico 2")):
+        for platform, name in (("bare_metal", "bare metal"), ("freertos", "FreeRTOS")):
+            rows.append(size_row(f"EPG, {title}, {name}", board, platform, "jiwy_firmware_33"))
+        rows.append(size_row(f"by hand, {title}, bare metal", board, "bare_metal", "by_hand_alarm_core1"))
+    notes = [
+        "All run from RAM, so text takes RAM too; arithmetic is the SDK's own. By hand: the SDK's stdio over USB, "
+        "setpoints and positions, none of the rest of the console, no capture (16 kB of bss), no store, no motion "
+        "guards, no watchdog."
+    ]
+    return Table("Size of JIWY, bytes", ["image", "text", "data", "bss"], rows, notes)
+
+
+def size_row(title: str, board: str, platform: str, executable: str) -> list[str]:
+    variables = {"PLATFORM": platform}
+    folder: Path = build(PROJECT, board=board, targets=[executable], variables=variables, stock_arithmetic=True)
+    size = size_of(folder / f"{executable}.elf")
+    return [title, str(size.text), str(size.data), str(size.bss)]
+
+
+if __name__ == "__main__":
+    main()
