@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.emulator.toolchain import arm_gcc, node, pico_sdk, rp2040js, skip_if_missing, tool, unicorn
+
 ROOT = Path(__file__).resolve().parents[2]
 BENCHMARKS = ROOT / "benchmarks"
 PAGE = ROOT / "docs" / "benchmarks.md"
@@ -21,6 +23,9 @@ SMALLEST = {
     "scaling": ["--rounds", "1", "--components", "40", "--targets", "2"],
     "runtime": ["--cycles", "200", "--trace", "6000"],
     "exchange": ["--thousands", "1"],
+    "pico_timing": ["--seeds", "1", "--milliseconds", "100", "--programs", "1", "--loads", "1"],
+    "pico_cycle": ["--cycles", "20"],
+    "pico_closed_loop": ["--short", "1"],
 }
 PROGRAMS = sorted(
     path.stem for path in BENCHMARKS.glob("*.py") if '__name__ == "__main__"' in path.read_text(encoding="utf-8")
@@ -41,6 +46,8 @@ def test_it_runs_and_prints_what_the_page_shows(program: str) -> None:
         pytest.skip("valgrind is not installed: apt install valgrind")
     if program in ("configure", "scaling") and shutil.which("cmake") is None:
         pytest.skip("cmake is not installed: apt install cmake")
+    if program.startswith("pico"):
+        skip_if_missing(pico_sdk, arm_gcc, node, rp2040js, unicorn, lambda: tool("freertos_kernel"))
     printed = run(program)
     titles = re.findall(r"^(.+)\n-+$", printed, flags=re.MULTILINE)
     section = re.search(rf"<!-- begin {program} -->(.*?)<!-- end {program} -->", PAGE.read_text(encoding="utf-8"), re.S)
