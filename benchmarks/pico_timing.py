@@ -29,6 +29,8 @@ NOT_HARDWARE = (
     "and 400 us (FreeRTOS) were measured on Pico 2 boards by other means, and cannot be compared with these."
 )
 AIM_ENTRY, AIM_OUTPUT = 3, 0
+FEWEST_CHANGES = 1000
+"""Of levels, in a row of the table, from which on it says something of outputs."""
 
 
 def main() -> None:
@@ -88,9 +90,12 @@ def judged(timings: list[Timing]) -> list[str]:
     entry = max(max(map(abs, timing.entry)) for timing in timings)
     output = max(max(map(abs, timing.actuation)) for timing in timings)
     lost = sum(timing.missed + timing.overruns for timing in timings)
+    outputs = verdict(output <= AIM_OUTPUT)
+    if min(timing.actuation.total() for timing in timings) < FEWEST_CHANGES:
+        outputs = "not measured, as outputs have hardly changed in so short a time"
     return [
         f"Aims of EPG's rows: no tick lost and no overrun: {verdict(lost == 0)}; entry within {AIM_ENTRY} cycles: "
-        f"{verdict(entry <= AIM_ENTRY)}; outputs within {AIM_OUTPUT} cycles: {verdict(output <= AIM_OUTPUT)}."
+        f"{verdict(entry <= AIM_ENTRY)}; outputs within {AIM_OUTPUT} cycles: {outputs}."
     ]
 
 
