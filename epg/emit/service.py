@@ -76,6 +76,8 @@ class Service:
     signals: tuple[SignalView, ...]
     time_slot: int | None
     monitor_count: int
+    node: bool
+    largest_message: int
     parameters: tuple[ParameterView, ...]
     capture: int
     actuators: tuple[ActuatorView, ...]
@@ -88,7 +90,8 @@ def service_of(app: Application, macro: Macro) -> Service:
     uses = middleware.uses
     published = len(app.publications)
     signals = tuple(_signals(app, published)) if "signals" in uses else ()
-    time_slot = published + len(signals) if "signals" in uses else None
+    node = "node" in uses
+    time_slot = published + len(signals) if "signals" in uses or node else None
     monitor_count = published if time_slot is None else time_slot + 1
     jog = "jog" in uses
     capture = options.get("capture") if "capture" in uses else 0
@@ -98,6 +101,8 @@ def service_of(app: Application, macro: Macro) -> Service:
         signals=signals,
         time_slot=time_slot,
         monitor_count=monitor_count,
+        node=node,
+        largest_message=8,
         parameters=tuple(_parameters(app)) if "parameters" in uses else (),
         capture=capture,
         actuators=tuple(a for c in app.components for a in _actuators(c, macro)) if jog else (),

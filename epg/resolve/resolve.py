@@ -29,7 +29,7 @@ STATIC_NAMES = frozenset(
     setpoint_states setpoint_slots setpoint_exchange monitor_values monitor_slots monitor_exchange plant_init
     plant_step set_parameter parameter_table parameter_values parameter_applied parameter_changed parameter_store
     capture_memory jog_actuators jog_encoders jog_first jog_last middleware_options middleware_output
-    middleware_values""".split()
+    middleware_values node node_values node_sent_values node_received node_publications node_buffer""".split()
 )
 """Names of two words in generated files: a target and a component's name could make one of them."""
 

@@ -50,6 +50,9 @@ void epg_console_echo(epg_console_session_t *session, const epg_console_command_
 static size_t find_setpoint(const epg_target_t *target, const char *name)
 {
     for (size_t i = 0; i < target->subscription_count; i++) {
+        if (target->subscriptions[i].role != EPG_TOPIC_VALUES) {
+            continue;
+        }
         const char *topic = target->subscriptions[i].name;
         if (strcmp(topic, name) == 0 || (topic[0] == '/' && strcmp(topic + 1, name) == 0)) {
             return target->subscriptions[i].index;

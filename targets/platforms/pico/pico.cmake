@@ -131,7 +131,7 @@ function(_epg_pico_library)
   target_sources(epg_pico INTERFACE ${sources})
   target_include_directories(epg_pico INTERFACE "${folder}/include" "${folder}/src")
   target_link_libraries(epg_pico INTERFACE
-    EPG::pico_quadrature pico_runtime pico_runtime_init pico_multicore pico_flash
+    EPG::pico_quadrature pico_runtime pico_runtime_init pico_multicore pico_flash pico_unique_id
     hardware_clocks hardware_exception hardware_flash hardware_gpio hardware_irq hardware_pwm hardware_sync
     hardware_timer hardware_watchdog)
   target_compile_definitions(epg_pico INTERFACE
@@ -163,7 +163,7 @@ function(_epg_pico_usb_library)
   add_library(epg_pico_usb INTERFACE)
   target_sources(epg_pico_usb INTERFACE "${folder}/descriptors.c" "${folder}/reset.c" "${folder}/serial.c")
   target_include_directories(epg_pico_usb INTERFACE "${folder}/include")
-  target_link_libraries(epg_pico_usb INTERFACE tinyusb_device_unmarked pico_unique_id pico_usb_reset_interface_headers)
+  target_link_libraries(epg_pico_usb INTERFACE tinyusb_device_unmarked pico_usb_reset_interface_headers)
 endfunction()
 
 # An executable that holds target <name> and nothing else; <main> is its main().

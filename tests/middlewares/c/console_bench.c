@@ -92,9 +92,9 @@ static const epg_signal_t signals[4] = {
     {"outputs.same", "", &fake.state, 3},
     {"outputs.duty", "", &fake.output, 4},
 };
-static const epg_topic_t subscriptions[FAKE_SETPOINTS] = {{"a/set", EPG_QOS_RELIABLE, 0},
-                                                          {"/set_b", EPG_QOS_RELIABLE, 1}};
-static const epg_topic_t publications[1] = {{"/angle", EPG_QOS_RELIABLE, 0}};
+static const epg_topic_t subscriptions[FAKE_SETPOINTS] = {{.name = "a/set", .count = 1},
+                                                          {.name = "/set_b", .index = 1, .count = 1}};
+static const epg_topic_t publications[1] = {{.name = "/angle", .count = 1}};
 static const char *const components[2] = {"encoder", "motor"};
 
 enum { MONITORED = 6 };

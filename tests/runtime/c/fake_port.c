@@ -101,3 +101,8 @@ bool epg_port_store_write(const void *data, size_t size)
     fake_port.store_size = size;
     return true;
 }
+
+const char *epg_port_serial(void)
+{
+    return "E6616407E3A51B2C";
+}

@@ -13,6 +13,7 @@
 #include "report.h"
 #include "run.h"
 #include "setpoints.h"
+#include "serial.h"
 #include "store.h"
 #include "terminal.h"
 
@@ -149,6 +150,9 @@ int epg_host_main(const epg_host_target_t *host, int argc, char **argv)
         return WRONG_INPUT;
     }
     epg_host_store_open(options.store);
+    if (options.serial != NULL) {
+        epg_host_serial_set(options.serial);
+    }
     epg_host_interrupted = 0;
     signal(SIGINT, on_interrupt);
     signal(SIGTERM, on_interrupt);

@@ -21,6 +21,7 @@ void epg_host_print_help(const char *name)
            "  --console            commands from standard input, answers to standard output (real time)\n"
            "  --console-pty PATH   the same on a terminal with this name, as if a board were plugged in\n"
            "  --store FILE         where the console's 'save' keeps parameters\n"
+           "  --serial WORD        what '$serial' stands for in names of node and namespace; default: host\n"
            "  --setpoints FILE     CSV with rows time,topic,value: what arrives, and when\n"
            "  --topics FILE        writes what is published, in the same form\n"
            "  --trace FILE         writes all signals, one row per control cycle\n"
@@ -90,7 +91,7 @@ bool epg_host_read_options(int argc, char **argv, epg_host_options_t *options)
         {"--setpoints", NULL, &options->setpoints}, {"--topics", NULL, &options->topics},
         {"--trace", NULL, &options->trace},         {"--statistics", NULL, &options->statistics},
         {"--console", &options->console, NULL},     {"--console-pty", NULL, &options->console_pty},
-        {"--store", NULL, &options->store},
+        {"--store", NULL, &options->store},         {"--serial", NULL, &options->serial},
     };
     for (int i = 1; i < argc; i++) {
         const option_t *option = find(known, sizeof known / sizeof known[0], argv[i]);

@@ -16,6 +16,7 @@ typedef struct epg_host_options {
     uint64_t duration_ns;    /**< > 0; UINT64_MAX: until it is ended */
     const char *console_pty; /**< name of the terminal that the console is on; NULL: none */
     const char *store;       /**< path of the file that stored values are in; NULL: none */
+    const char *serial;      /**< word that stands for "$serial" in names; NULL: none was given */
     const char *setpoints;   /**< path to read; NULL: none */
     const char *topics;      /**< paths to write; NULL: not written */
     const char *trace;

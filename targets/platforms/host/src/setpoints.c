@@ -123,9 +123,6 @@ static bool fail_topic(reader_t *reader, const char *topic)
         for (size_t i = 0; i < target->subscription_count; i++) {
             fprintf(stderr, "'%s', ", target->subscriptions[i].name);
         }
-        if (target->enable_topic != NULL) {
-            fprintf(stderr, "'%s', ", target->enable_topic);
-        }
         fputs("and has '$enable', '$pin:<number>' and '$stall'\n", stderr);
     }
     return false;
@@ -150,12 +147,13 @@ static bool read_topic(reader_t *reader, const char *topic, epg_host_event_t *ev
     const epg_target_t *target = reader->target;
     for (size_t i = 0; i < target->subscription_count; i++) {
         if (strcmp(topic, target->subscriptions[i].name) == 0) {
-            event->kind = EPG_HOST_SETPOINT;
+            const bool enable = target->subscriptions[i].role == EPG_TOPIC_ENABLE;
+            event->kind = enable ? EPG_HOST_ENABLE : EPG_HOST_SETPOINT;
             event->index = target->subscriptions[i].index;
             return true;
         }
     }
-    if (strcmp(topic, "$enable") == 0 || (target->enable_topic != NULL && strcmp(topic, target->enable_topic) == 0)) {
+    if (strcmp(topic, "$enable") == 0) {
         event->kind = EPG_HOST_ENABLE;
         return true;
     }

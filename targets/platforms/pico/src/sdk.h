@@ -27,5 +27,6 @@
 #include "pico.h"
 #include "pico/multicore.h"
 #include "pico/runtime_init.h"
+#include "pico/unique_id.h"
 
 #endif

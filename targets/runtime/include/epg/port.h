@@ -79,6 +79,12 @@ size_t epg_port_store_read(void *data, size_t size);
  */
 bool epg_port_store_write(const void *data, size_t size);
 
+/**
+ * What tells this board from all others: letters and digits, the same after every start ("E6616407E3A51B2C").  From the
+ * communication side, and before the control loop starts.
+ */
+const char *epg_port_serial(void);
+
 #ifdef __cplusplus
 }
 #endif

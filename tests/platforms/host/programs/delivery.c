@@ -41,8 +41,8 @@ bool epg_control_monitor(epg_control_t *control, double *values)
 }
 
 static const epg_application_t application = {.name = "delivery", .monitor_count = 1};
-static const epg_topic_t subscriptions[2] = {{"b", EPG_QOS_RELIABLE, 1}, {"a", EPG_QOS_RELIABLE, 0}};
-static const epg_topic_t publications[1] = {{"p", EPG_QOS_RELIABLE, 0}};
+static const epg_topic_t subscriptions[2] = {{.name = "b", .index = 1, .count = 1}, {.name = "a", .count = 1}};
+static const epg_topic_t publications[1] = {{.name = "p", .count = 1}};
 static epg_control_t control;
 static const epg_target_t target = {
     .control = &control,

@@ -149,9 +149,9 @@ static const epg_application_t application = {
     .monitor_exchange = &monitor_exchange,
 };
 
-static const epg_topic_t subscriptions[1] = {{"motor_setpoint", EPG_QOS_BEST_EFFORT, 0}};
-static const epg_topic_t publications[2] = {{"motor_position", EPG_QOS_BEST_EFFORT, 0},
-                                            {"motor_echo", EPG_QOS_BEST_EFFORT, 1}};
+static const epg_topic_t subscriptions[1] = {{.name = "motor_setpoint", .count = 1}};
+static const epg_topic_t publications[2] = {{.name = "motor_position", .count = 1},
+                                            {.name = "motor_echo", .index = 1, .count = 1}};
 
 static const epg_target_t target = {
     .control = &control,

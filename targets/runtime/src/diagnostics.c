@@ -1,0 +1,109 @@
+/**
+ * @file
+ * State and statistics as a message.
+ *
+ * Layout: diagnostic_msgs/msg/DiagnosticArray of ROS 2 Jazzy: header (stamp, frame_id), then a sequence of one
+ * DiagnosticStatus: level, name, message, hardware_id, and a sequence of pairs of texts.
+ */
+#include "epg/diagnostics.h"
+
+#include "epg/cdr.h"
+#include "epg/port.h"
+
+enum { LEVEL_OK, LEVEL_WARN, LEVEL_ERROR };
+
+enum { DECIMAL_SIZE = 21 }; /* of the largest 64-bit number, with the terminating zero */
+
+/** A whole number as text, at the end of `text`. */
+static const char *decimal(uint64_t value, char text[DECIMAL_SIZE])
+{
+    char *place = text + DECIMAL_SIZE - 1;
+    *place = '\0';
+    do {
+        *--place = (char)('0' + value % 10);
+        value /= 10;
+    } while (value > 0);
+    return place;
+}
+
+static void write_pair(epg_cdr_writer_t *writer, const char *key, const char *value)
+{
+    epg_cdr_write_string(writer, key);
+    epg_cdr_write_string(writer, value);
+}
+
+static void write_pairs(epg_cdr_writer_t *writer, const epg_node_t *node, const epg_status_t *status)
+{
+    const epg_statistics_t *counted = &status->statistics;
+    const struct {
+        const char *key;
+        uint64_t value;
+    } numbers[] = {
+        {"cycles", counted->cycles},
+        {"overruns", counted->overruns},
+        {"missed", counted->missed},
+        {"lateness_max_ns", counted->lateness_max},
+        {"computation_min_ns", counted->computation_min},
+        {"computation_mean_ns", counted->cycles > 0 ? counted->computation_total / counted->cycles : 0},
+        {"computation_max_ns", counted->computation_max},
+        {"clamped", counted->clamped},
+        {"setpoints_dropped", counted->setpoints_dropped},
+        {"setpoint_timeouts", counted->setpoint_timeouts},
+        {"faults", counted->faults},
+        {"reconnects", counted->reconnects},
+        {"unsent", node->unsent},
+        {"malformed", node->malformed},
+    };
+    const size_t count = sizeof numbers / sizeof numbers[0];
+    char text[DECIMAL_SIZE];
+    epg_cdr_write_u32(writer, (uint32_t)count + 4U);
+    write_pair(writer, "fault", epg_fault_name(status->fault));
+    write_pair(writer, "component", epg_target_component(node->target, status->fault_component));
+    for (size_t i = 0; i < count; i++) {
+        write_pair(writer, numbers[i].key, decimal(numbers[i].value, text));
+    }
+    write_pair(writer, "epg", node->target->version);
+    write_pair(writer, "firmware", node->target->hash);
+}
+
+static uint8_t level_of(const epg_status_t *status)
+{
+    if (status->fault != EPG_FAULT_NONE) {
+        return LEVEL_ERROR;
+    }
+    return status->enabled ? LEVEL_OK : LEVEL_WARN;
+}
+
+static const char *message_of(const epg_status_t *status)
+{
+    if (status->fault != EPG_FAULT_NONE) {
+        return epg_fault_name(status->fault);
+    }
+    return status->enabled ? "enabled" : "disabled";
+}
+
+size_t epg_diagnostics_write(epg_node_t *node, epg_stamp_t stamp, void *data, size_t size)
+{
+    epg_cdr_writer_t writer = {.data = data, .size = size};
+    epg_status_t status;
+    if (!epg_control_observe(node->target->control, &status)) {
+        return 0;
+    }
+    epg_cdr_write_i32(&writer, stamp.seconds);
+    epg_cdr_write_u32(&writer, stamp.nanoseconds);
+    epg_cdr_write_string(&writer, "");
+    epg_cdr_write_u32(&writer, 1);
+    epg_cdr_write_u8(&writer, level_of(&status));
+    epg_cdr_write_string(&writer, node->name);
+    epg_cdr_write_string(&writer, message_of(&status));
+    epg_cdr_write_string(&writer, epg_port_serial());
+    write_pairs(&writer, node, &status);
+    return writer.failed ? 0 : writer.length;
+}
+
+const epg_message_t epg_message_diagnostic_array = {
+    .type = "diagnostic_msgs::msg::dds_::DiagnosticArray_",
+    .hash = "",
+    .write = NULL,
+    .read = NULL,
+};

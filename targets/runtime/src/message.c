@@ -1,0 +1,135 @@
+/**
+ * @file
+ * Messages that hold one number.
+ */
+#include "epg/message.h"
+
+#include <limits.h>
+
+#include "epg/cdr.h"
+#include "epg/target.h"
+
+static epg_cdr_writer_t writer_of(void *data, size_t size)
+{
+    return (epg_cdr_writer_t){.data = data, .size = size};
+}
+
+static epg_cdr_reader_t reader_of(const void *data, size_t size)
+{
+    return (epg_cdr_reader_t){.data = data, .size = size};
+}
+
+static size_t written(const epg_cdr_writer_t *writer)
+{
+    return writer->failed ? 0 : writer->length;
+}
+
+static size_t write_float64(const epg_topic_t *topic, const double *values, epg_stamp_t stamp, void *data, size_t size)
+{
+    (void)topic;
+    (void)stamp;
+    epg_cdr_writer_t writer = writer_of(data, size);
+    epg_cdr_write_f64(&writer, values[0]);
+    return written(&writer);
+}
+
+static bool read_float64(const epg_topic_t *topic, const void *data, size_t size, double *values)
+{
+    (void)topic;
+    epg_cdr_reader_t reader = reader_of(data, size);
+    values[0] = epg_cdr_read_f64(&reader);
+    return !reader.failed;
+}
+
+static size_t write_float32(const epg_topic_t *topic, const double *values, epg_stamp_t stamp, void *data, size_t size)
+{
+    (void)topic;
+    (void)stamp;
+    epg_cdr_writer_t writer = writer_of(data, size);
+    epg_cdr_write_f32(&writer, (float)values[0]);
+    return written(&writer);
+}
+
+static bool read_float32(const epg_topic_t *topic, const void *data, size_t size, double *values)
+{
+    (void)topic;
+    epg_cdr_reader_t reader = reader_of(data, size);
+    values[0] = (double)epg_cdr_read_f32(&reader);
+    return !reader.failed;
+}
+
+/** The nearest whole number, halves away from zero; NaN is 0. */
+static int32_t whole(double value)
+{
+    const double moved = value < 0.0 ? value - 0.5 : value + 0.5;
+    if (moved >= (double)INT32_MAX) {
+        return INT32_MAX;
+    }
+    if (moved <= (double)INT32_MIN) {
+        return INT32_MIN;
+    }
+    return moved == moved ? (int32_t)moved : 0;
+}
+
+static size_t write_int32(const epg_topic_t *topic, const double *values, epg_stamp_t stamp, void *data, size_t size)
+{
+    (void)topic;
+    (void)stamp;
+    epg_cdr_writer_t writer = writer_of(data, size);
+    epg_cdr_write_i32(&writer, whole(values[0]));
+    return written(&writer);
+}
+
+static bool read_int32(const epg_topic_t *topic, const void *data, size_t size, double *values)
+{
+    (void)topic;
+    epg_cdr_reader_t reader = reader_of(data, size);
+    values[0] = (double)epg_cdr_read_i32(&reader);
+    return !reader.failed;
+}
+
+static size_t write_bool(const epg_topic_t *topic, const double *values, epg_stamp_t stamp, void *data, size_t size)
+{
+    (void)topic;
+    (void)stamp;
+    epg_cdr_writer_t writer = writer_of(data, size);
+    epg_cdr_write_u8(&writer, values[0] > 0.5 ? 1 : 0);
+    return written(&writer);
+}
+
+static bool read_bool(const epg_topic_t *topic, const void *data, size_t size, double *values)
+{
+    (void)topic;
+    epg_cdr_reader_t reader = reader_of(data, size);
+    const uint8_t value = epg_cdr_read_u8(&reader);
+    values[0] = (double)value;
+    return !reader.failed && value <= 1;
+}
+
+const epg_message_t epg_message_float64 = {
+    .type = "std_msgs::msg::dds_::Float64_",
+    .hash = "",
+    .write = write_float64,
+    .read = read_float64,
+};
+
+const epg_message_t epg_message_float32 = {
+    .type = "std_msgs::msg::dds_::Float32_",
+    .hash = "",
+    .write = write_float32,
+    .read = read_float32,
+};
+
+const epg_message_t epg_message_int32 = {
+    .type = "std_msgs::msg::dds_::Int32_",
+    .hash = "",
+    .write = write_int32,
+    .read = read_int32,
+};
+
+const epg_message_t epg_message_bool = {
+    .type = "std_msgs::msg::dds_::Bool_",
+    .hash = "",
+    .write = write_bool,
+    .read = read_bool,
+};

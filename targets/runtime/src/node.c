@@ -1,0 +1,196 @@
+/**
+ * @file
+ * What all ROS 2 middlewares have in common.
+ */
+#include "epg/node.h"
+
+#include <string.h>
+
+#include "epg/diagnostics.h"
+#include "epg/finite.h"
+#include "epg/names.h"
+
+#define SECOND_NS 1000000000
+
+/** Copies the newest cycle's values; they stay as they are until the next call. */
+static void take_values(epg_node_t *node)
+{
+    const epg_target_t *target = node->target;
+    if (epg_control_monitor(target->control, node->values)) {
+        node->valid = true;
+        memcpy(&node->time_ns, &node->values[target->time_index], sizeof node->time_ns);
+    }
+}
+
+static epg_stamp_t stamp_of(const epg_node_t *node)
+{
+    const uint64_t time_ns = node->time_ns + (uint64_t)node->epoch_ns;
+    return (epg_stamp_t){.seconds = (int32_t)(time_ns / SECOND_NS), .nanoseconds = (uint32_t)(time_ns % SECOND_NS)};
+}
+
+/** The first instant of a schedule that began at `due_ns` with `period_ns` which lies after `time_ns`. */
+static uint64_t next_after(uint64_t due_ns, uint64_t period_ns, uint64_t time_ns)
+{
+    return due_ns + ((time_ns - due_ns) / period_ns + 1) * period_ns;
+}
+
+static bool changed(const epg_node_t *node, const epg_topic_t *topic, const epg_node_publication_t *state)
+{
+    const size_t size = topic->count * sizeof(double);
+    return !state->sent || memcmp(&node->values[topic->index], &node->sent_values[topic->index], size) != 0;
+}
+
+/** Whether publication `topic` is due, for the values at hand; its schedule goes on then. */
+static bool is_due(epg_node_t *node, const epg_topic_t *topic, epg_node_publication_t *state, uint64_t now_ns)
+{
+    if (topic->role == EPG_TOPIC_ECHO || (topic->role == EPG_TOPIC_VALUES && !node->valid)) {
+        return false;
+    }
+    if (topic->trigger == EPG_TOPIC_CHANGE) {
+        return changed(node, topic, state);
+    }
+    const bool cycles = topic->trigger == EPG_TOPIC_CYCLES;
+    const uint64_t time_ns = cycles ? node->time_ns : now_ns;
+    const uint64_t period_ns = cycles ? topic->cycles * node->target->application->period_ns : topic->period_ns;
+    if (time_ns < state->due_ns) {
+        return false;
+    }
+    state->due_ns = next_after(state->due_ns, period_ns, time_ns);
+    return true;
+}
+
+static size_t write_message(epg_node_t *node, const epg_topic_t *topic)
+{
+    if (topic->role == EPG_TOPIC_DIAGNOSTICS) {
+        return epg_diagnostics_write(node, stamp_of(node), node->buffer, node->buffer_size);
+    }
+    return topic->message->write(topic, &node->values[topic->index], stamp_of(node), node->buffer, node->buffer_size);
+}
+
+/** Hands publication `index` over if there is room; else it waits for the next turn. */
+static void publish(epg_node_t *node, size_t index)
+{
+    const epg_topic_t *topic = &node->target->publications[index];
+    epg_node_publication_t *state = &node->publications[index];
+    const size_t size = write_message(node, topic);
+    if (size == 0) {
+        state->waiting = false; /* nothing to say yet */
+        return;
+    }
+    if (!state->waiting) {
+        epg_target_publishing(node->target, index);
+    }
+    state->waiting = !node->send(index, node->buffer, size);
+    if (!state->waiting && topic->role == EPG_TOPIC_VALUES && node->sent_values != NULL) {
+        memcpy(&node->sent_values[topic->index], &node->values[topic->index], topic->count * sizeof(double));
+        state->sent = true;
+    }
+}
+
+void epg_node_start(epg_node_t *node, const epg_target_t *target,
+                    bool (*send)(size_t publication, const void *data, size_t size))
+{
+    node->target = target;
+    node->send = send;
+    node->valid = false;
+    node->time_ns = 0;
+    node->epoch_ns = 0;
+    node->unsent = 0;
+    node->malformed = 0;
+    (void)epg_names_expand(target->node, node->name, sizeof node->name);
+    (void)epg_names_expand(target->name_space, node->name_space, sizeof node->name_space);
+    memset(node->publications, 0, target->publication_count * sizeof *node->publications);
+}
+
+void epg_node_connected(epg_node_t *node, uint64_t now_ns)
+{
+    take_values(node);
+    for (size_t i = 0; i < node->target->publication_count; i++) {
+        const bool cycles = node->target->publications[i].trigger == EPG_TOPIC_CYCLES;
+        node->publications[i] = (epg_node_publication_t){.due_ns = cycles ? node->time_ns : now_ns};
+    }
+}
+
+void epg_node_poll(epg_node_t *node, uint64_t now_ns)
+{
+    const size_t count = node->target->publication_count;
+    /* One cycle's values for all that is due now. */
+    take_values(node);
+    for (size_t i = 0; i < count; i++) {
+        epg_node_publication_t *state = &node->publications[i];
+        const bool due = is_due(node, &node->target->publications[i], state, now_ns);
+        node->unsent += due && state->waiting ? 1U : 0U;
+        if (due || state->waiting) {
+            publish(node, i);
+        }
+    }
+}
+
+static void receive_values(epg_node_t *node, const epg_topic_t *topic, uint64_t now_ns)
+{
+    size_t refused = topic->count;
+    for (size_t i = 0; i < topic->count; i++) {
+        if (!epg_is_finite(node->received[i])) {
+            refused = i;
+        }
+    }
+    if (refused < topic->count) { /* the message counts as a whole: this drops and counts it */
+        (void)epg_control_receive(node->target->control, topic->index + refused, node->received[refused], now_ns,
+                                  false);
+        return;
+    }
+    for (size_t i = 0; i < topic->count; i++) {
+        (void)epg_control_receive(node->target->control, topic->index + i, node->received[i], now_ns,
+                                  i + 1 == topic->count);
+    }
+}
+
+void epg_node_receive(epg_node_t *node, size_t subscription, const void *data, size_t size, uint64_t now_ns)
+{
+    if (subscription >= node->target->subscription_count) {
+        return;
+    }
+    const epg_topic_t *topic = &node->target->subscriptions[subscription];
+    if (topic->role == EPG_TOPIC_ECHO) {
+        node->unsent += node->send(topic->index, data, size) ? 0U : 1U;
+        return;
+    }
+    if (!topic->message->read(topic, data, size, node->received)) {
+        node->malformed++;
+    } else if (topic->role == EPG_TOPIC_ENABLE) {
+        epg_control_request(node->target->control, node->received[0] > 0.5);
+    } else {
+        receive_values(node, topic, now_ns);
+    }
+}
+
+void epg_node_set_time(epg_node_t *node, uint64_t epoch_ns, uint64_t now_ns)
+{
+    node->epoch_ns = (int64_t)(epoch_ns - now_ns);
+}
+
+size_t epg_node_topic(const epg_node_t *node, const epg_topic_t *topic, char *name, size_t size)
+{
+    const char *rest = topic->name;
+    const char *parts[4] = {"", "", "", ""};
+    if (rest[0] == '~') {
+        parts[0] = node->name_space;
+        parts[1] = "/";
+        parts[2] = node->name;
+        rest++;
+    } else if (rest[0] != '/') {
+        parts[0] = node->name_space;
+        parts[1] = "/";
+    }
+    parts[3] = rest;
+    size_t length = 0;
+    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
+        const size_t count = strlen(parts[i]);
+        if (count >= size - length) {
+            return 0;
+        }
+        memcpy(name + length, parts[i], count + 1);
+        length += count;
+    }
+    return length;
+}
