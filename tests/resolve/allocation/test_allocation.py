@@ -231,7 +231,11 @@ def test_the_same_in_every_run(tmp_path: Path) -> None:
     root = str(Path(__file__).resolve().parents[3])
     results = set()
     for seed in ("1", "2", "3"):
-        env = {**os.environ, "PYTHONHASHSEED": seed, "PYTHONPATH": os.pathsep.join([root, os.environ.get("PYTHONPATH", "")])}
+        env = {
+            **os.environ,
+            "PYTHONHASHSEED": seed,
+            "PYTHONPATH": os.pathsep.join([root, os.environ.get("PYTHONPATH", "")]),
+        }
         results.add(subprocess.run(command, env=env, capture_output=True, text=True, check=True).stdout)
     assert len(results) == 1
     assert "timer TIM2" in results.pop()
