@@ -12,7 +12,7 @@ from epg import __version__
 from epg.emit.cmake import PathNames
 from epg.load.models.model import Model
 from epg.resolve.allocation import Assignment
-from epg.resolve.application import Application, ResolvedComponent, Step, Wire
+from epg.resolve.application import Application, ResolvedComponent, Step, Topic, Wire
 from epg.source import Span
 
 
@@ -45,8 +45,8 @@ def describe(app: Application, names: PathNames, hash: str = "") -> str:
         "inputs": [_wire(wire, "inputs", app, names) for wire in app.inputs],
         "outputs": [_wire(wire, "outputs", app, names) for wire in app.outputs],
         "unconnected": sorted({p.name for p in app.model.outputs} - {wire.port.name for wire in app.outputs}),
-        "subscriptions": [topic.name for topic in app.subscriptions],
-        "publications": [topic.name for topic in app.publications],
+        "subscriptions": [_topic(topic) for topic in app.subscriptions],
+        "publications": [_topic(topic) for topic in app.publications],
     }
     if app.plant is not None:
         data["plant"] = {
@@ -97,6 +97,18 @@ def describe_divider(found: Assignment) -> dict[str, Any] | None:
         "reached": float(found.frequency),
         "error": float(found.frequency / found.asked - 1),
         "steps": found.settings["top"] + 1,
+    }
+
+
+def _topic(topic: Topic) -> dict[str, Any]:
+    """``values`` are the names of its numbers in CSV files of topics and setpoints."""
+    return {
+        "topic": topic.name,
+        "component": topic.component.name,
+        "type": "std_msgs/msg/Float64",
+        "qos": topic.qos,
+        "role": "values",
+        "values": [topic.name],
     }
 
 
