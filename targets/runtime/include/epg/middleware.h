@@ -22,6 +22,13 @@ typedef struct epg_middleware {
      * millisecond; setpoints that have arrived are delivered, values that are due are sent.
      */
     void (*poll)(uint64_t now_ns);
+    /** The program ends: takes leave of the other end, without waiting for it.  NULL: there is nothing to do. */
+    void (*stop)(void);
+    /**
+     * For a middleware with a connection of its own, on a platform that can sleep: returns when something has arrived,
+     * at `until_ns` at the latest.  NULL: the platform waits for the stream.
+     */
+    void (*wait)(uint64_t until_ns);
 } epg_middleware_t;
 
 #endif

@@ -20,6 +20,7 @@ typedef struct epg_stream {
     /** How many bytes write() would take now. */
     size_t (*writable)(void *context);
     void *context;
+    bool datagrams; /**< one write() is one packet, and one read() gives one, whole if `size` is large enough (UDP) */
 } epg_stream_t;
 
 #endif
