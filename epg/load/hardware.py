@@ -2,8 +2,8 @@
 
 The relations that a chip's peripherals can have are few, and all are here: an instance is exclusive or has *slots*;
 its users *agree* on attributes; it is reached through enumerated *pins*, through any pins, or through *neighbours*;
-a *divider* makes its frequency of a clock.  A chip that needs another relation needs another line of Python, in
-:mod:`epg.resolve`; any other chip is a folder.
+a *divider* makes its frequency of a clock; single values of attributes can be *unsupported*.  A chip that needs another
+relation needs another line of Python, in :mod:`epg.resolve`; any other chip is a folder.
 """
 
 from __future__ import annotations
@@ -58,11 +58,19 @@ class Peripheral:
 
 
 @dataclass(frozen=True)
+class Unsupported:
+    """Why a chip cannot do what an attribute asks for, and what a user can do instead."""
+
+    because: str
+    instead: str
+
+
+@dataclass(frozen=True)
 class ResourceClass:
     """What kinds and platforms claim, and how this chip implements it.
 
     ``signals`` says how the pin of a signal is found: "any" pin, one of the "slot" that is taken, or one of a slot
-    that is named.
+    that is named.  ``unsupported`` maps an attribute and a value of it to why claims must not have it.
     """
 
     name: str
@@ -76,6 +84,7 @@ class ResourceClass:
     divider_from: str | None  # "frequency" or "period"
     exact: bool
     counter: tuple[int, int] | None
+    unsupported: Mapping[tuple[str, str], Unsupported]
     span: Span
 
     @property
@@ -307,6 +316,13 @@ def _resource_class(name: str, node: Node, soc: Node) -> ResourceClass:
         divider_from=text_of(divider, "from") if divider else None,
         exact=divider is not None and flag_of(divider, "exact"),
         counter=integer_range(counter) if counter else None,
+        unsupported=MappingProxyType(
+            {
+                (attribute, value): Unsupported(text_of(reason, "because"), text_of(reason, "instead"))
+                for attribute, values in map_of(node, "unsupported").items()
+                for value, reason in map_of(values).items()
+            }
+        ),
         span=soc["classes"].key_span(name),
     )
 

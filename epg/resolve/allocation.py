@@ -96,6 +96,7 @@ def _check(claims: Sequence[Claim], pins: Pins, target: Target, diagnostics: Dia
         if found is not None and peripheral is not None:
             places = pins.places(claim, resource_class, peripheral, found)
         errors = diagnostics.error_count
+        _check_support(claim, resource_class, target, diagnostics)
         division = _division(claim, resource_class, peripheral, target, diagnostics)
         if found is None or (peripheral is not None and not places) or diagnostics.error_count > errors:
             continue
@@ -125,6 +126,17 @@ def _class(claim: Claim, target: Target, diagnostics: Diagnostics) -> ResourceCl
         message = f"the claim '{claim.name}' gives signal '{signal}' of {found.a_title} no pin"
         diagnostics.error("incomplete-claim", claim.stated_in, message, notes=[Note("this class", found.span)])
     return None if unknown or missing else found
+
+
+def _check_support(claim: Claim, resource_class: ResourceClass, target: Target, diagnostics: Diagnostics) -> None:
+    """Reports attributes with a value that this chip does not do."""
+    for attribute, stated in claim.attributes.items():
+        unsupported = resource_class.unsupported.get((attribute, str(stated.value)))
+        if unsupported is not None:
+            what = f"{attribute} '{stated.value}' of {claim.user}"
+            message = f"{what} does not work on {target.soc.title}: {unsupported.because}"
+            hint, notes = unsupported.instead, stated.notes
+            diagnostics.error("unsupported-value", stated.span, message, hint=hint, notes=notes)
 
 
 def _incomplete(claim: Claim, resource_class: ResourceClass, diagnostics: Diagnostics) -> None:

@@ -202,6 +202,15 @@ def test_several_conflicts_are_reported_at_once(tmp_path: Path) -> None:
     assert outcome.ids == ["pwm-frequency-conflict"] * 2
 
 
+@pytest.mark.parametrize("pull", ["none", "up", "down"])
+@pytest.mark.parametrize("target", ["rpi_pico_bare_metal", "rpi_pico2_bare_metal", "rpi_pico2_freertos", "host"])
+def test_pull_downs_that_a_chip_has_not(tmp_path: Path, target: str, pull: str) -> None:
+    outcome = hardware.allocate_components(
+        tmp_path, target, [f"b: {{kind: digital_input, pins: {{value: 3}}, pull: {pull}}}"]
+    )
+    assert outcome.ids == (["unsupported-value"] if pull == "down" and "pico2" in target else [])
+
+
 def test_an_unknown_period_still_takes_a_slice(tmp_path: Path) -> None:
     """Before the model is known, a board without a slice for the loop is refused already."""
     full = [f"  p{n}: {PWM % ('20 kHz', 2 * n)}" for n in range(8)]
