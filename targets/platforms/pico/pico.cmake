@@ -18,9 +18,13 @@ function(_epg_pico_target name)
   add_library(${name}_port INTERFACE)
   target_sources(${name}_port INTERFACE ${arg_SERVICE})
   target_link_libraries(${name}_port INTERFACE epg_pico ${arg_LIBRARIES})
-  if(EPG_TRANSPORT STREQUAL "usb")
+  set(usb "${EPG_TRANSPORT}" "${EPG_CONSOLE_TRANSPORT}")
+  list(FILTER usb INCLUDE REGEX "^usb$")
+  list(LENGTH usb ports)
+  if(ports GREATER 0)
     _epg_pico_usb_library()
     target_link_libraries(${name}_port INTERFACE epg_pico_usb)
+    target_compile_definitions(${name}_port INTERFACE EPG_PICO_USB_PORTS=${ports})
     # Only when a directory is done is it known what the user has set of executables.
     cmake_language(EVAL CODE "cmake_language(DEFER DIRECTORY [[${CMAKE_SOURCE_DIR}]] CALL _epg_pico_check_stdio [[${name}]] [[${CMAKE_SOURCE_DIR}]])")
   endif()
@@ -150,6 +154,7 @@ function(_epg_pico_library)
 endfunction()
 
 # The transport over USB: its own TinyUSB device, so it excludes the SDK's stdio over USB.
+# Whoever links it defines how many serial ports it has: EPG_PICO_USB_PORTS.
 function(_epg_pico_usb_library)
   if(TARGET epg_pico_usb)
     return()

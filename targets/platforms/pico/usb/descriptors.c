@@ -1,6 +1,6 @@
 /**
  * @file
- * Descriptors: a serial port (CDC ACM) and the interface by which picotool reboots the board.
+ * Descriptors: one or two serial ports (CDC ACM) and the interface by which picotool reboots the board.
  *
  * The numbers are those of the Pico SDK's own serial port, by which picotool and udev rules know a board that runs
  * firmware; the serial number is the board's unique id, so that several boards can be told apart.  Windows finds the
@@ -15,12 +15,23 @@
 #define PRODUCT_CDC 0x0009
 #endif
 
+/* Of the first port; those of the second are two further. */
 #define ENDPOINT_NOTIFICATION 0x81
 #define ENDPOINT_OUT 0x02
 #define ENDPOINT_IN 0x82
+#define ENDPOINTS_OF_PORT 2
 #define MAX_POWER_MA 250
 
-enum { TEXT_LANGUAGE, TEXT_MANUFACTURER, TEXT_PRODUCT, TEXT_SERIAL, TEXT_CDC, TEXT_RESET, TEXTS };
+enum {
+    TEXT_LANGUAGE,
+    TEXT_MANUFACTURER,
+    TEXT_PRODUCT,
+    TEXT_SERIAL,
+    TEXT_CDC,
+    TEXT_RESET,
+    TEXT_SECOND_CDC,
+    TEXTS = TEXT_RESET + EPG_PICO_USB_PORTS
+};
 
 /** Characters of the longest text. */
 #define TEXT_LENGTH 31
@@ -45,11 +56,15 @@ static const tusb_desc_device_t device = {
 };
 
 #define INTERFACE_LENGTH 9
-#define CONFIGURATION_LENGTH (TUD_CONFIG_DESC_LEN + TUD_CDC_DESC_LEN + INTERFACE_LENGTH)
+#define CONFIGURATION_LENGTH (TUD_CONFIG_DESC_LEN + EPG_PICO_USB_PORTS * TUD_CDC_DESC_LEN + INTERFACE_LENGTH)
 
 static const uint8_t configuration[] = {
     TUD_CONFIG_DESCRIPTOR(1, EPG_USB_INTERFACES, 0, CONFIGURATION_LENGTH, 0, MAX_POWER_MA),
     TUD_CDC_DESCRIPTOR(EPG_USB_CDC, TEXT_CDC, ENDPOINT_NOTIFICATION, 8, ENDPOINT_OUT, ENDPOINT_IN, 64),
+#if EPG_PICO_USB_PORTS == 2
+    TUD_CDC_DESCRIPTOR(EPG_USB_SECOND_CDC, TEXT_SECOND_CDC, ENDPOINT_NOTIFICATION + ENDPOINTS_OF_PORT, 8,
+                       ENDPOINT_OUT + ENDPOINTS_OF_PORT, ENDPOINT_IN + ENDPOINTS_OF_PORT, 64),
+#endif
     /* The reset interface has no endpoints. */
     INTERFACE_LENGTH,
     TUSB_DESC_INTERFACE,
@@ -130,25 +145,40 @@ bool tud_vendor_control_xfer_cb(uint8_t port, uint8_t stage, const tusb_control_
     return tud_control_xfer(port, request, (void *)(uintptr_t)microsoft, sizeof microsoft);
 }
 
+static const char *text_of(uint8_t index)
+{
+    static char serial[2 * PICO_UNIQUE_BOARD_ID_SIZE_BYTES + 1];
+    const char *title = NULL;
+    switch (index) {
+    case TEXT_MANUFACTURER:
+        return "Raspberry Pi";
+    case TEXT_PRODUCT:
+        return "Pico";
+    case TEXT_SERIAL:
+        pico_get_unique_board_id_string(serial, sizeof serial);
+        return serial;
+    case TEXT_RESET:
+        return "Reset";
+    case TEXT_CDC:
+        title = epg_pico_usb_titles[0];
+        break;
+    default:
+        title = epg_pico_usb_titles[EPG_PICO_USB_PORTS - 1];
+        break;
+    }
+    return title != NULL ? title : "EPG";
+}
+
 const uint16_t *tud_descriptor_string_cb(uint8_t index, uint16_t language)
 {
     (void)language;
-    static char serial[2 * PICO_UNIQUE_BOARD_ID_SIZE_BYTES + 1];
-    static const char *const texts[TEXTS] = {
-        [TEXT_MANUFACTURER] = "Raspberry Pi",
-        [TEXT_PRODUCT] = "Pico",
-        [TEXT_SERIAL] = serial,
-        [TEXT_CDC] = "EPG",
-        [TEXT_RESET] = "Reset",
-    };
     static uint16_t descriptor[1 + TEXT_LENGTH];
     size_t length = 0;
     if (index == TEXT_LANGUAGE) {
         descriptor[1] = 0x0409; /* English */
         length = 1;
     } else if (index < TEXTS) {
-        pico_get_unique_board_id_string(serial, sizeof serial);
-        for (const char *text = texts[index]; text[length] != '\0' && length < TEXT_LENGTH; length++) {
+        for (const char *text = text_of(index); text[length] != '\0' && length < TEXT_LENGTH; length++) {
             descriptor[1 + length] = (uint8_t)text[length];
         }
     } else {

@@ -1,19 +1,28 @@
 /**
  * @file
- * The transport `usb`: a serial port over USB (CDC ACM).  Nothing here waits for the host.
+ * The transport `usb`: serial ports over USB (CDC ACM).  Nothing here waits for the host.
  */
 #include "parts.h"
 #include "usb.h"
+
+const char *epg_pico_usb_titles[EPG_PICO_USB_PORTS];
+
+/** The number of a port within TinyUSB, which is its context. */
+static uint8_t number_of(const void *context)
+{
+    return (uint8_t)(uintptr_t)context;
+}
 
 static void on_interrupt(void)
 {
     epg_pico_service_wake();
 }
 
-static bool start(void)
+static bool start(void *context, const char *title)
 {
+    epg_pico_usb_titles[number_of(context)] = title;
     if (tud_inited()) {
-        return true; /* started before and stopped since: the device stays */
+        return true; /* the other port, or started before and stopped since: the device stays */
     }
     if (!tusb_init()) {
         return false;
@@ -23,55 +32,63 @@ static bool start(void)
     return true;
 }
 
-static void poll(void)
+static void poll(void *context)
 {
-    tud_task();
+    if (number_of(context) == 0U) {
+        tud_task(); /* for both ports */
+    }
 }
 
-static void flush(void)
+static void flush(void *context)
 {
-    tud_cdc_write_flush();
+    tud_cdc_n_write_flush(number_of(context));
 }
 
 /* Somebody has opened the port: terminals and agents set DTR. */
 static bool connected(void *context)
 {
-    (void)context;
-    return tud_cdc_connected();
+    return tud_cdc_n_connected(number_of(context));
 }
 
 static size_t read(void *context, void *data, size_t size)
 {
-    (void)context;
-    return tud_cdc_read(data, size);
+    return tud_cdc_n_read(number_of(context), data, size);
 }
 
 static size_t write(void *context, const void *data, size_t size)
 {
-    (void)context;
-    return tud_cdc_connected() ? tud_cdc_write(data, size) : 0U;
+    const uint8_t number = number_of(context);
+    return tud_cdc_n_connected(number) ? tud_cdc_n_write(number, data, size) : 0U;
 }
 
 static size_t writable(void *context)
 {
-    (void)context;
-    return tud_cdc_connected() ? tud_cdc_write_available() : 0U;
+    const uint8_t number = number_of(context);
+    return tud_cdc_n_connected(number) ? tud_cdc_n_write_available(number) : 0U;
 }
 
 /** Who opens the port next gets nothing that was meant for who has closed it. */
-void tud_cdc_line_state_cb(uint8_t interface, bool dtr, bool rts)
+void tud_cdc_line_state_cb(uint8_t number, bool dtr, bool rts)
 {
-    (void)interface;
     (void)rts;
     if (!dtr) {
-        tud_cdc_write_clear();
-        tud_cdc_read_flush();
+        tud_cdc_n_write_clear(number);
+        tud_cdc_n_read_flush(number);
     }
 }
 
-const epg_pico_transport_t epg_pico_usb = {
+const epg_transport_t epg_pico_usb = {
     .start = start,
     .poll = poll,
     .flush = flush,
-    .stream = {.connected = connected, .read = read, .write = write, .writable = writable},
+    .stream = {.connected = connected, .read = read, .write = write, .writable = writable, .context = NULL},
 };
+
+#if EPG_PICO_USB_PORTS == 2
+const epg_transport_t epg_pico_usb_second = {
+    .start = start,
+    .poll = poll,
+    .flush = flush,
+    .stream = {.connected = connected, .read = read, .write = write, .writable = writable, .context = (void *)1},
+};
+#endif

@@ -13,8 +13,8 @@
 #include <stdint.h>
 
 #include "epg/middleware.h"
-#include "epg/stream.h"
 #include "epg/target.h"
+#include "epg/transport.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -38,20 +38,14 @@ typedef struct epg_pico_tick {
     uint16_t top;
 } epg_pico_tick_t;
 
-/** A way for bytes between a middleware and the world.  All functions run on the communication side. */
-typedef struct epg_pico_transport {
-    bool (*start)(void); /**< before the control loop starts; false when that is impossible */
-    void (*poll)(void);  /**< at least once per millisecond, before the middleware */
-    void (*flush)(void); /**< after the middleware: what it has written goes out */
-    epg_stream_t stream;
-} epg_pico_transport_t;
-
 /** A target as its port layer runs it. */
 typedef struct epg_pico_target {
     const epg_target_t *target;
     uint32_t clock; /**< Hz of clk_sys, which all dividers were computed for */
     epg_pico_tick_t tick;
-    const epg_pico_transport_t *transport; /**< for the target's middleware; NULL: it needs none */
+    const epg_transport_t *transport; /**< for the target's middleware; NULL: it needs none */
+    const char *transport_title;
+    const epg_transport_t *console_transport; /**< for the console beside it; NULL: there is none */
 } epg_pico_target_t;
 
 /** Why epg_pico_start() did not start. */
@@ -76,8 +70,10 @@ typedef struct epg_pico_status {
     uint32_t service_stack_used;
 } epg_pico_status_t;
 
-/** The transport over USB CDC, in usb/; linked where a target uses it. */
-extern const epg_pico_transport_t epg_pico_usb;
+/** The transport over USB CDC, in usb/, linked where a target uses it: the first serial port of the device, */
+extern const epg_transport_t epg_pico_usb;
+/** and the second one, which a device has whose first one is not the console's. */
+extern const epg_transport_t epg_pico_usb_second;
 
 /** All outputs of the target in this executable; generated.  They are made safe before main() and after each fault. */
 extern const epg_pico_outputs_t epg_pico_outputs;
