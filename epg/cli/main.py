@@ -25,6 +25,7 @@ COMMANDS = {
     "targets": "list targets, component kinds and predefined .tcf files",
     "explain": "show the way of a model port to its pin",
     "simulate": "run a host executable through a scenario and judge the result",
+    "launch": "write a ROS 2 launch file, or systemd units, for the agents of targets",
     "doctor": "show what this computer has and lacks",
     "schema": "write the JSON Schemas of EPG's files, for editors",
     "migrate": "rewrite files of an older format in the newest one",

@@ -1,0 +1,123 @@
+"""``epg launch``: writes a launch file, and systemd units, for the agents that targets need."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+
+from epg.diagnostics import Diagnostics
+from epg.source import Span
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "targets", nargs="+", type=Path, metavar="TARGET", help="a build folder, or a <name>.json of a generated target"
+    )
+    parser.add_argument(
+        "--board",
+        action="append",
+        default=[],
+        metavar="NAME=SERIAL",
+        help="serial number of the board that runs target NAME; again for each further board",
+    )
+    parser.add_argument(
+        "--device",
+        action="append",
+        default=[],
+        metavar="NAME=DEVICE[:BAUD]",
+        help="tty that target NAME is behind, for targets that are not on USB",
+    )
+    parser.add_argument("--port", type=_port, default=8888, help="UDP port of the agent; default: 8888")
+    parser.add_argument("--output", type=Path, default=Path(), metavar="FOLDER", help="default: here")
+    parser.add_argument("--force", action="store_true", help="overwrite files")
+    units = parser.add_argument_group("services")
+    units.add_argument("--systemd", action="store_true", help="write systemd units too, into FOLDER/systemd")
+    units.add_argument("--user", default="ubuntu", help="user that the agents run as; default: ubuntu")
+    units.add_argument("--distribution", default="jazzy", help="ROS 2 distribution; default: jazzy")
+    units.add_argument(
+        "--workspace", metavar="FOLDER", help="where the agent was built; default: /home/<user>/microros_ws"
+    )
+    units.add_argument("--domain", type=_domain, default=0, help="ROS_DOMAIN_ID; default: 0")
+
+
+def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
+    from epg.cli.report import to_json
+    from epg.ros.agents import Wiring, plan_agents
+    from epg.ros.launch_file import FILE_NAME, launch_file
+    from epg.ros.robot import load_robots
+    from epg.ros.systemd_units import Installation, unit_files
+
+    robots = load_robots(options.targets, diagnostics)
+    wiring = Wiring(
+        _assignments("--board", options.board, diagnostics),
+        _assignments("--device", options.device, diagnostics),
+        options.port,
+    )
+    diagnostics.stop_if_errors()
+    agents = plan_agents(robots, wiring, diagnostics)
+    diagnostics.stop_if_errors()
+    files = {FILE_NAME: launch_file(agents)}
+    if options.systemd:
+        workspace = options.workspace or f"/home/{options.user}/microros_ws"
+        installation = Installation(options.user, options.distribution, workspace, options.domain)
+        files |= {f"systemd/{name}": text for name, text in unit_files(agents, installation).items()}
+    _write(options.output, files, options.force, diagnostics)
+    if options.json:
+        data = [
+            {
+                "name": agent.name,
+                "arguments": list(agent.arguments),
+                "device": agent.device,
+                "nodes": [robot.full_node for robot in agent.serves],
+            }
+            for agent in agents
+        ]
+        sys.stdout.write(to_json({"agents": data, "files": list(files)}))
+    else:
+        print("wrote " + ", ".join(str(options.output / name) for name in files))
+    return 0
+
+
+def _write(folder: Path, files: Mapping[str, str], force: bool, diagnostics: Diagnostics) -> None:
+    """Writes all files, or none if one of them would be changed without ``force``."""
+    for name, text in files.items():
+        path = folder / name
+        if not force and path.exists() and (not path.is_file() or path.read_bytes() != text.encode("utf-8")):
+            diagnostics.error("file-exists", Span(str(path)), "this file exists", hint="--force overwrites it")
+    diagnostics.stop_if_errors()
+    for name, text in files.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(text.encode("utf-8"))
+
+
+def _assignments(option: str, texts: list[str], diagnostics: Diagnostics) -> dict[str, list[str]]:
+    """``NAME=VALUE`` arguments: the values of each name, in the order given."""
+    result: dict[str, list[str]] = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        if not (name and equals and value):
+            shown = f"{option} {text}"
+            span = Span("command line", 1, len(option) + 2, len(shown) + 1, text=shown)
+            hint = f"write {option} <name of the target>=<value>"
+            diagnostics.error("not-an-assignment", span, f"'{text}' does not say which target it is for", hint=hint)
+            continue
+        result.setdefault(name, []).append(value)
+    return result
+
+
+def _port(text: str) -> int:
+    return _between(text, 1, 65535)
+
+
+def _domain(text: str) -> int:
+    return _between(text, 0, 232)
+
+
+def _between(text: str, low: int, high: int) -> int:
+    number = int(text)
+    if not low <= number <= high:
+        raise argparse.ArgumentTypeError(f"{text} is not within {low} to {high}")
+    return number

@@ -1,0 +1,152 @@
+"""Which micro-ROS agents a set of targets needs: one per board, one for all targets that come by UDP.
+
+A board on USB is known by its serial number, because ``/dev/ttyACM0`` is whichever board was plugged in first::
+
+    /dev/serial/by-id/usb-Raspberry_Pi_Pico_E6614103E72B8C2F-if00
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from epg.diagnostics import Diagnostics, did_you_mean
+from epg.ros.robot import Robot
+from epg.source import Span
+
+AGENT_MIDDLEWARES = ("xrce", "micro_ros")
+DEFAULT_BAUD_RATE = 115200
+"""What the agent sets a tty to.  A board on USB takes whatever rate it is told."""
+
+_BY_ID = "/dev/serial/by-id/usb-Raspberry_Pi_Pico_{serial}-if00"
+"""udev's name of a Pico's first port: manufacturer, product and serial number of its descriptors, interface 0."""
+
+
+@dataclass(frozen=True)
+class Agent:
+    """One process.  ``device`` is the tty it opens, None for UDP; ``serves`` are the targets behind it."""
+
+    name: str
+    arguments: tuple[str, ...]
+    device: str | None
+    serial: str | None
+    serves: tuple[Robot, ...]
+
+
+@dataclass(frozen=True)
+class Wiring:
+    """What a description cannot know: serial numbers of the boards and ttys, by name of the target; the UDP port."""
+
+    boards: Mapping[str, Sequence[str]]
+    devices: Mapping[str, Sequence[str]]
+    port: int = 8888
+
+
+def plan_agents(robots: Sequence[Robot], wiring: Wiring, diagnostics: Diagnostics) -> list[Agent]:
+    """The agents that ``robots`` need, in the order of the robots; those for UDP last."""
+    names = {robot.name for robot in robots}
+    for option, given in (("--board", wiring.boards), ("--device", wiring.devices)):
+        for name in given:
+            if name not in names:
+                span = _argument(option, f"{name}={given[name][0]}")
+                hint = did_you_mean(name, names, "targets")
+                diagnostics.error("unknown-target-name", span, f"there is no target '{name}'", hint=hint)
+    for name, count in Counter(robot.name for robot in robots).items():
+        if count > 1:
+            files = ", ".join(str(robot.file) for robot in robots if robot.name == name)
+            diagnostics.error("duplicate-target-name", Span(files), f"{count} targets are called '{name}'")
+    diagnostics.stop_if_errors()
+    agents: list[Agent] = []
+    by_udp: list[Robot] = []
+    for robot in robots:
+        if robot.middleware not in AGENT_MIDDLEWARES:
+            why = "it speaks DDS itself" if robot.middleware == "dds" else f"its middleware is '{robot.middleware}'"
+            diagnostics.warning("no-agent-needed", Span(str(robot.file)), f"'{robot.name}' needs no agent: {why}")
+        elif robot.name in wiring.devices:
+            agents += [_on_device(robot, device, diagnostics) for device in wiring.devices[robot.name]]
+        elif robot.transport == "usb":
+            agents += _on_usb(robot, wiring.boards.get(robot.name, ()), diagnostics)
+        elif robot.transport == "udp":
+            by_udp.append(robot)
+        else:
+            message = f"'{robot.name}' is behind '{robot.transport}': which tty of this computer is that?"
+            hint = f"for example --device {robot.name}=/dev/ttyAMA0:921600"
+            diagnostics.error("device-missing", Span(str(robot.file)), message, hint=hint)
+    if by_udp:
+        port = str(wiring.port)
+        agents.append(Agent(f"agent_udp_{port}", ("udp4", "-p", port), None, None, tuple(by_udp)))
+    _refuse_one_device_twice(agents, diagnostics)
+    _warn_of_equal_nodes(agents, diagnostics)
+    if not agents and not diagnostics.has_errors:
+        diagnostics.error("nothing-to-launch", Span("command line"), "none of these targets needs an agent")
+    return agents
+
+
+def _on_usb(robot: Robot, serials: Sequence[str], diagnostics: Diagnostics) -> list[Agent]:
+    if not serials:
+        message = f"'{robot.name}' is on USB: what is the serial number of its board?"
+        hint = f"'ls /dev/serial/by-id' shows it while the board is plugged in; then --board {robot.name}=<number>"
+        diagnostics.error("board-missing", Span(str(robot.file)), message, hint=hint)
+    agents = []
+    for serial in serials:
+        number = serial.upper()
+        if not re.fullmatch("[0-9A-F]{16}", number):
+            span = _argument("--board", f"{robot.name}={serial}")
+            message = f"'{serial}' is no serial number of a Pico"
+            diagnostics.error("wrong-serial-number", span, message, hint="it has 16 hexadecimal digits")
+            continue
+        device = _BY_ID.format(serial=number)
+        agents.append(
+            Agent(
+                f"agent_{robot.name}_{number}",
+                _serial_arguments(device, DEFAULT_BAUD_RATE),
+                device,
+                number,
+                (robot.with_serial(number),),
+            )
+        )
+    return agents
+
+
+def _on_device(robot: Robot, text: str, diagnostics: Diagnostics) -> Agent:
+    """``text`` is "/dev/ttyAMA0" or "/dev/ttyAMA0:921600"."""
+    device, _, rate = text.partition(":")
+    if not device.startswith("/dev/") or not re.fullmatch("([1-9][0-9]{2,6})?", rate):
+        span = _argument("--device", f"{robot.name}={text}")
+        hint = "such as /dev/ttyAMA0 or /dev/ttyAMA0:921600"
+        diagnostics.error("wrong-device", span, f"'{text}' is no tty, or no tty and baud rate", hint=hint)
+    stem = re.sub("[^0-9A-Za-z]+", "_", device.removeprefix("/dev/"))
+    arguments = _serial_arguments(device, int(rate or DEFAULT_BAUD_RATE))
+    return Agent(f"agent_{robot.name}_{stem}", arguments, device, None, (robot,))
+
+
+def _serial_arguments(device: str, rate: int) -> tuple[str, ...]:
+    return ("serial", "-b", str(rate), "--dev", device)
+
+
+def _refuse_one_device_twice(agents: Sequence[Agent], diagnostics: Diagnostics) -> None:
+    users: dict[str, list[Agent]] = {}
+    for agent in agents:
+        if agent.device is not None:
+            users.setdefault(agent.device, []).append(agent)
+    for device, several in users.items():
+        if len(several) > 1:
+            names = ", ".join(f"'{robot.name}'" for agent in several for robot in agent.serves)
+            diagnostics.error("device-used-twice", Span("command line"), f"{device} is given to {names}")
+
+
+def _warn_of_equal_nodes(agents: Sequence[Agent], diagnostics: Diagnostics) -> None:
+    """Two robots of one name would listen to the same setpoints, and their positions could not be told apart."""
+    nodes = Counter(robot.full_node for agent in agents for robot in agent.serves if not robot.has_serial_in_names)
+    for node, count in nodes.items():
+        if count > 1:
+            message = f"{count} robots are the node '{node}', with the same topics"
+            hint = "write namespace: robot_$serial in the .tcf, or give each a name on its console"
+            diagnostics.warning("equal-nodes", Span("command line"), message, hint=hint)
+
+
+def _argument(option: str, value: str) -> Span:
+    text = f"{option} {value}"
+    return Span("command line", 1, len(option) + 2, len(text) + 1, text=text)

@@ -1,0 +1,128 @@
+"""Descriptions of generated targets (``<build>/epg/<name>/<name>.json``) as the ROS tools need them.
+
+>>> full_name("pan_subscriber", "/robot1", "JIWY_node")
+'/robot1/pan_subscriber'
+>>> full_name("~/enable", "", "JIWY_node"), full_name("/pan", "/robot1", "JIWY_node")
+('/JIWY_node/enable', '/pan')
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from epg.diagnostics import Diagnostics
+from epg.source import Span
+
+SERIAL = "$serial"
+
+
+@dataclass(frozen=True)
+class Topic:
+    """A topic: ``name`` as written in the ``.tcf``, ``values`` the names of its numbers in CSV files."""
+
+    name: str
+    type: str
+    qos: str
+    role: str
+    values: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Robot:
+    """One target.  ``node`` and ``namespace`` may still contain ``$serial``; ``domain`` is None for the default one."""
+
+    file: Path
+    name: str
+    board: str
+    platform: str
+    node: str
+    namespace: str
+    domain: int | None
+    middleware: str
+    transport: str | None
+    subscriptions: tuple[Topic, ...]
+    publications: tuple[Topic, ...]
+
+    def with_serial(self, serial: str) -> Robot:
+        """The same with the board's serial number in its names."""
+        return replace(self, node=self.node.replace(SERIAL, serial), namespace=self.namespace.replace(SERIAL, serial))
+
+    @property
+    def has_serial_in_names(self) -> bool:
+        return SERIAL in self.node + self.namespace
+
+    def topic(self, topic: Topic) -> str:
+        """The full ROS name of one of its topics."""
+        return full_name(topic.name, self.namespace, self.node)
+
+    @property
+    def full_node(self) -> str:
+        return f"{self.namespace}/{self.node}"
+
+
+def full_name(name: str, namespace: str, node: str) -> str:
+    """A topic as ``ros2 topic list`` shows it: ``name`` is absolute, private (``~/``) or relative to the namespace."""
+    if name.startswith("/"):
+        return name
+    if name.startswith("~"):
+        return f"{namespace}/{node}{name[1:]}"
+    return f"{namespace}/{name}"
+
+
+def load_robots(paths: list[Path], diagnostics: Diagnostics) -> list[Robot]:
+    """The targets described by files, or found in build folders; sorted by name within a folder."""
+    robots = []
+    for path in paths:
+        if path.is_dir():
+            found = [robot for file in _descriptions(path) if (robot := _read(file)) is not None]
+            if not found:
+                hint = "configure and build it first, or name a <name>.json"
+                diagnostics.error("no-description", Span(str(path)), "there is no generated target here", hint=hint)
+            robots += sorted(found, key=lambda robot: robot.name)
+        elif (robot := _read(path)) is not None:
+            robots.append(robot)
+        elif path.exists():
+            hint = "it stands in the build folder: epg/<name>/<name>.json"
+            message = "this is no description of a generated target"
+            diagnostics.error("not-a-description", Span(str(path)), message, hint=hint)
+        else:
+            diagnostics.error("file-not-found", Span(str(path)), f"there is no file '{path}'")
+    return robots
+
+
+def _descriptions(folder: Path) -> list[Path]:
+    """Where CMake leaves descriptions: below the build folder, or below those of its subprojects."""
+    return sorted({*folder.glob("epg/*/*.json"), *folder.glob("*/epg/*/*.json"), *folder.glob("*/*/epg/*/*.json")})
+
+
+def _read(file: Path) -> Robot | None:
+    """The target that ``file`` describes; None if it is something else."""
+    try:
+        data = json.loads(file.read_text(encoding="utf-8"))
+        return _robot(file, data)
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+        return None
+
+
+def _robot(file: Path, data: dict[str, Any]) -> Robot:
+    communication = data["communication"]
+    return Robot(
+        file=file,
+        name=data["name"],
+        board=data["target"]["board"],
+        platform=data["target"]["platform"],
+        node=data["node"],
+        namespace=data["namespace"],
+        domain=communication.get("domain"),
+        middleware=communication["middleware"],
+        transport=communication["transport"],
+        subscriptions=tuple(_topic(topic) for topic in data["subscriptions"]),
+        publications=tuple(_topic(topic) for topic in data["publications"]),
+    )
+
+
+def _topic(data: dict[str, Any]) -> Topic:
+    return Topic(data["topic"], data["type"], data["qos"], data["role"], tuple(data["values"]))

@@ -1,0 +1,167 @@
+"""systemd units that keep agents running from boot on: started when a board is plugged in, stopped when it goes.
+
+A unit that is wanted by, and bound to, a device's own unit needs no udev rule to be started: systemd makes device units
+of all ttys and of their names in ``/dev/serial/by-id``.
+"""
+
+from __future__ import annotations
+
+import shlex
+import string
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from epg.ros.agents import Agent
+from epg.ros.launch_file import describe
+
+RULES = "70-epg-boards.rules"
+
+
+@dataclass(frozen=True)
+class Installation:
+    """The computer the units are for: its user, ROS 2 distribution, workspace of the agent, and ROS domain."""
+
+    user: str = "ubuntu"
+    distribution: str = "jazzy"
+    workspace: str = "/home/ubuntu/microros_ws"
+    domain: int = 0
+
+
+def unit_files(agents: Sequence[Agent], installation: Installation) -> dict[str, str]:
+    """All files to install, by name: units, udev rules where boards are on USB, and a README that says how."""
+    files = {unit_name(agent): unit(agent, installation) for agent in agents}
+    serials = [agent.serial for agent in agents if agent.serial is not None]
+    if serials:
+        files[RULES] = udev_rules(serials)
+    files["README.md"] = _readme(agents, installation, bool(serials))
+    return files
+
+
+def unit_name(agent: Agent) -> str:
+    return f"epg-{agent.name.replace('_', '-')}.service"
+
+
+def unit(agent: Agent, installation: Installation) -> str:
+    """The text of one agent's unit."""
+    setup = [f"/opt/ros/{installation.distribution}/setup.bash", f"{installation.workspace}/install/local_setup.bash"]
+    steps = [f". {shlex.quote(file)}" for file in setup]
+    steps.append("exec " + shlex.join(["ros2", "run", "micro_ros_agent", "micro_ros_agent", *agent.arguments]))
+    after, bound, wanted = "network.target", "", "multi-user.target"
+    if agent.device is not None:
+        wanted = device_unit(agent.device)
+        after = f"{wanted} {after}"
+        bound = f"BindsTo={wanted}\n"
+    comments = "".join(f"# {line}\n" for line in describe(agent))
+    return f"""\
+{comments}[Unit]
+Description=micro-ROS agent of {", ".join(robot.name for robot in agent.serves)}
+{bound}After={after}
+StartLimitIntervalSec=0
+
+[Service]
+User={installation.user}
+SupplementaryGroups=dialout
+Environment=ROS_DOMAIN_ID={installation.domain} XRCE_DOMAIN_ID_OVERRIDE={installation.domain}
+ExecStart=/bin/bash -c {_quoted(" && ".join(steps))}
+Restart=always
+RestartSec=1
+
+[Install]
+WantedBy={wanted}
+"""
+
+
+def device_unit(path: str) -> str:
+    """The name of a device's unit, as ``systemd-escape --path --suffix=device`` gives it.
+
+    >>> device_unit("/dev/serial/by-id/usb-Pico_E66-if00")
+    'dev-serial-by\\\\x2did-usb\\\\x2dPico_E66\\\\x2dif00.device'
+    """
+    kept = frozenset((string.ascii_letters + string.digits + ":_.").encode())
+    trimmed = "/".join(part for part in path.split("/") if part)
+    name = ""
+    for position, byte in enumerate(trimmed.encode()):
+        if byte == ord("/"):
+            name += "-"
+        elif byte not in kept or (position == 0 and byte == ord(".")):
+            name += f"\\x{byte:02x}"
+        else:
+            name += chr(byte)
+    return f"{name}.device"
+
+
+def udev_rules(serials: Sequence[str]) -> str:
+    """Rules for the boards: readable by the group, and left alone by ModemManager, which takes any tty for a modem."""
+    lines = ["# Boards with an EPG target: for the group dialout, and no modems."]
+    for serial in serials:
+        lines.append(
+            f'SUBSYSTEM=="tty", ATTRS{{idVendor}}=="2e8a", ATTRS{{serial}}=="{serial}", '
+            'GROUP="dialout", MODE="0660", ENV{ID_MM_DEVICE_IGNORE}="1"'
+        )
+    return "\n".join(lines) + "\n"
+
+
+def _quoted(text: str) -> str:
+    """One word of ``ExecStart=``: systemd unquotes it, and takes ``%`` and ``$`` for something of its own."""
+    escaped = text.replace("\\", "\\\\").replace('"', '\\"').replace("%", "%%").replace("$", "$$")
+    return f'"{escaped}"'
+
+
+def _readme(agents: Sequence[Agent], installation: Installation, boards: bool) -> str:
+    units = [unit_name(agent) for agent in agents]
+    table = "\n".join(f"| `{unit_name(a)}` | {a.device or 'UDP port ' + a.arguments[-1]} |" for a in agents)
+    rules = ""
+    if boards:
+        rules = f"""
+The rules for udev give the boards to the group `dialout` and keep ModemManager from sending them modem commands:
+
+```sh
+sudo cp {RULES} /etc/udev/rules.d/
+sudo udevadm control --reload
+sudo udevadm trigger --subsystem-match=tty
+```
+"""
+    return f"""\
+# Agents as services
+
+Written by `epg launch --systemd`, for the user `{installation.user}`, ROS 2 {installation.distribution}, the agent in
+`{installation.workspace}` and ROS domain {installation.domain}.
+
+| unit | connects |
+|---|---|
+{table}
+
+A unit with a board starts when the board is plugged in, stops when it is unplugged, and is started again a second after
+it has failed. Nothing is lost by that: targets reconnect by themselves.
+
+## Install
+
+The user must be allowed to open serial ports (log out and in again after this):
+
+```sh
+sudo usermod -aG dialout {installation.user}
+```
+{rules}
+```sh
+sudo cp *.service /etc/systemd/system/
+sudo systemctl daemon-reload
+sudo systemctl enable {" ".join(units)}
+sudo systemctl start {" ".join(units)}
+```
+
+## Look
+
+```sh
+ls -l /dev/serial/by-id
+systemctl status {units[0]}
+journalctl -fu {units[0]}
+```
+
+## Remove
+
+```sh
+sudo systemctl disable --now {" ".join(units)}
+```
+
+and delete the files from `/etc/systemd/system`{" and `/etc/udev/rules.d`" if boards else ""}.
+"""
