@@ -1,0 +1,393 @@
+"""The agent: a thread that serves a link, and what tests do to it."""
+
+from __future__ import annotations
+
+import heapq
+import itertools
+import os
+import random
+import select
+import struct
+import threading
+import time
+from collections.abc import Callable, Hashable
+from dataclasses import dataclass
+
+from .client import Client
+from .faults import Faults
+from .links import Link
+from .log import Log
+from .representations import Description, read_description
+from .topics import Topics
+from .wire import (
+    AGENT_ID,
+    CLIENT_ID,
+    COOKIE,
+    VENDOR,
+    VERSION,
+    WITHOUT_KEY,
+    CdrReader,
+    Header,
+    Id,
+    Kind,
+    Status,
+    Submessage,
+    WireError,
+    split,
+    submessage,
+    submessages,
+)
+
+AGENT_INFO = COOKIE + VERSION + VENDOR + b"\0"
+
+
+@dataclass
+class Refusal:
+    """CREATEs that get an error instead of an entity."""
+
+    status: Status
+    kind: Kind | None = None
+    """None: of any kind."""
+    name: str = ""
+    """What the name of the participant or topic contains."""
+    times: int = 1_000_000
+    """So often, then no longer."""
+
+    def meets(self, kind: Kind, name: str) -> bool:
+        return self.times > 0 and self.kind in (None, kind) and self.name in name
+
+
+class Agent:
+    """Serves ``link`` in a thread of its own.
+
+    Behaves as eProsima's agent where a board can tell: a client that connects again with its old key keeps its
+    entities and its readers, so that their samples arrive while it creates them anew; an agent that has been restarted
+    answers pings of clients that it does not know.
+    """
+
+    def __init__(self, link: Link, topics: Topics | None = None, seed: int = 1, heartbeat: float = 0.2) -> None:
+        self.link = link
+        self.topics = topics if topics is not None else Topics()
+        self.lock = self.topics.lock  # one for all: a sample goes from a board to another in one go
+        self.to_board, self.from_board = Faults(), Faults()
+        self.refusals: list[Refusal] = []
+        self.clients: dict[bytes, Client] = {}
+        self.created: list[tuple[float, bytes]] = []
+        """When which client has connected, ever."""
+        self.mute: set[Id] = set()
+        """Submessages that are not answered."""
+        self.clock_offset = 0.0
+        """Seconds by which the agent's clock is ahead."""
+        self.log = Log()
+        self.malformed = 0
+        self._peers: dict[Hashable, bytes] = {}
+        self._heartbeat = heartbeat
+        self._chance = random.Random(seed)
+        self._later: list[tuple[float, int, Callable[[], None]]] = []
+        self._numbers = itertools.count()
+        self._frozen = False
+        self._alive = False
+        self._wake_read, self._wake_write = os.pipe()
+        os.set_blocking(self._wake_read, False)
+        self._ending = False
+        self._thread = threading.Thread(target=self._run, daemon=True, name="xrce agent")
+        self._thread.start()
+        self.start()
+
+    # What tests do to it -------------------------------------------------------------------------------------------
+
+    @property
+    def address(self) -> str:
+        """ "127.0.0.1:8888", or the path of a terminal."""
+        return str(self.link.address)  # type: ignore[attr-defined]
+
+    def start(self) -> None:
+        with self.lock:
+            self.link.open()
+            self._alive = True
+            self._wake()
+
+    def kill(self) -> None:
+        """Ends as a process that is killed: nobody is told, nothing is kept, entities vanish from the topics."""
+        with self.lock:
+            self._alive = False
+            self.link.close()
+            for client in self.clients.values():
+                client.delete_all()
+            self.clients.clear()
+            self._peers.clear()
+            self._later.clear()
+            self._wake()
+
+    def restart(self, pause: float = 0.0) -> None:
+        self.kill()
+        time.sleep(pause)
+        self.start()
+
+    def freeze(self) -> None:
+        """As a process that is stopped: what arrives waits in the system's buffer."""
+        self._frozen = True
+
+    def thaw(self) -> None:
+        self._frozen = False
+        self._wake()
+
+    def inject(self, data: bytes, raw: bool = False) -> None:
+        """Sends ``data`` to every peer as if it were a message; ``raw``: as bytes of the line without a frame."""
+        with self.lock:
+            for peer in self._peers:
+                self.log.add(False, peer, data, "injected")
+                (self.link.send_raw if raw else self.link.send)(peer, data)
+
+    def refuse(self, status: Status, kind: Kind | None = None, name: str = "", times: int = 1_000_000) -> None:
+        self.refusals.append(Refusal(status, kind, name, times))
+
+    def wait_until(self, condition: Callable[[], bool], seconds: float = 20.0) -> None:
+        assert self.topics.wait_until(condition, seconds), f"not within {seconds} s; log:\n{self.tail()}"
+
+    def wait_for_client(self, count: int = 1, seconds: float = 20.0) -> None:
+        """Until ``count`` boards are connected."""
+        self.wait_until(lambda: len(self.clients) >= count, seconds)
+
+    def tail(self, count: int = 30) -> str:
+        return "\n".join(str(frame) for frame in list(self.log)[-count:])
+
+    def close(self) -> None:
+        self.kill()
+        self._ending = True
+        self._wake()
+        self._thread.join()
+        os.close(self._wake_read)
+        os.close(self._wake_write)
+
+    def __enter__(self) -> Agent:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    # The thread ------------------------------------------------------------------------------------------------------
+
+    def _wake(self) -> None:
+        os.write(self._wake_write, b"x")
+
+    def _run(self) -> None:
+        next_beat = 0.0
+        while not self._ending:
+            with self.lock:
+                file = self.link.fileno() if self._alive and not self._frozen else -1
+                due = self._later[0][0] if self._later else next_beat
+            files = [self._wake_read] + ([file] if file >= 0 else [])
+            wait = max(0.0, min(due, next_beat, time.monotonic() + 0.05) - time.monotonic())
+            try:
+                ready = select.select(files, [], [], wait)[0]
+            except (OSError, ValueError):  # closed meanwhile
+                continue
+            if self._wake_read in ready:
+                os.read(self._wake_read, 4096)
+            if self._frozen:
+                continue
+            with self.lock:
+                if self._alive:
+                    if file in ready and file == self.link.fileno():
+                        self._receive()
+                    self._run_later()
+                    if time.monotonic() >= next_beat:
+                        next_beat = time.monotonic() + self._heartbeat
+                        self.link.open()  # a device that has come back
+                        self._beat()
+
+    def _run_later(self) -> None:
+        while self._later and self._later[0][0] <= time.monotonic():
+            heapq.heappop(self._later)[2]()
+
+    def _after(self, seconds: float, action: Callable[[], None]) -> None:
+        if seconds <= 0:
+            action()
+        else:
+            heapq.heappush(self._later, (time.monotonic() + seconds, next(self._numbers), action))
+            self._wake()
+
+    def _receive(self) -> None:
+        for peer, data in self.link.receive():
+            arriving = self.from_board.apply(data, self._chance)
+            self.log.add(True, peer, data, "" if arriving else "lost")
+            for wait, frame in arriving:
+                self._after(wait, lambda peer=peer, frame=frame: self._handle_frame(peer, frame))  # type: ignore[misc]
+
+    def _send(self, peer: Hashable, data: bytes) -> None:
+        leaving = self.to_board.apply(data, self._chance)
+        self.log.add(False, peer, data, "" if leaving else "lost")
+        for wait, frame in leaving:
+            self._after(wait, lambda peer=peer, frame=frame: self.link.send(peer, frame))  # type: ignore[misc]
+
+    def _beat(self) -> None:
+        for client in self.clients.values():
+            for beat in client.heartbeats():
+                self._reply(client, beat)
+            self._pump(client)
+
+    # Messages --------------------------------------------------------------------------------------------------------
+
+    def _handle_frame(self, peer: Hashable, frame: bytes) -> None:
+        try:
+            header, body = split(frame)
+            if header.session in (0x00, WITHOUT_KEY):
+                self._outside(peer, header, body)
+                return
+            key = header.key if header.session < WITHOUT_KEY else self._peers.get(peer, b"")
+            client = self.clients.get(key)
+            if client is None or client.session != header.session:
+                self._stranger(peer, header, body)
+                return
+            for whole in client.receive(header.stream, header.sequence, body):
+                self._handle_all(client, header.stream, whole)
+            if header.stream >= 0x80:
+                self._reply(client, client.reliable_input(header.stream).acknack(header.stream))
+        except WireError:
+            self.malformed += 1
+
+    def _outside(self, peer: Hashable, header: Header, body: bytes) -> None:
+        """Without a session."""
+        for part in submessages(body):
+            if part.id in self.mute:
+                continue
+            if part.id == Id.CREATE_CLIENT:
+                self._create_client(peer, header, part)
+            elif part.id == Id.GET_INFO:
+                self._send(peer, header.pack() + self._info(part, peer in self._peers))
+
+    def _stranger(self, peer: Hashable, header: Header, body: bytes) -> None:
+        """A session that this agent does not know: of before it was started."""
+        for part in itertools.islice(submessages(body), 1):
+            if part.id == Id.GET_INFO and Id.GET_INFO not in self.mute:
+                self._send(peer, header.pack() + self._info(part, False))
+            elif part.id == Id.DELETE and part.payload[2:4] == CLIENT_ID:
+                self._send(peer, header.pack() + submessage(Id.STATUS, part.payload[:4] + bytes([Status.OK, 0])))
+
+    def _create_client(self, peer: Hashable, header: Header, part: Submessage) -> None:
+        reader = part.reader
+        cookie, version, _vendor = reader.take(4), reader.take(2), reader.take(2)
+        key, session = reader.take(4), reader.u8()
+        if reader.flag():
+            for _ in range(reader.u32()):
+                reader.string(), reader.string()
+        mtu = reader.u16()
+        status = Status.OK
+        if cookie != COOKIE or key == bytes(4):
+            status = Status.INVALID_DATA
+        elif version[:1] != VERSION[:1]:
+            status = Status.INCOMPATIBLE
+        if status == Status.OK:
+            self._connect(peer, key, session, mtu)
+        reply = Header(session, 0, 0, key).pack()
+        self._send(peer, reply + submessage(Id.STATUS_AGENT, bytes([status, 0]) + AGENT_INFO))
+
+    def _connect(self, peer: Hashable, key: bytes, session: int, mtu: int) -> None:
+        before = self._peers.get(peer)
+        if before is not None and before != key:
+            self._forget(before)
+        client = self.clients.get(key)
+        if client is not None and client.session == session:
+            self._peers = {p: k for p, k in self._peers.items() if k != key}
+            client.peer, client.mtu = peer, mtu
+            client.reset_streams()
+        else:
+            self._forget(key)
+            client = Client(key, session, mtu, peer, self.topics)
+            client.pump = self._pump
+            self.clients[key] = client
+        self._peers[peer] = key
+        self.created.append((time.monotonic(), key))
+
+    def _forget(self, key: bytes) -> None:
+        client = self.clients.pop(key, None)
+        if client is not None:
+            client.delete_all()
+            self._peers = {p: k for p, k in self._peers.items() if k != key}
+
+    def _info(self, part: Submessage, known: bool) -> bytes:
+        """The answer to a ping; ``known``: there is a session."""
+        variant = b"\x01\x0d" + AGENT_INFO
+        activity = b"\x01\x0d\0" + struct.pack("<hxxI", 1, 0)  # available; no addresses
+        return submessage(Id.INFO, part.payload[:4] + bytes([Status.OK, known]) + variant + activity)
+
+    def _handle_all(self, client: Client, stream: int, body: bytes) -> None:
+        for part in submessages(body):
+            if part.id in self.mute:
+                continue
+            if part.id == Id.FRAGMENT:
+                whole = client.fragments(stream).add(part)
+                if whole is not None:
+                    self._handle_all(client, stream, whole)
+            else:
+                self._handle(client, stream, part)
+
+    def _handle(self, client: Client, stream: int, part: Submessage) -> None:
+        reader = part.reader
+        if part.id == Id.CREATE:
+            self._create(client, stream, part.flags, reader)
+        elif part.id == Id.DELETE:
+            self._delete(client, stream, reader.take(4))
+        elif part.id == Id.WRITE_DATA and not part.flags & 0x0E:
+            request = reader.take(4)
+            client.write(request[2:], reader.rest())
+        elif part.id == Id.READ_DATA:
+            status = client.read(part)
+            if status != Status.OK:
+                self._status(client, 0x80, reader.take(4), status)
+        elif part.id == Id.ACKNACK:
+            first, missing, which = reader.u16(), int.from_bytes(reader.take(2), "big"), reader.u8()
+            for message in client.reliable_output(which).acknack(first, missing):
+                self._send(client.peer, message)
+            self._pump(client)
+        elif part.id == Id.HEARTBEAT:
+            first, last, which = reader.u16(), reader.u16(), reader.u8()
+            for whole in client.reliable_input(which).heartbeat(first, last):
+                self._handle_all(client, which, whole)
+            self._reply(client, client.reliable_input(which).acknack(which))
+        elif part.id == Id.GET_INFO:
+            self._reply(client, self._info(part, True))
+        elif part.id == Id.RESET:
+            client.reset_streams()
+        elif part.id == Id.TIMESTAMP:
+            self._reply(client, submessage(Id.TIMESTAMP_REPLY, self._now() * 2 + reader.take(8)))
+
+    def _now(self) -> bytes:
+        now = time.time_ns() + int(self.clock_offset * 1e9)
+        return struct.pack("<iI", now // 10**9, now % 10**9)
+
+    def _create(self, client: Client, stream: int, flags: int, reader: CdrReader) -> None:
+        request = reader.take(4)
+        new = read_description(reader)
+        named: Description = client.objects.get(new.topic, new) if new.topic else new
+        for refusal in self.refusals:
+            if refusal.meets(new.kind, named.name):
+                refusal.times -= 1
+                self._status(client, stream, request, refusal.status)
+                return
+        self._status(client, stream, request, client.create(request[2:], new, flags))
+
+    def _delete(self, client: Client, stream: int, request: bytes) -> None:
+        if request[2:] == CLIENT_ID:
+            self._reply(client, submessage(Id.STATUS, request + bytes([Status.OK, 0])))
+            self._forget(client.key)
+        else:
+            self._status(client, stream, request, client.delete(request[2:]))
+
+    def _status(self, client: Client, stream: int, request: bytes, status: Status) -> None:
+        answer = submessage(Id.STATUS, request + bytes([status, 0]))
+        for message in client.push(0x80 if stream >= 0x80 else 0x01, answer) or []:
+            self._send(client.peer, message)
+
+    def _reply(self, client: Client, content: bytes) -> None:
+        """On no stream."""
+        self._send(client.peer, Header(client.session, 0, 0, client.key).pack() + content)
+
+    def _pump(self, client: Client) -> None:
+        if self._alive and not self._frozen:
+            for message in client.next_data():
+                self._send(client.peer, message)
+
+
+__all__ = ["AGENT_ID", "Agent", "Refusal"]

@@ -1,0 +1,184 @@
+"""What an agent keeps of one client: its session's streams, its entities and what it wants to read."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Callable, Hashable
+
+from .representations import Description
+from .streams import BestEffortInput, BestEffortOutput, Fragments, ReliableInput, ReliableOutput
+from .topics import DEPTH, Endpoint, ReaderEnd, Topics
+from .wire import BEST_EFFORT_STREAM, REPLACE, REUSE, Id, Kind, Status, Submessage, submessage
+
+UNLIMITED = 0xFFFF
+"""Of READ_DATA's ``max_samples``."""
+
+
+class Reading:
+    """A READ_DATA that has not ended: samples wait here, the oldest give way, as in a DDS history."""
+
+    def __init__(self, request: bytes, stream: int, samples: int, seconds: float, depth: int) -> None:
+        self.request, self.stream = request, stream
+        self._left = samples
+        self._end = time.monotonic() + seconds if seconds else None
+        self.waiting: deque[bytes] = deque(maxlen=depth)
+
+    @property
+    def over(self) -> bool:
+        return self._left == 0 or (self._end is not None and time.monotonic() > self._end)
+
+    def take(self) -> None:
+        """The first sample that waits has been sent."""
+        self.waiting.popleft()
+        if self._left != UNLIMITED:
+            self._left -= 1
+
+
+class Client:
+    def __init__(self, key: bytes, session: int, mtu: int, peer: Hashable, topics: Topics) -> None:
+        self.key, self.session, self.mtu, self.peer = key, session, mtu, peer
+        self.objects: dict[bytes, Description] = {}
+        self.ends: dict[bytes, Endpoint] = {}
+        self.readings: dict[bytes, Reading] = {}
+        self._topics = topics
+        self.pump: Callable[[Client], None] = lambda client: None
+        """Called when samples wait."""
+        self.reset_streams()
+
+    def reset_streams(self) -> None:
+        self._inputs: dict[int, ReliableInput | BestEffortInput] = {}
+        self._reliable: dict[int, ReliableOutput] = {}
+        self._best_effort: dict[int, BestEffortOutput] = {}
+        self._fragments: dict[int, Fragments] = {}
+
+    # Streams ---------------------------------------------------------------------------------------------------------
+
+    def reliable_input(self, stream: int) -> ReliableInput:
+        found = self._inputs.setdefault(stream, ReliableInput())
+        assert isinstance(found, ReliableInput)
+        return found
+
+    def receive(self, stream: int, sequence: int, body: bytes) -> list[bytes]:
+        if stream == 0:
+            return [body]
+        if stream >= 0x80:
+            return self.reliable_input(stream).receive(sequence, body)
+        return self._inputs.setdefault(stream, BestEffortInput()).receive(sequence, body)
+
+    def fragments(self, stream: int) -> Fragments:
+        return self._fragments.setdefault(stream, Fragments())
+
+    def reliable_output(self, stream: int) -> ReliableOutput:
+        return self._reliable.setdefault(stream, ReliableOutput(self.session, self.key, stream))
+
+    def push(self, stream: int, content: bytes) -> list[bytes] | None:
+        """Messages that carry ``content``; None: the window is full."""
+        if stream >= 0x80:
+            return self.reliable_output(stream).push(content, self.mtu)
+        output = self._best_effort.setdefault(stream, BestEffortOutput(self.session, self.key, stream))
+        return output.push(content, self.mtu)
+
+    def heartbeats(self) -> list[bytes]:
+        beats = (output.heartbeat() for output in self._reliable.values())
+        return [beat for beat in beats if beat is not None]
+
+    # Entities --------------------------------------------------------------------------------------------------------
+
+    @property
+    def node(self) -> str:
+        """The name of its participant."""
+        return next((d.name for d in self.objects.values() if d.kind == Kind.PARTICIPANT), "")
+
+    def create(self, identity: bytes, new: Description, flags: int) -> Status:
+        """Source: DDS-XRCE 1.0, table 7, on what happens if there is such an object."""
+        old = self.objects.get(identity)
+        if old is not None and not flags & (REUSE | REPLACE):
+            return Status.ALREADY_EXISTS
+        if old is not None and flags & REUSE:
+            if old == new:
+                return Status.OK_MATCHED
+            if not flags & REPLACE:
+                return Status.MISMATCH
+        if old is not None:
+            self.delete(identity)
+        if new.parent and new.parent not in self.objects:
+            return Status.UNKNOWN_REFERENCE
+        if new.kind in (Kind.WRITER, Kind.READER):
+            topic = self.objects.get(new.topic) if new.topic else new
+            if topic is None:
+                return Status.UNKNOWN_REFERENCE
+            self._attach(identity, new, topic)
+        self.objects[identity] = new
+        return Status.OK
+
+    def _attach(self, identity: bytes, new: Description, topic: Description) -> None:
+        depth = new.qos.depth or DEPTH
+        if new.kind == Kind.WRITER:
+            writer = Endpoint(topic.name, topic.type, new.qos.reliable, depth, self.node)
+            self.ends[identity] = writer
+            self._topics.attach_writer(writer)
+            return
+
+        def deliver(data: bytes) -> None:
+            reading = self.readings.get(identity)
+            if reading is not None and not reading.over:
+                reading.waiting.append(data)
+                self.pump(self)
+
+        reader = ReaderEnd(topic.name, topic.type, new.qos.reliable, depth, self.node, deliver)
+        self.ends[identity] = reader
+        self._topics.attach_reader(reader)
+
+    def delete(self, identity: bytes) -> Status:
+        if self.objects.pop(identity, None) is None:
+            return Status.UNKNOWN_REFERENCE
+        self.readings.pop(identity, None)
+        end = self.ends.pop(identity, None)
+        if end is not None:
+            self._topics.detach(end)
+        children = [child for child, d in self.objects.items() if identity in (d.parent, d.topic)]
+        for child in children:
+            self.delete(child)
+        return Status.OK
+
+    def delete_all(self) -> None:
+        for identity in list(self.objects):
+            self.delete(identity)
+
+    # Data ------------------------------------------------------------------------------------------------------------
+
+    def write(self, identity: bytes, data: bytes) -> None:
+        writer = self.ends.get(identity)
+        if writer is not None and not isinstance(writer, ReaderEnd):
+            self._topics.write(writer, data)
+
+    def read(self, payload: Submessage) -> Status:
+        """READ_DATA: samples of a reader are wanted from now on, or no longer."""
+        reader = payload.reader
+        request = reader.take(4)
+        identity = request[2:]
+        stream, _format = reader.u8(), reader.u8()
+        if reader.flag():
+            reader.string()  # content filter
+        samples, seconds = 1, 0
+        if reader.flag():
+            samples, seconds = reader.u16(), reader.u16()
+        end = self.ends.get(identity)
+        if not isinstance(end, ReaderEnd):
+            return Status.UNKNOWN_REFERENCE
+        stream = stream or BEST_EFFORT_STREAM
+        self.readings[identity] = Reading(request, stream, samples, seconds, end.depth)
+        return Status.OK
+
+    def next_data(self) -> list[bytes]:
+        """Messages with samples that wait, as far as there is room."""
+        messages: list[bytes] = []
+        for reading in self.readings.values():
+            while reading.waiting and not reading.over:
+                pushed = self.push(reading.stream, submessage(Id.DATA, reading.request + reading.waiting[0]))
+                if pushed is None:
+                    break
+                messages += pushed
+                reading.take()
+        return messages

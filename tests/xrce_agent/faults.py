@@ -1,0 +1,49 @@
+"""What happens to frames on their way: loss, delay, duplicates, another order, cut and changed bytes.
+
+All of it can be set at any time.  Chance has a seed, so that the same frames meet the same faults.
+"""
+
+from __future__ import annotations
+
+import random
+from dataclasses import dataclass
+
+
+@dataclass
+class Faults:
+    """Of one direction; probabilities are of each frame."""
+
+    loss: float = 0.0
+    duplicate: float = 0.0
+    reorder: float = 0.0
+    """Held back for 1 to 20 ms, so that others overtake it."""
+    truncate: float = 0.0
+    """Only a part, of at least one byte, arrives."""
+    corrupt: float = 0.0
+    """One to four bytes are other ones."""
+    delay: tuple[float, float] = (0.0, 0.0)
+    """Least and largest, in seconds; frames keep their order if both are the same."""
+
+    def clear(self) -> None:
+        self.__init__()  # type: ignore[misc]
+
+    def apply(self, frame: bytes, chance: random.Random) -> list[tuple[float, bytes]]:
+        """What arrives of ``frame``, each with its delay in seconds; nothing if it is lost."""
+        if chance.random() < self.loss:
+            return []
+        copies = 2 if chance.random() < self.duplicate else 1
+        return [(self._wait(chance), self._damaged(frame, chance)) for _ in range(copies)]
+
+    def _wait(self, chance: random.Random) -> float:
+        held = chance.uniform(0.001, 0.020) if chance.random() < self.reorder else 0.0
+        return held + chance.uniform(*self.delay)
+
+    def _damaged(self, frame: bytes, chance: random.Random) -> bytes:
+        if len(frame) > 1 and chance.random() < self.truncate:
+            frame = frame[: chance.randrange(1, len(frame))]
+        if chance.random() < self.corrupt:
+            data = bytearray(frame)
+            for _ in range(chance.randint(1, 4)):
+                data[chance.randrange(len(data))] ^= chance.randrange(1, 256)
+            frame = bytes(data)
+        return frame

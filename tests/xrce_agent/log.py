@@ -1,0 +1,56 @@
+"""Every frame that passes an agent, with the time of two clocks and what became of it."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Hashable, Iterator
+from dataclasses import dataclass
+
+from .wire import Id, WireError, split, submessages
+
+
+@dataclass(frozen=True)
+class Frame:
+    monotonic: float
+    wall: float
+    from_board: bool
+    peer: Hashable
+    data: bytes
+    fate: str
+    """"" if it arrived as it was; "lost", "cut", "late"..."""
+
+    def submessages(self) -> list[Id]:
+        """What it holds; nothing if it is broken."""
+        try:
+            return [Id(part.id) for part in submessages(split(self.data)[1])]
+        except (WireError, ValueError):
+            return []
+
+    def __str__(self) -> str:
+        names = " ".join(part.name for part in self.submessages()) or self.data.hex()
+        arrow = "->" if self.from_board else "<-"
+        return f"{self.monotonic:.6f} {arrow} {len(self.data)} {names} {self.fate}".rstrip()
+
+
+class Log:
+    """The newest frames."""
+
+    def __init__(self, kept: int = 100_000) -> None:
+        self._frames: deque[Frame] = deque(maxlen=kept)
+        self.count = 0
+
+    def add(self, from_board: bool, peer: Hashable, data: bytes, fate: str = "") -> None:
+        self.count += 1
+        self._frames.append(Frame(time.monotonic(), time.time(), from_board, peer, data, fate))
+
+    def __iter__(self) -> Iterator[Frame]:
+        return iter(list(self._frames))
+
+    def clear(self) -> None:
+        self._frames.clear()
+
+    def of(self, identity: Id, from_board: bool, since: float = 0.0) -> list[Frame]:
+        """Frames with such a submessage."""
+        found = (frame for frame in self if frame.from_board == from_board and frame.monotonic >= since)
+        return [frame for frame in found if identity in frame.submessages()]

@@ -1,0 +1,116 @@
+"""What a CREATE says about an entity, in the binary form or in XML.
+
+Source: DDS-XRCE 1.0, 7.7.3 and annex A (binary), the DDS-XML profiles of Fast DDS (XML).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from xml.etree import ElementTree
+
+from .wire import CdrReader, Kind, WireError
+
+REFERENCE, XML, BINARY = 1, 2, 3
+IS_RELIABLE, IS_KEEP_LAST, IS_TRANSIENT_LOCAL = 0x01, 0x02, 0x08
+
+
+@dataclass(frozen=True)
+class Qos:
+    reliable: bool
+    keep_last: bool = True
+    depth: int | None = None
+    transient_local: bool = False
+
+
+@dataclass(frozen=True)
+class Description:
+    """An entity as its CREATE describes it; what its kind does not have is empty."""
+
+    kind: Kind
+    parent: bytes = b""
+    """Participant of a topic, publisher or subscriber; publisher or subscriber of a writer or reader."""
+    name: str = ""
+    """Of a participant, or of the topic."""
+    type: str = ""
+    """Of the topic."""
+    topic: bytes = b""
+    """Object id of a writer's or reader's topic; XML names it instead."""
+    qos: Qos = Qos(reliable=True)
+    domain: int = 0
+    form: int = BINARY
+
+
+def read_description(payload: CdrReader) -> Description:
+    """Of a CREATE behind its request and object id."""
+    try:
+        kind = Kind(payload.u8())
+    except ValueError as error:
+        raise WireError(str(error)) from None
+    form = payload.u8()
+    if form == BINARY:
+        content = payload.octets()
+    elif form in (XML, REFERENCE):
+        content = payload.string().encode()
+    else:
+        raise WireError(f"representation {form}")
+    parent, domain = b"", 0
+    if kind == Kind.PARTICIPANT:
+        domain = payload.number("h")
+    else:
+        parent = payload.take(2)
+    if form == BINARY:
+        little = payload._order == "<"
+        return _binary(kind, CdrReader(content, little), parent, domain)
+    if form == XML:
+        return _xml(kind, content.decode(), parent, domain)
+    return Description(kind, parent, name=content.decode(), domain=domain, form=form)
+
+
+def _binary(kind: Kind, data: CdrReader, parent: bytes, domain: int) -> Description:
+    if kind == Kind.PARTICIPANT:
+        if data.flag():
+            data.string()  # domain reference
+        return Description(kind, name=data.string() if data.flag() else "", domain=domain)
+    if kind == Kind.TOPIC:
+        name = data.string()
+        if data.flag():
+            data.string()  # type reference
+        return Description(kind, parent, name, data.string() if data.flag() else "")
+    if kind in (Kind.PUBLISHER, Kind.SUBSCRIBER):
+        return Description(kind, parent)
+    topic = data.take(2)
+    qos = _binary_qos(data) if data.flag() else Qos(reliable=kind == Kind.WRITER)
+    return Description(kind, parent, topic=topic, qos=qos)
+
+
+def _binary_qos(data: CdrReader) -> Qos:
+    flags = data.u16()
+    depth = data.u16() if data.flag() else None
+    return Qos(bool(flags & IS_RELIABLE), bool(flags & IS_KEEP_LAST), depth, bool(flags & IS_TRANSIENT_LOCAL))
+
+
+def _xml(kind: Kind, text: str, parent: bytes, domain: int) -> Description:
+    try:
+        root = ElementTree.fromstring(text) if text.strip() else ElementTree.Element("dds")
+    except ElementTree.ParseError as error:
+        raise WireError(f"XML: {error}") from None
+
+    def find(path: str, default: str = "") -> str:
+        return (root.findtext(path) or default).strip()
+
+    if kind == Kind.PARTICIPANT:
+        return Description(kind, name=find("participant/rtps/name"), domain=domain, form=XML)
+    if kind == Kind.TOPIC:
+        return Description(kind, parent, find("topic/name"), find("topic/dataType"), form=XML)
+    if kind in (Kind.PUBLISHER, Kind.SUBSCRIBER):
+        return Description(kind, parent, form=XML)
+    base = "data_writer" if kind == Kind.WRITER else "data_reader"
+    default = "RELIABLE" if kind == Kind.WRITER else "BEST_EFFORT"
+    depth = find(f"{base}/topic/historyQos/depth")
+    qos = Qos(
+        reliable=find(f"{base}/qos/reliability/kind", default) == "RELIABLE",
+        keep_last=find(f"{base}/topic/historyQos/kind", "KEEP_LAST") == "KEEP_LAST",
+        depth=int(depth) if depth else None,
+        transient_local=find(f"{base}/qos/durability/kind") == "TRANSIENT_LOCAL",
+    )
+    return Description(kind, parent, find(f"{base}/topic/name"), find(f"{base}/topic/dataType"), b"", qos, form=XML)

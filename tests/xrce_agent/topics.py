@@ -1,0 +1,164 @@
+"""Topics between boards and tests, in the place of DDS: who matches whom, and what has been said.
+
+Matching is that of DDS as far as ROS 2 uses it: same topic, same type, and a best-effort writer gives nothing to a
+reliable reader.  A :class:`Topics` outlives the agents that use it, as a DDS domain does.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+DEPTH = 10
+"""Of a history, unless somebody says another one: ROS 2's default."""
+
+
+@dataclass(frozen=True)
+class Sample:
+    time: float
+    """``time.monotonic()`` when it came."""
+    topic: str
+    data: bytes
+    """CDR without its encapsulation header."""
+    writer: str
+    """Node name of the board, "" for a test."""
+
+
+@dataclass(eq=False)
+class Endpoint:
+    """A reader or a writer."""
+
+    topic: str
+    type: str | None
+    """None: any."""
+    reliable: bool
+    depth: int = DEPTH
+    node: str = ""
+
+    def matches(self, reader: Endpoint) -> bool:
+        """Whether this writer gives to ``reader``."""
+        types = self.type is None or reader.type is None or self.type == reader.type
+        return self.topic == reader.topic and types and (self.reliable or not reader.reliable)
+
+
+@dataclass(eq=False)
+class ReaderEnd(Endpoint):
+    deliver: Callable[[bytes], None] = field(default=lambda data: None)
+
+
+class Subscription:
+    """What a test receives of a topic, as a peer with this QoS would."""
+
+    def __init__(self, topics: Topics, topic: str, type_name: str | None, reliable: bool) -> None:
+        self._topics = topics
+        self.samples: list[tuple[float, bytes]] = []
+        self.end = ReaderEnd(topic, type_name, reliable, deliver=self._deliver)
+        topics.attach_reader(self.end)
+
+    def _deliver(self, data: bytes) -> None:
+        self.samples.append((time.monotonic(), data))
+
+    def close(self) -> None:
+        self._topics.detach(self.end)
+
+
+class Topics:
+    def __init__(self, kept: int = 200_000) -> None:
+        self.lock = threading.RLock()
+        self._news = threading.Condition(self.lock)
+        self._samples: deque[Sample] = deque(maxlen=kept)
+        self.readers: list[ReaderEnd] = []
+        self.writers: list[Endpoint] = []
+        self.listeners: list[Callable[[str, Endpoint], None]] = []
+        """Called with "attach" or "detach" and the endpoint of a board: what a bridge wants to know."""
+        self.taps: list[Callable[[Endpoint, bytes], None]] = []
+        """Called with each sample of a board and its writer."""
+
+    # Boards and bridges ------------------------------------------------------------------------------------------
+
+    def attach_reader(self, reader: ReaderEnd) -> None:
+        with self.lock:
+            self.readers.append(reader)
+            self._tell("attach", reader)
+
+    def attach_writer(self, writer: Endpoint) -> None:
+        with self.lock:
+            self.writers.append(writer)
+            self._tell("attach", writer)
+
+    def detach(self, end: Endpoint) -> None:
+        with self.lock:
+            if isinstance(end, ReaderEnd):
+                self.readers = [reader for reader in self.readers if reader is not end]
+            else:
+                self.writers = [writer for writer in self.writers if writer is not end]
+            self._tell("detach", end)
+
+    def _tell(self, what: str, end: Endpoint) -> None:
+        self._news.notify_all()
+        for listener in self.listeners:
+            listener(what, end)
+
+    def write(self, writer: Endpoint, data: bytes) -> None:
+        """A board's sample, for all readers that match."""
+        with self.lock:
+            self._samples.append(Sample(time.monotonic(), writer.topic, data, writer.node))
+            self._give(writer, data)
+            for tap in self.taps:
+                tap(writer, data)
+            self._news.notify_all()
+
+    def _give(self, writer: Endpoint, data: bytes) -> int:
+        matched = [reader for reader in self.readers if writer.matches(reader)]
+        for reader in matched:
+            reader.deliver(data)
+        return len(matched)
+
+    # Tests -------------------------------------------------------------------------------------------------------
+
+    def publish(self, topic: str, data: bytes, reliable: bool = True, type_name: str | None = None) -> int:
+        """As a peer with this QoS would; returns how many readers match."""
+        with self.lock:
+            return self._give(Endpoint(topic, type_name, reliable), data)
+
+    def subscribe(self, topic: str, reliable: bool = True, type_name: str | None = None) -> Subscription:
+        return Subscription(self, topic, type_name, reliable)
+
+    def samples(self, topic: str, since: float = 0.0, node: str | None = None) -> list[Sample]:
+        """What boards have written, whoever read it."""
+        with self.lock:
+            return [
+                sample
+                for sample in self._samples
+                if sample.topic == topic and sample.time >= since and node in (None, sample.writer)
+            ]
+
+    def clear(self) -> None:
+        with self.lock:
+            self._samples.clear()
+
+    def wait_until(self, condition: Callable[[], bool], seconds: float) -> bool:
+        """Whether ``condition`` has become true in that time; it is asked whenever something happens."""
+        end = time.monotonic() + seconds
+        with self.lock:
+            while not condition():
+                left = end - time.monotonic()
+                if left <= 0:
+                    return False
+                self._news.wait(min(left, 0.02))
+            return True
+
+    def wait_for_sample(self, topic: str, seconds: float = 20.0, node: str | None = None) -> Sample:
+        """The next one that a board writes from now on."""
+        since = time.monotonic()
+        found = self.wait_until(lambda: bool(self.samples(topic, since, node)), seconds)
+        assert found, f"nothing on {topic} within {seconds} s"
+        return self.samples(topic, since, node)[0]
+
+    def wait_for_reader(self, topic: str, seconds: float = 20.0) -> None:
+        """Until a board reads ``topic``."""
+        found = self.wait_until(lambda: any(reader.topic == topic for reader in self.readers), seconds)
+        assert found, f"nobody reads {topic} within {seconds} s"
