@@ -1,0 +1,37 @@
+"""Descriptions of targets for tests of what works on them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+
+def topic(name: str, type: str = "std_msgs/msg/Float64", **more: Any) -> dict[str, Any]:
+    return {"topic": name, "type": type, "qos": "reliable", "role": "values", "values": [name], **more}
+
+
+def write_description(
+    file: Path,
+    *,
+    middleware: str = "xrce",
+    transport: str | None = "usb",
+    node: str = "JIWY_node",
+    namespace: str = "",
+    subscriptions: Sequence[dict[str, Any]] = (topic("pan_subscriber"),),
+    publications: Sequence[dict[str, Any]] = (topic("pan_publisher"),),
+) -> Path:
+    """A description as EPG writes it, with what the tools read."""
+    data = {
+        "name": file.stem,
+        "target": {"board": "rpi_pico2", "platform": "freertos"},
+        "node": node,
+        "namespace": namespace,
+        "communication": {"middleware": middleware, "transport": transport, "period": 0.033},
+        "subscriptions": list(subscriptions),
+        "publications": list(publications),
+    }
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(json.dumps(data), encoding="utf-8")
+    return file

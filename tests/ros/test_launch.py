@@ -1,0 +1,194 @@
+"""``epg launch``: what it writes means what was asked for, to Python, to bash and to systemd."""
+
+from __future__ import annotations
+
+import ast
+import importlib.util
+import re
+import shlex
+import shutil
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from epg.cli.main import main
+from epg.data import targets_roots
+from epg.ros.systemd_units import device_unit
+
+from .description import write_description
+
+FIRST, SECOND = "E6614103E72B8C2F", "E6614103E72B8C30"
+BY_ID = "/dev/serial/by-id/usb-Raspberry_Pi_Pico_{}-if00"
+
+
+@pytest.fixture
+def robots(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Two images on USB, one behind a serial line, two targets by UDP; the current folder is theirs."""
+    monkeypatch.chdir(tmp_path)
+    write_description(tmp_path / "jiwy.json", namespace="/robot_$serial")
+    write_description(tmp_path / "relbot.json", node="RELbot_node")
+    write_description(tmp_path / "crane.json", node="crane", transport="uart0")
+    for name in ("sim1", "sim2"):
+        write_description(tmp_path / f"{name}.json", node=name, transport="udp")
+    return tmp_path
+
+
+ALL = [f"{name}.json" for name in ("jiwy", "relbot", "crane", "sim1", "sim2")]
+WIRING = ["--board", f"jiwy={FIRST}", "--board", f"jiwy={SECOND}", "--board", "relbot=e6614103e72b8c31"]
+WIRING += ["--device", "crane=/dev/ttyAMA0:921600", "--port", "9999"]
+
+
+def nodes(source: str) -> list[dict[str, Any]]:
+    """The ``Node(...)`` calls of a launch file: their keywords, ``verbosity`` as the name it is."""
+    found = []
+    for call in ast.walk(ast.parse(source)):
+        if isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id == "Node":
+            found.append({keyword.arg: value(keyword.value) for keyword in call.keywords})
+    return found
+
+
+def value(node: ast.expr) -> object:
+    if isinstance(node, ast.List):
+        return [value(element) for element in node.elts]
+    return node.id if isinstance(node, ast.Name) else ast.literal_eval(node)
+
+
+def test_one_agent_for_each_board_and_one_for_all_by_udp(robots: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["launch", *ALL, *WIRING]) == 0
+    assert capsys.readouterr().err == ""
+    source = (robots / "agents.launch.py").read_text(encoding="utf-8")
+    serial = ["serial", "-b"]
+    assert [node["arguments"] for node in nodes(source)] == [
+        [*serial, "115200", "--dev", BY_ID.format(FIRST), "verbosity"],
+        [*serial, "115200", "--dev", BY_ID.format(SECOND), "verbosity"],
+        [*serial, "115200", "--dev", BY_ID.format("E6614103E72B8C31"), "verbosity"],
+        [*serial, "921600", "--dev", "/dev/ttyAMA0", "verbosity"],
+        ["udp4", "-p", "9999", "verbosity"],
+    ]
+    for node in nodes(source):
+        assert (node["package"], node["executable"]) == ("micro_ros_agent", "micro_ros_agent")
+        assert node["respawn"] is True
+    assert len({node["name"] for node in nodes(source)}) == 5
+    assert f"# /robot_{FIRST}/JIWY_node: hears /robot_{FIRST}/pan_subscriber" in source
+    compile(source, "agents.launch.py", "exec")
+
+
+def test_the_name_of_a_board_is_that_of_its_descriptors() -> None:
+    """udev makes the name of manufacturer, product and serial number, with "_" for a blank."""
+    source = next(
+        file for root in targets_roots([]) if (file := root / "platforms/pico/usb/descriptors.c").is_file()
+    ).read_text(encoding="utf-8")
+    texts = dict(re.findall(r'case TEXT_(\w+):\s*return "([^"]*)"', source))
+    product = f"usb-{texts['MANUFACTURER']}_{texts['PRODUCT']}".replace(" ", "_")
+    assert BY_ID.format(FIRST) == f"/dev/serial/by-id/{product}_{FIRST}-if00"
+
+
+def test_the_launch_file_starts_where_ros_is(robots: Path) -> None:
+    if importlib.util.find_spec("launch_ros") is None:
+        pytest.skip("ROS 2 is not sourced: install ROS 2 Jazzy and '. /opt/ros/jazzy/setup.bash'")
+    assert main(["launch", *ALL, *WIRING]) == 0
+    done = subprocess.run(["ros2", "launch", "./agents.launch.py", "--show-args"], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert "verbosity" in done.stdout
+
+
+def test_the_same_again_changes_nothing_and_nothing_is_overwritten(
+    robots: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    command = ["launch", "relbot.json", "--board", f"relbot={FIRST}", "--systemd"]
+    assert main(command) == 0
+    files = {path: path.read_bytes() for path in robots.rglob("*") if path.is_file()}
+    assert main(command) == 0
+    assert {path: path.read_bytes() for path in robots.rglob("*") if path.is_file()} == files
+
+    (robots / "agents.launch.py").write_text("# mine\n", encoding="utf-8")
+    capsys.readouterr()
+    assert main(["launch", "relbot.json", "--board", f"relbot={SECOND}", "--systemd"]) == 1
+    assert "agents.launch.py: error: this file exists [file-exists]" in capsys.readouterr().err
+    assert (robots / "agents.launch.py").read_text(encoding="utf-8") == "# mine\n"
+    assert not list(robots.glob(f"systemd/*{SECOND}*")), "all files or none"
+    assert main([*command, "--force"]) == 0
+    assert {path: path.read_bytes() for path in robots.rglob("*") if path.is_file()} == files
+
+
+def test_a_build_folder_stands_for_its_targets(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write_description(tmp_path / "build/epg/pan/pan.json", transport="udp")
+    write_description(tmp_path / "build/sub/epg/tilt/tilt.json", node="tilt", transport="udp")
+    (tmp_path / "build/epg/pan/other.json").write_text("[1, 2]", encoding="utf-8")
+    assert main(["launch", str(tmp_path / "build"), "--output", str(tmp_path), "--json"]) == 0
+    assert '"/JIWY_node",\n        "/tilt"' in capsys.readouterr().out
+
+
+def units(folder: Path) -> dict[str, dict[str, str]]:
+    """Settings of each unit file, with those of all sections together (no name occurs in two)."""
+    found = {}
+    for path in sorted(folder.glob("*.service")):
+        lines = path.read_text(encoding="utf-8").splitlines()
+        found[path.name] = dict(line.split("=", 1) for line in lines if "=" in line and not line.startswith("#"))
+    return found
+
+
+def test_units_are_bound_to_their_boards(robots: Path) -> None:
+    assert main(["launch", *ALL, *WIRING, "--systemd", "--domain", "7", "--user", "robot"]) == 0
+    found = units(robots / "systemd")
+    assert len(found) == 5
+    one = found[f"epg-agent-jiwy-{FIRST}.service"]
+    device = device_unit(BY_ID.format(FIRST))
+    assert one["BindsTo"] == one["WantedBy"] == device
+    assert device in one["After"].split()
+    assert (one["Restart"], one["User"], one["SupplementaryGroups"]) == ("always", "robot", "dialout")
+    assert one["Environment"] == "ROS_DOMAIN_ID=7 XRCE_DOMAIN_ID_OVERRIDE=7"
+    udp = found["epg-agent-udp-9999.service"]
+    assert "BindsTo" not in udp
+    assert udp["WantedBy"] == "multi-user.target"
+
+    readme = (robots / "systemd/README.md").read_text(encoding="utf-8")
+    for unit in found:
+        assert f"`{unit}`" in readme
+    rules = (robots / "systemd/70-epg-boards.rules").read_text(encoding="utf-8").splitlines()
+    assert [re.findall(r'ATTRS\{serial\}=="(\w+)"', rule) for rule in rules[1:]] == [
+        [FIRST],
+        [SECOND],
+        ["E6614103E72B8C31"],
+    ]
+
+
+def test_the_command_of_a_unit_survives_systemd_and_bash(robots: Path) -> None:
+    """systemd unquotes the line and expands % and $; then bash splits it."""
+    workspace = '/home/a b/50% $HOME "quoted" it\'s'
+    assert main(["launch", "relbot.json", "--board", f"relbot={FIRST}", "--systemd", "--workspace", workspace]) == 0
+    (unit,) = units(robots / "systemd").values()
+    shell, option, quoted = unit["ExecStart"].split(" ", 2)
+    assert (shell, option, quoted[0], quoted[-1]) == ("/bin/bash", "-c", '"', '"')
+    script = re.sub(r'\\(["\\])', r"\1", quoted[1:-1]).replace("%%", "%").replace("$$", "$")
+    words = [shlex.split(step) for step in script.split(" && ")]
+    assert words == [
+        [".", "/opt/ros/jazzy/setup.bash"],
+        [".", f"{workspace}/install/local_setup.bash"],
+        f"exec ros2 run micro_ros_agent micro_ros_agent serial -b 115200 --dev {BY_ID.format(FIRST)}".split(),
+    ]
+
+
+def test_systemd_finds_nothing_wrong(robots: Path) -> None:
+    if shutil.which("systemd-analyze") is None:
+        pytest.skip("systemd-analyze is not installed: apt install systemd")
+    assert main(["launch", *ALL, *WIRING, "--systemd", "--workspace", "/home/a b/50%"]) == 0
+    files = sorted((robots / "systemd").glob("*.service"))
+    done = subprocess.run(["systemd-analyze", "verify", *files], capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+
+    files[0].write_text(files[0].read_text(encoding="utf-8").replace("Restart=always", "Restart=often"))
+    done = subprocess.run(["systemd-analyze", "verify", files[0]], capture_output=True, text=True)
+    assert "often" in done.stderr, "systemd-analyze would have told"
+
+
+@pytest.mark.parametrize("path", [BY_ID.format(FIRST), "/dev/ttyAMA0", "/dev//a b/", "/dev/.x-é", "/.dev/x:y_z"])
+def test_names_of_device_units_are_systemds(path: str) -> None:
+    if shutil.which("systemd-escape") is None:
+        pytest.skip("systemd-escape is not installed: apt install systemd")
+    done = subprocess.run(
+        ["systemd-escape", "--path", "--suffix=device", path], capture_output=True, text=True, check=True
+    )
+    assert device_unit(path) == done.stdout.strip()
