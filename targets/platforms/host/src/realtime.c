@@ -174,16 +174,45 @@ static void join_thread(control_thread_t *self)
     sem_destroy(&self->ready);
 }
 
+/** Whether the target's middleware needs no stream: it has a connection of its own, and can wait for it. */
+static bool connects_itself(const epg_target_t *target)
+{
+    return target->middleware != NULL && target->middleware->wait != NULL;
+}
+
+static void start_middleware(const epg_host_run_t *run)
+{
+    const epg_target_t *target = run->host->target;
+    if (connects_itself(target)) {
+        target->middleware->start(target, NULL);
+    } else if (run->terminal != NULL) {
+        target->middleware->start(target, &run->terminal->stream);
+    }
+}
+
+static void stop_middleware(const epg_host_run_t *run)
+{
+    const epg_middleware_t *middleware = run->host->target->middleware;
+    if (middleware != NULL && middleware->stop != NULL && (middleware->wait != NULL || run->terminal != NULL)) {
+        middleware->stop();
+    }
+}
+
 /** Sleeps until monotonic time `time_ns`, less if there is a middleware with something to do. */
 static void sleep_or_serve(const epg_host_run_t *run, uint64_t time_ns)
 {
-    if (run->terminal == NULL) {
+    const epg_target_t *target = run->host->target;
+    const uint64_t soon_ns = epg_host_monotonic_ns() + MIDDLEWARE_SLEEP_NS;
+    const uint64_t until_ns = time_ns < soon_ns ? time_ns : soon_ns;
+    if (connects_itself(target)) {
+        target->middleware->wait(until_ns);
+    } else if (run->terminal != NULL) {
+        epg_host_terminal_wait(run->terminal, until_ns);
+    } else {
         sleep_until(time_ns);
         return;
     }
-    const uint64_t soon_ns = epg_host_monotonic_ns() + MIDDLEWARE_SLEEP_NS;
-    epg_host_terminal_wait(run->terminal, time_ns < soon_ns ? time_ns : soon_ns);
-    run->host->target->middleware->poll(epg_port_time_ns());
+    target->middleware->poll(epg_port_time_ns());
 }
 
 static bool ended(const epg_host_run_t *run)
@@ -195,9 +224,7 @@ static bool ended(const epg_host_run_t *run)
 bool epg_host_run_realtime(epg_host_run_t *run)
 {
     control_thread_t control;
-    if (run->terminal != NULL) {
-        run->host->target->middleware->start(run->host->target, &run->terminal->stream);
-    }
+    start_middleware(run);
     if (!start_thread(&control, run)) {
         return false;
     }
@@ -216,6 +243,7 @@ bool epg_host_run_realtime(epg_host_run_t *run)
     atomic_store(&control.stop, now_ns < run->end_ns);
     join_thread(&control);
     run->wall_time_ns = epg_host_monotonic_ns() - start_ns;
+    stop_middleware(run);
     return true;
 }
 

@@ -1,0 +1,292 @@
+/**
+ * @file
+ * The participant: one reader for each subscription, one writer for each publication.
+ *
+ * CycloneDDS has threads of its own, which receive and send again what was lost.  What is here runs on the
+ * communication side and does not wait for them.
+ */
+#include "dds.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "domain.h"
+#include "epg/node.h"
+#include "epg/port.h"
+#include "graph.h"
+#include "matching.h"
+#include "message.h"
+
+enum {
+    DEPTH = 10,         /* messages kept for a reader or by a writer: ROS 2's default */
+    PREFIX = 2,         /* "rt" before names of topics */
+    SECOND = 1000000000 /* ns */
+};
+
+typedef struct endpoint {
+    dds_entity_t entity; /* reader or writer */
+    struct ddsi_sertype *type;
+    char topic[PREFIX + EPG_NODE_TOPIC_SIZE]; /* "rt/pan_publisher" */
+} endpoint_t;
+
+static struct {
+    const epg_target_t *target;
+    epg_node_t *node;
+    bool failed_before; /* it has been said why there is no connection */
+    uint64_t due_ns;    /* of the next attempt to connect, or of the next look at clock and matches */
+    dds_entity_t domain;
+    dds_entity_t participant; /* 0: not connected */
+    dds_entity_t waitset;
+    endpoint_t *readers; /* one per subscription */
+    endpoint_t *writers; /* one per publication */
+} dds;
+
+static bool send_message(size_t publication, const void *data, size_t size)
+{
+    const endpoint_t *writer = &dds.writers[publication];
+    return epg_dds_write(writer->entity, writer->type, data, size) == DDS_RETCODE_OK;
+}
+
+/* Making it ---------------------------------------------------------------------------------------------------- */
+
+/** Reliable is never waiting: beyond DEPTH the oldest message is dropped, and a write that would block fails. */
+static dds_qos_t *qos_of(const epg_topic_t *topic)
+{
+    dds_qos_t *qos = dds_create_qos();
+    const bool reliable = topic->qos == EPG_QOS_RELIABLE;
+    dds_qset_reliability(qos, reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT, 0);
+    dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, DEPTH);
+    dds_qset_durability(qos, DDS_DURABILITY_VOLATILE);
+    dds_qset_writer_data_lifecycle(qos, false);
+    epg_dds_set_type_hash(qos, topic->message->hash);
+    return qos;
+}
+
+/** Reader or writer of `topic`; a negative return code if there is none. */
+static dds_return_t create_endpoint(endpoint_t *endpoint, const epg_topic_t *topic, bool writes)
+{
+    endpoint->topic[0] = 'r';
+    endpoint->topic[1] = 't';
+    if (epg_node_topic(dds.node, topic, endpoint->topic + PREFIX, sizeof endpoint->topic - PREFIX) == 0) {
+        return DDS_RETCODE_BAD_PARAMETER;
+    }
+    const dds_entity_t entity = epg_dds_topic(dds.participant, endpoint->topic, topic->message->type, &endpoint->type);
+    if (entity < 0) {
+        return entity;
+    }
+    dds_qos_t *qos = qos_of(topic);
+    endpoint->entity = writes ? dds_create_writer(dds.participant, entity, qos, NULL)
+                              : dds_create_reader(dds.participant, entity, qos, NULL);
+    dds_delete_qos(qos);
+    return endpoint->entity;
+}
+
+/** All of `topics`; the name of the topic at which it failed is said. */
+static dds_return_t create_endpoints(endpoint_t *endpoints, const epg_topic_t *topics, size_t count, bool writes)
+{
+    for (size_t i = 0; i < count; i++) {
+        const dds_return_t code = create_endpoint(&endpoints[i], &topics[i], writes);
+        if (code < 0) {
+            if (!dds.failed_before) {
+                fprintf(stderr, "error: cannot make topic %s\n", endpoints[i].topic);
+            }
+            return code;
+        }
+    }
+    return DDS_RETCODE_OK;
+}
+
+/** As rmw_cyclonedds makes it: the security enclave, which there is none of, is "/". */
+static dds_entity_t create_participant(uint32_t domain)
+{
+    static const char user_data[] = "enclave=/;";
+    dds_qos_t *qos = dds_create_qos();
+    dds_qset_userdata(qos, user_data, sizeof user_data - 1);
+    const dds_entity_t participant = dds_create_participant(domain, qos, NULL);
+    dds_delete_qos(qos);
+    return participant;
+}
+
+static dds_return_t create_waitset(void)
+{
+    dds_return_t code = dds.waitset = dds_create_waitset(dds.participant);
+    for (size_t i = 0; i < dds.target->subscription_count && code >= 0; i++) {
+        const dds_entity_t condition = dds_create_readcondition(dds.readers[i].entity, DDS_ANY_STATE);
+        code = condition < 0 ? condition : dds_waitset_attach(dds.waitset, condition, 0);
+    }
+    return code;
+}
+
+static dds_return_t publish_graph(void)
+{
+    const size_t count = dds.target->subscription_count + dds.target->publication_count;
+    dds_entity_t *entities = calloc(count + 1, sizeof *entities);
+    if (entities == NULL) {
+        return DDS_RETCODE_OUT_OF_RESOURCES;
+    }
+    dds_entity_t *writers = entities + dds.target->subscription_count;
+    for (size_t i = 0; i < dds.target->subscription_count; i++) {
+        entities[i] = dds.readers[i].entity;
+    }
+    for (size_t i = 0; i < dds.target->publication_count; i++) {
+        writers[i] = dds.writers[i].entity;
+    }
+    const dds_return_t code = epg_dds_publish_graph(dds.participant, dds.node, entities, dds.target->subscription_count,
+                                                    writers, dds.target->publication_count);
+    free(entities);
+    return code;
+}
+
+/** In `dds.participant`, which exists. */
+static dds_return_t create_all(void)
+{
+    dds_return_t code = create_endpoints(dds.readers, dds.target->subscriptions, dds.target->subscription_count, false);
+    if (code >= 0) {
+        code = create_endpoints(dds.writers, dds.target->publications, dds.target->publication_count, true);
+    }
+    if (code >= 0) {
+        code = create_waitset();
+    }
+    return code >= 0 ? publish_graph() : code;
+}
+
+static void leave(void)
+{
+    if (dds.participant > 0) {
+        (void)dds_delete(dds.participant);
+    }
+    if (dds.domain > 0) {
+        (void)dds_delete(dds.domain);
+    }
+    dds.participant = 0;
+    dds.domain = 0;
+}
+
+static dds_return_t join_domain(void)
+{
+    static char configuration[EPG_DDS_CONFIGURATION_SIZE];
+    uint32_t domain;
+    if (!epg_dds_domain(dds.target->domain, &domain) || !epg_dds_configuration(configuration, sizeof configuration)) {
+        return DDS_RETCODE_BAD_PARAMETER;
+    }
+    const dds_entity_t made = dds_create_domain(domain, configuration);
+    if (made < 0 && made != DDS_RETCODE_PRECONDITION_NOT_MET) { /* not met: the program has one, which will do */
+        return made;
+    }
+    dds.domain = made > 0 ? made : 0;
+    const dds_return_t code = dds.participant = create_participant(domain);
+    return code < 0 ? code : create_all();
+}
+
+/** There may be no network yet: it is tried again, and the control loop goes on meanwhile. */
+static void try_to_join(uint64_t now_ns)
+{
+    const dds_return_t code = join_domain();
+    dds.due_ns = now_ns + SECOND;
+    if (code < 0) {
+        leave();
+        if (!dds.failed_before) {
+            fprintf(stderr, "error: no DDS participant: %s\nhint: it is tried again every second\n",
+                    dds_strretcode(code));
+        }
+        dds.failed_before = true;
+        return;
+    }
+    if (dds.failed_before) {
+        fputs("the DDS participant is there\n", stderr);
+    }
+    dds.failed_before = false;
+    epg_node_set_time(dds.node, (uint64_t)dds_time(), now_ns);
+    epg_node_connected(dds.node, now_ns);
+}
+
+/* Running it --------------------------------------------------------------------------------------------------- */
+
+static void start(const epg_target_t *target, const epg_stream_t *stream)
+{
+    (void)stream; /* it has a connection of its own */
+    dds.target = target;
+    dds.node = target->node_state;
+    dds.failed_before = false;
+    dds.participant = 0;
+    dds.domain = 0;
+    epg_node_start(dds.node, target, send_message);
+    dds.readers = calloc(target->subscription_count + 1, sizeof *dds.readers);
+    dds.writers = calloc(target->publication_count + 1, sizeof *dds.writers);
+    if (dds.readers == NULL || dds.writers == NULL) {
+        fputs("error: no DDS participant: no memory\n", stderr);
+        dds.due_ns = UINT64_MAX;
+        return;
+    }
+    try_to_join(epg_port_time_ns());
+}
+
+static void receive(size_t subscription, uint64_t now_ns)
+{
+    struct ddsi_serdata *messages[DEPTH] = {NULL};
+    dds_sample_info_t infos[DEPTH];
+    const dds_return_t count = dds_takecdr(dds.readers[subscription].entity, messages, DEPTH, infos, DDS_ANY_STATE);
+    for (dds_return_t i = 0; i < count; i++) {
+        size_t size = 0;
+        const void *data = epg_dds_content(messages[i], &size);
+        if (infos[i].valid_data && data != NULL) {
+            epg_node_receive(dds.node, subscription, data, size, now_ns);
+        } else if (infos[i].valid_data) {
+            dds.node->malformed++;
+        }
+        ddsi_serdata_unref(messages[i]);
+    }
+}
+
+/** Once a second: the computer's clock may have been set, and somebody may have come whose QoS does not fit. */
+static void look_around(uint64_t now_ns)
+{
+    dds.due_ns = now_ns + SECOND;
+    epg_node_set_time(dds.node, (uint64_t)dds_time(), now_ns);
+    for (size_t i = 0; i < dds.target->subscription_count; i++) {
+        epg_dds_check_reader(dds.readers[i].entity, dds.readers[i].topic + PREFIX);
+    }
+    for (size_t i = 0; i < dds.target->publication_count; i++) {
+        epg_dds_check_writer(dds.writers[i].entity, dds.writers[i].topic + PREFIX);
+    }
+}
+
+static void poll_node(uint64_t now_ns)
+{
+    if (dds.participant <= 0) {
+        if (now_ns >= dds.due_ns) {
+            try_to_join(now_ns);
+        }
+        return;
+    }
+    for (size_t i = 0; i < dds.target->subscription_count; i++) {
+        receive(i, now_ns);
+    }
+    epg_node_poll(dds.node, now_ns);
+    if (now_ns >= dds.due_ns) {
+        look_around(now_ns);
+    }
+}
+
+static void wait_for_message(uint64_t until_ns)
+{
+    const uint64_t now_ns = epg_port_time_ns();
+    const dds_duration_t left = until_ns > now_ns ? (dds_duration_t)(until_ns - now_ns) : 0;
+    if (dds.participant > 0) {
+        (void)dds_waitset_wait(dds.waitset, NULL, 0, left);
+    } else {
+        dds_sleepfor(left);
+    }
+}
+
+/** Others see at once that the node is gone; without this, after the lease of 10 s. */
+static void stop(void)
+{
+    leave();
+    free(dds.readers);
+    free(dds.writers);
+    dds.readers = NULL;
+    dds.writers = NULL;
+}
+
+const epg_middleware_t epg_dds = {.start = start, .poll = poll_node, .stop = stop, .wait = wait_for_message};
