@@ -28,6 +28,7 @@ LOCKS = Path(__file__).resolve().parent / "lock"
 REQUIREMENTS = {
     "generator": {"yaml": ("PyYAML", (5, 4)), "jinja2": ("Jinja2", (3, 0)), "jsonschema": ("jsonschema", (4, 10))},
     "plot": {"matplotlib": ("matplotlib", (3, 5)), "numpy": ("numpy", (1, 23))},
+    "ros": {"cyclonedds": ("cyclonedds", (0, 10, 5))},
     "test": {
         "pytest": ("pytest", (8, 0)),
         "pytest_cmake": ("pytest-cmake", (1, 6)),
