@@ -87,15 +87,15 @@ class Emulator:
     # Time -------------------------------------------------------------------------------------------------------------
 
     def run(self, *, cycles: int = 0, milliseconds: float = 0, **stops: Any) -> dict[str, Any]:
-        """Runs so long, or until one of ``stops`` (text, at, configured; see commands.mjs); returns the state."""
+        """Runs so long, or until one of ``stops`` (text, data, at, configured; see commands.mjs); returns the state."""
         state: dict[str, Any] = self.call("run", cycles=cycles + round(milliseconds * CYCLES_PER_MILLISECOND), **stops)
         self.cycle = state["cycle"]
         return state
 
-    def run_until_text(self, text: str, *, milliseconds: float = 1000) -> str:
-        """Runs until the serial port has said ``text``; returns all it said since the last time."""
-        state = self.run(milliseconds=milliseconds, text=text)
-        said = self.receive()
+    def run_until_text(self, text: str, *, milliseconds: float = 1000, port: int = 0) -> str:
+        """Runs until a serial port has said ``text``; returns all it said since the last time."""
+        state = self.run(milliseconds=milliseconds, text=text, port=port)
+        said = self.receive(port=port)
         if state["reason"] != "text" and text not in said:
             raise EmulatorError(f"no {text!r} within {milliseconds} ms, but {said!r}; {state}; {self.call('faults')}")
         return said
@@ -110,14 +110,18 @@ class Emulator:
 
     # Serial port ------------------------------------------------------------------------------------------------------
 
-    def send(self, text: str | bytes) -> None:
-        """Gives the host text to send."""
+    def send(self, text: str | bytes, *, port: int = 0) -> None:
+        """Gives the host text to send to a serial port of the device."""
         data = text.encode() if isinstance(text, str) else text
-        self.call("usb_send", hex=data.hex())
+        self.call("usb_send", hex=data.hex(), port=port)
 
-    def receive(self) -> str:
+    def receive(self, *, port: int = 0) -> str:
         """Takes what the firmware has said; bytes that are no UTF-8 show as replacement characters."""
-        return bytes.fromhex(self.call("usb_receive")).decode(errors="replace")
+        return self.receive_bytes(port=port).decode(errors="replace")
+
+    def receive_bytes(self, *, port: int = 0) -> bytes:
+        """The same for a protocol that is no text."""
+        return bytes.fromhex(self.call("usb_receive", port=port))
 
     # Memory -----------------------------------------------------------------------------------------------------------
 

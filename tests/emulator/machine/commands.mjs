@@ -21,9 +21,10 @@ export class Commands {
         this.encoders = new Map();
         this.motions = new Map();
         this.motors = new Map();
-        this.logs = { pins: [], pwm: [], exceptions: [], writes: [] };
+        this.logs = { pins: [], pwm: [], exceptions: [], writes: [], flash: [] };
         this.spans = new Map(); // name -> recorded spans
-        this.serial = [];
+        this.received = new Map(); // number of a serial port -> bytes
+        this.awaited = {};
     }
 
     // Images and time --------------------------------------------------------------------------------------------------
@@ -37,7 +38,7 @@ export class Commands {
             rom: bytes, romSymbols, clock, flashSize, bootCycles, usb: { clockError, packetDelay, ...others },
         });
         this.machine = machine;
-        machine.usbHost.onData = (data) => this.receive(data);
+        machine.usbHost.onData = (data, port) => this.receive(data, port);
         if (machine.usbBootAddress >= 0) {
             for (const core of [0, 1]) {
                 machine.probe(core, machine.usbBootAddress, () => machine.stop('usb boot'));
@@ -47,28 +48,46 @@ export class Commands {
         return { symbols: machine.symbols.size };
     }
 
-    receive(data) {
+    receive(data, port) {
+        const bytes = this.bytesOf(port);
         for (const byte of data) {
-            this.serial.push(byte);
+            bytes.push(byte);
         }
-        if (this.awaited !== undefined && Buffer.from(this.serial).toString('latin1').includes(this.awaited)) {
-            this.machine.stop('text');
+        if (this.awaited.port === port && data.length > 0) {
+            if (this.awaited.data) {
+                this.machine.stop('data');
+            } else if (this.awaited.text !== undefined && this.hasSaid(port, this.awaited.text)) {
+                this.machine.stop('text');
+            }
         }
     }
 
+    /** What has come over serial port `port` and was not taken yet. */
+    bytesOf(port) {
+        if (!this.received.has(port)) {
+            this.received.set(port, []);
+        }
+        return this.received.get(port);
+    }
+
+    hasSaid(port, text) {
+        return Buffer.from(this.bytesOf(port)).toString('latin1').includes(text);
+    }
+
     /**
-     * Runs {cycles} more or up to cycle {until}.  Stops early: {text} when the serial output contains it, {at} before
-     * the instruction at a symbol or address (of {core}, default either), {configured} when USB is.
+     * Runs {cycles} more or up to cycle {until}.  Stops early: {text} when the output of serial port {port} (default
+     * the first, 0) contains it, {data} when there is any, {at} before the instruction at a symbol or address (of
+     * {core}, default either), {configured} when USB is.
      */
-    run({ cycles, until, text, at, core, configured }) {
+    run({ cycles, until, text, data = false, port = 0, at, core, configured }) {
         const { machine } = this;
         const end = until ?? machine.clock.now + need(cycles, 'cycles');
-        this.awaited = text;
+        this.awaited = { text, data, port };
         this.watched = at === undefined ? null : machine.address(at);
         if (this.watched !== null) {
             this.probeStop(this.watched, core);
         }
-        if (text !== undefined && Buffer.from(this.serial).toString('latin1').includes(text)) {
+        if (data ? this.bytesOf(port).length > 0 : text !== undefined && this.hasSaid(port, text)) {
             return this.state();
         }
         if (configured) {
@@ -76,7 +95,7 @@ export class Commands {
         } else {
             machine.run(end);
         }
-        this.awaited = undefined;
+        this.awaited = {};
         this.watched = null;
         machine.settle();
         return this.state();
@@ -84,7 +103,7 @@ export class Commands {
 
     runUntilConfigured(end) {
         const { machine } = this;
-        while (machine.clock.now < end && !(machine.usbHost.state === 'configured' && machine.usbHost.dtr)) {
+        while (machine.clock.now < end && !(machine.usbHost.isOpen)) {
             machine.run(Math.min(end, machine.clock.now + 12_500));
         }
         machine.stopReason = machine.usbHost.state === 'configured' ? 'configured' : null;
@@ -130,6 +149,12 @@ export class Commands {
     /** A reset from outside, as by the RUN pin. */
     reset() {
         this.machine.reset('run pin');
+        return null;
+    }
+
+    /** The supply fails and comes back; flash keeps what it has. */
+    cut_power() {
+        this.machine.cutPower();
         return null;
     }
 
@@ -239,6 +264,25 @@ export class Commands {
         return null;
     }
 
+    /**
+     * Logs every write to flash under `flash`: [cycle, offset, bytes (4: erased, 1: programmed), value].  With
+     * {stop_after}, run() stops once after so many of them, with the reason `flash`.
+     */
+    watch_flash({ stop_after: stopAfter = Infinity }) {
+        const { machine } = this;
+        this.flashWritesLeft = stopAfter;
+        if (!this.flashIsWatched) {
+            this.flashIsWatched = true;
+            machine.onFlashWrite.push((offset, size, value) => {
+                this.record('flash', [machine.clock.now, offset, size, value]);
+                if (--this.flashWritesLeft === 0) {
+                    machine.stop('flash');
+                }
+            });
+        }
+        return null;
+    }
+
     record(log, entry) {
         if (this.logs[log].length >= LOG_LIMIT) {
             throw new Error(`the log ${log} has ${LOG_LIMIT} entries: take them earlier`);
@@ -246,7 +290,7 @@ export class Commands {
         this.logs[log].push(entry);
     }
 
-    /** Takes what a log (pins, pwm, exceptions, writes) has. */
+    /** Takes what a log (pins, pwm, exceptions, writes, flash) has. */
     take({ log }) {
         const entries = this.logs[log];
         if (entries === undefined) {
@@ -403,30 +447,32 @@ export class Commands {
 
     // USB ----------------------------------------------------------------------------------------------------------------
 
-    usb_send({ text, hex }) {
-        this.machine.usbHost.send(hex === undefined ? Buffer.from(need(text, 'text'), 'utf8') : Buffer.from(hex, 'hex'));
+    usb_send({ text, hex, port = 0 }) {
+        const bytes = hex === undefined ? Buffer.from(need(text, 'text'), 'utf8') : Buffer.from(hex, 'hex');
+        this.machine.usbHost.send(bytes, port);
         return null;
     }
 
-    /** Takes what came over the serial port, as hex. */
-    usb_receive() {
-        const hex = Buffer.from(this.serial).toString('hex');
-        this.serial = [];
+    /** Takes what came over serial port {port}, as hex. */
+    usb_receive({ port = 0 }) {
+        const hex = Buffer.from(this.bytesOf(port)).toString('hex');
+        this.received.set(port, []);
         return hex;
     }
 
-    /** Floods the device with packets: {text} repeated, or printable characters by {seed}; {on: false} ends it. */
-    usb_flood({ on = true, text, seed = 1 }) {
+    /** Floods serial port {port} with packets: {text} repeated, or printable characters by {seed}; {on: false} ends it. */
+    usb_flood({ on = true, text, seed = 1, port = 0 }) {
         const random = new Random(seed);
         let at = 0;
         const bytes = text === undefined ? null : Buffer.from(text, 'utf8');
-        this.machine.usbHost.setFlood(!on ? null : (length) => Array.from({ length }, () =>
-            bytes === null ? 32 + Math.floor(random.next() * 95) : bytes[at++ % bytes.length]));
+        const make = (length) => Array.from({ length }, () =>
+            bytes === null ? 32 + Math.floor(random.next() * 95) : bytes[at++ % bytes.length]);
+        this.machine.usbHost.setFlood(on ? make : null, port);
         return null;
     }
 
-    usb_open({ open = true }) {
-        this.machine.usbHost.setLine(open);
+    usb_open({ open = true, port = 0 }) {
+        this.machine.usbHost.setLine(open, port);
         return null;
     }
 
@@ -446,9 +492,28 @@ export class Commands {
     }
 
     usb() {
-        const { state, serial, port, resetInterface, dtr, device } = this.machine.usbHost;
+        const { state, serial, ports, resetInterface, isOpen, device } = this.machine.usbHost;
         const id = device === null ? null : [device[8] | (device[9] << 8), device[10] | (device[11] << 8)];
-        return { state, serial, port, reset_interface: resetInterface, dtr, id };
+        const described = ports.map(({ comm, in: input, out, dtr }) => ({ comm, in: input, out, dtr }));
+        return { state, serial, ports: described, reset_interface: resetInterface, dtr: isOpen, id };
+    }
+
+    /** Reads a descriptor: {kind, number, index} are the request's; hex, or null if the device has none.  Takes time. */
+    usb_descriptor({ kind, number = 0, index = 0, type = 0x80, request = 6 }) {
+        const { machine } = this;
+        const value = (need(kind, 'kind') << 8) | number;
+        let answer;
+        machine.usbHost.controlIn(type, request, value, index, 512, (data) => {
+            answer = data;
+        });
+        for (let turn = 0; turn < 1000 && answer === undefined; turn++) {
+            machine.run(machine.clock.now + 12_500);
+        }
+        machine.settle();
+        if (answer === undefined) {
+            throw new Error('the device does not answer');
+        }
+        return answer === null ? null : Buffer.from(answer).toString('hex');
     }
 
     /** A control transfer without data: {type, request, value, index}; what `picotool reboot -f` sends, for instance. */

@@ -60,6 +60,7 @@ export class Machine {
         this.onPwmWrap = []; // (slice)
         this.onException = []; // (core, number, entered)
         this.onReset = []; // (cause)
+        this.onFlashWrite = []; // (offset, size, value): erased words, programmed bytes
         this.usbBootAddress = romSymbols.get('rom_reset_usb_boot')?.address ?? -1;
         this.usbOptions = usb;
         this.flashOff = false;
@@ -198,6 +199,15 @@ export class Machine {
     /** Resets the chip after the running instruction. */
     requestReset(cause) {
         this.pendingReset = cause;
+    }
+
+    /** The supply goes and comes back: what SRAM has then is anything. */
+    cutPower() {
+        for (let at = 0, noise = 0x2545f491; at < this.chip.sram.length; at++) {
+            noise = Math.imul(noise, 1664525) + 1013904223 | 0; // Numerical Recipes, 7.1
+            this.chip.sram[at] = noise >>> 24;
+        }
+        this.reset('power');
     }
 
     reset(cause) {
@@ -351,6 +361,7 @@ export class Machine {
         } else {
             this.chip.flash[offset] &= value;
         }
+        this.onFlashWrite.forEach((call) => call(offset, size, value));
     }
 
     // Events -----------------------------------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-// A USB host: attaches, enumerates, and moves the packets of a CDC serial port, with the times of a real bus.
+// A USB host: attaches, enumerates, and moves the packets of CDC serial ports, with the times of a real bus.
 //
 // Bus state machine: detached -> waiting for the pull-up -> bus reset -> enumeration -> configured.  Frames start every
 // millisecond of the host's own clock.  Each packet takes a time drawn from `packetDelay`.
@@ -35,6 +35,19 @@ export function desktopDelay(random) {
     return 45 + random.next() * (random.next() < 0.1 ? 1000 : 60);
 }
 
+/** A serial port of the device: interface, endpoints, what waits to be sent. */
+class Port {
+    constructor(number, comm) {
+        this.number = number;
+        this.comm = comm; // number of its first interface
+        this.in = -1;
+        this.out = -1;
+        this.dtr = false;
+        this.outgoing = [];
+        this.flood = null;
+    }
+}
+
 export class UsbHost {
     constructor(machine, options = {}) {
         this.machine = machine;
@@ -46,14 +59,23 @@ export class UsbHost {
         this.packetDelay = options.packetDelay ?? desktopDelay;
         this.attached = options.attached ?? true;
         this.openAtStart = options.open ?? true;
-        this.onData = () => {};
+        this.onData = () => {}; // (bytes, number of the port)
         this.frame = 0;
         this.stateAlarm = this.clock.createAlarm(() => this.stateStep(), true);
         this.frameAlarm = this.clock.createAlarm(() => this.frameStarts(), true);
         this.endpointAlarms = new Map();
-        this.received = [];
-        this.flood = null;
+        this.floods = new Map(); // number of a port -> what floods it, as long as the test wants
         this.clear();
+    }
+
+    /** What the test has to do with the first port. */
+    get port() {
+        return this.ports[0] ?? null;
+    }
+
+    /** Configured, and a terminal has opened the first port. */
+    get isOpen() {
+        return this.state === 'configured' && this.port !== null && this.port.dtr;
     }
 
     clear() {
@@ -63,10 +85,9 @@ export class UsbHost {
         this.descriptor = null;
         this.device = null;
         this.serial = '';
-        this.port = null; // the CDC port: endpoints and interface
+        this.ports = []; // in the order of their interfaces
+        this.early = new Map(); // number of a port -> bytes to send, before it is known
         this.resetInterface = -1;
-        this.dtr = false;
-        this.outgoing = [];
         for (const alarm of this.endpointAlarms.values()) {
             alarm.cancel();
         }
@@ -167,8 +188,8 @@ export class UsbHost {
         this.parse(descriptor);
         const finish = () => this.controlOut(0x00, 9, 1, 0, null, () => {
             this.state = 'configured';
-            if (this.openAtStart) {
-                this.setLine(true);
+            for (const port of this.openAtStart ? this.ports : []) {
+                this.setLine(true, port.number);
             }
         });
         const serialIndex = this.device[16];
@@ -185,27 +206,28 @@ export class UsbHost {
     parse(descriptor) {
         let number = -1;
         let kind = -1;
-        const port = { comm: -1, in: -1, out: -1 };
+        const ports = [];
         for (let at = 0; at + 1 < descriptor.length && descriptor[at] > 1; at += descriptor[at]) {
             const type = descriptor[at + 1];
             if (type === 4) {
                 number = descriptor[at + 2];
                 kind = descriptor[at + 5];
-                if (kind === CLASS_CDC && port.comm < 0) {
-                    port.comm = number;
+                if (kind === CLASS_CDC) {
+                    ports.push(new Port(ports.length, number));
                 }
                 if (kind === CLASS_VENDOR && descriptor[at + 6] === 0 && descriptor[at + 7] === 1) {
                     this.resetInterface = number; // pico/usb_reset_interface.h
                 }
-            } else if (type === 5 && kind === CLASS_CDC_DATA) {
+            } else if (type === 5 && kind === CLASS_CDC_DATA && ports.length > 0) {
                 const address = descriptor[at + 2];
-                const direction = address & 0x80 ? 'in' : 'out';
-                if (port[direction] < 0) {
-                    port[direction] = address & 0xf;
-                }
+                ports[ports.length - 1][address & 0x80 ? 'in' : 'out'] = address & 0xf;
             }
         }
-        this.port = port.in >= 0 && port.out >= 0 ? port : null;
+        this.ports = ports.filter((port) => port.in >= 0 && port.out >= 0);
+        for (const port of this.ports) {
+            port.flood = this.floods.get(port.number) ?? null;
+            port.outgoing = this.early.get(port.number) ?? [];
+        }
     }
 
     // Control transfers ------------------------------------------------------------------------------------------------
@@ -285,41 +307,46 @@ export class UsbHost {
         this.nextControl();
     }
 
-    // Serial port ------------------------------------------------------------------------------------------------------
+    // Serial ports -----------------------------------------------------------------------------------------------------
 
     /** Opens or closes the terminal: line coding 115200 8N1 and DTR, or DTR down. */
-    setLine(open, done) {
-        if (this.port === null) {
+    setLine(open, number = 0, done = null) {
+        const port = this.ports[number];
+        if (port === undefined) {
             done?.(null);
             return;
         }
-        const index = this.port.comm;
         if (open) {
-            this.controlOut(0x21, 0x20, 0, index, [0x00, 0xc2, 0x01, 0x00, 0, 0, 8]);
+            this.controlOut(0x21, 0x20, 0, port.comm, [0x00, 0xc2, 0x01, 0x00, 0, 0, 8]);
         }
-        this.controlOut(0x21, 0x22, open ? 3 : 0, index, null, (result) => {
-            this.dtr = open;
+        this.controlOut(0x21, 0x22, open ? 3 : 0, port.comm, null, (result) => {
+            port.dtr = open;
             if (open) {
-                this.bufferChanged(this.port.in, false);
+                this.bufferChanged(port.in, false);
             }
             done?.(result);
         });
     }
 
-    send(bytes) {
+    send(bytes, number = 0) {
+        const port = this.ports[number];
+        if (port === undefined) {
+            this.early.set(number, [...(this.early.get(number) ?? []), ...bytes]);
+            return;
+        }
         for (const byte of bytes) {
-            this.outgoing.push(byte);
+            port.outgoing.push(byte);
         }
-        if (this.port !== null) {
-            this.bufferChanged(this.port.out, true);
-        }
+        this.bufferChanged(port.out, true);
     }
 
     /** Sends for ever: `make(length)` gives the bytes of each packet; null stops. */
-    setFlood(make) {
-        this.flood = make;
-        if (this.port !== null) {
-            this.bufferChanged(this.port.out, true);
+    setFlood(make, number = 0) {
+        this.floods.set(number, make);
+        const port = this.ports[number];
+        if (port !== undefined) {
+            port.flood = make;
+            this.bufferChanged(port.out, true);
         }
     }
 
@@ -343,13 +370,15 @@ export class UsbHost {
         if (endpoint === 0) {
             return this.current !== null;
         }
-        if (this.port === null) {
+        const port = this.portOf(endpoint, out);
+        if (port === null) {
             return false;
         }
-        if (out) {
-            return endpoint === this.port.out && (this.outgoing.length > 0 || this.flood !== null);
-        }
-        return endpoint === this.port.in && this.dtr;
+        return out ? port.outgoing.length > 0 || port.flood !== null : port.dtr;
+    }
+
+    portOf(endpoint, out) {
+        return this.ports.find((port) => (out ? port.out : port.in) === endpoint) ?? null;
     }
 
     serve(endpoint, out) {
@@ -364,11 +393,12 @@ export class UsbHost {
         if (buffer === null || buffer.stalled) {
             return;
         }
+        const port = this.portOf(endpoint, out);
         if (out) {
-            const data = this.outgoing.length > 0 ? this.outgoing.splice(0, buffer.length) : this.flood(buffer.length);
+            const data = port.outgoing.length > 0 ? port.outgoing.splice(0, buffer.length) : port.flood(buffer.length);
             this.usb.giveOut(buffer, Uint8Array.from(data));
         } else {
-            this.onData(this.usb.takeIn(buffer));
+            this.onData(this.usb.takeIn(buffer), port.number);
         }
         this.bufferChanged(endpoint, out);
     }
