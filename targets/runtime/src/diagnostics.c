@@ -17,7 +17,7 @@ enum { DECIMAL_SIZE = 21 }; /* of the largest 64-bit number, with the terminatin
 /** A whole number as text, at the end of `text`. */
 static const char *decimal(uint64_t value, char text[DECIMAL_SIZE])
 {
-    char *place = text + DECIMAL_SIZE - 1;
+    char *place = &text[DECIMAL_SIZE - 1];
     *place = '\0';
     do {
         *--place = (char)('0' + value % 10);

@@ -14,10 +14,11 @@ static const char serial_word[] = "$serial";
 static bool append(char *name, size_t size, size_t *length, const char *text, size_t count)
 {
     const size_t room = size - 1 - *length;
-    const size_t taken = count < room ? count : room;
+    const bool fits = count <= room;
+    const size_t taken = fits ? count : room;
     memcpy(name + *length, text, taken);
     *length += taken;
-    return taken == count;
+    return fits;
 }
 
 bool epg_names_expand(const char *pattern, char *name, size_t size)

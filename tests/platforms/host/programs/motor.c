@@ -149,7 +149,8 @@ static const epg_application_t application = {
     .monitor_exchange = &monitor_exchange,
 };
 
-static const epg_topic_t subscriptions[1] = {{.name = "motor_setpoint", .count = 1}};
+static const epg_topic_t subscriptions[2] = {
+    {.name = "motor_setpoint", .count = 1}, {.name = "motor_enable", .role = EPG_TOPIC_ENABLE, .count = 1}};
 static const epg_topic_t publications[2] = {{.name = "motor_position", .count = 1},
                                             {.name = "motor_echo", .index = 1, .count = 1}};
 
@@ -159,8 +160,7 @@ static const epg_target_t target = {
     .node = "motor_node",
     .name_space = "",
     .communication_period_ns = 33000000,
-    .enable_topic = "motor_enable",
-    .subscription_count = 1,
+    .subscription_count = 2,
     .subscriptions = subscriptions,
     .publication_count = 2,
     .publications = publications,
