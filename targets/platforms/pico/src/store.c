@@ -27,7 +27,7 @@ typedef struct head {
     uint32_t magic;
     uint32_t number; /* of the write; never 0 */
     uint32_t size;
-    uint32_t check;
+    uint32_t check; /* of number, size and bytes */
 } head_t;
 
 typedef struct job {
@@ -45,23 +45,30 @@ static const uint8_t *sector(uint32_t index)
     return (const uint8_t *)(XIP_BASE + EPG_PICO_STORE_OFFSET + index * FLASH_SECTOR_SIZE);
 }
 
-/** Adler-32 (RFC 1950, section 8.2): finds a page that was programmed in part. */
-static uint32_t check(const uint8_t *data, size_t size)
+/** Adler-32 (RFC 1950, section 8.2): finds a page that was programmed in part.  Goes on from `sum`, at first 1. */
+static uint32_t check(uint32_t sum, const void *data, size_t size)
 {
-    uint32_t first = 1U;
-    uint32_t second = 0U;
+    const uint8_t *bytes = data;
+    uint32_t first = sum & 0xFFFFU;
+    uint32_t second = sum >> 16;
     for (size_t i = 0; i < size; i++) {
-        first = (first + data[i]) % 65521U;
+        first = (first + bytes[i]) % 65521U;
         second = (second + first) % 65521U;
     }
     return second << 16 | first;
+}
+
+static uint32_t check_of(const head_t *head, const uint8_t *data)
+{
+    const uint32_t sum = check(check(1U, &head->number, sizeof head->number), &head->size, sizeof head->size);
+    return check(sum, data, head->size);
 }
 
 /** Copies the head of a sector; false if there is none that fits its bytes. */
 static bool valid_head(uint32_t index, head_t *head)
 {
     memcpy(head, sector(index) + CAPACITY, sizeof *head);
-    return head->magic == MAGIC && head->size <= CAPACITY && head->check == check(sector(index), head->size);
+    return head->magic == MAGIC && head->size <= CAPACITY && head->check == check_of(head, sector(index));
 }
 
 /** The sector that counts; false when nothing is stored. */
@@ -124,8 +131,9 @@ bool epg_port_store_write(const void *data, size_t size)
         .offset = EPG_PICO_STORE_OFFSET + other * FLASH_SECTOR_SIZE,
         .data = data,
         .size = size,
-        .head = {.magic = MAGIC, .number = head.number + 1U, .size = (uint32_t)size, .check = check(data, size)},
+        .head = {.magic = MAGIC, .number = head.number + 1U, .size = (uint32_t)size},
     };
+    job.head.check = check_of(&job.head, data);
     if (flash_safe_execute(run, &job, HOLD_TIMEOUT_MS) != PICO_OK) {
         return false;
     }
