@@ -370,8 +370,8 @@ class Agent:
 
     def _delete(self, client: Client, stream: int, request: bytes) -> None:
         if request[2:] == CLIENT_ID:
-            self._reply(client, submessage(Id.STATUS, request + bytes([Status.OK, 0])))
             self._forget(client.key)
+            self._reply(client, submessage(Id.STATUS, request + bytes([Status.OK, 0])))
         else:
             self._status(client, stream, request, client.delete(request[2:]))
 

@@ -2,14 +2,14 @@
 
     7E, source, destination, length (2), payload, CRC of the payload (2)
 
-All but the first byte is stuffed: 7E and 7D become 7D and the byte xor 20.  The client's address is 1, the agent's 0.
-CRC-16 with the polynomial 8005, reflected, beginning with 0.
+All but the first byte is stuffed: 7E and 7D become 7D and the byte xor 20.  CRC-16 with the polynomial 8005, reflected,
+beginning with 0.  The agent's address is 0; it answers to the address that a client gives itself.
 """
 
 from __future__ import annotations
 
 BEGIN, ESCAPE, XOR = 0x7E, 0x7D, 0x20
-CLIENT, AGENT = 1, 0
+AGENT = 0
 
 
 def _table() -> list[int]:
@@ -31,7 +31,7 @@ def crc16(data: bytes) -> int:
     return crc
 
 
-def frame(payload: bytes, source: int = AGENT, destination: int = CLIENT) -> bytes:
+def frame(payload: bytes, source: int, destination: int) -> bytes:
     plain = bytes([source, destination]) + len(payload).to_bytes(2, "little")
     plain += payload + crc16(payload).to_bytes(2, "little")
     stuffed = bytearray([BEGIN])
@@ -46,15 +46,14 @@ def frame(payload: bytes, source: int = AGENT, destination: int = CLIENT) -> byt
 class Deframer:
     """Finds frames in bytes as they come; what is none is counted and left out."""
 
-    LARGEST = 65535
-
     def __init__(self, address: int = AGENT) -> None:
         self._address = address
         self._data = bytearray()
         self._inside = self._escaped = False
         self.broken = 0
 
-    def feed(self, data: bytes) -> list[bytes]:
+    def feed(self, data: bytes) -> list[tuple[int, bytes]]:
+        """Payloads that are whole now, each with its source."""
         payloads = []
         for byte in data:
             if byte == BEGIN:
@@ -74,11 +73,12 @@ class Deframer:
                 payloads += self._finished()
         return payloads
 
-    def _finished(self) -> list[bytes]:
-        destination, payload, crc = self._data[1], bytes(self._data[4:-2]), int.from_bytes(self._data[-2:], "little")
+    def _finished(self) -> list[tuple[int, bytes]]:
+        source, destination = self._data[0], self._data[1]
+        payload, crc = bytes(self._data[4:-2]), int.from_bytes(self._data[-2:], "little")
         self._data.clear()
         self._inside = False
         if destination != self._address or crc != crc16(payload):
             self.broken += 1
             return []
-        return [payload]
+        return [(source, payload)]

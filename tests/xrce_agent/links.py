@@ -12,7 +12,7 @@ from collections.abc import Hashable
 from pathlib import Path
 from typing import Protocol
 
-from .framing import Deframer, frame
+from .framing import AGENT, Deframer, frame
 
 READ = 65536
 
@@ -85,9 +85,7 @@ class UdpLink:
 
 
 class SerialLink:
-    """What pseudo terminals and devices have in common; there is one peer, called "line"."""
-
-    PEER = "line"
+    """What pseudo terminals and devices have in common; peers are addresses on the line, of which there is one."""
 
     def __init__(self) -> None:
         self._file = -1
@@ -105,19 +103,21 @@ class SerialLink:
         try:
             data = os.read(self._file, READ)
         except BlockingIOError:
-            data = b""
+            return []
         except OSError as error:
             if error.errno != errno.EIO:
                 raise
             data = b""
+        if not data:
             self._nobody()
-        return [(self.PEER, payload) for payload in self._deframer.feed(data)]
+        return [*self._deframer.feed(data)]
 
     def _nobody(self) -> None:
         """Nothing is at the other end."""
 
     def send(self, peer: Hashable, data: bytes) -> None:
-        self.send_raw(peer, frame(data))
+        assert isinstance(peer, int)
+        self.send_raw(peer, frame(data, AGENT, peer))
 
     def send_raw(self, peer: Hashable, data: bytes) -> None:
         """What does not fit is lost, as on a line."""

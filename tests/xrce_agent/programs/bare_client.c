@@ -31,8 +31,9 @@ enum {
     HISTORY = 8,
     LARGE = 1200,
     MTU = UXR_CONFIG_CUSTOM_TRANSPORT_MTU,
-    PONG_TIMEOUT = 500, /* ms */
-    PING_PERIOD = 500   /* ms */
+    PONG_TIMEOUT = 100, /* ms */
+    PINGS = 5,
+    PING_PERIOD = 500 /* ms */
 };
 
 typedef struct options {
@@ -273,7 +274,7 @@ static void run(uxrSession *session, const options_t *options)
         }
         if (now >= next_ping) {
             next_ping = now + PING_PERIOD;
-            if (!uxr_ping_agent_session(session, PONG_TIMEOUT, 1)) {
+            if (!uxr_ping_agent_session(session, PONG_TIMEOUT, PINGS)) {
                 printf("lost\n");
                 return;
             }
