@@ -236,8 +236,8 @@ class Agent:
                 self._outside(peer, header, body)
                 return
             key = header.key if header.session < WITHOUT_KEY else self._peers.get(peer, b"")
-            client = self.clients.get(key)
-            if client is None or client.session != header.session:
+            client = self.clients.get(key)  # whatever the session, as eProsima's agent
+            if client is None:
                 self._stranger(peer, header, body)
                 return
             for whole in client.receive(header.stream, header.sequence, body):
