@@ -25,7 +25,7 @@ from pathlib import Path
 LOCKS = Path(__file__).resolve().parent / "lock"
 
 #: for each lock file: modules that must be there, and distributions with the oldest version that will do
-REQUIREMENTS = {
+REQUIREMENTS: dict[str, dict[str, tuple[str, tuple[int, ...]]]] = {
     "generator": {"yaml": ("PyYAML", (5, 4)), "jinja2": ("Jinja2", (3, 0)), "jsonschema": ("jsonschema", (4, 10))},
     "plot": {"matplotlib": ("matplotlib", (3, 5)), "numpy": ("numpy", (1, 23))},
     "ros": {"cyclonedds": ("cyclonedds", (0, 10, 5))},

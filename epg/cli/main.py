@@ -26,6 +26,8 @@ COMMANDS = {
     "explain": "show the way of a model port to its pin",
     "simulate": "run a host executable through a scenario and judge the result",
     "launch": "write a ROS 2 launch file, or systemd units, for the agents of targets",
+    "record": "record what a target says and hears on ROS 2",
+    "plot": "compare a recorded run with another one, or with its simulation",
     "doctor": "show what this computer has and lacks",
     "schema": "write the JSON Schemas of EPG's files, for editors",
     "migrate": "rewrite files of an older format in the newest one",

@@ -10,7 +10,7 @@ from epg.simulate.tracking import Tracking
 from epg.source import Span
 
 # M. Okabe, K. Ito, "Color Universal Design", 2008: told apart by people with any common colour vision
-_BLACK, _BLUE, _ORANGE, _GREY = "#000000", "#0072B2", "#D55E00", "#999999"
+BLACK, BLUE, ORANGE, GREY = "#000000", "#0072B2", "#D55E00", "#999999"
 
 
 def plot(trackings: Sequence[Tracking], path: Path, diagnostics: Diagnostics) -> bool:
@@ -41,23 +41,23 @@ def _draw(tracking: Tracking, upper, lower) -> None:  # type: ignore[no-untyped-
     begin = axis.homing.until if axis.homing else 0.0
     shown = [i for i, time in enumerate(tracking.time) if time >= begin]
     if tracking.reference is not None:
-        upper.plot(tracking.time, tracking.reference, color=_ORANGE, linewidth=2.4, label="reference (ideal loop)")
-    upper.plot(tracking.time, tracking.position, color=_BLUE, linewidth=1.4, label="position")
-    upper.plot(tracking.time, tracking.setpoint, color=_BLACK, linestyle=(0, (4, 4)), linewidth=0.9, label="setpoint")
+        upper.plot(tracking.time, tracking.reference, color=ORANGE, linewidth=2.4, label="reference (ideal loop)")
+    upper.plot(tracking.time, tracking.position, color=BLUE, linewidth=1.4, label="position")
+    upper.plot(tracking.time, tracking.setpoint, color=BLACK, linestyle=(0, (4, 4)), linewidth=0.9, label="setpoint")
     upper.set_ylabel(f"{axis.name} ({axis.unit})")
     times = [tracking.time[i] for i in shown]
     milli = 1000.0 if axis.unit in ("rad", "m") else 1.0
     if tracking.reference is not None:
         ideal = [milli * (tracking.reference[i] - tracking.setpoint[i]) for i in shown]
-        lower.plot(times, ideal, color=_ORANGE, linewidth=1.8)
+        lower.plot(times, ideal, color=ORANGE, linewidth=1.8)
     errors = [milli * (tracking.position[i] - tracking.setpoint[i]) for i in shown]
-    lower.plot(times, errors, color=_BLUE, linewidth=0.9)
+    lower.plot(times, errors, color=BLUE, linewidth=0.9)
     lower.set_ylabel(f"error ({'m' if milli > 1 else ''}{axis.unit})")
     for panel in (upper, lower):
-        panel.grid(True, color=_GREY, alpha=0.3, linewidth=0.6)
+        panel.grid(True, color=GREY, alpha=0.3, linewidth=0.6)
         if begin > 0.0:
             label = "homing" if panel is upper else None
-            panel.axvspan(0.0, begin, color=_GREY, alpha=0.15, linewidth=0.0, label=label)
+            panel.axvspan(0.0, begin, color=GREY, alpha=0.15, linewidth=0.0, label=label)
     upper.legend(loc="upper right", fontsize="small", ncol=4)
     low, high = upper.get_ylim()
     upper.set_ylim(low, high + 0.22 * (high - low))  # room for the legend

@@ -1,0 +1,172 @@
+"""``epg plot``: recordings as pictures, a real run beside its simulation."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from epg.diagnostics import Diagnostics, did_you_mean
+from epg.source import Span
+
+if TYPE_CHECKING:
+    from epg.ros.compare import Comparison
+    from epg.ros.recording import Recording
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("run", type=Path, metavar="RUN", help="a CSV file, or a folder that record or simulate wrote")
+    parser.add_argument("--against", type=Path, metavar="RUN", help="what to compare it with")
+    parser.add_argument(
+        "--signal",
+        action="append",
+        default=[],
+        metavar="NAME[=NAME]",
+        help="a signal, and what it is called in the other run; again for more; default: all of the same name",
+    )
+    parser.add_argument(
+        "--align",
+        choices=("correlation", "motion", "none"),
+        default="correlation",
+        help="how the runs are shifted in time: to the best match, to the first motion, not at all",
+    )
+    parser.add_argument(
+        "--by",
+        action="append",
+        default=[],
+        metavar="NAME",
+        help="signal that aligns the runs; again for more; default: setpoints that both followed, else all",
+    )
+    parser.add_argument("--output", type=Path, metavar="PNG", help="default: <name of RUN>.png here")
+
+
+def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
+    from epg import bootstrap
+
+    bootstrap.ensure("plot")
+    from epg.ros.recording import load_recording
+
+    recording = load_recording(options.run, diagnostics)
+    other = load_recording(options.against, diagnostics) if options.against else None
+    diagnostics.stop_if_errors()
+    assert recording is not None
+    output = options.output or Path(f"{options.run.resolve().stem}.png")
+    if other is None:
+        return _plot_one(recording, options, output, diagnostics)
+    return _compare(recording, other, options, output, diagnostics)
+
+
+def _plot_one(recording: Recording, options: argparse.Namespace, output: Path, diagnostics: Diagnostics) -> int:
+    from epg.ros.compare_plot import plot_recording
+
+    names = options.signal or list(recording.signals)
+    for name in names:
+        _check(name, recording, "--signal", diagnostics)
+    diagnostics.stop_if_errors()
+    plot_recording(recording, names, output)
+    print(f"wrote {output}")
+    return 0
+
+
+def _compare(
+    recording: Recording, other: Recording, options: argparse.Namespace, output: Path, diagnostics: Diagnostics
+) -> int:
+    from epg.cli.report import to_json
+    from epg.ros.compare import compare
+    from epg.ros.compare_plot import plot_comparison
+
+    pairs = _pairs(recording, other, options.signal, diagnostics)
+    for name in options.by:
+        if name not in pairs:
+            hint = did_you_mean(name, pairs, "compared")
+            diagnostics.error("unknown-recorded-signal", _span("--by", name), f"'{name}' is not compared", hint=hint)
+    diagnostics.stop_if_errors()
+    followed = [name for name, against in pairs.items() if name in recording.setpoints and against in other.setpoints]
+    comparison = compare(recording, other, pairs, options.align, options.by or followed or list(pairs))
+    for pair in comparison.pairs:
+        if math.isnan(pair.rms):
+            message = f"'{pair.name}' was not recorded at the same time in both runs, as they are aligned"
+            diagnostics.warning("no-overlap", Span(str(options.run)), message)
+    if all(math.isnan(pair.rms) for pair in comparison.pairs):
+        return 0
+    plot_comparison(comparison, _title(options.run), _title(options.against), output)
+    if options.json:
+        data = [
+            {
+                "signal": pair.name,
+                "against": pair.against,
+                "rms": pair.rms,
+                "largest": pair.largest,
+                "lag": pair.lag,
+                "rms_without_lag": pair.rms_without_lag,
+            }
+            for pair in comparison.pairs
+            if not math.isnan(pair.rms)
+        ]
+        sys.stdout.write(to_json({"shift": comparison.shift, "signals": data, "file": str(output)}))
+    else:
+        print(_table(comparison))
+        print(f"\nwrote {output}")
+    return 0
+
+
+def _pairs(recording: Recording, other: Recording, wanted: list[str], diagnostics: Diagnostics) -> dict[str, str]:
+    """What is compared with what: as asked for, or all that have one name in both runs."""
+    if not wanted:
+        common = {name: name for name in recording.signals if name in other.signals}
+        if not common:
+            hint = f"--signal a=b compares {', '.join(recording.signals)} with {', '.join(other.signals)}"
+            diagnostics.error("nothing-in-common", Span(str(other.path)), "no signal has one name in both", hint=hint)
+        return common
+    pairs = {}
+    for text in wanted:
+        name, _, against = text.partition("=")
+        pairs[name] = against or name
+        _check(name, recording, "--signal", diagnostics)
+        _check(pairs[name], other, "--signal", diagnostics)
+    return pairs
+
+
+def _check(name: str, recording: Recording, option: str, diagnostics: Diagnostics) -> None:
+    if name not in recording.signals:
+        message = f"'{name}' is not in {recording.path}"
+        hint = did_you_mean(name, recording.signals, "signals")
+        diagnostics.error("unknown-recorded-signal", _span(option, name), message, hint=hint)
+
+
+def _span(option: str, name: str) -> Span:
+    text = f"{option} {name}"
+    return Span("command line", 1, len(option) + 2, len(text) + 1, text=text)
+
+
+def _title(path: Path) -> str:
+    """What the legend calls a run: a folder by its name, a file by its folder and name if that says more."""
+    resolved = path.resolve()
+    plain = resolved.stem in ("topics", "setpoints", "trace", "tracking")
+    return f"{resolved.parent.name}/{resolved.name}" if plain else resolved.name
+
+
+def _table(comparison: Comparison) -> str:
+    from epg.cli.table import table
+
+    rows = [
+        (
+            pair.name,
+            f"{pair.rms:.4g}",
+            f"{pair.largest:.4g}",
+            f"{100.0 * pair.rms / pair.range:.2f} %" if pair.range else "",
+            f"{_milli(pair.lag)} ms",
+            f"{pair.rms_without_lag:.4g}",
+        )
+        for pair in comparison.pairs
+        if not math.isnan(pair.rms)
+    ]
+    head = ("signal", "RMS difference", "largest", "RMS of range", "lag", "RMS without lag")
+    return f"the run is shifted by {comparison.shift:+.4f} s\n\n" + table(head, rows)
+
+
+def _milli(seconds: float) -> str:
+    """Signed, in ms; "+0.0" also for what is a little less than nothing."""
+    return f"{round(1000.0 * seconds, 1) + 0.0:+.1f}"

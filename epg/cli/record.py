@@ -1,0 +1,169 @@
+"""``epg record``: what a target says and hears on ROS 2, as CSV files."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import signal
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from epg.diagnostics import Diagnostics
+from epg.source import Span
+
+if TYPE_CHECKING:
+    from epg.ros.recorder import Heard
+    from epg.ros.robot import Robot
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("target", type=Path, metavar="TARGET", help="<name>.json of a target, or a build folder of one")
+    parser.add_argument(
+        "--output", type=Path, default=Path(), metavar="FOLDER", help="where the files go; default: here"
+    )
+    parser.add_argument("--force", action="store_true", help="overwrite an earlier recording")
+    parser.add_argument("--duration", type=_seconds, metavar="SECONDS", help="default: until Ctrl-C")
+    parser.add_argument("--domain", type=int, choices=range(233), metavar="N", help="default: ROS_DOMAIN_ID, else 0")
+    parser.add_argument("--board", metavar="SERIAL", help="serial number of the board, for names that contain $serial")
+    parser.add_argument("--namespace", help="namespace of the node, if another one was set on its console")
+    parser.add_argument("--node", help="name of the node, likewise")
+    parser.add_argument(
+        "--through", choices=("dds", "rclpy"), help="default: dds if CycloneDDS for Python is installed, else rclpy"
+    )
+
+
+def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
+    from epg.cli.report import to_json
+    from epg.ros.recorder import SETPOINTS, TOPICS, channels_of, record
+    from epg.ros.source import open_source
+
+    robot = _robot(options, diagnostics)
+    files = [options.output / SETPOINTS, options.output / TOPICS]
+    for file in files:
+        if file.exists() and not options.force:
+            diagnostics.error("file-exists", Span(str(file)), "this file exists", hint="--force overwrites it")
+    diagnostics.stop_if_errors()
+    assert robot is not None
+    channels, unknown = channels_of(robot)
+    for topic in unknown:
+        message = f"'{topic.name}' is not recorded: EPG does not know {topic.type}"
+        diagnostics.warning("type-not-recorded", Span(str(robot.file)), message)
+    source = open_source(options.through, [channel.subscription for channel in channels], _domain(options, robot))
+    progress = _Progress(quiet=options.json)
+    try:
+        with _Stop() as stop:
+            heard = record(source, channels, options.output, options.duration, stop, progress)
+    finally:
+        source.close()
+        progress.done()
+    for one in heard:
+        if one.messages == 0 and one.channel.file == TOPICS:  # setpoints need not come
+            message = f"nothing was heard on {one.channel.name}: {_reason(one)}"
+            diagnostics.warning("nothing-heard", Span(str(robot.file)), message)
+    if options.json:
+        data = [
+            {"topic": h.channel.name, "type": h.channel.topic.type, "messages": h.messages, "rate": h.rate}
+            for h in heard
+        ]
+        sys.stdout.write(to_json({"topics": data, "files": [str(file) for file in files]}))
+    else:
+        print(_table(heard))
+        print("\nwrote " + ", ".join(str(file) for file in files))
+    return 0
+
+
+def _robot(options: argparse.Namespace, diagnostics: Diagnostics) -> Robot | None:
+    """The one target to record, under the names it has."""
+    from epg.ros.robot import load_robots
+
+    robots = load_robots([options.target], diagnostics)
+    diagnostics.stop_if_errors()
+    if len(robots) != 1:
+        hint = "name one: " + ", ".join(str(robot.file) for robot in robots)
+        diagnostics.error("several-targets", Span(str(options.target)), f"there are {len(robots)} targets", hint=hint)
+        return None
+    robot = robots[0]
+    if options.board:
+        robot = robot.with_serial(options.board.upper())
+    if options.namespace is not None:
+        robot = replace(robot, namespace=f"/{options.namespace.strip('/')}" if options.namespace.strip("/") else "")
+    if options.node:
+        robot = replace(robot, node=options.node)
+    if robot.has_serial_in_names:
+        message = f"the node is '{robot.full_node}': which board is it?"
+        diagnostics.error("board-unknown", Span(str(robot.file)), message, hint="give its serial number with --board")
+    return robot
+
+
+def _domain(options: argparse.Namespace, robot: Robot) -> int:
+    """The domain asked for, that of the target, or that of the environment, as ROS 2 nodes take it."""
+    if options.domain is not None:
+        return int(options.domain)
+    if robot.domain is not None:
+        return robot.domain
+    environment = os.environ.get("ROS_DOMAIN_ID", "")
+    return int(environment) if environment.isdigit() else 0
+
+
+def _reason(heard: Heard) -> str:
+    if heard.publishers < 0:
+        return "its publisher offers best effort, the description says reliable"
+    if heard.publishers == 0:
+        return "there is no publisher in this domain"
+    return "its publisher sent nothing"
+
+
+def _table(heard: list[Heard]) -> str:
+    from epg.cli.table import table
+
+    rows = [
+        (h.channel.name, h.channel.topic.type, h.messages, f"{h.rate:.1f} Hz" if h.rate else "", h.channel.file)
+        for h in heard
+    ]
+    return table(("topic", "type", "messages", "rate", "file"), rows)
+
+
+class _Stop:
+    """True once Ctrl-C was pressed or the process was asked to end: the files are complete either way."""
+
+    def __init__(self) -> None:
+        self.asked = False
+
+    def __enter__(self) -> _Stop:
+        self.before = {number: signal.signal(number, self._ask) for number in (signal.SIGINT, signal.SIGTERM)}
+        return self
+
+    def _ask(self, number: int, frame: object) -> None:
+        self.asked = True
+
+    def __call__(self) -> bool:
+        return self.asked
+
+    def __exit__(self, *_: object) -> None:
+        for number, handler in self.before.items():
+            signal.signal(number, handler)
+
+
+class _Progress:
+    """A line on a terminal that is written over."""
+
+    def __init__(self, quiet: bool) -> None:
+        self.active = not quiet and sys.stderr.isatty()
+
+    def __call__(self, message: str) -> None:
+        if self.active:
+            sys.stderr.write(f"\r\x1b[K{message}")
+            sys.stderr.flush()
+
+    def done(self) -> None:
+        if self.active:
+            sys.stderr.write("\r\x1b[K")
+
+
+def _seconds(text: str) -> float:
+    value = float(text)
+    if not 0.0 < value < 1e9:
+        raise argparse.ArgumentTypeError(f"{text} is no duration in seconds")
+    return value

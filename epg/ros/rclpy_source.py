@@ -1,0 +1,52 @@
+"""Messages by rclpy, where ROS 2 is sourced: through whichever middleware ROS 2 is set to."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from functools import partial
+from typing import Any
+
+import rclpy
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rosidl_runtime_py.utilities import get_message
+
+from epg.ros.source import Sample, Subscription
+
+_DEPTH = 256
+
+
+class RclpySource:
+    """See :class:`epg.ros.source.Source`."""
+
+    def __init__(self, subscriptions: Sequence[Subscription], domain: int) -> None:
+        self._context = rclpy.Context()
+        self._context.init(domain_id=domain)
+        self._node = rclpy.create_node("epg_record", context=self._context)
+        self._executor = rclpy.executors.SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self._node)
+        self._samples: list[Sample] = []
+        self._names = [subscription.name for subscription in subscriptions]
+        for number, subscription in enumerate(subscriptions):
+            reliability = ReliabilityPolicy.RELIABLE if subscription.reliable else ReliabilityPolicy.BEST_EFFORT
+            self._node.create_subscription(
+                get_message(subscription.type),
+                subscription.name,
+                partial(self._arrived, number),
+                QoSProfile(depth=_DEPTH, reliability=reliability),
+            )
+
+    def _arrived(self, subscription: int, message: Any) -> None:
+        self._samples.append(Sample(time.monotonic_ns(), subscription, message))
+
+    def take(self, seconds: float) -> list[Sample]:
+        self._executor.spin_once(timeout_sec=seconds)
+        taken, self._samples = self._samples, []
+        return taken
+
+    def publishers(self) -> list[int]:
+        return [self._node.count_publishers(name) for name in self._names]
+
+    def close(self) -> None:
+        self._node.destroy_node()
+        self._context.try_shutdown()

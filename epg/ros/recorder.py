@@ -1,0 +1,119 @@
+"""Records what a target says and hears, in the form in which the host platform reads and writes it.
+
+``setpoints.csv`` can be given to a host executable (``--setpoints``) or compared like ``topics.csv``, which is what the
+target published.  Times are seconds since the recording began, by the clock of the computer that records.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TextIO
+
+from epg.ros.messages import TYPES, fields_of, numbers
+from epg.ros.robot import Robot, Topic
+from epg.ros.source import Sample, Source, Subscription
+
+SETPOINTS, TOPICS = "setpoints.csv", "topics.csv"
+
+_TURN = 0.1  # s, until the recorder looks whether it should end
+
+
+@dataclass(frozen=True)
+class Channel:
+    """A topic to record, and the file its values go to."""
+
+    topic: Topic
+    name: str
+    file: str
+
+    @property
+    def subscription(self) -> Subscription:
+        """A setpoint's publisher is anybody, so nothing is asked of it; of the target's own QoS the best is made."""
+        return Subscription(self.name, self.topic.type, self.file == TOPICS and self.topic.qos == "reliable")
+
+
+@dataclass(frozen=True)
+class Heard:
+    """How a channel fared: messages, s from first to last, publishers found (-1: one whose QoS does not fit)."""
+
+    channel: Channel
+    messages: int
+    span: float
+    publishers: int
+
+    @property
+    def rate(self) -> float:
+        """Messages per second; 0 for fewer than two."""
+        return (self.messages - 1) / self.span if self.messages > 1 and self.span > 0.0 else 0.0
+
+
+def channels_of(robot: Robot) -> tuple[list[Channel], list[Topic]]:
+    """What can be recorded of a target, and topics whose type is a stranger's."""
+    channels, unknown = [], []
+    for topics, file in ((robot.subscriptions, SETPOINTS), (robot.publications, TOPICS)):
+        for topic in topics:
+            if topic.role != "values":
+                continue
+            if topic.type in TYPES:
+                channels.append(Channel(topic, robot.topic(topic), file))
+            else:
+                unknown.append(topic)
+    return channels, unknown
+
+
+def record(
+    source: Source,
+    channels: Sequence[Channel],
+    folder: Path,
+    duration: float | None,
+    stopped: Callable[[], bool],
+    progress: Callable[[str], None] = lambda text: None,
+) -> list[Heard]:
+    """Writes both files in ``folder`` until ``duration`` (s) is over or ``stopped()`` says so."""
+    folder.mkdir(parents=True, exist_ok=True)
+    begin = time.monotonic_ns()
+    counts = [_Count() for _ in channels]
+    with (
+        (folder / SETPOINTS).open("w", encoding="utf-8", newline="\n") as setpoints,
+        (folder / TOPICS).open("w", encoding="utf-8", newline="\n") as topics,
+    ):
+        files = {SETPOINTS: setpoints, TOPICS: topics}
+        for file in files.values():
+            file.write("time,topic,value\n")
+        while not stopped():
+            elapsed = 1e-9 * (time.monotonic_ns() - begin)
+            if duration is not None and elapsed >= duration:
+                break
+            rest = _TURN if duration is None else min(_TURN, duration - elapsed)
+            for sample in source.take(rest):
+                channel = channels[sample.subscription]
+                counts[sample.subscription].add(sample.time_ns)
+                _write(files[channel.file], channel, sample, begin)
+            progress(f"{elapsed:.0f} s, {sum(count.messages for count in counts)} messages")
+    publishers = source.publishers()
+    return [Heard(c, count.messages, count.span, p) for c, count, p in zip(channels, counts, publishers)]
+
+
+class _Count:
+    def __init__(self) -> None:
+        self.messages, self.first, self.last = 0, 0, 0
+
+    def add(self, time_ns: int) -> None:
+        self.first = self.first or time_ns
+        self.last = time_ns
+        self.messages += 1
+
+    @property
+    def span(self) -> float:
+        return 1e-9 * (self.last - self.first)
+
+
+def _write(file: TextIO, channel: Channel, sample: Sample, begin: int) -> None:
+    seconds = f"{1e-9 * (sample.time_ns - begin):.6f}"
+    values = numbers(channel.topic.type, sample.message, fields_of(channel.topic))
+    for name, value in zip(channel.topic.values, values):
+        if value is not None:
+            file.write(f"{seconds},{name},{value!r}\n")

@@ -1,0 +1,112 @@
+"""Recordings of runs, real or simulated, as signals over time.
+
+Reads what EPG writes: ``time,topic,value`` rows (topics, setpoints) and tables with a column ``time`` and one for each
+signal (``trace.csv``, ``tracking.csv``); from a folder, its ``topics.csv`` and ``setpoints.csv``.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+from array import array
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from epg.diagnostics import Diagnostics
+from epg.source import Span
+
+_SETPOINTS = "setpoints.csv"
+_FOLDER_FILES = (_SETPOINTS, "topics.csv")
+
+
+@dataclass(frozen=True)
+class Signal:
+    """Values over time (s, never falling)."""
+
+    time: Sequence[float]
+    value: Sequence[float]
+
+
+@dataclass(frozen=True)
+class Recording:
+    """All signals of a run by name, and which of them are setpoints as far as is known.
+
+    What begins with ``$`` (events of the host platform) is not among them.
+    """
+
+    path: Path
+    signals: dict[str, Signal]
+    setpoints: frozenset[str]
+
+
+def load_recording(path: Path, diagnostics: Diagnostics) -> Recording | None:
+    """The recording in ``path``, a file or a folder; None after reporting what is wrong with it."""
+    files = [path]
+    if path.is_dir():
+        files = [path / name for name in _FOLDER_FILES if (path / name).is_file()]
+        if not files:
+            hint = f"a folder has {' or '.join(_FOLDER_FILES)}"
+            diagnostics.error("no-recording", Span(str(path)), "there is no recording here", hint=hint)
+            return None
+    columns: dict[str, tuple[array[float], array[float]]] = {}
+    setpoints = set()
+    before = diagnostics.error_count
+    for file in files:
+        for time, name, value in _rows(file, diagnostics):
+            if file.name == _SETPOINTS:
+                setpoints.add(name)
+            times, values = columns.setdefault(name, (array("d"), array("d")))
+            times.append(time)
+            values.append(value)
+    if diagnostics.error_count > before:
+        return None
+    signals = {name: Signal(*columns[name]) for name in columns if not name.startswith("$")}
+    if not signals:
+        diagnostics.error("no-recording", Span(str(path)), "this recording is empty")
+        return None
+    return Recording(path, signals, frozenset(setpoints & signals.keys()))
+
+
+def _rows(file: Path, diagnostics: Diagnostics) -> Iterator[tuple[float, str, float]]:
+    """Time, signal and value of everything in ``file``; cells that are empty or not finite are left out."""
+    try:
+        with file.open(encoding="utf-8", newline="") as text:
+            rows = csv.reader(text)
+            header = next(rows, [])
+            if "time" not in header:
+                message = "this is no recording: its first line does not name a column 'time'"
+                diagnostics.error("not-a-recording", Span(str(file), 1, 1, 2), message)
+                return
+            at = header.index("time")
+            latest = -math.inf
+            for number, row in enumerate(rows, start=2):
+                if not row:
+                    continue
+                try:
+                    time = float(row[at])
+                    pairs = _cells(header, row, at)
+                except (ValueError, IndexError):
+                    message = "this line does not fit the first one"
+                    diagnostics.error("wrong-recording", Span(str(file), number, 1, 2), message)
+                    return
+                if not time >= latest:
+                    message = f"time goes back from {latest:g} s to {time:g} s"
+                    diagnostics.error("wrong-recording", Span(str(file), number, 1, 2), message)
+                    return
+                latest = time
+                yield from ((time, name, value) for name, value in pairs)
+    except FileNotFoundError:
+        diagnostics.error("file-not-found", Span(str(file)), f"there is no file '{file}'")
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        diagnostics.error("file-unreadable", Span(str(file)), f"cannot read '{file.name}': {error}")
+
+
+def _cells(header: Sequence[str], row: Sequence[str], at: int) -> list[tuple[str, float]]:
+    if header == ["time", "topic", "value"]:
+        pairs = [(row[1], float(row[2]))]
+    elif len(row) != len(header):
+        raise ValueError
+    else:
+        pairs = [(name, float(cell)) for i, (name, cell) in enumerate(zip(header, row)) if i != at and cell != ""]
+    return [(name, value) for name, value in pairs if math.isfinite(value)]
