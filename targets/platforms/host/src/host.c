@@ -12,10 +12,9 @@
 #include "options.h"
 #include "report.h"
 #include "run.h"
-#include "setpoints.h"
 #include "serial.h"
+#include "setpoints.h"
 #include "store.h"
-#include "terminal.h"
 
 enum { DONE = 0, FAILED = 1, WRONG_INPUT = 2, INTERRUPTED = 130 };
 
@@ -60,15 +59,15 @@ static bool close_output(const char *path, FILE *file)
 
 /** With all files open and the events read: runs, and fills the files. */
 static int run_target(const epg_host_target_t *host, const epg_host_options_t *options, const epg_host_events_t *events,
-                      const outputs_t *outputs, epg_host_terminal_t *terminal)
+                      const outputs_t *outputs, const epg_host_services_t *services)
 {
     static epg_host_run_t run; /* too large for a small stack */
     const epg_target_t *target = host->target;
     const uint64_t cycles = (options->duration_ns - 1) / target->application->period_ns + 1;
     run = (epg_host_run_t){.host = host,
                            .end_ns = options->duration_ns,
-                           .terminal = terminal,
-                           .ends_with_input = terminal != NULL && options->duration_ns == UINT64_MAX};
+                           .services = *services,
+                           .ends_with_input = services->terminal != NULL && options->duration_ns == UINT64_MAX};
     if (!epg_host_communication_start(&run.communication, target, events, run.end_ns, outputs->topics)) {
         return FAILED;
     }
@@ -96,16 +95,16 @@ static int run_target(const epg_host_target_t *host, const epg_host_options_t *o
 
 /** With a terminal for the console, if one is wanted. */
 static int run_with_terminal(const epg_host_target_t *host, const epg_host_options_t *options,
-                             const epg_host_events_t *events, const outputs_t *outputs)
+                             const epg_host_events_t *events, const outputs_t *outputs, epg_host_link_t *link)
 {
     epg_host_terminal_t terminal;
+    epg_host_services_t services = {.target = host->target, .link = link};
     if (!options->console && options->console_pty == NULL) {
-        return run_target(host, options, events, outputs, NULL);
+        return run_target(host, options, events, outputs, &services);
     }
-    if (host->target->middleware == NULL) {
-        fputs("error: this target has no console\n"
-              "hint: 'communication: {middleware: console}' in its .tcf gives it one\n",
-              stderr);
+    if (epg_host_console(host) == NULL) {
+        fprintf(stderr, "error: this target has no console\nhint: 'communication: {%s}' in its .tcf gives it one\n",
+                epg_host_is_connected(host) ? "console: true" : "middleware: console");
         return WRONG_INPUT;
     }
     if (options->console) {
@@ -113,8 +112,37 @@ static int run_with_terminal(const epg_host_target_t *host, const epg_host_optio
     } else if (!epg_host_terminal_open(&terminal, options->console_pty)) {
         return FAILED;
     }
-    const int status = run_target(host, options, events, outputs, &terminal);
+    services.terminal = &terminal;
+    const int status = run_target(host, options, events, outputs, &services);
     epg_host_terminal_close(&terminal);
+    return status;
+}
+
+/** With a link to an agent, if there is one: in real time. */
+static int run_with_link(const epg_host_target_t *host, const epg_host_options_t *options,
+                         const epg_host_events_t *events, const outputs_t *outputs)
+{
+    static epg_host_link_t link;
+    const char *agent = options->agent != NULL ? options->agent : options->device;
+    if (agent != NULL && host->agent == NULL) {
+        fputs("error: this target has no agent\nhint: 'communication: {middleware: xrce}' in its .tcf makes it talk to "
+              "one\n",
+              stderr);
+        return WRONG_INPUT;
+    }
+    if (host->agent == NULL || !options->realtime) {
+        return run_with_terminal(host, options, events, outputs, NULL);
+    }
+    agent = agent != NULL ? agent : host->agent;
+    if (agent != options->device && epg_host_link_is_address(agent)) {
+        if (!epg_host_link_udp(&link, agent)) {
+            return FAILED;
+        }
+    } else {
+        epg_host_link_serial(&link, agent, host->baud_rate);
+    }
+    const int status = run_with_terminal(host, options, events, outputs, &link);
+    epg_host_link_close(&link);
     return status;
 }
 
@@ -125,7 +153,7 @@ static int run_with_files(const epg_host_target_t *host, const epg_host_options_
     int status = FAILED;
     if (open_output(options->topics, &outputs.topics) && open_output(options->trace, &outputs.trace) &&
         open_output(options->statistics, &outputs.statistics)) {
-        status = run_with_terminal(host, options, events, &outputs);
+        status = run_with_link(host, options, events, &outputs);
     }
     errno = 0;
     const bool topics = close_output(options->topics, outputs.topics);
@@ -137,7 +165,7 @@ static int run_with_files(const epg_host_target_t *host, const epg_host_options_
 int epg_host_main(const epg_host_target_t *host, int argc, char **argv)
 {
     epg_host_options_t options;
-    if (!epg_host_read_options(argc, argv, &options)) {
+    if (!epg_host_read_options(argc, argv, epg_host_is_connected(host), &options)) {
         return WRONG_INPUT;
     }
     if (options.help) {

@@ -7,19 +7,23 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "link.h"
 #include "number.h"
 
 void epg_host_print_help(const char *name)
 {
     printf("usage: %s [options] --duration SECONDS\n"
-           "       %s [options] --realtime --console\n"
+           "       %s [options] --realtime [--console]\n"
            "\n"
            "Runs the target '%s' against its simulated plant.\n"
            "\n"
-           "  --duration SECONDS   how long to run\n"
+           "  --duration SECONDS   how long to run; default in real time, with a console or a ROS 2 node: until it is "
+           "ended\n"
            "  --realtime           in real time, in a thread of its own (default: simulated time)\n"
            "  --console            commands from standard input, answers to standard output (real time)\n"
            "  --console-pty PATH   the same on a terminal with this name, as if a board were plugged in\n"
+           "  --agent HOST:PORT    where the ROS 2 agent is (real time; default: as the .tcf says)\n"
+           "  --serial-device PATH the agent is on this terminal, such as /dev/ttyUSB0\n"
            "  --store FILE         where the console's 'save' keeps parameters\n"
            "  --serial WORD        what '$serial' stands for in names of node and namespace; default: host\n"
            "  --setpoints FILE     CSV with rows time,topic,value: what arrives, and when\n"
@@ -81,7 +85,36 @@ static bool take(const option_t *option, int argc, char **argv, int *i)
     return (*option->value)[0] != '\0';
 }
 
-bool epg_host_read_options(int argc, char **argv, epg_host_options_t *options)
+/** Whether the options go together. */
+static bool fit_together(const epg_host_options_t *options)
+{
+    if ((options->console || options->console_pty != NULL) && !options->realtime) {
+        fputs("error: --console without --realtime\nhint: nobody types in simulated time: add --realtime\n", stderr);
+        return false;
+    }
+    if (options->console && options->console_pty != NULL) {
+        fputs("error: --console and --console-pty\nhint: there is one console: leave one of them out\n", stderr);
+        return false;
+    }
+    if (options->agent != NULL && options->device != NULL) {
+        fputs("error: --agent and --serial-device\nhint: there is one agent: leave one of them out\n", stderr);
+        return false;
+    }
+    if ((options->agent != NULL || options->device != NULL) && !options->realtime) {
+        fprintf(stderr,
+                "error: %s without --realtime\nhint: an agent does not live in simulated time: add --realtime\n",
+                options->agent != NULL ? "--agent" : "--serial-device");
+        return false;
+    }
+    if (options->agent != NULL && !epg_host_link_is_address(options->agent)) {
+        fprintf(stderr, "error: --agent '%s' is no HOST:PORT\nhint: for example --agent 192.168.1.10:8888\n",
+                options->agent);
+        return false;
+    }
+    return true;
+}
+
+bool epg_host_read_options(int argc, char **argv, bool connected, epg_host_options_t *options)
 {
     *options = (epg_host_options_t){0};
     const char *duration = NULL;
@@ -92,6 +125,7 @@ bool epg_host_read_options(int argc, char **argv, epg_host_options_t *options)
         {"--trace", NULL, &options->trace},         {"--statistics", NULL, &options->statistics},
         {"--console", &options->console, NULL},     {"--console-pty", NULL, &options->console_pty},
         {"--store", NULL, &options->store},         {"--serial", NULL, &options->serial},
+        {"--agent", NULL, &options->agent},         {"--serial-device", NULL, &options->device},
     };
     for (int i = 1; i < argc; i++) {
         const option_t *option = find(known, sizeof known / sizeof known[0], argv[i]);
@@ -106,16 +140,11 @@ bool epg_host_read_options(int argc, char **argv, epg_host_options_t *options)
     if (options->help) {
         return true;
     }
-    const bool console = options->console || options->console_pty != NULL;
-    if (console && !options->realtime) {
-        fputs("error: --console without --realtime\nhint: nobody types in simulated time: add --realtime\n", stderr);
+    if (!fit_together(options)) {
         return false;
     }
-    if (options->console && options->console_pty != NULL) {
-        fputs("error: --console and --console-pty\nhint: there is one console: leave one of them out\n", stderr);
-        return false;
-    }
-    if (duration == NULL && console && options->trace == NULL) {
+    const bool served = options->console || options->console_pty != NULL || (options->realtime && connected);
+    if (duration == NULL && served && options->trace == NULL) {
         options->duration_ns = UINT64_MAX;
         return true;
     }

@@ -14,6 +14,8 @@ typedef struct epg_host_options {
     bool realtime;
     bool console;            /**< on standard input and output */
     uint64_t duration_ns;    /**< > 0; UINT64_MAX: until it is ended */
+    const char *agent;       /**< HOST:PORT; NULL: as generated */
+    const char *device;      /**< terminal that the agent is on, instead; NULL: none was given */
     const char *console_pty; /**< name of the terminal that the console is on; NULL: none */
     const char *store;       /**< path of the file that stored values are in; NULL: none */
     const char *serial;      /**< word that stands for "$serial" in names; NULL: none was given */
@@ -23,8 +25,11 @@ typedef struct epg_host_options {
     const char *statistics;
 } epg_host_options_t;
 
-/** Reads the command line; false after a message to stderr that says what is wrong. */
-bool epg_host_read_options(int argc, char **argv, epg_host_options_t *options);
+/**
+ * Reads the command line of a target whose middleware is `connected` by itself or not; false after a message to stderr
+ * that says what is wrong.
+ */
+bool epg_host_read_options(int argc, char **argv, bool connected, epg_host_options_t *options);
 
 /** Prints how the program is used. */
 void epg_host_print_help(const char *name);

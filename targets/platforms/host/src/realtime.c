@@ -27,16 +27,13 @@
 #include <time.h>
 
 #include "clock.h"
-#include "epg/middleware.h"
-#include "epg/port.h"
 
 enum {
     PRIORITY = 80,                     /* above threaded interrupts (50), below the kernel's own threads (99) */
     STACK_SIZE = 2 << 20,              /* bytes; thread-local storage is taken from it, of sanitizers close to 1 MiB */
     STACK_PREFAULTED = 256 << 10,      /* bytes the cycle may use without a page fault */
     START_DELAY_NS = 20 * 1000 * 1000, /* from all being ready to the first tick: the caller gets going meanwhile */
-    LONGEST_SLEEP_NS = 100 * 1000 * 1000, /* of the communication side, so that an interrupt is seen soon */
-    MIDDLEWARE_SLEEP_NS = 1000 * 1000     /* the same when it has a middleware to call */
+    LONGEST_SLEEP_NS = 100 * 1000 * 1000 /* of the communication side, so that an interrupt is seen soon */
 };
 
 /** A control thread and what it shares with the thread that started it. */
@@ -174,57 +171,26 @@ static void join_thread(control_thread_t *self)
     sem_destroy(&self->ready);
 }
 
-/** Whether the target's middleware needs no stream: it has a connection of its own, and can wait for it. */
-static bool connects_itself(const epg_target_t *target)
-{
-    return target->middleware != NULL && target->middleware->wait != NULL;
-}
-
-static void start_middleware(const epg_host_run_t *run)
-{
-    const epg_target_t *target = run->host->target;
-    if (connects_itself(target)) {
-        target->middleware->start(target, NULL);
-    } else if (run->terminal != NULL) {
-        target->middleware->start(target, &run->terminal->stream);
-    }
-}
-
-static void stop_middleware(const epg_host_run_t *run)
-{
-    const epg_middleware_t *middleware = run->host->target->middleware;
-    if (middleware != NULL && middleware->stop != NULL && (middleware->wait != NULL || run->terminal != NULL)) {
-        middleware->stop();
-    }
-}
-
 /** Sleeps until monotonic time `time_ns`, less if there is a middleware with something to do. */
 static void sleep_or_serve(const epg_host_run_t *run, uint64_t time_ns)
 {
-    const epg_target_t *target = run->host->target;
-    const uint64_t soon_ns = epg_host_monotonic_ns() + MIDDLEWARE_SLEEP_NS;
-    const uint64_t until_ns = time_ns < soon_ns ? time_ns : soon_ns;
-    if (connects_itself(target)) {
-        target->middleware->wait(until_ns);
-    } else if (run->terminal != NULL) {
-        epg_host_terminal_wait(run->terminal, until_ns);
+    if (epg_host_services_run(&run->services)) {
+        epg_host_services_serve(&run->services, time_ns);
     } else {
         sleep_until(time_ns);
-        return;
     }
-    target->middleware->poll(epg_port_time_ns());
 }
 
 static bool ended(const epg_host_run_t *run)
 {
     return epg_host_interrupted ||
-           (run->ends_with_input && epg_host_terminal_ended(run->terminal, epg_host_monotonic_ns()));
+           (run->ends_with_input && epg_host_terminal_ended(run->services.terminal, epg_host_monotonic_ns()));
 }
 
 bool epg_host_run_realtime(epg_host_run_t *run)
 {
     control_thread_t control;
-    start_middleware(run);
+    epg_host_services_start(&run->services);
     if (!start_thread(&control, run)) {
         return false;
     }
@@ -243,7 +209,7 @@ bool epg_host_run_realtime(epg_host_run_t *run)
     atomic_store(&control.stop, now_ns < run->end_ns);
     join_thread(&control);
     run->wall_time_ns = epg_host_monotonic_ns() - start_ns;
-    stop_middleware(run);
+    epg_host_services_stop(&run->services);
     return true;
 }
 

@@ -12,7 +12,7 @@
 #include "communication.h"
 #include "epg/host.h"
 #include "plant.h"
-#include "terminal.h"
+#include "services.h"
 #include "timing.h"
 #include "trace.h"
 
@@ -21,8 +21,8 @@ typedef struct epg_host_run {
     uint64_t end_ns; /**< no cycle starts at or after this time; UINT64_MAX: until stopped */
     epg_host_plant_run_t plant;
     epg_host_communication_t communication;
-    epg_host_terminal_t *terminal; /**< of the target's middleware; NULL: it does not run */
-    bool ends_with_input;          /**< the run ends when standard input does */
+    epg_host_services_t services; /**< real time only */
+    bool ends_with_input;         /**< the run ends when standard input does */
     epg_host_trace_t trace;
     epg_host_timing_t timing;
     uint64_t ran_ns;        /**< how far the run came */

@@ -25,9 +25,8 @@
 #include "clock.h"
 
 enum {
-    CHUNK = 1024,                 /* bytes of one write(): a pipe that is ready takes 4096 without blocking (pipe(7)) */
-    GRACE_NS = 200 * 1000 * 1000, /* from the end of input to the end of the run */
-    MS = 1000 * 1000
+    CHUNK = 1024,                /* bytes of one write(): a pipe that is ready takes 4096 without blocking (pipe(7)) */
+    GRACE_NS = 200 * 1000 * 1000 /* from the end of input to the end of the run */
 };
 
 /** What is ready at `file` of `events`; POLLHUP and POLLERR come unasked. */
@@ -169,14 +168,9 @@ bool epg_host_terminal_open(epg_host_terminal_t *terminal, const char *path)
     return true;
 }
 
-void epg_host_terminal_wait(const epg_host_terminal_t *terminal, uint64_t time_ns)
+bool epg_host_terminal_listens(const epg_host_terminal_t *terminal)
 {
-    const uint64_t now_ns = epg_host_monotonic_ns();
-    const int timeout_ms = time_ns > now_ns ? (int)((time_ns - now_ns + MS - 1) / MS) : 0;
-    /* A terminal that nobody has open, and input that has ended, are always ready. */
-    const bool silent = terminal->end_ns != 0 || !terminal->stream.connected(terminal->stream.context);
-    struct pollfd entry = {.fd = terminal->input, .events = POLLIN};
-    (void)poll(&entry, silent ? 0 : 1, timeout_ms);
+    return terminal->end_ns == 0 && terminal->stream.connected(terminal->stream.context);
 }
 
 bool epg_host_terminal_ended(const epg_host_terminal_t *terminal, uint64_t now_ns)
@@ -208,10 +202,10 @@ bool epg_host_terminal_open(epg_host_terminal_t *terminal, const char *path)
     return false;
 }
 
-void epg_host_terminal_wait(const epg_host_terminal_t *terminal, uint64_t time_ns)
+bool epg_host_terminal_listens(const epg_host_terminal_t *terminal)
 {
     (void)terminal;
-    (void)time_ns;
+    return false;
 }
 
 bool epg_host_terminal_ended(const epg_host_terminal_t *terminal, uint64_t now_ns)

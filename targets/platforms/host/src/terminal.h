@@ -28,8 +28,8 @@ void epg_host_terminal_standard(epg_host_terminal_t *terminal);
 /** A pseudo-terminal with the name `path`, a link that is removed at the end; false, with a message, if there is none. */
 bool epg_host_terminal_open(epg_host_terminal_t *terminal, const char *path);
 
-/** Sleeps until monotonic time `time_ns` or until something arrives. */
-void epg_host_terminal_wait(const epg_host_terminal_t *terminal, uint64_t time_ns);
+/** Whether input can still come: a terminal that nobody has open, and input that has ended, are always ready. */
+bool epg_host_terminal_listens(const epg_host_terminal_t *terminal);
 
 /** True when standard input has ended, and what was read before has had time to be answered. */
 bool epg_host_terminal_ended(const epg_host_terminal_t *terminal, uint64_t now_ns);

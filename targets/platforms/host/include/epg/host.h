@@ -47,6 +47,8 @@ typedef struct epg_host_target {
     const epg_host_plant_t *plant;
     size_t signal_count;
     const epg_host_signal_t *signals;
+    const char *agent;  /**< where the agent of the target's middleware is: HOST:PORT, or a terminal; NULL: no agent */
+    uint32_t baud_rate; /**< of that terminal */
 } epg_host_target_t;
 
 /** Body of main() of a host executable: reads options, runs, prints a summary.  Returns the exit status. */

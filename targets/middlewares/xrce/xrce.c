@@ -1,0 +1,418 @@
+/**
+ * @file
+ * ROS 2 through an agent.
+ *
+ * | state    | what is done                                                     | and then                             |
+ * |----------|------------------------------------------------------------------|--------------------------------------|
+ * | waiting  | asks for a session, every 0.2 s, later every 0.5 s               | accepted: creating                   |
+ * | creating | node, topics, writers and readers, one after another             | all there: running; refused or none  |
+ * |          |                                                                  | answered within 2 s: waiting         |
+ * | running  | topics; a ping every 0.1 s, the time every 10 s                  | the agent does not know us, or is    |
+ * |          |                                                                  | silent for 1 s: waiting              |
+ *
+ * The client library is used so that none of its functions waits: a timeout of 0 sends what is to be sent and takes
+ * one frame if there is one.
+ */
+#include "xrce.h"
+
+#include <string.h>
+
+#include "epg/node.h"
+#include "epg/port.h"
+#include "xrce_entities.h"
+#include "xrce_guard.h"
+#include "xrce_link.h"
+
+#define MS ((uint64_t)1000000)
+
+static const uint64_t FIRST_ATTEMPT_NS = 200 * MS; /* from one request for a session to the next */
+static const uint64_t LAST_ATTEMPT_NS = 500 * MS;
+static const uint64_t REFUSED_NS = 2000 * MS; /* the same after the agent has refused something */
+static const uint64_t ANSWER_NS = 2000 * MS;  /* that the agent has for one answer while creating */
+static const uint64_t PING_NS = 100 * MS;
+static const uint64_t SILENCE_NS = 1000 * MS;   /* of an agent that is lost; ten pings: of ten, noise leaves one */
+static const uint64_t HEARTBEAT_NS = 50 * MS;   /* from a frame that is not acknowledged to the question for it */
+static const uint64_t SYNC_NS = 10000 * MS;     /* from one question for the time to the next */
+static const uint64_t SYNC_AGAIN_NS = 500 * MS; /* the same while the clock is not set */
+static const int64_t LONGEST_ROUND_NS = 100 * 1000000; /* of an answer with the time that is good enough */
+
+enum { FRAMES_PER_POLL = 32, DROPPED_PER_FRAME = 8 };
+
+/** There is one client. */
+static struct {
+    const epg_target_t *target;
+    const epg_stream_t *stream;
+    const epg_xrce_options_t *options;
+    epg_node_t *node;
+    epg_xrce_link_t link;
+    epg_xrce_guard_t guard;
+    epg_xrce_entities_t entities;
+    uxrCommunication communication;
+    uxrSession session;
+    uxrStreamId reliable; /* output streams */
+    uxrStreamId best_effort;
+    size_t buffered; /* bytes of frames that wait in the streams, as they will be on the line */
+    epg_xrce_status_t status;
+
+    uint64_t now_ns;        /* of this poll */
+    uint64_t attempt_ns;    /* when a session is asked for next */
+    uint64_t interval_ns;   /* from that to the one after it */
+    uint64_t answer_ns;     /* by when the agent has to answer */
+    uint64_t ping_ns;       /* the next */
+    uint64_t alive_ns;      /* when the agent has last shown life */
+    uint64_t sync_ns;       /* the next */
+    uint16_t acknowledged;  /* the agent's word when `unanswered_ns` was set */
+    uint64_t unanswered_ns; /* since when nothing more has been acknowledged; 0: all is */
+} client;
+
+/* The library's transport -------------------------------------------------------------------------------------- */
+
+static bool send_frame(void *instance, const uint8_t *data, size_t size)
+{
+    (void)instance;
+    const bool sent = epg_xrce_link_send(&client.link, data, size);
+    client.status.unsent += sent ? 0U : 1U; /* what is reliable is sent again when it is missed */
+    return sent;
+}
+
+static bool receive_frame(void *instance, uint8_t **data, size_t *size, int timeout)
+{
+    (void)instance;
+    (void)timeout; /* always 0 */
+    for (int i = 0; i < DROPPED_PER_FRAME; i++) {
+        const size_t received = epg_xrce_link_receive(&client.link);
+        if (received == 0) {
+            return false;
+        }
+        *size = epg_xrce_guard(&client.guard, client.link.frame, received);
+        if (*size > 0) {
+            *data = client.link.frame;
+            client.alive_ns = client.now_ns;
+            return true;
+        }
+    }
+    return false;
+}
+
+static uint8_t transport_error(void)
+{
+    return 0;
+}
+
+/* What the library calls --------------------------------------------------------------------------------------- */
+
+static void on_status(uxrSession *session, uxrObjectId object, uint16_t request, uint8_t status, void *context)
+{
+    (void)session;
+    (void)object;
+    (void)context;
+    epg_xrce_entities_answer(&client.entities, request, status);
+}
+
+static void on_sample(uxrSession *session, uxrObjectId object, uint16_t request, uxrStreamId stream, ucdrBuffer *buffer,
+                      uint16_t length, void *context)
+{
+    (void)session;
+    (void)request;
+    (void)stream;
+    (void)context;
+    const size_t left = ucdr_buffer_remaining(buffer);
+    if (client.status.state == EPG_XRCE_RUNNING && object.id > 0) {
+        epg_node_receive(client.node, (size_t)object.id - 1, buffer->iterator, length < left ? length : left,
+                         client.now_ns);
+    }
+}
+
+/** Times in nanoseconds: of this clock when the answer came and when it was asked for, of the agent's in between. */
+static void on_time(uxrSession *session, int64_t came, int64_t agent_received, int64_t agent_sent, int64_t asked,
+                    void *context)
+{
+    (void)session;
+    (void)context;
+    const int64_t round = came - asked - (agent_sent - agent_received);
+    if (asked > came || round < 0 || round > LONGEST_ROUND_NS) {
+        return;
+    }
+    const int64_t ahead = (agent_received - asked + (agent_sent - came)) / 2;
+    epg_node_set_time(client.node, (uint64_t)(came + ahead), (uint64_t)came);
+    client.sync_ns = client.now_ns + SYNC_NS;
+}
+
+/* States ------------------------------------------------------------------------------------------------------- */
+
+static void wait_for_agent(uint64_t first_ns)
+{
+    client.status.state = EPG_XRCE_WAITING;
+    client.guard.open = false;
+    client.guard.reading = false;
+    client.attempt_ns = client.now_ns + first_ns;
+    client.interval_ns = FIRST_ATTEMPT_NS;
+    client.session.info.last_requested_status = UXR_STATUS_NONE;
+}
+
+static void lose_agent(uint64_t first_ns)
+{
+    client.status.lost++;
+    wait_for_agent(first_ns);
+}
+
+/**
+ * Takes leave, by the client's key in place of the session, so that an agent finds the client under whatever address
+ * it knows it.  An agent that has no such client does nothing.
+ */
+static void say_goodbye(void)
+{
+    client.session.info.id = 0x01;
+    (void)uxr_delete_session_retries(&client.session, 0);
+    client.session.info.id = EPG_XRCE_SESSION_ID;
+}
+
+/**
+ * Asks for a session.  An agent that still has an older one of this client gives up its entities first: readers that
+ * were kept would deliver what has gathered in them.
+ */
+static void ask_for_session(void)
+{
+    say_goodbye();
+    (void)uxr_create_session_retries(&client.session, 0);
+    client.buffered = 0;
+    client.unanswered_ns = 0;
+    client.attempt_ns = client.now_ns + client.interval_ns;
+    client.interval_ns = client.interval_ns * 3 / 2 < LAST_ATTEMPT_NS ? client.interval_ns * 3 / 2 : LAST_ATTEMPT_NS;
+}
+
+static void poll_waiting(void)
+{
+    const uint8_t status = client.session.info.last_requested_status;
+    if (status == UXR_STATUS_OK) {
+        client.status.state = EPG_XRCE_CREATING;
+        client.guard.open = true;
+        client.guard.pong = false;
+        client.guard.unknown = false;
+        client.alive_ns = client.now_ns;
+        client.answer_ns = client.now_ns + ANSWER_NS;
+        client.ping_ns = client.now_ns + PING_NS;
+        epg_xrce_entities_start(&client.entities);
+    } else if (status != UXR_STATUS_NONE) {
+        client.status.refused++;
+        wait_for_agent(REFUSED_NS);
+    } else if (client.now_ns >= client.attempt_ns) {
+        ask_for_session();
+    }
+}
+
+/** False: the session is gone. */
+static bool check_agent(void)
+{
+    if (client.guard.pong) {
+        client.guard.pong = false;
+        client.alive_ns = client.now_ns;
+    }
+    if (client.guard.unknown || client.now_ns >= client.alive_ns + SILENCE_NS) {
+        lose_agent(0);
+        return false;
+    }
+    if (client.now_ns >= client.ping_ns) {
+        client.ping_ns = client.now_ns + PING_NS;
+        (void)uxr_ping_agent_session(&client.session, 0, 1);
+    }
+    return true;
+}
+
+static void start_running(void)
+{
+    client.status.state = EPG_XRCE_RUNNING;
+    client.status.connections++;
+    if (client.status.connections > 1) {
+        epg_control_count_reconnect(client.target->control);
+    }
+    client.sync_ns = client.now_ns;
+    epg_node_connected(client.node, client.now_ns);
+}
+
+static void poll_creating(void)
+{
+    const size_t step = client.entities.step;
+    const epg_xrce_progress_t progress = epg_xrce_entities_poll(&client.entities);
+    if (progress == EPG_XRCE_REFUSED) {
+        client.status.refused++;
+        lose_agent(REFUSED_NS);
+        return;
+    }
+    client.guard.reading = epg_xrce_entities_exist(&client.entities);
+    if (client.entities.step != step) {
+        client.answer_ns = client.now_ns + ANSWER_NS;
+    }
+    if (progress == EPG_XRCE_COMPLETE) {
+        start_running();
+    } else if (client.now_ns >= client.answer_ns) {
+        lose_agent(0);
+    }
+}
+
+static void poll_running(void)
+{
+    if (client.now_ns >= client.sync_ns) {
+        client.sync_ns = client.now_ns + SYNC_AGAIN_NS;
+        (void)uxr_sync_session(&client.session, 0);
+    }
+    epg_node_poll(client.node, client.now_ns);
+}
+
+/* Topics ------------------------------------------------------------------------------------------------------- */
+
+/** The node's: hands a message to the streams, whole or not at all. */
+static bool send_message(size_t publication, const void *message, size_t size)
+{
+    const bool reliable = client.target->publications[publication].qos == EPG_QOS_RELIABLE;
+    const uxrStreamId stream = reliable ? client.reliable : client.best_effort;
+    const size_t cost = epg_xrce_link_cost(&client.link, message, size) + 2 * EPG_XRCE_OVERHEAD;
+    if (client.status.state != EPG_XRCE_RUNNING || epg_xrce_link_room(&client.link) < client.buffered + cost) {
+        return false;
+    }
+    const uxrObjectId writer = epg_xrce_writer(publication);
+    uint8_t *bytes = (uint8_t *)(uintptr_t)message; /* the library only reads it */
+    uint16_t request = uxr_buffer_topic(&client.session, stream, writer, bytes, size);
+    if (request == UXR_INVALID_REQUEST_ID && !reliable) {
+        uxr_flash_output_streams(&client.session); /* the frame is full: here begins another */
+        client.buffered = 0;
+        request = uxr_buffer_topic(&client.session, stream, writer, bytes, size);
+    }
+    client.buffered += request != UXR_INVALID_REQUEST_ID ? cost : 0U;
+    return request != UXR_INVALID_REQUEST_ID;
+}
+
+/**
+ * Lets the library ask for an acknowledgement in time: by itself it does so only when it was not called for 100 ms.
+ * The agent's answer names what is missing, and the library sends that again.
+ */
+static void time_heartbeat(void)
+{
+    uxrOutputReliableStream *stream = &client.session.streams.output_reliable[client.reliable.index];
+    if (stream->last_acknown == stream->last_sent) {
+        client.unanswered_ns = 0;
+        return;
+    }
+    if (client.unanswered_ns == 0 || client.acknowledged != stream->last_acknown) {
+        client.unanswered_ns = client.now_ns;
+        client.acknowledged = stream->last_acknown;
+    }
+    if (client.now_ns >= client.unanswered_ns + HEARTBEAT_NS) {
+        client.unanswered_ns = client.now_ns;
+        stream->next_heartbeat_timestamp = 0;
+    }
+}
+
+/* The middleware ----------------------------------------------------------------------------------------------- */
+
+/** Never 0, and not the same for two boards, nor for two nodes on one computer: FNV-1a over what tells them apart. */
+static uint32_t client_key(void)
+{
+    const char *const parts[] = {epg_port_serial(), client.node->name_space, client.node->name};
+    uint32_t hash = 2166136261U;
+    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
+        for (const char *text = parts[i]; *text != '\0'; text++) {
+            hash = (hash ^ (uint8_t)*text) * 16777619U;
+        }
+        hash = (hash ^ '/') * 16777619U;
+    }
+    return hash == 0 ? 1 : hash;
+}
+
+static void start_session(void)
+{
+    const epg_xrce_options_t *options = client.options;
+    client.communication = (uxrCommunication){
+        .send_msg = send_frame,
+        .recv_msg = receive_frame,
+        .comm_error = transport_error,
+        /* The library tells the agent 4 bytes less. */
+        .mtu = (uint16_t)(options->input_frame + 4),
+    };
+    uxr_init_session(&client.session, &client.communication, client_key());
+    client.session.info.id = EPG_XRCE_SESSION_ID;
+    uxr_set_status_callback(&client.session, on_status, NULL);
+    uxr_set_topic_callback(&client.session, on_sample, NULL);
+    uxr_set_time_callback(&client.session, on_time, NULL);
+    client.reliable = uxr_create_output_reliable_stream(&client.session, options->output,
+                                                        EPG_XRCE_HISTORY_SIZE(options->history, options->output_frame),
+                                                        options->history);
+    client.best_effort =
+        uxr_create_output_best_effort_stream(&client.session, options->best_effort, options->output_frame);
+    client.entities = (epg_xrce_entities_t){
+        .node = client.node,
+        .session = &client.session,
+        .requests = client.reliable,
+        .reliable = uxr_create_input_reliable_stream(&client.session, options->input,
+                                                     EPG_XRCE_HISTORY_SIZE(options->history, options->input_frame),
+                                                     options->history),
+        .best_effort = uxr_create_input_best_effort_stream(&client.session),
+    };
+}
+
+static void start(const epg_target_t *target, const epg_stream_t *stream)
+{
+    memset(&client, 0, sizeof client);
+    client.target = target;
+    client.stream = stream;
+    client.options = target->options;
+    client.node = target->node_state;
+    client.guard.session = &client.session;
+    epg_node_start(client.node, target, send_message);
+    epg_xrce_link_start(&client.link, stream, client.options->received, client.options->input_frame);
+    start_session();
+    wait_for_agent(0);
+}
+
+/** Takes what has arrived, sends what waits. */
+static void exchange_frames(void)
+{
+    client.buffered = 0;
+    for (int i = 0; i < FRAMES_PER_POLL && uxr_run_session_until_timeout(&client.session, 0); i++) {
+    }
+}
+
+static void poll(uint64_t now_ns)
+{
+    client.now_ns = now_ns;
+    if (!client.stream->connected(client.stream->context)) {
+        if (client.status.state != EPG_XRCE_WAITING) {
+            lose_agent(0);
+        }
+        epg_xrce_link_reset(&client.link);
+        return;
+    }
+    time_heartbeat();
+    exchange_frames();
+    if (client.status.state == EPG_XRCE_WAITING) {
+        poll_waiting();
+    } else if (check_agent()) {
+        if (client.status.state == EPG_XRCE_CREATING) {
+            poll_creating();
+        } else {
+            poll_running();
+        }
+    }
+    if (client.status.state != EPG_XRCE_WAITING) {
+        uxr_flash_output_streams(&client.session);
+    }
+}
+
+static void stop(void)
+{
+    if (client.status.state != EPG_XRCE_WAITING && client.stream->connected(client.stream->context)) {
+        uxr_flash_output_streams(&client.session);
+        say_goodbye();
+    }
+    client.now_ns = epg_port_time_ns();
+    wait_for_agent(0);
+}
+
+epg_xrce_status_t epg_xrce_status(void)
+{
+    epg_xrce_status_t status = client.status;
+    status.dropped = client.guard.dropped + client.link.broken;
+    return status;
+}
+
+const epg_middleware_t epg_xrce = {.start = start, .poll = poll, .stop = stop};

@@ -1,0 +1,148 @@
+/**
+ * @file
+ * What a target asks an agent for.
+ */
+#include "xrce_entities.h"
+
+#include <string.h>
+
+enum {
+    ONLY = 1,   /* number of what there is one of; topics, writers and readers are numbered from 1 on */
+    DEPTH = 10, /* keep last, as ROS 2 has it by default */
+    /* What an agent has kept of an earlier session under the same number gives way. */
+    MODE = UXR_REPLACE
+};
+
+/** Before the topics: participant, publisher, subscriber. */
+enum { PARTICIPANT, PUBLISHER, SUBSCRIBER, FIRST_TOPIC };
+
+static size_t topic_count(const epg_node_t *node)
+{
+    return node->target->publication_count + node->target->subscription_count;
+}
+
+/** The step at which the first sample is asked for: each topic takes two. */
+static size_t first_reading(const epg_node_t *node)
+{
+    return FIRST_TOPIC + 2 * topic_count(node);
+}
+
+static const epg_topic_t *topic_at(const epg_node_t *node, size_t index)
+{
+    const size_t publications = node->target->publication_count;
+    return index < publications ? &node->target->publications[index]
+                                : &node->target->subscriptions[index - publications];
+}
+
+static uint16_t create_topic(const epg_xrce_entities_t *entities, size_t index)
+{
+    char name[2 + EPG_NODE_TOPIC_SIZE] = "rt";
+    const epg_topic_t *topic = topic_at(entities->node, index);
+    (void)epg_node_topic(entities->node, topic, name + 2, sizeof name - 2);
+    return uxr_buffer_create_topic_bin(entities->session, entities->requests,
+                                       uxr_object_id((uint16_t)(index + 1), UXR_TOPIC_ID),
+                                       uxr_object_id(ONLY, UXR_PARTICIPANT_ID), name, topic->message->type, MODE);
+}
+
+static uint16_t create_endpoint(const epg_xrce_entities_t *entities, size_t index)
+{
+    const size_t publications = entities->node->target->publication_count;
+    const epg_topic_t *topic = topic_at(entities->node, index);
+    const uxrQoS_t qos = {
+        .durability = UXR_DURABILITY_VOLATILE,
+        .reliability = topic->qos == EPG_QOS_RELIABLE ? UXR_RELIABILITY_RELIABLE : UXR_RELIABILITY_BEST_EFFORT,
+        .history = UXR_HISTORY_KEEP_LAST,
+        .depth = DEPTH,
+    };
+    const uxrObjectId of = uxr_object_id((uint16_t)(index + 1), UXR_TOPIC_ID);
+    if (index < publications) {
+        return uxr_buffer_create_datawriter_bin(entities->session, entities->requests, epg_xrce_writer(index),
+                                                uxr_object_id(ONLY, UXR_PUBLISHER_ID), of, qos, MODE);
+    }
+    return uxr_buffer_create_datareader_bin(entities->session, entities->requests,
+                                            uxr_object_id((uint16_t)(index - publications + 1), UXR_DATAREADER_ID),
+                                            uxr_object_id(ONLY, UXR_SUBSCRIBER_ID), of, qos, MODE);
+}
+
+/** Samples of subscription `index`, until the session ends. */
+static uint16_t ask_for_samples(const epg_xrce_entities_t *entities, size_t index)
+{
+    const uxrDeliveryControl control = {.max_samples = UXR_MAX_SAMPLES_UNLIMITED};
+    const bool reliable = entities->node->target->subscriptions[index].qos == EPG_QOS_RELIABLE;
+    return uxr_buffer_request_data(entities->session, entities->requests,
+                                   uxr_object_id((uint16_t)(index + 1), UXR_DATAREADER_ID),
+                                   reliable ? entities->reliable : entities->best_effort, &control);
+}
+
+static uint16_t ask(const epg_xrce_entities_t *entities)
+{
+    const uxrObjectId participant = uxr_object_id(ONLY, UXR_PARTICIPANT_ID);
+    const epg_node_t *node = entities->node;
+    switch (entities->step) {
+    case PARTICIPANT:
+        return uxr_buffer_create_participant_bin(entities->session, entities->requests, participant,
+                                                 node->target->domain, node->name, MODE);
+    case PUBLISHER:
+        return uxr_buffer_create_publisher_bin(entities->session, entities->requests,
+                                               uxr_object_id(ONLY, UXR_PUBLISHER_ID), participant, MODE);
+    case SUBSCRIBER:
+        return uxr_buffer_create_subscriber_bin(entities->session, entities->requests,
+                                                uxr_object_id(ONLY, UXR_SUBSCRIBER_ID), participant, MODE);
+    default:
+        break;
+    }
+    const size_t step = entities->step - FIRST_TOPIC;
+    return step % 2 == 0 ? create_topic(entities, step / 2) : create_endpoint(entities, step / 2);
+}
+
+void epg_xrce_entities_start(epg_xrce_entities_t *entities)
+{
+    entities->step = PARTICIPANT;
+    entities->request = UXR_INVALID_REQUEST_ID;
+    entities->status = UXR_STATUS_NONE;
+}
+
+void epg_xrce_entities_answer(epg_xrce_entities_t *entities, uint16_t request, uint8_t status)
+{
+    if (request == entities->request) {
+        entities->status = status;
+    }
+}
+
+bool epg_xrce_entities_exist(const epg_xrce_entities_t *entities)
+{
+    return entities->step >= first_reading(entities->node);
+}
+
+/** Asks for samples of all readers that are left; an agent answers with samples only. */
+static epg_xrce_progress_t ask_for_all_samples(epg_xrce_entities_t *entities)
+{
+    const size_t first = first_reading(entities->node);
+    while (entities->step - first < entities->node->target->subscription_count) {
+        if (ask_for_samples(entities, entities->step - first) == UXR_INVALID_REQUEST_ID) {
+            return EPG_XRCE_UNDERWAY; /* no room in the stream until the agent has acknowledged what is there */
+        }
+        entities->step++;
+    }
+    return EPG_XRCE_COMPLETE;
+}
+
+epg_xrce_progress_t epg_xrce_entities_poll(epg_xrce_entities_t *entities)
+{
+    if (entities->request != UXR_INVALID_REQUEST_ID) {
+        if (entities->status == UXR_STATUS_NONE) {
+            return EPG_XRCE_UNDERWAY;
+        }
+        if (entities->status != UXR_STATUS_OK && entities->status != UXR_STATUS_OK_MATCHED) {
+            return EPG_XRCE_REFUSED;
+        }
+        entities->request = UXR_INVALID_REQUEST_ID;
+        entities->step++;
+    }
+    if (epg_xrce_entities_exist(entities)) {
+        return ask_for_all_samples(entities);
+    }
+    entities->status = UXR_STATUS_NONE;
+    entities->request = ask(entities);
+    return EPG_XRCE_UNDERWAY;
+}

@@ -1,0 +1,129 @@
+/**
+ * @file
+ * The middlewares that run beside the control loop in real time.
+ */
+#if defined(__linux__)
+#define _POSIX_C_SOURCE 200809L
+#endif
+
+#include "services.h"
+
+#include "clock.h"
+#include "epg/port.h"
+
+enum { LONGEST_SLEEP_NS = 1000 * 1000 };
+
+/** One that needs no stream can wait for its own connection. */
+static bool connects_itself(const epg_target_t *target)
+{
+    return target->middleware != NULL && target->middleware->wait != NULL;
+}
+
+bool epg_host_is_connected(const epg_host_target_t *host)
+{
+    return host->agent != NULL || connects_itself(host->target);
+}
+
+const epg_middleware_t *epg_host_console(const epg_host_target_t *host)
+{
+    if (host->target->console != NULL || epg_host_is_connected(host)) {
+        return host->target->console;
+    }
+    return host->target->middleware;
+}
+
+/** The target's middleware, if it is not the one on the terminal. */
+static const epg_middleware_t *connected(const epg_host_services_t *services)
+{
+    return services->link != NULL || connects_itself(services->target) ? services->target->middleware : NULL;
+}
+
+/** What is on the terminal. */
+static const epg_middleware_t *on_terminal(const epg_host_services_t *services)
+{
+    if (services->terminal == NULL) {
+        return NULL;
+    }
+    return services->target->console != NULL ? services->target->console : services->target->middleware;
+}
+
+bool epg_host_services_run(const epg_host_services_t *services)
+{
+    return connected(services) != NULL || on_terminal(services) != NULL;
+}
+
+void epg_host_services_start(const epg_host_services_t *services)
+{
+    const epg_middleware_t *middleware = connected(services);
+    const epg_middleware_t *console = on_terminal(services);
+    if (middleware != NULL) {
+        middleware->start(services->target, services->link != NULL ? &services->link->stream : NULL);
+    }
+    if (console != NULL) {
+        console->start(services->target, &services->terminal->stream);
+    }
+}
+
+#if defined(__linux__)
+
+#include <poll.h>
+
+enum { MS = 1000 * 1000, MOST_FILES = 2 };
+
+/** Sleeps until `time_ns` or until something arrives at a link or a terminal. */
+static void wait_for_files(const epg_host_services_t *services, uint64_t time_ns)
+{
+    const uint64_t now_ns = epg_host_monotonic_ns();
+    const int timeout_ms = time_ns > now_ns ? (int)((time_ns - now_ns + MS - 1) / MS) : 0;
+    struct pollfd entries[MOST_FILES];
+    nfds_t count = 0;
+    if (services->link != NULL && services->link->file >= 0) {
+        entries[count++] = (struct pollfd){.fd = services->link->file, .events = POLLIN};
+    }
+    if (services->terminal != NULL && epg_host_terminal_listens(services->terminal)) {
+        entries[count++] = (struct pollfd){.fd = services->terminal->input, .events = POLLIN};
+    }
+    (void)poll(entries, count, timeout_ms);
+}
+
+#else
+
+static void wait_for_files(const epg_host_services_t *services, uint64_t time_ns)
+{
+    (void)services;
+    (void)time_ns;
+}
+
+#endif
+
+void epg_host_services_serve(const epg_host_services_t *services, uint64_t time_ns)
+{
+    const epg_middleware_t *middleware = connected(services);
+    const epg_middleware_t *console = on_terminal(services);
+    const uint64_t soon_ns = epg_host_monotonic_ns() + LONGEST_SLEEP_NS;
+    const uint64_t until_ns = time_ns < soon_ns ? time_ns : soon_ns;
+    if (middleware != NULL && middleware->wait != NULL) {
+        middleware->wait(until_ns);
+    } else {
+        wait_for_files(services, until_ns);
+    }
+    if (middleware != NULL) {
+        middleware->poll(epg_port_time_ns());
+    }
+    if (console != NULL) {
+        console->poll(epg_port_time_ns());
+    }
+}
+
+static void stop(const epg_middleware_t *middleware)
+{
+    if (middleware != NULL && middleware->stop != NULL) {
+        middleware->stop();
+    }
+}
+
+void epg_host_services_stop(const epg_host_services_t *services)
+{
+    stop(on_terminal(services));
+    stop(connected(services));
+}

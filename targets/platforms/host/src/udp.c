@@ -1,0 +1,130 @@
+/**
+ * @file
+ * A link by UDP.
+ */
+#if defined(__linux__)
+#define _POSIX_C_SOURCE 200809L
+#endif
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "link.h"
+
+bool epg_host_link_is_address(const char *text)
+{
+    const char *colon = strrchr(text, ':');
+    char *end = NULL;
+    if (colon == NULL || colon == text || colon[1] < '0' || colon[1] > '9') {
+        return false;
+    }
+    const unsigned long port = strtoul(colon + 1, &end, 10);
+    return *end == '\0' && port > 0 && port <= 65535;
+}
+
+#if defined(__linux__)
+
+#include <errno.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+enum { LARGEST_PACKET = 65507, HOST_SIZE = 256 };
+
+static bool connected(void *context)
+{
+    const epg_host_link_t *link = context;
+    return link->file >= 0;
+}
+
+/** An error that an earlier packet has met is told once, at the next call; that one is made again. */
+static bool was_refused(ssize_t count)
+{
+    return count < 0 && (errno == ECONNREFUSED || errno == EINTR || errno == EHOSTUNREACH || errno == ENETUNREACH);
+}
+
+static size_t read_packet(void *context, void *data, size_t size)
+{
+    const epg_host_link_t *link = context;
+    ssize_t count = recv(link->file, data, size, MSG_DONTWAIT);
+    if (was_refused(count)) {
+        count = recv(link->file, data, size, MSG_DONTWAIT);
+    }
+    return count > 0 ? (size_t)count : 0;
+}
+
+static size_t write_packet(void *context, const void *data, size_t size)
+{
+    const epg_host_link_t *link = context;
+    ssize_t count = send(link->file, data, size, MSG_DONTWAIT | MSG_NOSIGNAL);
+    if (was_refused(count)) {
+        count = send(link->file, data, size, MSG_DONTWAIT | MSG_NOSIGNAL);
+    }
+    return count > 0 ? (size_t)count : 0;
+}
+
+static size_t writable(void *context)
+{
+    (void)context;
+    return LARGEST_PACKET; /* a packet that the system cannot take is lost, as packets are */
+}
+
+/** A socket that talks to nobody but `address`; -1 if there is none. */
+static int connect_to(const struct addrinfo *address)
+{
+    for (; address != NULL; address = address->ai_next) {
+        const int file = socket(address->ai_family, address->ai_socktype, address->ai_protocol);
+        if (file >= 0 && connect(file, address->ai_addr, address->ai_addrlen) == 0) {
+            return file;
+        }
+        if (file >= 0) {
+            close(file);
+        }
+    }
+    return -1;
+}
+
+bool epg_host_link_udp(epg_host_link_t *link, const char *address)
+{
+    const char *colon = strrchr(address, ':');
+    char host[HOST_SIZE] = "";
+    const size_t length = (size_t)(colon - address);
+    const bool bracketed = address[0] == '[' && length > 2 && address[length - 1] == ']'; /* [::1]:8888 */
+    const size_t count = bracketed ? length - 2 : length;
+    memcpy(host, address + (bracketed ? 1 : 0), count < HOST_SIZE ? count : HOST_SIZE - 1);
+    const struct addrinfo wanted = {.ai_socktype = SOCK_DGRAM};
+    struct addrinfo *found = NULL;
+    *link = (epg_host_link_t){
+        .stream = {.connected = connected,
+                   .read = read_packet,
+                   .write = write_packet,
+                   .writable = writable,
+                   .context = link,
+                   .datagrams = true},
+        .file = -1,
+    };
+    const int error = getaddrinfo(host, colon + 1, &wanted, &found);
+    if (error != 0) {
+        fprintf(stderr, "error: there is no host '%s' for the agent: %s\n", host, gai_strerror(error));
+        return false;
+    }
+    link->file = connect_to(found);
+    if (link->file < 0) {
+        fprintf(stderr, "error: the agent's address '%s' cannot be reached: %s\n", address, strerror(errno));
+    }
+    freeaddrinfo(found);
+    return link->file >= 0;
+}
+
+#else /* not Linux: there is no real time either, and nothing of this is called */
+
+bool epg_host_link_udp(epg_host_link_t *link, const char *address)
+{
+    *link = (epg_host_link_t){.file = -1};
+    fprintf(stderr, "error: the agent at '%s' needs Linux\n", address);
+    return false;
+}
+
+#endif
