@@ -40,7 +40,10 @@ class Control:
 
 @dataclass(frozen=True)
 class Communication:
-    """How topics travel; ``period`` in seconds, ``options`` those of the middleware."""
+    """How topics travel; ``period`` in seconds, ``options`` those of the middleware.
+
+    ``transport`` is one of the platform's, or the name of a component whose kind is a transport.
+    """
 
     middleware: Middleware
     transport: str | None
@@ -104,7 +107,7 @@ def check_configuration(
     target = catalog.target(str(target_node.value), target_node.span, diagnostics)
     components = _components(root, target, catalog, diagnostics)
     control = _control(root["control"], components, diagnostics)
-    communication = _communication(root, target, catalog, diagnostics)
+    communication = _communication(root, target, components, catalog, diagnostics)
     _names(root, components, control, diagnostics)
     if target is None or communication is None or diagnostics.error_count > errors:
         return None
@@ -212,7 +215,11 @@ def _fail_safe(node: Node, components: Mapping[str, Component], diagnostics: Dia
 
 
 def _communication(
-    root: Node, target: Target | None, catalog: Catalog, diagnostics: Diagnostics
+    root: Node,
+    target: Target | None,
+    components: Mapping[str, Component],
+    catalog: Catalog,
+    diagnostics: Diagnostics,
 ) -> Communication | None:
     """How topics travel, or None after reporting why not, or when there is no target."""
     node = root.get("communication")
@@ -228,9 +235,9 @@ def _communication(
         message = f"{target.platform.name} has no middleware '{name}'"
         hint = did_you_mean(name, possible, "it has")
         diagnostics.error("unknown-middleware", middleware.span, message, hint=hint, notes=extended_from(middleware))
-    elif target and transport is not None and str(transport.value) not in possible[name]:
+    elif target and transport is not None and str(transport.value) not in _transports(name, possible, components):
         message = f"'{name}' on {target.platform.name} has no transport '{transport.value}'"
-        hint = did_you_mean(str(transport.value), possible[name], "it has")
+        hint = did_you_mean(str(transport.value), _transports(name, possible, components), "it has")
         if not possible[name]:
             hint = "remove it: there is nothing to choose"
         diagnostics.error("unknown-transport", transport.span, message, hint=hint, notes=extended_from(transport))
@@ -246,6 +253,14 @@ def _communication(
     written = middleware or node or root
     chosen = str(transport.value) if transport else next(iter(possible[name]), None)
     return Communication(found, chosen, seconds or Fraction(33, 1000), options, written.span)
+
+
+def _transports(
+    middleware: str, possible: Mapping[str, tuple[str, ...]], components: Mapping[str, Component]
+) -> tuple[str, ...]:
+    """What ``communication.transport`` may name: transports of the platform, and components that carry bytes."""
+    own = possible[middleware]
+    return (*own, *(c.name for c in components.values() if c.kind.transport)) if own else ()
 
 
 def _names(root: Node, components: Mapping[str, Component], control: Control, diagnostics: Diagnostics) -> None:

@@ -61,7 +61,7 @@ def _tcf(schema: Schema, catalog: Catalog) -> Schema:
     schema["allOf"] = [
         {"if": _COMPLETE, "then": needed},
         {"if": {"allOf": [_COMPLETE, pins]}, "then": wired},
-        *_middlewares(targets, catalog),
+        *_middlewares(targets, catalog, any(kind.transport for kind in kinds)),
         *_options(middlewares),
     ]
     schema["$defs"] = _components(kinds)
@@ -123,8 +123,11 @@ def _pins_needed(kind: Kind) -> Schema:
     return {"required": ["pins"], "properties": {"pins": {"required": list(kind.pins)}}}
 
 
-def _middlewares(targets: Iterable[Target], catalog: Catalog) -> list[Schema]:
-    """What each platform offers in ``communication``, for files that name one of its targets."""
+def _middlewares(targets: Iterable[Target], catalog: Catalog, named: bool) -> list[Schema]:
+    """What each platform offers in ``communication``, for files that name one of its targets.
+
+    ``named``: a transport can be the name of a component too.
+    """
     platforms: dict[str, list[Target]] = {}
     for target in targets:
         platforms.setdefault(target.platform.name, []).append(target)
@@ -135,7 +138,10 @@ def _middlewares(targets: Iterable[Target], catalog: Catalog) -> list[Schema]:
         rules.append({"if": chosen, "then": _communication({"middleware": {"enum": [*possible, None]}})})
         for name, transports in possible.items():
             using = _communication({"middleware": {"const": name}}, required=["middleware"])
-            transport = _communication({"transport": {"enum": [*transports, None]}})
+            stated: Schema = {"enum": [*transports, None]}
+            if transports and named:
+                stated = {"anyOf": [stated, {"type": "string"}]}
+            transport = _communication({"transport": stated})
             rules.append({"if": {"allOf": [chosen, using]}, "then": transport})
     return rules
 

@@ -14,11 +14,7 @@ from epg.source import Node, Span
 
 def check_soc(node: Node, diagnostics: Diagnostics) -> None:
     """A chip in itself: pins, slots, instances and dividers that exist."""
-    try:
-        if parse_quantity(node["clock"].value, "frequency") <= 0:
-            diagnostics.error("out-of-range", node["clock"].span, "a clock must be more than 0 Hz")
-    except QuantityError as problem:
-        diagnostics.error("wrong-unit", node["clock"].span, str(problem), hint=problem.hint)
+    _clock(node["clock"], diagnostics)
     pins = _pins(node.get("pins"), diagnostics)
     for name, peripheral in map_of(node, "peripherals").items():
         _peripheral(name, peripheral, pins, diagnostics)
@@ -102,6 +98,8 @@ def _peripheral(name: str, node: Node, pins: Sequence[str], diagnostics: Diagnos
         slots = _listed(stated[0])
     for key in ("prescaler", "counter"):
         _range(node.get("divider", key), diagnostics)
+    if "divider" in node and "clock" in node["divider"]:
+        _clock(node["divider"]["clock"], diagnostics)
     for instance, reached in map_of(node, "pins").items():
         if instance not in instances:
             span = node["pins"].key_span(instance)
@@ -145,6 +143,14 @@ def _resource_class(name: str, node: Node, peripherals: dict[str, Node], diagnos
         _range(node.get("divider", "counter"), diagnostics)
         if peripheral is None or "divider" not in peripheral:
             diagnostics.error("wrong-value", node.key_span("divider"), f"the peripheral of '{name}' has no divider")
+
+
+def _clock(node: Node, diagnostics: Diagnostics) -> None:
+    try:
+        if parse_quantity(node.value, "frequency") <= 0:
+            diagnostics.error("out-of-range", node.span, "a clock must be more than 0 Hz")
+    except QuantityError as problem:
+        diagnostics.error("wrong-unit", node.span, str(problem), hint=problem.hint)
 
 
 def _pins(node: Node | None, diagnostics: Diagnostics) -> tuple[str, ...]:

@@ -130,10 +130,13 @@ def _claims(node: Node, parameters: Mapping[str, Node], diagnostics: Diagnostics
 
 
 def _attribute(attribute: str, named: Node, parameter: Node | None, diagnostics: Diagnostics) -> None:
-    """Dividers are set from numbers with a unit; other attributes are compared, so they are single values."""
+    """Dividers are set from numbers with a unit, or from rates per second, such as a baud rate, that are whole
+    numbers; other attributes are compared, so they are single values."""
     if parameter is None:
         return
     wanted = _DIMENSIONS.get(attribute)
+    if wanted == "frequency" and "type" in parameter and parameter["type"].value == "integer":
+        return
     if wanted is not None and ("quantity" not in parameter or parameter["quantity"].value != wanted):
         message = f"attribute '{attribute}' comes from a parameter with 'quantity: {wanted}'"
         diagnostics.error("wrong-value", named.span, message)

@@ -162,6 +162,7 @@ class Emitter:
             "monitor": [self._output(wire) for wire in app.outputs if wire.component.name in publishers],
             "output_pins": self._output_pins(),
             "service": service,
+            "transport": self._transport(),
             "middleware_code": self._middleware_code(service),
             "model_hash": model_hash(app.model, app.parameters),
             "version": __version__,
@@ -252,6 +253,13 @@ class Emitter:
             return Code("")
         template = self.env.get_template(f"middlewares/{middleware.name}/code.c.j2")
         return Code(str(template.make_module().globals(service.middleware)).strip("\n"))  # type: ignore[attr-defined]
+
+    def _transport(self) -> Code:
+        """The C object of the component that carries the middleware's bytes; empty when no component does."""
+        component = self.components.get(self.app.communication.transport or "")
+        if component is None or not component.kind.transport:
+            return Code("")
+        return self._expression(component, "transport")
 
     def _output_pins(self) -> list[OutputPin]:
         return [

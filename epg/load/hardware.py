@@ -39,6 +39,7 @@ class Peripheral:
     slot_title: str
     agree: tuple[str, ...]
     divider: Divider | None
+    clock: Fraction  # Hz, what the divider divides
     pins: Mapping[tuple[int, int], tuple[str, ...]]
     span: Span
 
@@ -96,7 +97,7 @@ class ResourceClass:
 class Soc:
     """A chip.  A pin's number in C is its place in ``pins``; ``automatic_pins`` are numbered by EPG instead.
 
-    ``clock`` in Hz drives all dividers.
+    ``clock`` in Hz drives all dividers that state no other.
     """
 
     name: str
@@ -219,7 +220,7 @@ def make_soc(node: Node, folder: Path) -> Soc:
         name=text_of(node, "soc"),
         title=text_of(node, "title"),
         family=text_of(node, "family"),
-        clock=Fraction(parse_quantity(node["clock"].value, "frequency")),
+        clock=_clock(node["clock"]),
         pins=pin_names(node.get("pins")),
         automatic_pins=count,
         peripherals=MappingProxyType(peripherals),
@@ -296,6 +297,7 @@ def _peripheral(name: str, node: Node, soc: Node) -> Peripheral:
         slot_title=text_of(node["slots"], "title") if "slots" in node else "",
         agree=texts_of(node, "agree"),
         divider=Divider(integer_range(divider["prescaler"]), integer_range(divider["counter"])) if divider else None,
+        clock=_clock((divider.get("clock") if divider else None) or soc["clock"]),
         pins=MappingProxyType(pins),
         span=soc["peripherals"].key_span(name),
     )
@@ -327,6 +329,10 @@ def _resource_class(name: str, node: Node, soc: Node) -> ResourceClass:
     )
 
 
+def _clock(node: Node) -> Fraction:
+    return Fraction(parse_quantity(node.value, "frequency"))
+
+
 def _names(node: Node | None) -> tuple[str, ...]:
     """``[TIM1, TIM2]`` as it is, ``8`` as 0 ... 7, nothing as one nameless."""
     if node is None:
@@ -337,4 +343,4 @@ def _names(node: Node | None) -> tuple[str, ...]:
 
 
 def _with_article(noun: str) -> str:
-    return f"{'an' if noun[:1].casefold() in tuple('aeiou') else 'a'} {noun}"
+    return f"{'an' if noun[:1].casefold() in tuple('aeio') else 'a'} {noun}"

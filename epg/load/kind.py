@@ -95,6 +95,7 @@ class Kind:
     name: str
     summary: str
     communication: str | None  # "subscribe", "publish" or None
+    transport: bool  # ``communication: {transport: ...}`` can name its components
     pins: tuple[str, ...]
     parameters: tuple[KindParameter, ...]
     uses: tuple[KindUse, ...]
@@ -142,6 +143,7 @@ def make_kind(node: Node, folder: Path) -> Kind:
         name=text_of(node, "kind"),
         summary=text_of(node, "summary"),
         communication=text_of(node, "communication") or None,
+        transport=flag_of(node, "transport"),
         pins=texts_of(node, "pins"),
         parameters=make_parameters(node.get("parameters")),
         uses=tuple(_use(name, child) for name, child in map_of(node, "uses").items()),

@@ -162,7 +162,7 @@ def _division(
         if claim.component:
             _incomplete(claim, resource_class, diagnostics)
         return None  # the control loop's period may be unknown as yet
-    stated, clock = claim.attributes[attribute], target.soc.clock
+    stated, clock = claim.attributes[attribute], peripheral.clock
     assert isinstance(stated.value, (int, float, Fraction))
     value = Fraction(stated.value)
     divider = Divider(peripheral.divider.prescaler, resource_class.counter or peripheral.divider.counter)
@@ -228,7 +228,7 @@ def _assignment(placed: _Placed, peripheral: Peripheral, place: Place, target: T
     frequency = asked = None
     if placed.division is not None:
         settings = {"prescaler": placed.division.prescaler, "top": placed.division.counter - 1}
-        frequency = target.soc.clock / placed.division.clocks
+        frequency = peripheral.clock / placed.division.clocks
         asked = _asked(placed)
     whole = slot == WHOLE
     return Assignment(

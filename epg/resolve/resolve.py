@@ -66,10 +66,12 @@ def resolve(
     simulated = _plant(plant, configuration, components, period, diagnostics) if plant else None
     _bound_ports(configuration.components, outputs, diagnostics)
     fail_safe = configuration.control.fail_safe
-    used = {wire.component.name for wire in (*inputs, *outputs)} | {fail_safe}
+    used = {wire.component.name for wire in (*inputs, *outputs)} | {fail_safe, configuration.communication.transport}
     for component in configuration.components.values():
-        if component.kind.ports and component.name not in used and diagnostics.error_count == errors:
-            hint = "bind one of its ports, or remove it"
+        usable = component.kind.ports or component.kind.transport
+        if usable and component.name not in used and diagnostics.error_count == errors:
+            what = "bind one of its ports" if component.kind.ports else "name it in 'communication.transport'"
+            hint = f"{what}, or remove it"
             diagnostics.warning(
                 "unused-component", component.span, f"component '{component.name}' is bound to nothing", hint=hint
             )

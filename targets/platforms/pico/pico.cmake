@@ -137,7 +137,7 @@ function(_epg_pico_library)
   target_link_libraries(epg_pico INTERFACE
     EPG::pico_quadrature pico_runtime pico_runtime_init pico_multicore pico_flash pico_unique_id
     hardware_clocks hardware_exception hardware_flash hardware_gpio hardware_irq hardware_pwm hardware_sync
-    hardware_timer hardware_watchdog)
+    hardware_timer hardware_uart hardware_watchdog)
   target_compile_definitions(epg_pico INTERFACE
     # What the control cycle calls of the SDK lies in RAM too.
     PICO_DOUBLE_IN_RAM=1 PICO_FLOAT_IN_RAM=1 PICO_DIVIDER_IN_RAM=1 PICO_INT64_OPS_IN_RAM=1 PICO_BITS_IN_RAM=1

@@ -137,4 +137,8 @@ void epg_pico_status(epg_pico_status_t *status)
         .main_stack_used = epg_pico_stack_used(main_stack, GUARD),
     };
     epg_pico_service_stack(&status->service_stack_size, &status->service_stack_used);
+    const epg_transport_t *transport = running == NULL ? NULL : running->transport;
+    if (transport != NULL && transport->lost != NULL) {
+        status->transport_lost = transport->lost(transport->stream.context);
+    }
 }

@@ -20,7 +20,9 @@ typedef struct epg_transport {
     bool (*start)(void *context, const char *title);
     void (*poll)(void *context);  /**< at least once per millisecond, before the middleware; or NULL */
     void (*flush)(void *context); /**< after the middleware: what it has written goes out; or NULL */
-    epg_stream_t stream;          /**< its `context` is that of all these functions */
+    /** Bytes that came and were lost because nobody took them, or because they were damaged; or NULL: none can be. */
+    uint32_t (*lost)(const void *context);
+    epg_stream_t stream; /**< its `context` is that of all these functions */
 } epg_transport_t;
 
 #endif

@@ -68,6 +68,7 @@ typedef struct epg_pico_status {
     uint32_t main_stack_used;
     uint32_t service_stack_size; /**< of communication: of its interrupt on bare metal, of its task on FreeRTOS */
     uint32_t service_stack_used;
+    uint32_t transport_lost; /**< bytes that the middleware's transport has received and lost */
 } epg_pico_status_t;
 
 /** The transport over USB CDC, in usb/, linked where a target uses it: the first serial port of the device, */

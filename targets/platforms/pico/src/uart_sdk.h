@@ -1,0 +1,12 @@
+/**
+ * @file
+ * The SDK's header about UARTs, as a system header.
+ */
+#ifndef EPG_PICO_UART_SDK_H
+#define EPG_PICO_UART_SDK_H
+
+#pragma GCC system_header
+
+#include "hardware/uart.h"
+
+#endif
