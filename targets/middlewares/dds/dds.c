@@ -32,6 +32,8 @@ typedef struct endpoint {
 static struct {
     const epg_target_t *target;
     epg_node_t *node;
+    uint32_t domain_id;
+    char configuration[EPG_DDS_CONFIGURATION_SIZE];
     bool failed_before; /* it has been said why there is no connection */
     uint64_t due_ns;    /* of the next attempt to connect, or of the next look at clock and matches */
     dds_entity_t domain;
@@ -164,17 +166,12 @@ static void leave(void)
 
 static dds_return_t join_domain(void)
 {
-    static char configuration[EPG_DDS_CONFIGURATION_SIZE];
-    uint32_t domain;
-    if (!epg_dds_domain(dds.target->domain, &domain) || !epg_dds_configuration(configuration, sizeof configuration)) {
-        return DDS_RETCODE_BAD_PARAMETER;
-    }
-    const dds_entity_t made = dds_create_domain(domain, configuration);
+    const dds_entity_t made = dds_create_domain(dds.domain_id, dds.configuration);
     if (made < 0 && made != DDS_RETCODE_PRECONDITION_NOT_MET) { /* not met: the program has one, which will do */
         return made;
     }
     dds.domain = made > 0 ? made : 0;
-    const dds_return_t code = dds.participant = create_participant(domain);
+    const dds_return_t code = dds.participant = create_participant(dds.domain_id);
     return code < 0 ? code : create_all();
 }
 
@@ -216,6 +213,11 @@ static void start(const epg_target_t *target, const epg_stream_t *stream)
     if (dds.readers == NULL || dds.writers == NULL) {
         fputs("error: no DDS participant: no memory\n", stderr);
         dds.due_ns = UINT64_MAX;
+        return;
+    }
+    if (!epg_dds_domain(target->domain, &dds.domain_id) ||
+        !epg_dds_configuration(dds.configuration, sizeof dds.configuration)) {
+        dds.due_ns = UINT64_MAX; /* the environment will not change */
         return;
     }
     try_to_join(epg_port_time_ns());

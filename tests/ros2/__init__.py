@@ -1,0 +1,1 @@
+"""A peer in Python that looks like a ROS 2 node, and what is tested with it."""

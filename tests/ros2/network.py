@@ -1,0 +1,63 @@
+"""A network of its own for each test: loopback only, in a domain that no other test has at the moment."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import uuid
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+LOOPBACK = (
+    "<CycloneDDS><Domain>"
+    '<General><Interfaces><NetworkInterface address="127.0.0.1" multicast="true"/></Interfaces></General>'
+    "<Discovery><Tag>{tag}</Tag></Discovery>"
+    "</Domain></CycloneDDS>"
+)
+"""Participants with different tags do not see each other, whatever their domain: other tests, and the user's robots."""
+
+
+@dataclass(frozen=True)
+class Network:
+    """``environment`` is for programs that are to be in it; this process is in it while the ``with`` block lasts."""
+
+    domain: int
+    environment: dict[str, str]
+
+    def run(self, program: Path, *options: str) -> subprocess.Popen[str]:
+        """Starts a host executable in real time."""
+        command = [str(program), "--realtime", *options]
+        return subprocess.Popen(
+            command, env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        )
+
+
+@contextmanager
+def network(domain: int = 17) -> Iterator[Network]:
+    """CycloneDDS reads the environment when a process makes its first participant in a domain."""
+    uri = LOOPBACK.format(tag=f"epg_{uuid.uuid4().hex}")
+    added = {"CYCLONEDDS_URI": uri, "ROS_DOMAIN_ID": str(domain)}
+    removed = ("ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_STATIC_PEERS", "ROS_LOCALHOST_ONLY")
+    before = dict(os.environ)
+    for name in removed:
+        os.environ.pop(name, None)
+    os.environ.update(added)
+    try:
+        yield Network(domain, dict(os.environ))
+    finally:
+        os.environ.clear()
+        os.environ.update(before)
+
+
+@contextmanager
+def running(processes: Sequence[subprocess.Popen[str]]) -> Iterator[None]:
+    """Kills what is left of ``processes`` at the end."""
+    try:
+        yield
+    finally:
+        for process in processes:
+            if process.poll() is None:
+                process.kill()
+            process.communicate()

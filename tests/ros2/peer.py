@@ -1,0 +1,316 @@
+"""A peer on the DDS network that looks like a ROS 2 node with rmw_cyclonedds and the default QoS of rclpy.
+
+>>> # with Peer(domain=7, node="monitor") as peer:
+>>> #     positions = peer.subscription("/pan_publisher", Float64_)
+>>> #     peer.spin(1.0)
+
+It sees the ROS graph as `ros2 node list` and `ros2 topic info --verbose` do: from `ros_discovery_info`, and from the
+user data of participants, readers and writers.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from cyclonedds.builtin import (
+    BuiltinDataReader,
+    BuiltinTopicDcpsParticipant,
+    BuiltinTopicDcpsPublication,
+    BuiltinTopicDcpsSubscription,
+)
+from cyclonedds.core import (
+    DDSStatus,
+    Entity,
+    InstanceState,
+    Policy,
+    Qos,
+    ReadCondition,
+    SampleState,
+    ViewState,
+    WaitSet,
+)
+from cyclonedds.domain import DomainParticipant
+from cyclonedds.pub import DataWriter
+from cyclonedds.sub import DataReader
+from cyclonedds.topic import Topic
+from cyclonedds.util import duration
+
+from tests.ros2.messages import Gid_, NodeEntitiesInfo_, ParticipantEntitiesInfo_, ros_type, type_hash
+
+FOREVER = duration(infinite=True)
+ANYTHING = SampleState.Any | ViewState.Any | InstanceState.Any
+
+
+def ros_qos(type_: type, *, reliable: bool = True, depth: int | None = 10, transient_local: bool = False) -> Qos:
+    """QoS as rmw_cyclonedds makes it, by default rclpy's: reliable, keep last 10, volatile; depth None keeps all."""
+    policies = [
+        Policy.Reliability.Reliable(FOREVER) if reliable else Policy.Reliability.BestEffort,
+        Policy.History.KeepAll if depth is None else Policy.History.KeepLast(depth),
+        Policy.Durability.TransientLocal if transient_local else Policy.Durability.Volatile,
+        Policy.WriterDataLifecycle(autodispose=False),
+        Policy.Userdata(f"typehash={type_hash(ros_type(type_.__idl__.idl_transformed_typename))};".encode()),
+    ]
+    return Qos(*policies)
+
+
+def user_data(qos: Qos | None) -> dict[str, str]:
+    """``{"typehash": "RIHS01_..."}`` of ``typehash=RIHS01_...;``."""
+    policy = qos[Policy.Userdata] if qos is not None else None
+    text = bytes(policy.data).decode() if policy is not None else ""
+    return dict(pair.split("=", 1) for pair in text.split(";") if "=" in pair)
+
+
+def _gid(entity: Entity) -> bytes:
+    return entity.guid.bytes
+
+
+@dataclass(frozen=True)
+class Endpoint:
+    """A reader or writer as ``ros2 topic info --verbose`` shows it; ``node`` is None when no node calls it its own."""
+
+    topic: str  # "/pan_publisher"
+    type: str  # "std_msgs/msg/Float64"
+    hash: str | None
+    reliable: bool
+    volatile: bool
+    node: str | None  # "/robot1/JIWY_node"
+
+
+class Subscription:
+    """``received``: messages with the monotonic time at which they came."""
+
+    def __init__(self, reader: DataReader, callback: Callable[[Any], None] | None) -> None:
+        self.reader, self._callback = reader, callback
+        self.received: list[tuple[float, Any]] = []
+
+    @property
+    def messages(self) -> list[Any]:
+        return [message for _, message in self.received]
+
+    @property
+    def refused_for(self) -> str | None:
+        """The policy for which a writer on this topic was found not to fit, as rclpy's warning names it."""
+        return self._read_status(self.reader.get_requested_incompatible_qos_status())
+
+    @staticmethod
+    def _read_status(status: Any) -> str | None:
+        names = {11: "RELIABILITY", 2: "DURABILITY"}
+        return names.get(status.last_policy_id, "other") if status.total_count else None
+
+    def take(self) -> None:
+        now = time.monotonic()
+        for message in self.reader.take(100):
+            if message.sample_info.valid_data:
+                self.received.append((now, message))
+                if self._callback is not None:
+                    self._callback(message)
+
+
+class Publisher:
+    def __init__(self, writer: DataWriter) -> None:
+        self.writer = writer
+        self.sent: list[tuple[float, Any]] = []
+
+    def publish(self, message: Any) -> None:
+        self.sent.append((time.monotonic(), message))
+        self.writer.write(message)
+
+    @property
+    def matched(self) -> int:
+        return len(self.writer.get_matched_subscriptions())
+
+    @property
+    def refused_for(self) -> str | None:
+        return Subscription._read_status(self.writer.get_offered_incompatible_qos_status())
+
+
+@dataclass
+class Graph:
+    """What has been heard of others, by GUID."""
+
+    enclaves: dict[bytes, str] = field(default_factory=dict)
+    nodes: dict[bytes, list[NodeEntitiesInfo_]] = field(default_factory=dict)  # by participant
+    writers: dict[bytes, Any] = field(default_factory=dict)
+    readers: dict[bytes, Any] = field(default_factory=dict)
+
+    def node_names(self) -> list[str]:
+        """As ``ros2 node list``: nodes of participants that are there, and have an enclave, that is, are ROS 2's."""
+        return sorted(_full(node) for gid, nodes in self.nodes.items() if gid in self.enclaves for node in nodes)
+
+    def _owner(self, gid: bytes, which: str) -> str | None:
+        for nodes in self.nodes.values():
+            for node in nodes:
+                if any(bytes(other.data) == gid for other in getattr(node, which)):
+                    return _full(node)
+        return None
+
+    def _endpoints(self, samples: dict[bytes, Any], which: str) -> list[Endpoint]:
+        found = []
+        for gid, sample in samples.items():
+            if not sample.topic_name.startswith("rt/"):
+                continue
+            reliability, durability = sample.qos[Policy.Reliability], sample.qos[Policy.Durability]
+            found.append(
+                Endpoint(
+                    sample.topic_name.removeprefix("rt"),
+                    ros_type(sample.type_name),
+                    user_data(sample.qos).get("typehash"),
+                    reliability != Policy.Reliability.BestEffort,
+                    durability == Policy.Durability.Volatile,
+                    self._owner(gid, which),
+                )
+            )
+        return sorted(found, key=lambda endpoint: (endpoint.topic, endpoint.node or ""))
+
+    def publications(self) -> list[Endpoint]:
+        return self._endpoints(self.writers, "writer_gid_seq")
+
+    def subscriptions(self) -> list[Endpoint]:
+        return self._endpoints(self.readers, "reader_gid_seq")
+
+
+def _full(node: NodeEntitiesInfo_) -> str:
+    return node.node_namespace.rstrip("/") + "/" + node.node_name
+
+
+class Peer:
+    """A node.  What arrives is handled in :meth:`spin`, in the caller's thread."""
+
+    def __init__(self, domain: int, node: str, namespace: str = "/") -> None:
+        self.graph = Graph()
+        self._node, self._namespace = node, namespace
+        self._subscriptions: list[Subscription] = []
+        self._publishers: list[Publisher] = []
+        self._conditions: list[ReadCondition] = []
+        self._participant = DomainParticipant(domain, qos=Qos(Policy.Userdata(b"enclave=/;")))
+        self._waitset = WaitSet(self._participant)
+        self._builtin = {
+            "participants": BuiltinDataReader(self._participant, BuiltinTopicDcpsParticipant),
+            "writers": BuiltinDataReader(self._participant, BuiltinTopicDcpsPublication),
+            "readers": BuiltinDataReader(self._participant, BuiltinTopicDcpsSubscription),
+        }
+        topic = Topic(self._participant, "ros_discovery_info", ParticipantEntitiesInfo_)
+        info = ParticipantEntitiesInfo_
+        self._info_writer = DataWriter(self._participant, topic, qos=ros_qos(info, depth=1, transient_local=True))
+        # All participants write one topic without keys: a reader that kept the last only would miss some.
+        self._info_reader = DataReader(self._participant, topic, qos=ros_qos(info, depth=None, transient_local=True))
+        for reader in (*self._builtin.values(), self._info_reader):
+            self._attach(reader)
+        self._announce()
+
+    def __enter__(self) -> Peer:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Deletes the participant: others see at once that it is gone."""
+        for condition in self._conditions:
+            self._waitset.detach(condition)
+        for entity in (*self._conditions, self._waitset):
+            entity._delete(entity._ref)
+        self._conditions.clear()
+        self._participant._delete(self._participant._ref)
+
+    def _attach(self, reader: Any) -> None:
+        condition = ReadCondition(reader, ANYTHING)
+        self._conditions.append(condition)
+        self._waitset.attach(condition)
+
+    def _announce(self) -> None:
+        """Says which readers and writers are this node's, as rmw does whenever there is another."""
+        readers = [Gid_(_gid(subscription.reader)) for subscription in self._subscriptions]
+        writers = [Gid_(_gid(publisher.writer)) for publisher in self._publishers]
+        node = NodeEntitiesInfo_(self._namespace, self._node, readers, writers)
+        self._info_writer.write(ParticipantEntitiesInfo_(Gid_(_gid(self._participant)), [node]))
+
+    def subscription(
+        self,
+        topic: str,
+        type_: type,
+        *,
+        reliable: bool = True,
+        depth: int = 10,
+        callback: Callable[[Any], None] | None = None,
+    ) -> Subscription:
+        entity = Topic(self._participant, f"rt{topic}", type_)
+        reader = DataReader(self._participant, entity, qos=ros_qos(type_, reliable=reliable, depth=depth))
+        reader.set_status_mask(DDSStatus.DataAvailable)
+        self._subscriptions.append(Subscription(reader, callback))
+        self._attach(reader)
+        self._announce()
+        return self._subscriptions[-1]
+
+    def publisher(self, topic: str, type_: type, *, reliable: bool = True, depth: int = 10) -> Publisher:
+        entity = Topic(self._participant, f"rt{topic}", type_)
+        writer = DataWriter(self._participant, entity, qos=ros_qos(type_, reliable=reliable, depth=depth))
+        self._publishers.append(Publisher(writer))
+        self._announce()
+        return self._publishers[-1]
+
+    def raw_publisher(self, topic: str, type_: type) -> Publisher:
+        """With a type of which no more is known than its name."""
+        entity = Topic(self._participant, f"rt{topic}", type_)
+        self._publishers.append(
+            Publisher(DataWriter(self._participant, entity, qos=Qos(Policy.Reliability.Reliable(FOREVER))))
+        )
+        return self._publishers[-1]
+
+    def spin(self, seconds: float) -> None:
+        """Handles what arrives for that long."""
+        self.spin_until(lambda: False, seconds)
+
+    def spin_until(self, done: Callable[[], bool], timeout: float = 20.0) -> bool:
+        """Handles what arrives until ``done()``; false when that has not come true in time."""
+        end = time.monotonic() + timeout
+        while True:
+            for subscription in self._subscriptions:
+                subscription.take()
+            self._take_graph()
+            if done():
+                return True
+            left = end - time.monotonic()
+            if left <= 0:
+                return False
+            self._waitset.wait(duration(seconds=min(left, 0.05)))
+
+    def _take_graph(self) -> None:
+        graph = self.graph
+        for sample in self._builtin["participants"].take(100):
+            _keep(graph.enclaves, sample, user_data(getattr(sample, "qos", None)).get("enclave"))
+        for name, known in (("writers", graph.writers), ("readers", graph.readers)):
+            for sample in self._builtin[name].take(1000):
+                _keep(known, sample, sample)
+        for sample in self._info_reader.take(100):
+            if sample.sample_info.valid_data:
+                graph.nodes[bytes(sample.gid.data)] = sample.node_entities_info_seq
+
+
+def _keep(known: dict[bytes, Any], sample: Any, value: Any) -> None:
+    gid = sample.key.bytes
+    if sample.sample_info.instance_state != InstanceState.Alive:
+        known.pop(gid, None)
+    elif value is not None:
+        known[gid] = value
+
+
+class Spinner:
+    """Spins a peer in a thread of its own until the end of the ``with`` block."""
+
+    def __init__(self, peer: Peer) -> None:
+        self._peer = peer
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=peer.spin_until, args=(self._stop.is_set, float("inf")))
+
+    def __enter__(self) -> Spinner:
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._stop.set()
+        self._thread.join()

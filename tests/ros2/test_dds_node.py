@@ -1,0 +1,342 @@
+"""A target with the middleware `dds`, as another ROS 2 node sees it: real executables, a peer, the loopback network."""
+
+from __future__ import annotations
+
+import csv
+import itertools
+import math
+import os
+import signal
+import statistics
+import subprocess
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+pytest.importorskip("cyclonedds", reason="CycloneDDS for Python is not installed: python -m pip install cyclonedds")
+
+from tests.ros2.messages import (
+    Bool_,
+    DiagnosticArray_,
+    Float64_,
+    HugeFloat64_,
+    ShortFloat64_,
+    numbers,
+    type_hash,
+)
+from tests.ros2.network import Network, network, running
+from tests.ros2.peer import Endpoint, Peer, Subscription
+
+Build = Callable[[str], Path]
+NODE = "/robot_7/JIWY_node"
+
+
+@pytest.fixture(scope="session")
+def jiwy(build_checked: Build) -> Path:
+    """Pan is reliable, tilt best effort, in both directions."""
+    return build_checked("jiwy")
+
+
+@dataclass
+class Robot:
+    process: subprocess.Popen[str]
+    trace: Path
+
+    def end(self) -> str:
+        """Ends it as Ctrl-C does; what it wrote to stderr."""
+        self.process.send_signal(signal.SIGINT)
+        output, errors = self.process.communicate(timeout=30)
+        assert self.process.returncode == 130, output + errors
+        return errors
+
+    def signal(self, name: str) -> list[float]:
+        """A signal of the trace, a value per control cycle."""
+        with self.trace.open(newline="") as file:
+            return [float(row[name]) for row in csv.DictReader(file)]
+
+
+@contextmanager
+def robot(net: Network, program: Path, folder: Path, *options: str) -> Iterator[Robot]:
+    trace = folder / "trace.csv"
+    process = net.run(program, "--quiet", "--serial", "7", "--duration", "60", "--trace", str(trace), *options)
+    with running([process]):
+        yield Robot(process, trace)
+
+
+def meet(peer: Peer, node: str = NODE) -> None:
+    """Until the peer knows the node with all that is its own."""
+
+    def known() -> bool:
+        endpoints = [*peer.graph.publications(), *peer.graph.subscriptions()]
+        own = [endpoint for endpoint in endpoints if endpoint.node == node]
+        return node in peer.graph.node_names() and len(own) >= 5
+
+    assert peer.spin_until(known), (peer.graph.node_names(), peer.graph.publications(), peer.graph.subscriptions())
+
+
+def hear(peer: Peer, subscription: Subscription, count: int) -> bool:
+    """Whether more than ``count`` messages come."""
+    return peer.spin_until(lambda: len(subscription.received) > count)
+
+
+def test_the_ros_graph_shows_node_topics_types_and_qos(jiwy: Path, net: Network, tmp_path: Path) -> None:
+    """What `ros2 node list` and `ros2 topic info --verbose` read."""
+    with robot(net, jiwy, tmp_path), Peer(net.domain, "monitor") as peer:
+        meet(peer)
+        assert peer.graph.node_names() == ["/monitor", NODE]
+        number, flag = "std_msgs/msg/Float64", "std_msgs/msg/Bool"
+
+        def endpoint(topic: str, type_: str, reliable: bool) -> Endpoint:
+            return Endpoint(f"/robot_7/{topic}", type_, type_hash(type_), reliable, True, NODE)
+
+        values = [e for e in peer.graph.publications() if e.topic.startswith("/robot_7/")]
+        assert values == [
+            endpoint("pan_publisher", number, True),
+            endpoint("tilt_publisher", number, False),
+        ]
+        assert peer.graph.subscriptions() == [
+            endpoint("JIWY_node/enable", flag, True),
+            endpoint("pan_subscriber", number, True),
+            endpoint("tilt_subscriber", number, False),
+        ]
+
+
+def test_values_come_at_the_communication_period(jiwy: Path, net: Network, tmp_path: Path) -> None:
+    with robot(net, jiwy, tmp_path), Peer(net.domain, "monitor") as peer:
+        pan = peer.subscription("/robot_7/pan_publisher", Float64_)  # with rclpy's default QoS
+        tilt = peer.subscription("/robot_7/tilt_publisher", Float64_, reliable=False)
+        assert peer.spin_until(lambda: len(pan.received) > 60 and len(tilt.received) > 60)
+        for subscription in (pan, tilt):
+            # the first ones may be those of before the control loop's start
+            sent = [message.sample_info.source_timestamp for message in subscription.messages[2:]]
+            intervals = [(after - before) / 1e6 for before, after in itertools.pairwise(sent)]
+            assert statistics.median(intervals) == pytest.approx(33.0, abs=0.5)
+            assert (sent[-1] - sent[0]) / 1e6 == pytest.approx(33.0 * (len(sent) - 1), abs=20.0)
+        assert all(math.isfinite(value) for value in numbers(pan.messages))
+        # one control cycle's values: pan and tilt are sent together
+        assert (
+            abs(pan.messages[-1].sample_info.source_timestamp - tilt.messages[-1].sample_info.source_timestamp) < 40e6
+        )
+
+
+def test_a_setpoint_reaches_the_model(jiwy: Path, net: Network, tmp_path: Path) -> None:
+    with robot(net, jiwy, tmp_path) as jiwy_robot, Peer(net.domain, "setpoints") as peer:
+        pan = peer.publisher("/robot_7/pan_subscriber", Float64_)
+        tilt = peer.publisher("/robot_7/tilt_subscriber", Float64_)  # reliable: best effort asks for less
+        assert peer.spin_until(lambda: pan.matched == 1 and tilt.matched == 1)
+        pan.publish(Float64_(0.1))
+        tilt.publish(Float64_(-2.5e-3))
+        peer.spin(0.3)
+        pan.publish(Float64_(math.nan))  # dropped: the value before it stays
+        peer.spin(0.3)
+        jiwy_robot.end()
+        assert set(jiwy_robot.signal("inputs.setpoint_pan")) == {0.0, 0.1}
+        assert set(jiwy_robot.signal("inputs.setpoint_tilt")) == {0.0, -0.0025}
+        assert jiwy_robot.signal("inputs.setpoint_pan")[-1] == 0.1
+
+
+def test_a_best_effort_publisher_gives_nothing_to_a_reliable_reader_and_both_say_so(
+    jiwy: Path, net: Network, tmp_path: Path
+) -> None:
+    with robot(net, jiwy, tmp_path) as jiwy_robot, Peer(net.domain, "monitor") as peer:
+        tilt = peer.subscription("/robot_7/tilt_publisher", Float64_)
+        pan = peer.subscription("/robot_7/pan_publisher", Float64_)
+        assert peer.spin_until(lambda: tilt.refused_for is not None and len(pan.received) > 40)
+        assert tilt.refused_for == "RELIABILITY"
+        assert pan.refused_for is None
+        assert tilt.received == []
+        errors = jiwy_robot.end()
+        assert "warning: a subscription of /robot_7/tilt_publisher asks for another reliability" in errors
+        assert "pan_publisher" not in errors
+
+
+def test_a_reliable_subscription_gets_nothing_from_a_best_effort_writer_and_both_say_so(
+    jiwy: Path, net: Network, tmp_path: Path
+) -> None:
+    with robot(net, jiwy, tmp_path) as jiwy_robot, Peer(net.domain, "setpoints") as peer:
+        pan = peer.publisher("/robot_7/pan_subscriber", Float64_, reliable=False)
+        tilt = peer.publisher("/robot_7/tilt_subscriber", Float64_, reliable=False)
+        assert peer.spin_until(lambda: pan.refused_for is not None and tilt.matched == 1)
+        for _ in range(40):
+            pan.publish(Float64_(0.5))
+            tilt.publish(Float64_(0.5))
+            peer.spin(0.033)
+        errors = jiwy_robot.end()
+        assert pan.refused_for == "RELIABILITY"
+        assert "warning: a publication of /robot_7/pan_subscriber offers another reliability" in errors
+        assert "tilt_subscriber" not in errors
+        assert set(jiwy_robot.signal("inputs.setpoint_pan")) == {0.0}
+        assert set(jiwy_robot.signal("inputs.setpoint_tilt")) == {0.0, 0.5}
+
+
+def test_the_enable_topic_disables_and_enables(jiwy: Path, net: Network, tmp_path: Path) -> None:
+    """JIWY homes at start: its motors turn until it is disabled."""
+    with robot(net, jiwy, tmp_path) as jiwy_robot, Peer(net.domain, "operator") as peer:
+        enable = peer.publisher("/robot_7/JIWY_node/enable", Bool_)
+        pan = peer.subscription("/robot_7/pan_publisher", Float64_)
+        assert peer.spin_until(lambda: enable.matched == 1 and len(pan.received) > 3)
+        enable.publish(Bool_(False))
+        peer.spin(0.5)
+        heard = len(pan.received)
+        peer.spin(0.5)
+        assert len(pan.received) - heard > 8  # positions stay live
+        enable.publish(Bool_(True))
+        peer.spin(0.3)
+        jiwy_robot.end()
+        phases = [
+            on for on, _ in itertools.groupby(value != 0.0 for value in jiwy_robot.signal("plant.inputs.duty_pan"))
+        ]
+        assert phases[-3:] in ([True, False, True], [False, True, False])  # the last cycle is safe again
+        assert phases.count(True) == 2
+
+
+def diagnostics_of(peer: Peer, subscription: Subscription, done: Callable[[dict[str, str]], bool]) -> Any:
+    """The first status that ``done`` accepts."""
+
+    def accepted() -> bool:
+        return bool(subscription.received) and done(_values(subscription.messages[-1].status[0]))
+
+    assert peer.spin_until(accepted), [m.status for m in subscription.messages[-1:]]
+    return subscription.messages[-1].status[0]
+
+
+def _values(status: Any) -> dict[str, str]:
+    return {pair.key: pair.value for pair in status.values}
+
+
+def test_diagnostics_tell_state_and_statistics(jiwy: Path, net: Network, tmp_path: Path) -> None:
+    with robot(net, jiwy, tmp_path), Peer(net.domain, "monitor") as peer:
+        told = peer.subscription("/diagnostics", DiagnosticArray_)
+        enable = peer.publisher("/robot_7/JIWY_node/enable", Bool_)
+        status = diagnostics_of(peer, told, lambda values: int(values["cycles"]) > 500)
+        assert (status.level, status.message, status.hardware_id) == (0, "enabled", "7")
+        assert status.name.endswith("JIWY_node")
+        values = _values(status)
+        assert values["fault"] == "none" and values["malformed"] == "0" and len(values["firmware"]) == 16
+        stamp = told.messages[-1].header.stamp
+        assert abs(stamp.sec - told.messages[-1].sample_info.source_timestamp / 1e9) < 2.0  # the computer's clock
+        assert peer.spin_until(lambda: enable.matched == 1)
+        enable.publish(Bool_(False))
+        peer.spin_until(lambda: told.messages[-1].status[0].message == "disabled")
+        assert (told.messages[-1].status[0].level, told.messages[-1].status[0].message) == (1, "disabled")
+
+
+def test_messages_that_are_none_are_counted_and_do_no_harm(jiwy: Path, net: Network, tmp_path: Path) -> None:
+    """Somebody calls something else Float64: one byte, or 200 kB (in fragments)."""
+    with (
+        robot(net, jiwy, tmp_path) as jiwy_robot,
+        Peer(net.domain, "stranger") as peer,
+        Peer(net.domain, "good") as good,
+    ):
+        short = peer.raw_publisher("/robot_7/pan_subscriber", ShortFloat64_)
+        huge = good.raw_publisher("/robot_7/tilt_subscriber", HugeFloat64_)
+        told = peer.subscription("/diagnostics", DiagnosticArray_)
+        assert peer.spin_until(lambda: short.matched == 1 and huge.matched == 1)
+        for _ in range(20):
+            short.writer.write(ShortFloat64_(1))
+        huge.writer.write(HugeFloat64_(bytes(200_000)))
+        diagnostics_of(peer, told, lambda values: int(values["malformed"]) >= 20)
+        jiwy_robot.end()
+        assert set(jiwy_robot.signal("inputs.setpoint_pan")) == {0.0}
+        assert set(jiwy_robot.signal("inputs.setpoint_tilt")) == {0.0}
+
+
+def test_a_node_that_ends_is_gone_at_once_and_comes_back(jiwy: Path, net: Network, tmp_path: Path) -> None:
+    with Peer(net.domain, "monitor") as peer:
+        pan = peer.subscription("/robot_7/pan_publisher", Float64_)
+        for _ in range(3):
+            heard = len(pan.received)
+            with robot(net, jiwy, tmp_path) as jiwy_robot:
+                meet(peer)
+                assert hear(peer, pan, heard + 10)
+                jiwy_robot.end()
+                assert peer.spin_until(lambda: NODE not in peer.graph.node_names(), timeout=3.0)
+
+
+def test_a_peer_that_comes_and_goes_leaves_the_node_as_it_was(jiwy: Path, net: Network, tmp_path: Path) -> None:
+    with robot(net, jiwy, tmp_path) as jiwy_robot:
+        for _ in range(10):
+            with Peer(net.domain, "visitor") as peer:
+                setpoint = peer.publisher("/robot_7/pan_subscriber", Float64_)
+                assert hear(peer, peer.subscription("/robot_7/pan_publisher", Float64_), 3)
+                setpoint.publish(Float64_(0.25))
+        assert jiwy_robot.end() == ""
+
+
+def test_domains_do_not_meet(jiwy: Path, net: Network, tmp_path: Path) -> None:
+    with robot(net, jiwy, tmp_path), Peer(net.domain, "here") as here, Peer(net.domain + 1, "elsewhere") as elsewhere:
+        meet(here)
+        elsewhere.spin(1.0)
+        assert elsewhere.graph.node_names() == ["/elsewhere"]
+
+
+RANGE = (
+    "<CycloneDDS><Domain><General><AllowMulticast>false</AllowMulticast></General>"
+    "<Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>"
+    '<Peers><Peer address="localhost"/></Peers></Discovery></Domain></CycloneDDS>,'
+)
+"""What rmw_cyclonedds makes of ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST."""
+
+
+@pytest.mark.parametrize("variable", ["ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST", "ROS_LOCALHOST_ONLY=1"])
+def test_it_is_found_on_this_computer_alone(jiwy: Path, net: Network, tmp_path: Path, variable: str) -> None:
+    """As a node of ROS 2 with the same variable finds it: nobody multicasts."""
+    net.environment.update([variable.split("=")])
+    os.environ["CYCLONEDDS_URI"] = RANGE + os.environ["CYCLONEDDS_URI"]
+    with robot(net, jiwy, tmp_path), Peer(net.domain, "monitor") as peer:
+        meet(peer)
+
+
+def test_it_is_not_found_when_discovery_is_off(jiwy: Path, net: Network, tmp_path: Path) -> None:
+    net.environment["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "OFF"
+    del net.environment["CYCLONEDDS_URI"]  # its tag would be the test's
+    with robot(net, jiwy, tmp_path) as jiwy_robot, Peer(net.domain, "monitor") as peer:
+        peer.spin(1.5)
+        assert peer.graph.node_names() == ["/monitor"]
+        assert jiwy_robot.end() == ""
+
+
+@pytest.mark.parametrize(
+    ("variable", "value", "message"),
+    [
+        ("ROS_DOMAIN_ID", "233", "error: ROS_DOMAIN_ID is '233'\nhint: a domain is a whole number from 0 to 232\n"),
+        ("ROS_DOMAIN_ID", "-1", "error: ROS_DOMAIN_ID is '-1'\nhint: a domain is a whole number from 0 to 232\n"),
+        ("ROS_DOMAIN_ID", "a", "error: ROS_DOMAIN_ID is 'a'\nhint: a domain is a whole number from 0 to 232\n"),
+        (
+            "ROS_AUTOMATIC_DISCOVERY_RANGE",
+            "NEAR",
+            "error: ROS_AUTOMATIC_DISCOVERY_RANGE is 'NEAR'\nhint: SUBNET, LOCALHOST, OFF or SYSTEM_DEFAULT\n",
+        ),
+        (
+            "ROS_STATIC_PEERS",
+            'robot.local;"/><evil>',
+            "error: ROS_STATIC_PEERS names '\"/><evil>'\nhint: it holds addresses, with ';' between them\n",
+        ),
+    ],
+)
+def test_a_wrong_environment_is_said_once_and_the_loop_runs(
+    jiwy: Path, net: Network, tmp_path: Path, variable: str, value: str, message: str
+) -> None:
+    net.environment[variable] = value
+    trace = tmp_path / "trace.csv"
+    command = [str(jiwy), "--realtime", "--quiet", "--duration", "1.5", "--trace", str(trace)]
+    done = subprocess.run(command, env=net.environment, capture_output=True, text=True, check=False, timeout=60)
+    assert (done.returncode, done.stderr) == (0, message)
+    assert len(Robot(None, trace).signal("time")) > 1000  # type: ignore[arg-type]
+
+
+def test_without_a_network_it_is_tried_again_and_the_loop_runs(jiwy: Path, tmp_path: Path) -> None:
+    """The interface that CycloneDDS is told to use does not exist."""
+    with network() as net:
+        net.environment["CYCLONEDDS_URI"] = net.environment["CYCLONEDDS_URI"].replace("127.0.0.1", "192.0.2.77")
+        trace = tmp_path / "trace.csv"
+        command = [str(jiwy), "--realtime", "--quiet", "--duration", "2.5", "--trace", str(trace)]
+        done = subprocess.run(command, env=net.environment, capture_output=True, text=True, check=False, timeout=60)
+        assert done.returncode == 0
+        assert done.stderr.count("error: no DDS participant: ") == 1
+        assert "hint: it is tried again every second" in done.stderr
+        assert len(Robot(None, trace).signal("time")) > 2000  # type: ignore[arg-type]
