@@ -86,7 +86,8 @@ static void read_info(epg_xrce_guard_t *guard, const uint8_t *payload, size_t le
 static bool passes(epg_xrce_guard_t *guard, uint8_t stream, uint8_t id, uint8_t flags, uint8_t *payload, size_t length)
 {
     if (!guard->open) {
-        return id == STATUS_AGENT && stream == NO_STREAM && length >= 10;
+        /* With properties, whose names the library would write to where no pointer leads. */
+        return id == STATUS_AGENT && stream == NO_STREAM && length >= 11 && payload[10] == 0;
     }
     switch (id) {
     case STATUS:
@@ -99,7 +100,8 @@ static bool passes(epg_xrce_guard_t *guard, uint8_t stream, uint8_t id, uint8_t 
         return guard->reading && stream != NO_STREAM && kind == UXR_DATAREADER_ID && (flags & FORMAT_FLAGS) == 0;
     }
     case ACKNACK:
-        return length >= 5 && payload[4] == RELIABLE && is_timely(guard, number_at(payload));
+        /* On a stream the library might keep it, and look at it when it is timely no longer. */
+        return stream == NO_STREAM && length >= 5 && payload[4] == RELIABLE && is_timely(guard, number_at(payload));
     case HEARTBEAT:
         return length >= 5 && payload[4] == RELIABLE && limit_heartbeat(guard, payload + 2);
     case TIMESTAMP_REPLY:
@@ -107,6 +109,24 @@ static bool passes(epg_xrce_guard_t *guard, uint8_t stream, uint8_t id, uint8_t 
     default:
         /* Of fragments there are none in what fits into a frame, and no other message is for this target. */
         return false;
+    }
+}
+
+/** Bytes of a payload that the library reads; the rest it would take for the next submessage. */
+static size_t known_part(uint8_t id, size_t length)
+{
+    switch (id) {
+    case STATUS_AGENT:
+        return 11;
+    case STATUS:
+        return 6;
+    case ACKNACK:
+    case HEARTBEAT:
+        return 5;
+    case TIMESTAMP_REPLY:
+        return 24;
+    default:
+        return length;
     }
 }
 
@@ -123,6 +143,7 @@ static size_t sift(epg_xrce_guard_t *guard, uint8_t *frame, size_t size)
 {
     size_t end = HEADER;
     size_t position = HEADER;
+    bool acknowledged = false; /* by an ACKNACK in this frame: what is timely has changed */
     while (size - position >= SUBHEADER) {
         const uint8_t id = frame[position];
         const uint8_t flags = frame[position + 1];
@@ -132,9 +153,13 @@ static size_t sift(epg_xrce_guard_t *guard, uint8_t *frame, size_t size)
         }
         const size_t padded = (SUBHEADER + length + 3U) & ~(size_t)3U;
         const size_t taken = padded < size - position ? padded : size - position;
-        if (passes(guard, frame[1], id, flags, frame + position + SUBHEADER, length)) {
-            memmove(frame + end, frame + position, taken);
-            end += taken;
+        if (!(id == ACKNACK && acknowledged) &&
+            passes(guard, frame[1], id, flags, frame + position + SUBHEADER, length)) {
+            acknowledged |= id == ACKNACK;
+            const size_t known = (SUBHEADER + known_part(id, length) + 3U) & ~(size_t)3U;
+            const size_t kept = known < taken ? known : taken;
+            memmove(frame + end, frame + position, kept);
+            end += kept;
         }
         position += taken;
     }
