@@ -39,6 +39,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help="signal that aligns the runs; again for more; default: setpoints that both followed, else all",
     )
+    parser.add_argument(
+        "--from",
+        type=float,
+        default=-math.inf,
+        dest="begin",
+        metavar="SECONDS",
+        help="compare from this time of the other",
+    )
+    parser.add_argument("--until", type=float, default=math.inf, metavar="SECONDS", help="compare until then")
     parser.add_argument("--output", type=Path, metavar="PNG", help="default: <name of RUN>.png here")
 
 
@@ -78,13 +87,9 @@ def _compare(
     from epg.ros.compare_plot import plot_comparison
 
     pairs = _pairs(recording, other, options.signal, diagnostics)
-    for name in options.by:
-        if name not in pairs:
-            hint = did_you_mean(name, pairs, "compared")
-            diagnostics.error("unknown-recorded-signal", _span("--by", name), f"'{name}' is not compared", hint=hint)
+    by = _aligning(recording, other, pairs, options.by, diagnostics)
     diagnostics.stop_if_errors()
-    followed = [name for name, against in pairs.items() if name in recording.setpoints and against in other.setpoints]
-    comparison = compare(recording, other, pairs, options.align, options.by or followed or list(pairs))
+    comparison = compare(recording, other, pairs, options.align, by, (options.begin, options.until))
     for pair in comparison.pairs:
         if math.isnan(pair.rms):
             message = f"'{pair.name}' was not recorded at the same time in both runs, as they are aligned"
@@ -127,6 +132,19 @@ def _pairs(recording: Recording, other: Recording, wanted: list[str], diagnostic
         _check(name, recording, "--signal", diagnostics)
         _check(pairs[name], other, "--signal", diagnostics)
     return pairs
+
+
+def _aligning(
+    recording: Recording, other: Recording, pairs: dict[str, str], wanted: list[str], diagnostics: Diagnostics
+) -> dict[str, str]:
+    """The signals that align the runs: as asked for, else setpoints of both, else all that are compared."""
+    for name in wanted:
+        if name not in pairs:
+            hint = did_you_mean(name, pairs, "compared")
+            diagnostics.error("unknown-recorded-signal", _span("--by", name), f"'{name}' is not compared", hint=hint)
+    if wanted:
+        return {name: pairs[name] for name in wanted if name in pairs}
+    return {name: name for name in sorted(recording.setpoints & other.setpoints)} or pairs
 
 
 def _check(name: str, recording: Recording, option: str, diagnostics: Diagnostics) -> None:

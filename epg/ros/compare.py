@@ -7,6 +7,7 @@ which the runs overlap long.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -54,23 +55,31 @@ class Comparison:
 
 
 def compare(
-    run: Recording, reference: Recording, pairs: Mapping[str, str], align: str, by: Sequence[str]
+    run: Recording,
+    reference: Recording,
+    pairs: Mapping[str, str],
+    align: str,
+    by: Mapping[str, str],
+    window: tuple[float, float] = (-math.inf, math.inf),
 ) -> Comparison:
-    """``pairs``: signals of ``run`` and what they are called in ``reference``.  ``by``: those (names in ``run``) that
-    align the runs, ``align`` "correlation", "motion" or "none".  Needs numpy.
+    """``pairs``: signals of ``run`` and what they are called in ``reference``; ``by``: likewise, those that align the
+    runs; ``align`` is "correlation", "motion" or "none".  ``window`` of the reference's time is compared; all that was
+    recorded aligns the runs.  Needs numpy.
     """
     import numpy as np
 
     step = max(LEAST_STEP, max(_length(r) for r in (run, reference)) / GRID)
     both = {name: (run.signals[name], reference.signals[other]) for name, other in pairs.items()}
-    chosen = [both[name] for name in by]
+    chosen = [(run.signals[name], reference.signals[other]) for name, other in by.items()]
     shift = 0.0
     if align == "motion":
         shift = float(np.median([_motion(reference) - _motion(signal) for signal, reference in chosen]))
     elif align == "correlation":
         shift = _best_shift(chosen, step)
     return Comparison(
-        shift, tuple(by), tuple(_pair(name, pairs[name], *signals, shift, step) for name, signals in both.items())
+        shift,
+        tuple(by),
+        tuple(_pair(name, pairs[name], *signals, shift, step, window) for name, signals in both.items()),
     )
 
 
@@ -140,12 +149,20 @@ def _between(values: Any, index: int) -> float:
     return 0.5 * (before - after) / curvature if 0.0 < curvature < float("inf") else 0.0
 
 
-def _pair(name: str, against: str, run: Signal, reference: Signal, shift: float, step: float) -> Pair:
+def _pair(
+    name: str,
+    against: str,
+    run: Signal,
+    reference: Signal,
+    shift: float,
+    step: float,
+    window: tuple[float, float],
+) -> Pair:
     """Both signals where both were recorded; nothing but NaN if that is nowhere."""
     import numpy as np
 
-    begin = max(run.time[0] + shift, reference.time[0])
-    end = min(run.time[-1] + shift, reference.time[-1])
+    begin = max(run.time[0] + shift, reference.time[0], window[0])
+    end = min(run.time[-1] + shift, reference.time[-1], window[1])
     times: Any = np.arange(begin, end, step)
     a, b = _sampled(run, times - shift), _sampled(reference, times)
     if len(times) < 3:
