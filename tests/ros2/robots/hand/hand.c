@@ -3,8 +3,8 @@
 #include <math.h>
 
 static const double step = 0.001;  /* s */
-static const double begin = 1.0;   /* s */
-static const double period = 4.0;  /* s, forwards and back */
+static const double begin = 2.5;   /* s */
+static const double period = 3.0;  /* s, forwards and back */
 static const double height = 3.14; /* rad */
 
 static double seconds;

@@ -1,0 +1,49 @@
+"""How much later one signal is than another, as the thesis computes it for its tables 5.5 and 5.6."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+Log = Sequence[tuple[float, float]]
+"""Time in s and value, as a node logs them when they become available."""
+
+
+def lag(reference: Log, target: Log) -> float:
+    """By how many seconds ``target`` is behind ``reference``, in multiples of the reference's interval.
+
+    The target is interpolated to the times of the reference, so that both have one time scale; then the shift with the
+    largest cross-correlation is taken.  Means are removed before: a constant would favour no shift at all.
+
+    >>> wave = [(0.033 * n, np.sin(0.05 * n)) for n in range(200)]
+    >>> late = [(time + 0.066, value) for time, value in wave]
+    >>> round(lag(wave, late), 3)
+    0.066
+    """
+    times = np.array([time for time, _ in reference])
+    values = np.array([value for _, value in reference])
+    other = np.interp(times, [time for time, _ in target], [value for _, value in target])
+    products = np.correlate(other - other.mean(), values - values.mean(), "full")
+    shift = int(np.argmax(products)) - (len(values) - 1)
+    return shift * float(np.mean(np.diff(times)))
+
+
+def fine_lag(reference: Log, target: Log, largest: float = 0.3, step: float = 0.001) -> float:
+    """By how many seconds ``target`` is behind ``reference``: the shift that brings them nearest to each other.
+
+    Least squares, in multiples of ``step``: what the interval of 33 ms hides, and without the bias towards zero that a correlation has whose overlap shrinks.
+    """
+    begin, end = reference[0][0], target[-1][0] - largest
+    grid = np.arange(begin, end, step)
+    expected = np.interp(grid, [time for time, _ in reference], [value for _, value in reference])
+    times, values = [time for time, _ in target], [value for _, value in target]
+    shifts = np.arange(-largest / 3, largest, step)
+    distances = [np.mean((np.interp(grid + shift, times, values) - expected) ** 2) for shift in shifts]
+    return float(shifts[int(np.argmin(distances))])
+
+
+def errors(log: Log, expected: Sequence[float]) -> tuple[float, float]:
+    """RMS and largest of the differences between a log's values and what was expected at those times."""
+    differences = np.array([value for _, value in log]) - np.array(expected)
+    return float(np.sqrt(np.mean(differences**2))), float(np.max(np.abs(differences)))
