@@ -32,7 +32,8 @@ def lag(reference: Log, target: Log) -> float:
 def fine_lag(reference: Log, target: Log, largest: float = 0.3, step: float = 0.001) -> float:
     """By how many seconds ``target`` is behind ``reference``: the shift that brings them nearest to each other.
 
-    Least squares, in multiples of ``step``: what the interval of 33 ms hides, and without the bias towards zero that a correlation has whose overlap shrinks.
+    Least squares, in multiples of ``step``: what the interval of 33 ms hides, and without the bias towards zero that a
+    correlation has whose overlap shrinks.
     """
     begin, end = reference[0][0], target[-1][0] - largest
     grid = np.arange(begin, end, step)
