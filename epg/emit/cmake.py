@@ -68,6 +68,7 @@ def application_cmake(
     lines += _set("EPG_MIDDLEWARE", [str(cmake(middleware.name))])
     lines += _set("EPG_MIDDLEWARE_FOLDER", [names.cmake(middleware.folder)])
     lines += _set("EPG_MIDDLEWARE_SOURCES", names.in_order(middleware.folder / name for name in middleware.sources))
+    lines += _set("EPG_MIDDLEWARE_STACK", [str(middleware.stack)])
     if app.communication.transport:
         lines += _set("EPG_TRANSPORT", [str(cmake(app.communication.transport))])
     lines += _set("EPG_GENERATED_SOURCES", [str(cmake(name)) for name in own])

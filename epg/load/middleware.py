@@ -13,6 +13,8 @@ from epg.source import Node, Span
 
 TEMPLATE = "code.c.j2"
 """What generated code holds of a middleware, if it has this file."""
+STACK = 2048
+"""Bytes of stack for middlewares that do not say how much they take."""
 
 
 @dataclass(frozen=True)
@@ -22,7 +24,7 @@ class Middleware:
     ``platforms`` are those that it offers itself to, with transports, besides those that name it.
     ``connection`` is "stream" (bytes, by a transport that the platform has), "own" or "none".  ``uses`` names what the
     generator makes for it: "signals", "parameters", "capture", "jog".  ``symbol`` is its ``epg_middleware_t`` in C,
-    empty when nothing runs.  ``headers`` and ``sources`` are files in ``folder``.
+    empty when nothing runs.  ``headers`` and ``sources`` are files in ``folder``.  ``stack`` in bytes.
     """
 
     name: str
@@ -34,6 +36,7 @@ class Middleware:
     symbol: str
     headers: tuple[str, ...]
     sources: tuple[str, ...]
+    stack: int
     builds: bool
     node: Node
     folder: Path
@@ -62,6 +65,7 @@ def make_middleware(node: Node, folder: Path) -> Middleware:
         symbol=text_of(node["driver"], "symbol") if "driver" in node else "",
         headers=texts_of(node, "driver", "headers"),
         sources=texts_of(node, "driver", "sources"),
+        stack=stack.value if (stack := node.get("stack")) is not None and isinstance(stack.value, int) else STACK,
         builds="builds" not in node or flag_of(node, "builds"),
         node=node,
         folder=folder,

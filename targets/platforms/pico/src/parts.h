@@ -86,6 +86,18 @@ extern const epg_pico_stack_t epg_pico_control_stack;
 
 /* service.c of bare_metal and freertos -------------------------------------------------------------------------- */
 
+/** Bytes of stack that middleware and console take: the largest `stack` of their middleware.yaml. */
+#ifndef EPG_PICO_MIDDLEWARE_STACK
+#define EPG_PICO_MIDDLEWARE_STACK 2048
+#endif
+
+/** Bytes by which the frame of an exception is larger where it has the registers of an FPU (Armv8-M, B3.19). */
+#if PICO_RP2040
+#define EPG_PICO_FPU_FRAME 0
+#else
+#define EPG_PICO_FPU_FRAME 72
+#endif
+
 /** Calls `serve` on core 0 at least once per millisecond. */
 bool epg_pico_service_start(void (*serve)(void));
 void epg_pico_service_stop(void);

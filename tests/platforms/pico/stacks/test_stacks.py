@@ -1,0 +1,47 @@
+"""Stacks are a quarter larger than what JIWY's RP2040 images have ever used of them; the compiler's doubles."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.emulator.emulator import Emulator
+from tests.platforms.pico.closed_loop.board import image
+from tests.platforms.pico.images import PLATFORMS, images, skip_unless_emulated
+from tests.platforms.pico.stacks.workload import worst_of
+from tests.platforms.pico.test_faults import FAULT, MODEL, order
+
+SEED = 4
+"""The one of the first six whose exceptions nest deepest."""
+EMERGENCY_STACKS = "epg_pico_emergency_stacks"
+
+
+@pytest.mark.parametrize("platform", PLATFORMS)
+def test_a_quarter_is_left(platform: str) -> None:
+    skip_unless_emulated(platform)
+    stacks = worst_of(image(platform), SEED)
+    kernel = {"uxIdleTaskStack", "uxTimerTaskStack"} if platform == "freertos" else set()
+    assert set(stacks) == {"control", "communication", "main"} | kernel
+    assert stacks["communication"].used > 1500, "the work is as hard as it was when sizes were chosen"
+    assert {name: stack for name, stack in stacks.items() if stack.used * 5 > stack.size * 4} == {}
+
+
+@pytest.mark.parametrize("core", [0, 1])
+@pytest.mark.parametrize("platform", PLATFORMS)
+def test_a_quarter_is_left_of_the_stack_for_faults(platform: str, core: int) -> None:
+    """What is left of each half is still as it was cleared at the start."""
+    skip_unless_emulated(platform)
+    with Emulator(images("pico", platform, "user_bench") / "user_bench.elf") as pico:
+        pico.run(milliseconds=20)
+        memory = pico.read(EMERGENCY_STACKS)
+        size = len(memory) // 2
+        assert not any(memory)
+        if core == 0:
+            order(pico, FAULT, milliseconds=10)
+        else:
+            pico.write_word(MODEL + "fault", 1)
+            pico.run(milliseconds=10)
+        memory = pico.read(EMERGENCY_STACKS)
+        halves = memory[:size], memory[size:]
+        used = [size - next((at for at, byte in enumerate(half) if byte), size) for half in halves]
+        assert used[core] > 0
+        assert max(used) * 5 <= size * 4
