@@ -23,7 +23,7 @@ export class Commands {
         this.motors = new Map();
         this.logs = { pins: [], pwm: [], exceptions: [], writes: [], flash: [] };
         this.spans = new Map(); // name -> recorded spans
-        this.received = new Map(); // number of a serial port -> bytes
+        this.received = new Map(); // number of a USB serial port, uart0 or uart1 -> bytes
         this.awaited = {};
     }
 
@@ -39,6 +39,7 @@ export class Commands {
         });
         this.machine = machine;
         machine.usbHost.onData = (data, port) => this.receive(data, port);
+        machine.uartData = (byte, number) => this.receive([byte], `uart${number}`);
         if (machine.usbBootAddress >= 0) {
             for (const core of [0, 1]) {
                 machine.probe(core, machine.usbBootAddress, () => machine.stop('usb boot'));
@@ -520,6 +521,38 @@ export class Commands {
     usb_control({ type, request, value = 0, index = 0 }) {
         this.machine.usbHost.controlOut(type, request, value, index, null);
         return null;
+    }
+
+    // UARTs --------------------------------------------------------------------------------------------------------------
+
+    /** What is wired to {uart} sends {hex} at its own {baud}, which stays; {damaged: true}: with wrong stop bits. */
+    uart_send({ uart, hex = '', baud, damaged = false }) {
+        const device = this.theUart(uart);
+        device.outside.baud = baud ?? device.outside.baud;
+        for (const byte of Buffer.from(hex, 'hex')) {
+            device.outside.queue.push(damaged ? byte | 256 : byte);
+        }
+        device.awaitNext();
+        return { waiting: device.outside.queue.length };
+    }
+
+    /** Takes what {uart} has sent, as hex. */
+    uart_receive({ uart }) {
+        this.theUart(uart);
+        return this.usb_receive({ port: `uart${uart}` });
+    }
+
+    uart({ uart }) {
+        const { baudRate, enabled, rx, tx, outside } = this.theUart(uart);
+        return { baud: baudRate, enabled, receiving: rx.length, sending: tx.length, waiting: outside.queue.length };
+    }
+
+    theUart(number) {
+        const device = this.machine.uarts[need(number, 'uart')];
+        if (device === undefined) {
+            throw new Error(`there is no UART ${number}`);
+        }
+        return device;
     }
 
     // Encoders and motors --------------------------------------------------------------------------------------------------

@@ -16,6 +16,7 @@ import { Pwm } from './pwm.mjs';
 import { PowerOn, Registers, Resets } from './resets.mjs';
 import { Sio } from './sio.mjs';
 import { Timer } from './timer.mjs';
+import { Uart } from './uart.mjs';
 import { UsbDevice } from './usb_device.mjs';
 import { UsbHost } from './usb_host.mjs';
 import { Watchdog, WatchdogMemory } from './watchdog.mjs';
@@ -63,6 +64,8 @@ export class Machine {
         this.onFlashWrite = []; // (offset, size, value): erased words, programmed bytes
         this.usbBootAddress = romSymbols.get('rom_reset_usb_boot')?.address ?? -1;
         this.usbOptions = usb;
+        this.uartData = () => {}; // (byte, number)
+        this.uartOutside = [0, 1].map(() => ({ baud: 115200, queue: [] })); // what is wired to the UARTs
         this.flashOff = false;
         this.build(null);
         this.usbHost = new UsbHost(this, usb);
@@ -101,6 +104,10 @@ export class Machine {
         this.pads = new Pads(this, chip);
         this.pio.push(new PioBlock(this, chip, 0, IRQ.PIO0_IRQ0), new PioBlock(this, chip, 1, IRQ.PIO1_IRQ0));
         this.timer = new Timer(this, chip);
+        this.uarts = chip.uart = [new Uart(this, chip, 0), new Uart(this, chip, 1)];
+        this.uarts.forEach((uart) => {
+            uart.onData = (byte, number) => this.uartData(byte, number);
+        });
         this.usb = chip.usbCtrl = new UsbDevice(this, chip);
         this.usb.host = this.usbHost ?? null;
         this.xipSram = new Uint32Array(XIP_SRAM_SIZE / 4);
@@ -114,6 +121,8 @@ export class Machine {
             0x40058: new Watchdog(this, chip, this.watchdogMemory),
             0x40060: new Registers(chip, 'ROSC', { 0x18: 0x80001000 }),
             0x40064: new Registers(chip, 'VREG_AND_CHIP_RESET', { 0: 0x1000, 8: before === null ? 0x100 : 0 }),
+            0x40034: this.uarts[0],
+            0x40038: this.uarts[1],
             0x50110: this.usb,
             0x50200: this.pio[0],
             0x50300: this.pio[1],

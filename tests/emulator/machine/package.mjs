@@ -1,6 +1,6 @@
 // The npm package rp2040js, from the folder that EPG_RP2040JS names (emulator.py installs it into EPG's cache).
 //
-// Only its processor core and the peripherals that the harness leaves alone (clocks, PLLs, pads, IO bank, UART, ADC,
+// Only its processor core and the peripherals that the harness leaves alone (clocks, PLLs, pads, IO bank, ADC,
 // I2C, SPI, RTC, DMA) are used.  Files are named one by one because the package exports no more than its index.
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';

@@ -13,6 +13,8 @@ const PIO0 = 1 << 10;
 const PIO1 = 1 << 11;
 const PWM = 1 << 14;
 const TIMER = 1 << 21;
+const UART0 = 1 << 22;
+const UART1 = 1 << 23;
 const USB = 1 << 24;
 
 /** Peripherals that are held in reset.  All are, when the chip starts. */
@@ -60,6 +62,12 @@ export class Resets extends BasePeripheral {
         }
         if (asserted & TIMER) {
             machine.timer.reset();
+        }
+        if (asserted & UART0) {
+            machine.uarts[0].reset();
+        }
+        if (asserted & UART1) {
+            machine.uarts[1].reset();
         }
         if (asserted & USB) {
             machine.usb.reset();

@@ -9,13 +9,16 @@
 /** Entries of each FIFO; one run of the interrupt moves no more than that. */
 #define FIFO 32U
 
-#define DAMAGED (UART_UARTDR_OE_BITS | UART_UARTDR_BE_BITS | UART_UARTDR_PE_BITS | UART_UARTDR_FE_BITS)
-/** Those of which the byte itself means nothing: after an overrun (OE), it is the ones before that are missing. */
-#define WRONG (UART_UARTDR_BE_BITS | UART_UARTDR_PE_BITS | UART_UARTDR_FE_BITS)
+#define DAMAGED (UART_UARTDR_BE_BITS | UART_UARTDR_PE_BITS | UART_UARTDR_FE_BITS)
 #define RECEIVE_INTERRUPTS (UART_UARTIMSC_RXIM_BITS | UART_UARTIMSC_RTIM_BITS)
 #define ALL_INTERRUPTS 0x7FFU
 
 static const epg_port_uart_t *users[NUM_UARTS];
+
+static void count_damage(epg_port_uart_lines_t *lines)
+{
+    atomic_store(&lines->damaged, atomic_load(&lines->damaged) + 1U); /* the only writer */
+}
 
 static bool receive(uart_hw_t *hw, epg_port_uart_lines_t *lines)
 {
@@ -23,9 +26,8 @@ static bool receive(uart_hw_t *hw, epg_port_uart_lines_t *lines)
     for (uint32_t i = 0; i < FIFO && (hw->fr & UART_UARTFR_RXFE_BITS) == 0U; i++) {
         const uint32_t data = hw->dr;
         if ((data & DAMAGED) != 0U) {
-            atomic_store(&lines->damaged, atomic_load(&lines->damaged) + 1U);
-        }
-        if ((data & WRONG) == 0U) {
+            count_damage(lines);
+        } else {
             epg_ring_put(&lines->received, (unsigned char)data);
             any = true;
         }
@@ -49,6 +51,9 @@ static void serve(uint number)
 {
     epg_port_uart_lines_t *lines = users[number]->lines;
     uart_hw_t *hw = uart_get_hw(UART_INSTANCE(number));
+    if ((hw->ris & UART_UARTRIS_OERIS_BITS) != 0U) {
+        count_damage(lines); /* the FIFO was full: at least one is missing */
+    }
     hw->icr = ALL_INTERRUPTS; /* before the FIFOs are looked at: what comes from here on is an interrupt of its own */
     const bool any = receive(hw, lines);
     send(hw, lines);
