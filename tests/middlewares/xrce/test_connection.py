@@ -1,0 +1,301 @@
+"""Connecting, losing and finding again: whatever the agent, the line and the board do."""
+
+from __future__ import annotations
+
+import random
+import time
+from pathlib import Path
+
+import pytest
+
+from tests.xrce_agent import Agent, Kind, Link, PtyLink, Status, UdpLink
+from tests.xrce_agent.wire import Id
+
+from .board import Board
+
+FLOAT64 = "std_msgs::msg::dds_::Float64_"
+
+
+def check_alive(board: Board, value: float) -> None:
+    """Both directions work: a setpoint reaches the model, and its answer comes back."""
+    board.agent.wait_until(lambda: board.set("reliable", value) >= 1 and board.values("got_reliable")[-1:] == [value])
+
+
+def test_the_agent_is_there_first(robot: Path, agent: Agent) -> None:
+    with Board(robot, agent) as board:
+        assert board.running() < 5.0
+        (client,) = agent.clients.values()
+        assert client.node == "robot_1"
+        ends = {(end.topic, end.type, end.reliable) for end in client.ends.values()}
+        assert {end for end in ends if end[1] == FLOAT64} == {
+            ("rt/lab/reliable", FLOAT64, True),
+            ("rt/lab/quick", FLOAT64, False),
+            ("rt/lab/held", FLOAT64, False),
+            ("rt/lab/zeroed", FLOAT64, False),
+            ("rt/lab/got_reliable", FLOAT64, True),
+            ("rt/lab/got_quick", FLOAT64, False),
+            ("rt/lab/got_held", FLOAT64, False),
+            ("rt/lab/got_zeroed", FLOAT64, False),
+            ("rt/lab/cycles", FLOAT64, True),
+            ("rt/lab/cycles_too", FLOAT64, False),
+        }
+        assert ends - {end for end in ends if end[1] == FLOAT64} == {
+            ("rt/diagnostics", "diagnostic_msgs::msg::dds_::DiagnosticArray_", True),
+            ("rt/lab/robot_1/enable", "std_msgs::msg::dds_::Bool_", True),
+        }
+        check_alive(board, 0.5)
+        assert board.stop() == ""
+        agent.wait_until(lambda: agent.clients == {})  # it has taken leave
+        assert agent.malformed == 0
+
+
+def test_the_board_is_there_first(robot: Path, agent: Agent) -> None:
+    agent.kill()
+    with Board(robot, agent) as board:
+        time.sleep(1.0)
+        agent.start()
+        assert board.running() < 3.0
+        check_alive(board, 0.5)
+        assert board.next("cycles") > 1000  # it has run meanwhile
+        assert board.statistic("reconnects") == 0
+        assert board.stop() == ""
+
+
+@pytest.mark.parametrize("pause", [0.0, 0.3, 2.0])
+def test_the_agent_is_restarted(robot: Path, agent: Agent, pause: float) -> None:
+    """Also so fast that only its loss of memory shows.  The control loop does not notice."""
+    with Board(robot, agent) as board:
+        board.running()
+        check_alive(board, 0.5)
+        before_time, before = board.timed("cycles")[-1]
+        agent.restart(pause)
+        assert board.running() < 3.0
+        after_time, after = board.timed("cycles_too")[-1]
+        assert after - before == pytest.approx((after_time - before_time) * 1000, abs=60)
+        assert board.next("got_reliable") == 0.5  # it has kept its setpoint
+        check_alive(board, 0.75)
+        diagnostics = board.diagnostics()
+        assert diagnostics.values["reconnects"] == "1"
+        assert (diagnostics.level, diagnostics.values["faults"]) == ("OK", "0")
+        assert board.stop() == ""
+
+
+def test_the_first_samples_after_a_reconnection_are_new(robot: Path, agent: Agent) -> None:
+    """Nothing that has been waiting: neither the board's values nor setpoints."""
+    with Board(robot, agent) as board:
+        board.running()
+        for _ in range(5):
+            time_before, cycles_before = board.timed("cycles_too")[-1]
+            agent.kill()
+            time.sleep(0.5)
+            agent.topics.publish("rt/lab/reliable", bytes(8))  # nobody is there to keep it
+            restarted = time.monotonic()
+            agent.start()
+            board.running()
+            board.next("cycles")
+            for topic in ("cycles", "cycles_too"):
+                when, cycles = board.timed(topic, restarted)[0]
+                assert cycles - cycles_before == pytest.approx((when - time_before) * 1000, abs=40)
+        assert board.next("got_reliable") == 0.25
+        assert board.stop() == ""
+
+
+def test_a_short_freeze_loses_nothing(robot: Path, agent: Agent) -> None:
+    with Board(robot, agent) as board:
+        board.running()
+        began = time.monotonic()
+        agent.freeze()
+        time.sleep(0.4)
+        agent.thaw()
+        board.running()
+        time.sleep(0.3)
+        assert len(agent.created) == 1
+        cycles = board.values("cycles", began)
+        assert cycles == sorted(set(cycles))
+        assert board.statistic("reconnects") == 0
+        assert board.stop() == ""
+
+
+def test_a_frozen_agent_is_given_up_and_found_again(robot: Path, agent: Agent) -> None:
+    with Board(robot, agent) as board:
+        board.running()
+        check_alive(board, 0.5)
+        agent.freeze()
+        time.sleep(2.5)
+        thawed = time.monotonic()
+        agent.thaw()
+        agent.wait_until(lambda: bool(agent.created) and agent.created[-1][0] > thawed)
+        check_alive(board, 0.75)
+        assert board.statistic("reconnects") == 1
+        assert board.stop() == ""
+
+
+def test_a_cable_is_pulled(robot: Path, tmp_path: Path) -> None:
+    with Agent(PtyLink(tmp_path / "line")) as agent, Board(robot, agent) as board:
+        for turn in range(4):
+            board.running()
+            check_alive(board, 0.5 + turn / 8)
+            agent.kill()
+            assert not (tmp_path / "line").exists()
+            time.sleep(0.2 * turn)
+            agent.start()
+        agent.wait_until(lambda: board.statistic("reconnects") == 4)
+        assert board.stop() == ""
+
+
+def test_a_line_without_an_agent_on_it(robot: Path, tmp_path: Path) -> None:
+    """The terminal is there, and stays; only nobody answers."""
+    with Agent(PtyLink(tmp_path / "line")) as agent, Board(robot, agent) as board:
+        board.running()
+        agent.freeze()
+        time.sleep(2.0)  # the terminal's buffer has filled
+        agent.thaw()
+        agent.wait_until(lambda: len(agent.created) >= 2)
+        check_alive(board, 0.5)
+        assert board.stop() == ""
+
+
+@pytest.mark.parametrize("way", ["killed", "stopped"])
+def test_the_board_is_restarted(robot: Path, agent: Agent, way: str) -> None:
+    """While somebody floods its old readers: their samples come while the new ones are made."""
+    with Board(robot, agent) as board:
+        board.running()
+        board.kill() if way == "killed" else board.stop()
+    for turn in range(5):
+        with Board(robot, agent) as board:
+            end = time.monotonic() + 0.5
+            while time.monotonic() < end:
+                board.set("reliable", 0.25)
+                board.set("quick", 0.25)
+                time.sleep(0.001)
+            board.running()
+            check_alive(board, 0.5 + turn / 16)
+            if way == "killed":
+                board.kill()
+            else:
+                assert board.stop() == ""
+
+
+def test_loss_both_ways(robot: Path, agent: Agent) -> None:
+    """A tenth of all frames: it stays connected, and what is reliable arrives, in order and not twice."""
+    with Board(robot, agent) as board:
+        board.running()
+        heard = agent.topics.subscribe("rt/lab/cycles", reliable=True)
+        agent.to_board.loss = agent.from_board.loss = 0.1
+        began = time.monotonic()
+        for number in range(40):
+            value = 1.0 + number / 64
+            board.set("reliable", value)
+            board.wait_for("got_reliable", value, 5.0)
+        lost = [frame for frame in agent.log if frame.fate == "lost" and frame.monotonic > began]
+        assert len(lost) > 10
+        assert len(agent.created) == 1
+        cycles = board.values("cycles", began)
+        assert cycles == sorted(set(cycles))
+        assert len(heard.samples) > 0.5 * (time.monotonic() - began) / 0.020
+        assert board.stop() == ""
+
+
+def test_connecting_over_a_bad_line(robot: Path, agent: Agent) -> None:
+    agent.to_board.loss = agent.from_board.loss = 0.2
+    agent.to_board.duplicate = agent.from_board.duplicate = 0.2
+    agent.to_board.reorder = agent.from_board.reorder = 0.2
+    with Board(robot, agent) as board:
+        board.running()
+        check_alive(board, 0.5)
+        assert board.stop() == ""
+
+
+def test_duplicates_and_another_order(robot: Path, agent: Agent) -> None:
+    with Board(robot, agent) as board:
+        board.running()
+        for faults in (agent.to_board, agent.from_board):
+            faults.duplicate, faults.reorder, faults.delay = 0.3, 0.3, (0.0, 0.005)
+        began = time.monotonic()
+        for number in range(100):
+            board.set("reliable", 1.0 + number / 64)
+            time.sleep(0.01)
+        board.wait_for("got_reliable", 1.0 + 99 / 64)  # the newest, not one that came late
+        for topic in ("got_reliable", "cycles", "cycles_too"):
+            values = board.values(topic, began)
+            assert len(values) > 20
+            assert values == sorted(values), topic
+        assert len(agent.created) == 1
+        agent.to_board.clear()
+        agent.from_board.clear()
+        assert board.stop() == ""
+
+
+def test_a_slow_line(robot: Path, agent: Agent) -> None:
+    """150 ms to the agent, 150 ms back."""
+    agent.to_board.delay = agent.from_board.delay = (0.15, 0.15)
+    with Board(robot, agent) as board:
+        board.running()
+        check_alive(board, 0.5)
+        began = time.monotonic()
+        time.sleep(1.5)
+        assert len(board.values("cycles_too", began)) > 60
+        assert len(agent.created) == 1
+        assert board.stop() == ""
+
+
+@pytest.mark.parametrize("line", ["udp", "serial"])
+def test_garbage_and_damaged_frames(robot: Path, tmp_path: Path, line: str) -> None:
+    """Nothing but sanitizers would tell; and when it is over, all is as before."""
+    chance = random.Random(7)
+    link: Link = PtyLink(tmp_path / "line") if line == "serial" else UdpLink()
+    with Agent(link) as agent, Board(robot, agent) as board:
+        board.running()
+        agent.to_board.truncate = agent.to_board.corrupt = agent.from_board.truncate = agent.from_board.corrupt = 0.1
+        end = time.monotonic() + 3.0
+        while time.monotonic() < end:
+            size = chance.randrange(1, 600)
+            header = bytes([0x81, chance.choice((0, 1, 0x80))]) + chance.randrange(65536).to_bytes(2, "little")
+            agent.inject((header if chance.random() < 0.7 else b"") + chance.randbytes(size), chance.random() < 0.3)
+            board.set("reliable", chance.random())
+            board.topics.publish("rt/lab/quick", chance.randbytes(chance.randrange(40)), False)
+            time.sleep(0.003)
+        agent.to_board.clear()
+        agent.from_board.clear()
+        board.running()
+        check_alive(board, 0.5)
+        assert int(board.diagnostics().values["malformed"]) > 10
+        assert board.stop() == ""
+
+
+def test_two_boards(robot: Path, agent: Agent) -> None:
+    """One image: names and keys differ by the serial number; what happens to one is nothing to the other."""
+    with Board(robot, agent, serial="A") as one, Board(robot, agent, serial="B") as other:
+        one.running()
+        other.running()
+        assert {client.node for client in agent.clients.values()} == {"robot_A", "robot_B"}
+        assert len({client.key for client in agent.clients.values()}) == 2
+        assert one.set("reliable", 0.5) == 2
+        one.wait_for("got_reliable", 0.5)
+        other.wait_for("got_reliable", 0.5)
+        one.kill()
+        began = time.monotonic()
+        time.sleep(0.5)
+        assert len(other.values("cycles", began)) > 15
+        assert other.stop() == ""
+
+
+@pytest.mark.parametrize("kind", [Kind.PARTICIPANT, Kind.TOPIC, Kind.WRITER, Kind.READER])
+def test_what_is_refused_is_asked_for_again(robot: Path, agent: Agent, kind: Kind) -> None:
+    agent.refuse(Status.DDS_ERROR, kind, times=1)
+    with Board(robot, agent) as board:
+        assert 1.0 < board.running() < 10.0
+        check_alive(board, 0.5)
+        assert board.statistic("reconnects") == 0
+        assert board.stop() == ""
+
+
+def test_an_agent_that_answers_pings_only(robot: Path, agent: Agent) -> None:
+    """Half a restart: requests vanish."""
+    agent.mute = {Id.CREATE}
+    with Board(robot, agent) as board:
+        time.sleep(2.5)
+        agent.mute = set()
+        board.running()
+        check_alive(board, 0.5)
+        assert board.stop() == ""

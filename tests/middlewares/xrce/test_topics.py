@@ -1,0 +1,181 @@
+"""What goes over topics: periods, newest values, timeouts of setpoints, enabling, diagnostics, stamps."""
+
+from __future__ import annotations
+
+import itertools
+import statistics
+import time
+from pathlib import Path
+
+import pytest
+
+from tests.xrce_agent import Agent
+
+from .board import Board
+
+
+def test_a_period_is_20_ms_and_of_one_control_cycle(robot: Path, agent: Agent) -> None:
+    with Board(robot, agent) as board:
+        board.running()
+        began = time.monotonic()
+        time.sleep(2.0)
+        reliable, quick = board.timed("cycles", began), board.timed("cycles_too", began)
+        assert abs(len(quick) - 100) <= 3
+        steps = [after[1] - before[1] for before, after in itertools.pairwise(quick)]
+        assert statistics.mean(steps) == pytest.approx(20, abs=0.3)  # control cycles of 1 ms
+        assert statistics.median(steps) == 20
+        assert {value for _, value in reliable} >= {value for _, value in quick[1:-2]}
+        assert board.stop() == ""
+
+
+def test_the_newest_setpoint_counts(robot: Path, agent: Agent) -> None:
+    with Board(robot, agent) as board:
+        board.running()
+        for topic in ("reliable", "quick"):
+            for number in range(200):
+                assert board.set(topic, 1.0 + number / 256) == 1
+            board.wait_for(f"got_{topic}", 1.0 + 199 / 256)
+            time.sleep(0.1)
+            assert board.values(f"got_{topic}")[-1] == 1.0 + 199 / 256
+        assert board.stop() == ""
+
+
+def test_qos_of_peers(robot: Path, agent: Agent) -> None:
+    """As in ROS 2: a best-effort publisher gives nothing to a reliable subscriber; a reliable one serves all."""
+    with Board(robot, agent) as board:
+        board.running()
+        assert board.set("reliable", 0.5, reliable=False) == 0
+        assert board.set("quick", 0.5, reliable=True) == 1
+        assert board.set("quick", 0.75, reliable=False) == 1
+        board.wait_for("got_quick", 0.75)
+        careful = agent.topics.subscribe("rt/lab/got_quick", reliable=True)
+        default = agent.topics.subscribe("rt/lab/got_reliable", reliable=True)
+        wrong = agent.topics.subscribe("rt/lab/got_reliable", type_name="std_msgs::msg::dds_::Float32_")
+        agent.wait_until(lambda: len(default.samples) > 5)
+        assert careful.samples == [] and wrong.samples == []
+        assert board.values("got_reliable")[-1] == 0.25
+        assert board.stop() == ""
+
+
+def test_what_is_no_number_is_dropped_and_counted(robot: Path, agent: Agent) -> None:
+    with Board(robot, agent) as board:
+        board.running()
+        board.set("reliable", 0.5)
+        board.wait_for("got_reliable", 0.5)
+        for value in (float("nan"), float("inf"), float("-inf")):
+            board.set("reliable", value)
+        for data in (b"", b"\0" * 7):
+            board.topics.publish("rt/lab/quick", data)
+        board.set("quick", 0.75)
+        board.wait_for("got_quick", 0.75)
+        agent.wait_until(lambda: board.statistic("setpoints_dropped") == 3)
+        diagnostics = board.diagnostics()
+        assert (diagnostics.values["malformed"], diagnostics.level) == ("2", "OK")
+        assert board.values("got_reliable")[-1] == 0.5
+        assert board.stop() == ""
+
+
+def test_a_timeout_acts_as_declared_and_nothing_else_does(robot: Path, agent: Agent) -> None:
+    """The agent is gone for a second: values without a timeout stay, and so does everything else."""
+    with Board(robot, agent) as board:
+        board.running()
+        for topic in ("reliable", "quick", "held", "zeroed"):
+            board.set(topic, 0.5)
+        board.wait_for("got_zeroed", 0.5)
+        agent.kill()
+        time.sleep(1.0)
+        agent.start()
+        board.running()
+        began = time.monotonic()
+        board.next("got_reliable")
+        time.sleep(0.05)
+        seen = {topic: set(board.values(f"got_{topic}", began)) for topic in ("reliable", "quick", "held", "zeroed")}
+        assert seen == {"reliable": {0.5}, "quick": {0.5}, "held": {0.5}, "zeroed": {0.0}}
+        diagnostics = board.diagnostics()
+        assert diagnostics.values["setpoint_timeouts"] == "2"
+        assert (diagnostics.level, diagnostics.message, diagnostics.values["faults"]) == ("OK", "enabled", "0")
+        board.set("zeroed", 0.75)
+        board.wait_for("got_zeroed", 0.75)
+        assert board.stop() == ""
+
+
+def test_a_timeout_that_disables_stays_until_somebody_enables(disabling_robot: Path, agent: Agent) -> None:
+    """Reconnecting clears nothing."""
+    with Board(disabling_robot, agent) as board:
+        board.running()
+        board.set("zeroed", 0.5)
+        board.wait_for("got_zeroed", 0.5)
+        agent.kill()
+        time.sleep(0.8)
+        agent.start()
+        board.running()
+        board.set("zeroed", 0.5)
+        for _ in range(3):
+            diagnostics = board.diagnostics()
+            assert diagnostics.level == "ERROR"
+            assert (diagnostics.values["fault"], diagnostics.values["component"]) == ("setpoint_timeout", "zeroed")
+        board.enable(True)
+        agent.wait_until(lambda: board.diagnostics().level == "OK")
+        assert board.stop() == ""
+
+
+def test_the_enable_topic(robot: Path, agent: Agent) -> None:
+    with Board(robot, agent) as board:
+        board.running()
+        assert board.diagnostics().level == "OK"
+        board.enable(False)
+        agent.wait_until(lambda: board.diagnostics().level == "WARN")
+        assert board.diagnostics().message == "disabled"
+        cycles = board.next("cycles")
+        board.enable(True)
+        agent.wait_until(lambda: board.diagnostics().level == "OK")
+        assert board.next("cycles") < cycles  # the model has been initialised
+        assert board.stop() == ""
+
+
+def test_diagnostics(robot: Path, agent: Agent) -> None:
+    with Board(robot, agent, serial="C") as board:
+        board.running()
+        diagnostics = board.diagnostics()
+        assert (diagnostics.name, diagnostics.hardware) == ("robot_C", "C")
+        numbers = {name: int(text) for name, text in diagnostics.values.items() if text.isdigit()}
+        assert numbers.keys() >= {"cycles", "overruns", "missed", "lateness_max_ns", "computation_max_ns", "reconnects"}
+        assert 0 < numbers["computation_min_ns"] <= numbers["computation_max_ns"]
+        assert len(diagnostics.values["firmware"]) == 16
+        time.sleep(1.0)
+        times = [sample.time for sample in agent.topics.samples("rt/diagnostics")]
+        assert statistics.median(after - before for before, after in itertools.pairwise(times)) == pytest.approx(
+            0.2, abs=0.02
+        )
+        assert board.diagnostics().values["unsent"] == "0"
+        assert board.stop() == ""
+
+
+def test_stamps_are_of_the_agents_clock(robot: Path, agent: Agent) -> None:
+    agent.clock_offset = 1000.0
+    with Board(robot, agent) as board:
+        board.running()
+
+        def error() -> float:
+            return board.diagnostics().stamp - (time.time() + 1000.0)
+
+        agent.wait_until(lambda: abs(error()) < 1.0)
+        errors = [error() for _ in range(5)]
+        assert all(-0.1 < each <= 0.01 for each in errors), errors  # of the control cycle, so a little before
+        assert board.stop() == ""
+
+
+def test_a_line_that_is_too_slow_drops_old_values(robot: Path, agent: Agent) -> None:
+    """Nothing is acknowledged for half a second: what is published then is new, the loop has gone on."""
+    with Board(robot, agent) as board:
+        board.running()
+        agent.from_board.loss = 1.0
+        time.sleep(0.5)
+        agent.from_board.loss = 0.0
+        time.sleep(1.0)
+        assert len(agent.created) == 1
+        when, cycles = board.timed("cycles")[-1]
+        when_too, cycles_too = board.timed("cycles_too")[-1]
+        assert cycles - cycles_too == pytest.approx((when - when_too) * 1000, abs=25)
+        assert board.statistic("unsent") > 5
+        assert board.stop() == ""
