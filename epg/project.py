@@ -139,10 +139,10 @@ def check_driver_headers(application: Application, diagnostics: Diagnostics) -> 
             message = f"component '{component.name}' needs a header '{header}', and target '{name}' makes one"
             diagnostics.error("invalid-name", component.span, message, hint="choose another name for the target")
     communication = application.communication
-    for header in sorted(generated.intersection(communication.middleware.headers)):
-        needed = f"middleware '{communication.middleware.name}' needs a header '{header}'"
-        message = f"{needed}, and target '{name}' makes one"
-        diagnostics.error("invalid-name", communication.span, message, hint="choose another name for the target")
+    for middleware in communication.middlewares:
+        for header in sorted(generated.intersection(middleware.headers)):
+            message = f"middleware '{middleware.name}' needs a header '{header}', and target '{name}' makes one"
+            diagnostics.error("invalid-name", communication.span, message, hint="choose another name for the target")
 
 
 def check_paths(paths: Iterable[Path], diagnostics: Diagnostics) -> None:

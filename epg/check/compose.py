@@ -24,6 +24,14 @@ _WORDS = {
     "maximum": "at most",
     "exclusiveMaximum": "less than",
 }
+_NAME = {
+    "type": "string",
+    "pattern": "^[A-Za-z_][A-Za-z0-9_]*$",
+    "maxLength": 63,
+    "x-message": "is no name: use letters, digits and '_', at most 63, no digit first",
+}
+MOST_NAMES = 32
+"""Most names of a list; epg/message.h has room for as many joints."""
 _PIN = {"type": ["integer", "string"], "minimum": 0, "description": "number or name of a pin"}
 
 
@@ -72,8 +80,18 @@ def communication_schema(middleware: Middleware) -> dict[str, Any]:
     }
 
 
+def options_schema(middleware: Middleware) -> dict[str, Any]:
+    """The JSON Schema of a map of the options of ``middleware`` alone, as for a console beside another one."""
+    return {
+        "type": "object",
+        "properties": {option.name: _parameter_schema(option) for option in middleware.options},
+        "required": [option.name for option in middleware.options if option.required],
+        "additionalProperties": False,
+    }
+
+
 def typed_options(middleware: Middleware, node: Node | None, diagnostics: Diagnostics) -> Mapping[str, object]:
-    """The options of a ``communication`` that has passed :func:`communication_schema`, as :func:`typed_parameters`."""
+    """The options in a map that has passed one of the schemas above, typed as :func:`typed_parameters` does."""
     values = {
         option.name: _typed(option, node.get(option.name) if node is not None else None, diagnostics)
         for option in middleware.options
@@ -144,6 +162,8 @@ def _parameter_schema(parameter: KindParameter) -> dict[str, Any]:
         }
         if examples:
             schema.setdefault("examples", [examples])
+    elif parameter.type == "names":
+        schema |= {"type": "array", "items": _NAME, "minItems": 1, "maxItems": MOST_NAMES, "uniqueItems": True}
     else:
         schema["type"] = parameter.type
         schema |= {key: bound.plain() for key, bound in parameter.bounds.items()}
@@ -162,6 +182,8 @@ def _typed(parameter: KindParameter, node: Node | None, diagnostics: Diagnostics
     if parameter.type == "object":
         values = {child.name: _typed(child, stated.get(child.name), diagnostics) for child in parameter.properties}
         return MappingProxyType(values)
+    if parameter.type == "names":
+        return tuple(str(element.value) for element in stated.elements())
     try:
         value = _value(parameter, stated.value)
     except QuantityError as problem:
@@ -233,6 +255,14 @@ def _relations(kind: Kind, node: Node, diagnostics: Diagnostics) -> None:
             message = f"a {kind.name} states at least one of {', '.join(repr(name) for name in names)}"
             hint = _descriptions(kind, names)
             diagnostics.error("at-least-one", span, message, hint=hint, notes=extended_from(node["kind"]))
+    for names in kind.at_most_one:
+        stated = [name for name in names if name in node]
+        if len(stated) > 1:
+            first = Note("the other one", node.key_span(stated[0]))
+            message = f"a {kind.name} states at most one of {', '.join(repr(name) for name in names)}"
+            notes = [first, *extended_from(node[stated[1]])]
+            hint = f"remove one of the two; '{stated[0]}: null' removes one that a file this one extends has written"
+            diagnostics.error("at-most-one", node.key_span(stated[1]), message, hint=hint, notes=notes)
     for key, needed in kind.only_with:
         if key in node and needed not in node:
             message = f"'{key}' means something only together with '{needed}'"

@@ -8,11 +8,18 @@ from fractions import Fraction
 from pathlib import Path
 
 from epg.check.bindings import Conversion, conversion_of
-from epg.check.compose import communication_schema, component_schema, typed_options, typed_parameters
+from epg.check.compose import (
+    communication_schema,
+    component_schema,
+    options_schema,
+    typed_options,
+    typed_parameters,
+)
 from epg.check.merge import apply_settings, merge_chain
 from epg.check.middleware import check_offer, offered
-from epg.check.names import absolute_topic, identifier_problem, namespace_problem, node_name_problem, topic_problem
+from epg.check.names import identifier_problem, normal_namespace
 from epg.check.schema import extended_from, load_schema, validate
+from epg.check.topics import Use, check_names
 from epg.check.uses import Used, used_components
 from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.load.catalog import Catalog, Kind, Target
@@ -21,6 +28,10 @@ from epg.load.tcf import TcfFile
 from epg.quantity import QuantityError, parse_quantity
 from epg.source import Node, Span
 
+CONSOLE = "console"
+"""The middleware that can run beside another one."""
+ENABLE_TOPIC, DIAGNOSTICS_TOPIC = "~/enable", "/diagnostics"
+"""Topics of ROS 2 middlewares, whatever the components are."""
 COMMON_PARAMETERS = ("kind", "scale", "offset", "unit", "limits")
 
 
@@ -32,7 +43,7 @@ class Control:
     period_span: Span
     enable_at_start: bool
     overrun_limit: int
-    enable_topic: str | None
+    enable_topic: str | None  # None: there is none
     enable_topic_span: Span
     fail_safe: str | None
     fail_safe_span: Span
@@ -48,8 +59,17 @@ class Communication:
     middleware: Middleware
     transport: str | None
     period: Fraction
+    domain: int | None  # None: the agent's, or the environment's
+    diagnostics: Fraction  # seconds between two messages; 0: none
+    console: Middleware | None  # that runs beside it
+    console_options: Mapping[str, object]
     options: Mapping[str, object]
     span: Span  # of the middleware's name, if it is written
+
+    @property
+    def middlewares(self) -> tuple[Middleware, ...]:
+        """The middleware, and a console beside it."""
+        return (self.middleware,) if self.console is None else (self.middleware, self.console)
 
 
 @dataclass(frozen=True)
@@ -106,16 +126,16 @@ def check_configuration(
     target_node = root["target"]
     target = catalog.target(str(target_node.value), target_node.span, diagnostics)
     components = _components(root, target, catalog, diagnostics)
-    control = _control(root["control"], components, diagnostics)
     communication = _communication(root, target, components, catalog, diagnostics)
-    _names(root, components, control, diagnostics)
+    control = _control(root["control"], components, communication, diagnostics)
+    check_names(root["node"], root.get("namespace"), _topics(components, control, communication), diagnostics)
     if target is None or communication is None or diagnostics.error_count > errors:
         return None
     namespace = root.get("namespace")
     return Configuration(
         target=target,
         node=str(root["node"].value),
-        namespace=str(namespace.value) if namespace else "",
+        namespace=normal_namespace(str(namespace.value)) if namespace else "",
         control=control,
         communication=communication,
         components=components,
@@ -169,6 +189,7 @@ def _components(root: Node, target: Target | None, catalog: Catalog, diagnostics
         if not validate(node, component_schema(kind, with_pins=with_pins), diagnostics):
             continue
         parameters = typed_parameters(kind, node, diagnostics)
+        kind = kind.of_component(parameters)
         result[name] = Component(name, kind, parameters, {}, conversion_of(node, diagnostics), node, span)
     kinds = {name: result[name].kind if name in result else None for name, _ in section.items()}
     return {
@@ -177,13 +198,16 @@ def _components(root: Node, target: Target | None, catalog: Catalog, diagnostics
     }
 
 
-def _control(node: Node, components: Mapping[str, Component], diagnostics: Diagnostics) -> Control:
+def _control(
+    node: Node, components: Mapping[str, Component], communication: Communication | None, diagnostics: Diagnostics
+) -> Control:
     period = node.get("period")
     seconds = _time(period, diagnostics)
     if period is not None and seconds is not None and seconds <= 0:
         diagnostics.error("out-of-range", period.span, "the control period must be more than 0")
     topic, fail_safe = node.get("enable_topic"), node.get("fail_safe")
     limit = node.get("overrun_limit")
+    default_topic = ENABLE_TOPIC if communication is not None and communication.middleware.is_node else None
     if fail_safe is not None:
         _fail_safe(fail_safe, components, diagnostics)
     return Control(
@@ -191,7 +215,7 @@ def _control(node: Node, components: Mapping[str, Component], diagnostics: Diagn
         period_span=period.span if period else node.span,
         enable_at_start=bool(node["enable_at_start"].value),
         overrun_limit=limit.value if limit is not None and isinstance(limit.value, int) else 10,
-        enable_topic=str(topic.value) if topic else None,
+        enable_topic=(str(topic.value) if topic.value is not False else None) if topic else default_topic,
         enable_topic_span=topic.span if topic else node.span,
         fail_safe=str(fail_safe.value) if fail_safe else None,
         fail_safe_span=fail_safe.span if fail_safe else node.span,
@@ -249,10 +273,52 @@ def _communication(
         check_offer(target, found, diagnostics)
     if found is None or (node is not None and not validate(node, communication_schema(found), diagnostics)):
         return None
+    domain, console = node.get("domain") if node else None, node.get("console") if node else None
     options = typed_options(found, node, diagnostics)
     written = middleware or node or root
     chosen = str(transport.value) if transport else next(iter(possible[name]), None)
-    return Communication(found, chosen, seconds or Fraction(33, 1000), options, written.span)
+    beside = _console(console, found, possible, target, catalog, diagnostics)
+    beside_node = console if beside is not None and console is not None and console.is_mapping else None
+    return Communication(
+        middleware=found,
+        transport=chosen,
+        period=seconds or Fraction(33, 1000),
+        domain=domain.value if domain is not None and isinstance(domain.value, int) else None,
+        diagnostics=_diagnostics(node, found, diagnostics),
+        console=beside,
+        console_options=typed_options(beside, beside_node, diagnostics) if beside is not None else {},
+        options=options,
+        span=written.span,
+    )
+
+
+def _diagnostics(node: Node | None, middleware: Middleware, diagnostics: Diagnostics) -> Fraction:
+    """Seconds between two messages of state and statistics; 0 for none, as with middlewares that are no ROS 2 node."""
+    written = node.get("diagnostics") if node is not None else None
+    seconds = _time(written, diagnostics) if written is not None else Fraction(1)
+    if written is not None and seconds is not None and seconds != 0 and not Fraction(1, 100) <= seconds <= 3600:
+        diagnostics.error("out-of-range", written.span, "must be from 10 ms to 3600 s, or 0 s for none")
+    return (seconds or Fraction(0)) if middleware.is_node else Fraction(0)
+
+
+def _console(
+    node: Node | None,
+    middleware: Middleware,
+    possible: Mapping[str, tuple[str, ...]],
+    target: Target | None,
+    catalog: Catalog,
+    diagnostics: Diagnostics,
+) -> Middleware | None:
+    """The console beside ``middleware``; None if there is to be none, or if that is the console already."""
+    if node is None or node.value is False or middleware.name == CONSOLE or target is None:
+        return None
+    found = catalog.find_middleware(CONSOLE) if CONSOLE in possible or CONSOLE in offered(target, catalog) else None
+    if found is None:
+        message = f"{target.platform.name} has no middleware '{CONSOLE}'"
+        diagnostics.error("unknown-middleware", node.span, message, hint="remove it", notes=extended_from(node))
+    elif node.is_mapping and not validate(node, options_schema(found), diagnostics):
+        return None
+    return found
 
 
 def _transports(
@@ -263,33 +329,18 @@ def _transports(
     return (*own, *(c.name for c in components.values() if c.kind.transport)) if own else ()
 
 
-def _names(root: Node, components: Mapping[str, Component], control: Control, diagnostics: Diagnostics) -> None:
-    """Names of the node, its namespace and its topics; no topic twice."""
-    node, namespace = root["node"], root.get("namespace")
-    _name(node, node_name_problem(str(node.value)), diagnostics)
-    if namespace is not None:
-        _name(namespace, namespace_problem(str(namespace.value)), diagnostics)
-    prefix = str(namespace.value) if namespace else ""
-    users: dict[str, tuple[str, Span]] = {}
-    topics = [(c.name, c.node["topic"]) for c in components.values() if c.kind.communication]
+def _topics(components: Mapping[str, Component], control: Control, communication: Communication | None) -> list[Use]:
+    """All topics with who uses them."""
+    topics: list[Use] = [
+        (c.name, str(c.node[key].value), c.node[key].span, c.node[key])
+        for c in components.values()
+        for key in c.kind.topic_parameters
+    ]
     if control.enable_topic is not None:
-        topics.append(("control.enable_topic", root["control"]["enable_topic"]))
-    for user, topic in topics:
-        problem = topic_problem(str(topic.value))
-        _name(topic, problem, diagnostics)
-        if problem:
-            continue
-        other = users.setdefault(absolute_topic(str(topic.value), prefix), (user, topic.span))
-        if other[0] != user:
-            message = f"topic '{topic.value}' is used by '{other[0]}' already"
-            notes = [Note("used here", other[1])]
-            hint = "give each its own topic; one component can feed several model ports"
-            diagnostics.error("duplicate-topic", topic.span, message, hint=hint, notes=notes)
-
-
-def _name(node: Node, problem: str | None, diagnostics: Diagnostics) -> None:
-    if problem:
-        diagnostics.error("invalid-name", node.span, f"'{node.value}' {problem}", notes=extended_from(node))
+        topics.append(("control.enable_topic", control.enable_topic, control.enable_topic_span, None))
+    if communication is not None and communication.diagnostics:
+        topics.append(("communication.diagnostics", DIAGNOSTICS_TOPIC, communication.span, None))
+    return topics
 
 
 def _time(node: Node | None, diagnostics: Diagnostics) -> Fraction | None:

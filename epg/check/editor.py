@@ -9,6 +9,7 @@ itself, which is one that names a ``target`` and extends nothing: robots and wir
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -109,6 +110,11 @@ def _relations(kind: Kind) -> Schema:
     if kind.at_least_one:
         several = [{"anyOf": [{"required": [name]} for name in names]} for names in kind.at_least_one]
         relations["allOf"] = [*relations.get("allOf", []), *several]
+    if kind.at_most_one:
+        excluded = [
+            {"not": {"required": list(pair)}} for names in kind.at_most_one for pair in itertools.combinations(names, 2)
+        ]
+        relations["allOf"] = [*relations.get("allOf", []), *excluded]
     if kind.only_with:
         needs: dict[str, list[str]] = {}
         for key, needed in kind.only_with:

@@ -9,13 +9,13 @@ from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.load.items import flag_of, map_of, texts_of
 from epg.source import Node, Span
 
-_TOPIC_PARAMETERS = {"topic": "type: string", "qos": "type: string"}
 _SETPOINT_PARAMETERS = {
     "initial": "type: number",
     "rate_limit": "type: number",
     "timeout": "quantity: time",
     "on_timeout": "type: string",
 }
+_PUBLICATION_PARAMETERS = {"every": "type: integer", "on_change": "type: boolean"}
 _CHOICES = {"qos": ("reliable", "best_effort"), "on_timeout": ("hold", "zero", "disable")}
 _DIMENSIONS = {"frequency": "frequency", "period": "time"}
 
@@ -40,7 +40,7 @@ def check_kind(node: Node, diagnostics: Diagnostics) -> None:
             notes = [Note("the parameter", node["parameters"].key_span(name))]
             diagnostics.error("invalid-name", span, message, hint="choose another name", notes=notes)
     _relations(node, {**parameters, **uses}, uses, diagnostics)
-    _ports(node, diagnostics)
+    _ports(node, parameters, diagnostics)
     _claims(node, parameters, diagnostics)
     if "communication" in node:
         _communication(node, parameters, diagnostics)
@@ -48,11 +48,14 @@ def check_kind(node: Node, diagnostics: Diagnostics) -> None:
 
 def _communication(node: Node, parameters: Mapping[str, Node], diagnostics: Diagnostics) -> None:
     """What EPG itself reads of a topic's parameters has the types it expects."""
-    for name in _TOPIC_PARAMETERS:
+    direction = str(node["communication"].value)
+    topics = {"from": "type: string", "to": "type: string"} if direction == "echo" else {"topic": "type: string"}
+    for name in (*topics, "qos"):
         if name not in parameters:
-            message = f"a kind with 'communication' has a parameter '{name}'"
+            message = f"a kind with 'communication: {direction}' has a parameter '{name}'"
             diagnostics.error("missing-key", node.key_span("communication"), message)
-    wanted = _TOPIC_PARAMETERS | (_SETPOINT_PARAMETERS if node["communication"].value == "subscribe" else {})
+    wanted = {**topics, "qos": "type: string", "depth": "type: integer"}
+    wanted |= {"subscribe": _SETPOINT_PARAMETERS, "publish": _PUBLICATION_PARAMETERS}.get(direction, {})
     for name, described in wanted.items():
         parameter = parameters.get(name)
         if parameter is None:
@@ -62,8 +65,8 @@ def _communication(node: Node, parameters: Mapping[str, Node], diagnostics: Diag
         if key not in parameter or parameter[key].value != value:
             message = f"parameter '{name}' of a kind with 'communication' has '{described}'"
             diagnostics.error("wrong-value", span, message)
-        if name == "topic" and not flag_of(parameter, "required"):
-            message = "parameter 'topic' of a kind with 'communication' is required"
+        if name in topics and not flag_of(parameter, "required"):
+            message = f"parameter '{name}' of a kind with 'communication' is required"
             diagnostics.error("wrong-value", span, message, hint="add 'required: true'")
         if name == "qos" and "default" not in parameter and not flag_of(parameter, "required"):
             message = "parameter 'qos' of a kind with 'communication' is required or has a default"
@@ -79,7 +82,10 @@ def _relations(node: Node, parameters: Iterable[str], uses: Iterable[str], diagn
     relations = node.get("relations")
     for relation in relations.elements() if relations else ():
         names = [
-            name for key in ("exactly_one", "at_least_one") if key in relation for name in relation[key].elements()
+            name
+            for key in ("exactly_one", "at_least_one", "at_most_one")
+            if key in relation
+            for name in relation[key].elements()
         ]
         if "needs_bound" in relation:
             names.append(relation["needs_bound"]["key"])
@@ -90,12 +96,14 @@ def _relations(node: Node, parameters: Iterable[str], uses: Iterable[str], diagn
             _known("parameter", name, parameters, diagnostics)
 
 
-def _ports(node: Node, diagnostics: Diagnostics) -> None:
-    """At most one port of a direction is meant by the component's name alone."""
+def _ports(node: Node, parameters: Mapping[str, Node], diagnostics: Diagnostics) -> None:
+    """At most one port of a direction is meant by the component's name alone, and none of several."""
     defaults: dict[str, tuple[str, Span]] = {}
     for name, port in map_of(node, "ports").items():
         span = node["ports"].key_span(name)
         direction = str(port["direction"].value)
+        if "each" in port:
+            _each(port, parameters, diagnostics)
         if "actuator" in port and port["actuator"].value is True and direction != "sink":
             diagnostics.error(
                 "wrong-value", port["actuator"].span, "an actuator is a sink", hint="write 'direction: sink'"
@@ -108,6 +116,21 @@ def _ports(node: Node, diagnostics: Diagnostics) -> None:
             if other != name:
                 message = f"'{other}' is the default {direction} already"
                 diagnostics.error("wrong-value", span, message, notes=[Note("the other one", other_span)])
+
+
+def _each(port: Node, parameters: Mapping[str, Node], diagnostics: Diagnostics) -> None:
+    """A port for each of a list of names, which every component has."""
+    named = port["each"]
+    _known("parameter", named, parameters, diagnostics)
+    parameter = parameters.get(str(named.value))
+    if parameter is not None and ("type" not in parameter or parameter["type"].value != "names"):
+        message = f"'each' names a list, and parameter '{named.value}' is none"
+        diagnostics.error("wrong-value", named.span, message, hint="give the parameter 'type: names'")
+    elif parameter is not None and not flag_of(parameter, "required"):
+        message = f"parameter '{named.value}' is required: without it there are no ports"
+        diagnostics.error("wrong-value", named.span, message, hint="add 'required: true' to the parameter")
+    if flag_of(port, "default"):
+        diagnostics.error("wrong-value", port["default"].span, "one of several ports is not meant by a name alone")
 
 
 def _claims(node: Node, parameters: Mapping[str, Node], diagnostics: Diagnostics) -> None:

@@ -52,36 +52,63 @@ def identifier_problem(name: str) -> str | None:
     return None
 
 
+SERIAL = "$serial"
+"""What stands for the board's serial number in the names of a node and its namespace."""
+_SERIAL_NUMBER = "0123456789ABCDEF"
+_NODE_SIZE, _NAMESPACE_SIZE, _TOPIC_SIZE, _PRIVATE_SIZE = 63, 63, 127, 63
+"""Characters that epg/node.h has room for; a topic's full name is made of the three."""
+
+
 def node_name_problem(name: str) -> str | None:
-    """Why ``name`` cannot name a ROS 2 node, or None."""
+    """Why ``name`` cannot name a ROS 2 node, or None; ``$serial`` in it becomes hexadecimal digits."""
+    if name.startswith(SERIAL):
+        return f"begins with the serial number, which may begin with a digit: write 'robot_{SERIAL}'"
+    name = name.replace(SERIAL, _SERIAL_NUMBER)
     if not _ROS_TOKEN.fullmatch(name):
         return "is no name of a ROS 2 node: use letters, digits and '_', no digit first"
-    return "is too long for a ROS 2 node: at most 255 characters" if len(name) > 255 else None
+    return f"is too long for a ROS 2 node: at most {_NODE_SIZE} characters" if len(name) > _NODE_SIZE else None
 
 
 def namespace_problem(name: str) -> str | None:
-    """Why ``name`` cannot be a namespace, or None; a leading slash may be left out, empty means none."""
+    """Why ``name`` cannot be a namespace, or None; a leading slash may be left out, empty means none.
+
+    ``$serial`` in it becomes hexadecimal digits.
+    """
     if name in ("", "/"):
         return None
-    return _path_problem(name.removeprefix("/"), "namespace")
+    path = name.removeprefix("/")
+    if any(token.startswith(SERIAL) for token in path.split("/")):
+        return f"has a part that begins with the serial number, which may begin with a digit: write 'robot_{SERIAL}'"
+    return _path_problem(path.replace(SERIAL, _SERIAL_NUMBER), "namespace", _NAMESPACE_SIZE - 1)
+
+
+def normal_namespace(name: str) -> str:
+    """A namespace as generated code has it: empty, or with a leading slash."""
+    path = name.strip("/")
+    return f"/{path}" if path else ""
 
 
 def topic_problem(name: str) -> str | None:
-    """Why ``name`` cannot name a topic, or None."""
+    """Why ``name`` cannot name a topic, or None; ``~/`` stands for the node's name."""
     if name.startswith("~"):
-        return "begins with '~', which EPG does not resolve: write the name out"
-    return _path_problem(name.removeprefix("/"), "topic")
+        if not name.startswith("~/"):
+            return "is no topic: '~' is followed by '/'"
+        return _path_problem(name.removeprefix("~/"), "topic", _PRIVATE_SIZE)
+    return _path_problem(name.removeprefix("/"), "topic", _TOPIC_SIZE)
 
 
-def absolute_topic(topic: str, namespace: str) -> str:
-    """The full name of ``topic``: absolute names stay, others stand below the namespace."""
+def absolute_topic(topic: str, namespace: str, node: str) -> str:
+    """The full name of ``topic``: absolute names stay, private ones stand below the node, others below the namespace.
+
+    ``$serial`` in the names of node and namespace is replaced by a serial number as long as they are.
+    """
     if topic.startswith("/"):
         return topic
-    prefix = namespace.strip("/")
-    return f"/{prefix}/{topic}" if prefix else f"/{topic}"
+    below = [part for part in (namespace.strip("/"), node if topic.startswith("~/") else "") if part]
+    return "/".join(["", *below, topic.removeprefix("~/")]).replace(SERIAL, _SERIAL_NUMBER)
 
 
-def _path_problem(path: str, what: str) -> str | None:
+def _path_problem(path: str, what: str, longest: int) -> str | None:
     if not path:
         return f"is no {what}: it is empty"
     if "__" in path:
@@ -91,4 +118,4 @@ def _path_problem(path: str, what: str) -> str | None:
             return f"is no {what}: '//' or a trailing '/'"
         if not _ROS_TOKEN.fullmatch(token):
             return f"is no {what}: '{token}' must be letters, digits and '_', no digit first"
-    return f"is too long for a {what}" if len(path) > 240 else None
+    return f"is too long for a {what}: at most {longest} characters" if len(path) > longest else None

@@ -48,14 +48,16 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
 
 
 def _from_files(options: argparse.Namespace, diagnostics: Diagnostics) -> dict[str, Any]:
+    from epg.emit.application import application_topics
     from epg.emit.cmake import PathNames
     from epg.emit.description import describe
     from epg.project import load_application
 
-    app = load_application(request_of(options, options.name), diagnostics)
+    request = request_of(options, options.name)
+    app = load_application(request, diagnostics)
     diagnostics.stop_if_errors()
     assert app is not None
-    data: dict[str, Any] = json.loads(describe(app, PathNames(Path.cwd())))
+    data: dict[str, Any] = json.loads(describe(app, application_topics(app, request.roots), PathNames(Path.cwd())))
     return data
 
 

@@ -15,9 +15,10 @@ from typing import Any
 from epg import __version__
 from epg.diagnostics import Diagnostics, UserError
 from epg.emit.fingerprint import LITERAL, model_hash
-from epg.emit.service import Service, service_of
+from epg.emit.service import MiddlewareView, service_of
 from epg.emit.template import environment
 from epg.emit.text import Code, double, identifier
+from epg.emit.topics import Topics, topics_of
 from epg.resolve.application import Application, ResolvedComponent, Step, Wire
 from epg.resolve.conversion import folded
 
@@ -37,10 +38,22 @@ class UseView:
 
 
 @dataclass(frozen=True)
+class ValueView:
+    """One number of a component's topic: the port, and its element and part as in :class:`~epg.load.kind.KindPort`."""
+
+    port: str
+    element: str
+    part: str
+    slot: int
+
+
+@dataclass(frozen=True)
 class ComponentView:
     """A component as templates of its kind see it; names that are printed are code already.
 
     ``period`` is that of the control cycle, ``write_period`` the one at which actuators are written, both in seconds.
+    ``values`` are the numbers of its topic in the order of the message, ``slots`` their slots by port, ``slot`` the
+    first one.
     """
 
     name: str
@@ -51,6 +64,8 @@ class ComponentView:
     application: Code
     period: Fraction
     write_period: Fraction
+    slots: Mapping[str, int] = field(default_factory=dict)
+    values: Sequence[ValueView] = ()
     uses: Mapping[str, UseView] = field(default_factory=dict)
 
 
@@ -77,7 +92,7 @@ class Arrival:
     """Statements for when a setpoint has arrived, or a publication is about to leave."""
 
     component: str
-    slot: int
+    index: int  # of the topic's first setpoint, or of the publication
     statement: Code
 
 
@@ -145,9 +160,10 @@ class Emitter:
     def _context(self) -> dict[str, Any]:
         app = self.app
         parts = [self._part(number, component) for number, component in enumerate(app.components)]
-        publishers = {topic.component.name for topic in app.publications}
+        publishers = {c.name for c in app.components if c.kind.communication == "publish"}
         headers = {str(header) for component in app.components for header in component.kind.headers}
-        headers.update(app.communication.middleware.headers)
+        for middleware in app.communication.middlewares:
+            headers.update(middleware.headers)
         service = service_of(app, self._service_macro)
         context: dict[str, Any] = {
             "app": app,
@@ -155,6 +171,7 @@ class Emitter:
             "headers": sorted(headers),
             "parts": parts,
             "numbers": {part.component.name: part.number for part in parts},
+            "topics": topics_of(app, self.macro),
             "arrivals": self._arrivals("subscribe"),
             "departures": self._arrivals("publish"),
             "inputs": [self._input(wire) for wire in app.inputs],
@@ -163,7 +180,8 @@ class Emitter:
             "output_pins": self._output_pins(),
             "service": service,
             "transport": self._transport(),
-            "middleware_code": self._middleware_code(service),
+            "middleware_code": self._middleware_code(service.middleware),
+            "console_code": self._middleware_code(service.console),
             "model_hash": model_hash(app.model, app.parameters),
             "version": __version__,
             "hash": LITERAL,
@@ -186,6 +204,12 @@ class Emitter:
             parameters=component.parameters,
             claims=component.claims,
             slot=component.slot,
+            slots=component.slots,
+            values=[
+                ValueView(port.name, port.element, port.part, component.slots[port.name])
+                for port in component.kind.ports
+                if port.name in component.slots
+            ],
             application=self.prefix,
             period=self.app.period,
             write_period=self.app.period * self.app.step_divider,
@@ -198,7 +222,7 @@ class Emitter:
             value = Code("")
             if used.port is not None:
                 value = self._expression(other, "applied" if used.port.drive else "read", used.port.name)
-            result[use] = UseView(other.name, value, self._macro(other, "resets").strip() or Code("0"))
+            result[use] = UseView(other.name, value, self.macro(other, "resets").strip() or Code("0"))
         return result
 
     def _module(self, component: ResolvedComponent) -> Any:
@@ -209,7 +233,8 @@ class Emitter:
             )
         return self.modules[kind]
 
-    def _macro(self, component: ResolvedComponent, macro: str, *arguments: object) -> Code:
+    def macro(self, component: ResolvedComponent, macro: str, *arguments: object) -> Code:
+        """What the template of a component's kind gives; empty when it has no such macro."""
         function = getattr(self._module(component), macro, None)
         if function is None:
             return Code("")
@@ -226,7 +251,7 @@ class Emitter:
         return Code(" ".join(str(self._statement(component, macro, *arguments)).split()))
 
     def _statement(self, component: ResolvedComponent, macro: str, *arguments: object) -> Code:
-        code = self._macro(component, macro, *arguments)
+        code = self.macro(component, macro, *arguments)
         if not code.strip():
             raise LookupError(f"kind '{component.kind.name}' has no macro '{macro}' for {arguments}")
         return code
@@ -235,24 +260,24 @@ class Emitter:
         return Part(
             component=self.views[component.name],
             number=number,
-            globals=self._macro(component, "globals"),
-            start=_indented(self._macro(component, "start")),
-            sample=_indented(self._macro(component, "sample")),
-            check=self._macro(component, "check").strip(),
-            safe=_indented(self._macro(component, "safe")),
-            probes={point: _indented(self._macro(component, "probe", point)) for point in POINTS},
+            globals=self.macro(component, "globals"),
+            start=_indented(self.macro(component, "start")),
+            sample=_indented(self.macro(component, "sample")),
+            check=self.macro(component, "check").strip(),
+            safe=_indented(self.macro(component, "safe")),
+            probes={point: _indented(self.macro(component, "probe", point)) for point in POINTS},
         )
 
     def _service_macro(self, component: ResolvedComponent, macro: str, *arguments: object) -> Code:
-        code = self._macro(component, macro, *arguments)
+        code = self.macro(component, macro, *arguments)
         return _indented(code) if macro == "write" else code
 
-    def _middleware_code(self, service: Service) -> Code:
-        middleware = self.app.communication.middleware
-        if service.middleware is None or not middleware.has_template:
+    def _middleware_code(self, view: MiddlewareView | None) -> Code:
+        templates = {m.name for m in self.app.communication.middlewares if m.has_template}
+        if view is None or view.name not in templates:
             return Code("")
-        template = self.env.get_template(f"middlewares/{middleware.name}/code.c.j2")
-        return Code(str(template.make_module().globals(service.middleware)).strip("\n"))  # type: ignore[attr-defined]
+        template = self.env.get_template(f"middlewares/{view.name}/code.c.j2")
+        return Code(str(template.make_module().globals(view)).strip("\n"))  # type: ignore[attr-defined]
 
     def _transport(self) -> Code:
         """The C object of the component that carries the middleware's bytes; empty when no component does."""
@@ -271,18 +296,20 @@ class Emitter:
         ]
 
     def _safe_level(self, component: ResolvedComponent, claim: str) -> Code:
-        return self._macro(component, "safe_level", claim).strip() or Code("false")
+        return self.macro(component, "safe_level", claim).strip() or Code("false")
 
     def _arrivals(self, direction: str) -> list[Arrival]:
         """What components have to do with topics of a direction besides their values."""
+        publications = [topic.component.name if topic.component else "" for topic in self.app.publications]
         result = []
         for component in self.app.components:
             for used in component.uses.values():
                 topic = self.components[used.component]
-                statement = _indented(self._macro(component, "probe", "topic"), " " * 8)
+                statement = _indented(self.macro(component, "probe", "topic"), " " * 8)
                 if topic.kind.communication == direction and topic.slot is not None and statement:
-                    result.append(Arrival(component.name, topic.slot, statement))
-        return sorted(result, key=lambda arrival: arrival.slot)
+                    index = topic.slot if direction == "subscribe" else publications.index(topic.name)
+                    result.append(Arrival(component.name, index, statement))
+        return sorted(result, key=lambda arrival: arrival.index)
 
     def _input(self, wire: Wire) -> InputView:
         value = self._expression(wire.component, "read", wire.component_port.name)
@@ -327,6 +354,11 @@ class Emitter:
 def emit_application(app: Application, roots: Sequence[Path]) -> dict[str, str]:
     """The generated C of ``app`` by file name."""
     return Emitter(app, roots).files()
+
+
+def application_topics(app: Application, roots: Sequence[Path]) -> Topics:
+    """The topics of ``app`` with their messages."""
+    return topics_of(app, Emitter(app, roots).macro)
 
 
 def _reference(wire: Wire) -> str:

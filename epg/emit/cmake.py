@@ -55,7 +55,7 @@ def application_cmake(
     """The text of ``<name>.cmake`` for an application with its model libraries ``(name, build)``."""
     kinds = {component.kind.name: component.kind for component in app.components}
     folders = {kind.folder for kind in kinds.values() if kind.headers or kind.sources}
-    sources = {kind.folder / source for kind in kinds.values() for source in kind.sources}
+    drivers = {kind.folder / source for kind in kinds.values() for source in kind.sources}
     of_models = {source for _, build in builds for source in (*build.generated, *build.exported_generated)}
     generated = sorted(generated)
     own = [name for name in generated if name.endswith(".c") and name not in of_models]
@@ -64,15 +64,17 @@ def application_cmake(
     lines += _set("EPG_PLATFORM_CMAKE", [names.cmake(app.target.platform.folder / "platform.cmake")])
     for sdk, board in sorted(app.target.board.sdks.items()):
         lines += _set(f"EPG_BOARD_{sdk}", [str(cmake(board))])
-    middleware = app.communication.middleware
-    lines += _set("EPG_MIDDLEWARE", [str(cmake(middleware.name))])
-    lines += _set("EPG_MIDDLEWARE_FOLDER", [names.cmake(middleware.folder)])
-    lines += _set("EPG_MIDDLEWARE_SOURCES", names.in_order(middleware.folder / name for name in middleware.sources))
-    lines += _set("EPG_MIDDLEWARE_STACK", [str(middleware.stack)])
+    middlewares = app.communication.middlewares
+    lines += _set("EPG_MIDDLEWARES", [str(cmake(middleware.name)) for middleware in middlewares])
+    for middleware in middlewares:
+        sources = names.in_order(middleware.folder / name for name in middleware.sources)
+        lines += _set(f"EPG_MIDDLEWARE_{middleware.name}_FOLDER", [names.cmake(middleware.folder)])
+        lines += _set(f"EPG_MIDDLEWARE_{middleware.name}_SOURCES", sources)
+    lines += _set("EPG_MIDDLEWARE_STACK", [str(max(used.stack for used in app.communication.middlewares))])
     if app.communication.transport:
         lines += _set("EPG_TRANSPORT", [str(cmake(app.communication.transport))])
     lines += _set("EPG_GENERATED_SOURCES", [str(cmake(name)) for name in own])
-    lines += _set("EPG_COMPONENT_SOURCES", names.in_order(sources))
+    lines += _set("EPG_COMPONENT_SOURCES", names.in_order(drivers))
     lines += _set("EPG_COMPONENT_INCLUDES", names.in_order(folders))
     lines += _set("EPG_MODELS", [str(cmake(name)) for name, _ in builds])
     for name, build in builds:
@@ -81,11 +83,12 @@ def application_cmake(
     platform = app.target.platform
     shared = [platform.folder.parent / name for name in platform.shared]
     used += [*app.target.files, *(platform.folder / name for name in platform.templates)]
-    used += middleware.files
+    used += [path for middleware in middlewares for path in middleware.files]
     used += [path for folder in shared for path in folder.glob("*.j2")]
     models = [app.model] if app.plant is None else [app.model, app.plant.model]
     searched = {folder for model in models for folder in searched_folders(model.directory)}
-    searched |= {platform.folder, middleware.folder, *shared, *(kind.folder for kind in kinds.values())}
+    searched |= {platform.folder, *shared, *(kind.folder for kind in kinds.values())}
+    searched |= {middleware.folder for middleware in middlewares}
     lines += _inputs(used, searched, app.absent, [*generated, f"{app.name}.cmake"], names)
     return "\n".join(lines) + "\n"
 

@@ -10,13 +10,14 @@ from typing import Any
 
 from epg import __version__
 from epg.emit.cmake import PathNames
+from epg.emit.topics import Topics, TopicView
 from epg.load.models.model import Model
 from epg.resolve.allocation import Assignment
-from epg.resolve.application import Application, ResolvedComponent, Step, Topic, Wire
+from epg.resolve.application import Application, ResolvedComponent, Step, Wire
 from epg.source import Span
 
 
-def describe(app: Application, names: PathNames, hash: str = "") -> str:
+def describe(app: Application, topics: Topics, names: PathNames, hash: str = "") -> str:
     """The description of ``app`` as JSON text; ``hash`` is empty where nothing is generated."""
     data: dict[str, Any] = {
         "name": app.name,
@@ -38,6 +39,9 @@ def describe(app: Application, names: PathNames, hash: str = "") -> str:
             "middleware": app.communication.middleware.name,
             "transport": app.communication.transport,
             "period": float(app.communication.period),
+            "domain": app.communication.domain,
+            "diagnostics": float(app.communication.diagnostics),
+            "console": app.communication.console is not None,
         },
         "model": _model(app.model, names),
         "parameters": dict(sorted(app.parameters.items())),
@@ -45,8 +49,8 @@ def describe(app: Application, names: PathNames, hash: str = "") -> str:
         "inputs": [_wire(wire, "inputs", app, names) for wire in app.inputs],
         "outputs": [_wire(wire, "outputs", app, names) for wire in app.outputs],
         "unconnected": sorted({p.name for p in app.model.outputs} - {wire.port.name for wire in app.outputs}),
-        "subscriptions": [_topic(topic) for topic in app.subscriptions],
-        "publications": [_topic(topic) for topic in app.publications],
+        "subscriptions": [_topic(view) for view in topics.subscriptions],
+        "publications": [_topic(view) for view in topics.publications],
     }
     if app.plant is not None:
         data["plant"] = {
@@ -100,15 +104,17 @@ def describe_divider(found: Assignment) -> dict[str, Any] | None:
     }
 
 
-def _topic(topic: Topic) -> dict[str, Any]:
+def _topic(view: TopicView) -> dict[str, Any]:
     """``values`` are the names of its numbers in CSV files of topics and setpoints."""
+    topic = view.topic
     return {
         "topic": topic.name,
-        "component": topic.component.name,
-        "type": "std_msgs/msg/Float64",
+        "component": topic.component.name if topic.component else None,
+        "type": view.ros_type,
         "qos": topic.qos,
-        "role": "values",
-        "values": [topic.name],
+        "depth": topic.depth,
+        "role": topic.role,
+        "values": [value.name for value in topic.values],
     }
 
 

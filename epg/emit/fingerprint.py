@@ -31,6 +31,7 @@ def application_hash(app: Application, generated: Mapping[str, str]) -> str:
     configured = [target.name, target.board.name, target.platform.name]
     configured += [communication.middleware.name, communication.transport or ""]
     configured += [f"{name}={value}" for name, value in communication.options.items()]
+    configured += [f"console.{name}={value}" for name, value in communication.console_options.items()]
     _add(digest, "configuration", json.dumps(configured).encode())
     for name, text in sorted(generated.items()):
         _add(digest, name, text.encode())
@@ -39,7 +40,8 @@ def application_hash(app: Application, generated: Mapping[str, str]) -> str:
         _add_files(digest, f"model {number}", model.directory, model.files)
     for kind in sorted({component.kind.name: component.kind for component in app.components}.items()):
         _add_files(digest, f"kind {kind[0]}", kind[1].folder, kind[1].files)
-    _add_files(digest, "middleware", communication.middleware.folder, communication.middleware.files)
+    for middleware in communication.middlewares:
+        _add_files(digest, f"middleware {middleware.name}", middleware.folder, middleware.files)
     return digest.hexdigest()[:DIGITS]
 
 

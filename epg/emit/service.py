@@ -7,15 +7,13 @@ one, has a macro ``globals(m)``, of which ``m`` is a :class:`MiddlewareView`.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from epg.emit.text import Code, identifier
+from epg.emit.topics import Macro
 from epg.load.middleware import Middleware
 from epg.resolve.application import Application, ResolvedComponent
-
-Macro = Callable[..., Code]
-"""``macro(component, name, *arguments)``: what the template of a component's kind gives; empty when it has no such."""
 
 
 @dataclass(frozen=True)
@@ -60,10 +58,14 @@ class EncoderView:
 
 @dataclass(frozen=True)
 class MiddlewareView:
-    """The middleware as its own template sees it; ``monitor_count`` numbers are monitored in each cycle."""
+    """The middleware as its own template sees it; ``monitor_count`` numbers are monitored in each cycle.
+
+    ``prefix`` begins the names that the template makes: "middleware", or "console" for one beside a middleware.
+    """
 
     name: str
     symbol: Code
+    prefix: Code
     options: Mapping[str, object]
     monitor_count: int
 
@@ -73,11 +75,11 @@ class Service:
     """All of it; empty lists and zeros for what the middleware does not use."""
 
     middleware: MiddlewareView | None  # None when nothing runs
+    console: MiddlewareView | None  # beside it
     signals: tuple[SignalView, ...]
     time_slot: int | None
     monitor_count: int
     node: bool
-    largest_message: int
     parameters: tuple[ParameterView, ...]
     capture: int
     actuators: tuple[ActuatorView, ...]
@@ -85,35 +87,38 @@ class Service:
 
 
 def service_of(app: Application, macro: Macro) -> Service:
-    """What the middleware of ``app`` uses."""
-    middleware, options = app.communication.middleware, app.communication.options
-    uses = middleware.uses
-    published = len(app.publications)
+    """What the middleware of ``app``, and a console beside it, use."""
+    communication = app.communication
+    middleware, options, console = communication.middleware, communication.options, communication.console
+    uses = {*middleware.uses, *(console.uses if console else ())}
+    published = sum(len(topic.values) for topic in app.publications)
     signals = tuple(_signals(app, published)) if "signals" in uses else ()
     node = "node" in uses
     time_slot = published + len(signals) if "signals" in uses or node else None
     monitor_count = published if time_slot is None else time_slot + 1
     jog = "jog" in uses
-    capture = options.get("capture") if "capture" in uses else 0
-    assert isinstance(capture, int)
+    captures = [options.get("capture")] if "capture" in middleware.uses else []
+    captures += [communication.console_options.get("capture")] if console and "capture" in console.uses else []
     return Service(
-        middleware=_view(middleware, options, monitor_count),
+        middleware=_view(middleware, "middleware", options, monitor_count),
+        console=_view(console, "console", communication.console_options, monitor_count) if console else None,
         signals=signals,
         time_slot=time_slot,
         monitor_count=monitor_count,
         node=node,
-        largest_message=8,
         parameters=tuple(_parameters(app)) if "parameters" in uses else (),
-        capture=capture,
+        capture=max((size for size in captures if isinstance(size, int)), default=0),
         actuators=tuple(a for c in app.components for a in _actuators(c, macro)) if jog else (),
         encoders=tuple(e for c in app.components for e in _encoders(c, macro)) if jog else (),
     )
 
 
-def _view(middleware: Middleware, options: Mapping[str, object], monitor_count: int) -> MiddlewareView | None:
+def _view(
+    middleware: Middleware, prefix: str, options: Mapping[str, object], monitor_count: int
+) -> MiddlewareView | None:
     if not middleware.symbol:
         return None
-    return MiddlewareView(middleware.name, identifier(middleware.symbol), options, monitor_count)
+    return MiddlewareView(middleware.name, identifier(middleware.symbol), Code(prefix), options, monitor_count)
 
 
 def _signals(app: Application, first_slot: int) -> Iterable[SignalView]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -22,7 +22,7 @@ class KindParameter:
     """
 
     name: str
-    type: str  # "number", "integer", "boolean", "string", "ratio", "quantity" or "object"
+    type: str  # "number", "integer", "boolean", "string", "ratio", "quantity", "names" or "object"
     dimension: str
     description: str
     required: bool
@@ -39,6 +39,8 @@ class KindPort:
 
     ``default``: meant when only the component is named.  ``actuator``: made safe while the target is disabled.
     ``drive``: its value drives a motor, and the template's macro ``applied`` gives what it is at present.
+    ``each``: in a kind, the parameter whose names say how many such ports a component has; in a component's own kind
+    (:meth:`Kind.of_component`) there is one for each ``element`` of it, and ``part`` is what the kind calls it.
     """
 
     name: str
@@ -49,6 +51,9 @@ class KindPort:
     actuator: bool
     drive: bool
     description: str
+    each: str = ""
+    element: str = ""
+    part: str = ""
 
 
 @dataclass(frozen=True)
@@ -94,13 +99,14 @@ class Kind:
 
     name: str
     summary: str
-    communication: str | None  # "subscribe", "publish" or None
+    communication: str | None  # "subscribe", "publish", "echo" or None
     transport: bool  # ``communication: {transport: ...}`` can name its components
     pins: tuple[str, ...]
     parameters: tuple[KindParameter, ...]
     uses: tuple[KindUse, ...]
     exactly_one: tuple[tuple[str, ...], ...]
     at_least_one: tuple[tuple[str, ...], ...]
+    at_most_one: tuple[tuple[str, ...], ...]
     only_with: tuple[tuple[str, str], ...]  # (key, what it needs)
     needs_bound: tuple[NeedsBound, ...]
     ports: tuple[KindPort, ...]
@@ -116,6 +122,38 @@ class Kind:
         found = [port for port in self.ports if port.direction == direction and (port.default or len(self.ports) == 1)]
         return found[0] if found else None
 
+    def of_component(self, parameters: Mapping[str, object]) -> Kind:
+        """The kind with the ports that a component with these ``parameters`` has.
+
+        Where one port stands for each name of a list, that name is the port's; where several do, the port of the first
+        joint is ``pan.position``.
+        """
+        if not any(port.each for port in self.ports):
+            return self
+        ports: list[KindPort] = [port for port in self.ports if not port.each]
+        for each in dict.fromkeys(port.each for port in self.ports if port.each):
+            elements = parameters[each]
+            assert isinstance(elements, tuple)
+            parts = [port for port in self.ports if port.each == each]
+            for element in elements:
+                for port in parts:
+                    name = element if len(parts) == 1 else f"{element}.{port.name}"
+                    ports.append(replace(port, name=name, each="", element=element, part=port.name))
+        return replace(self, ports=tuple(ports))
+
+    @property
+    def topic_ports(self) -> tuple[KindPort, ...]:
+        """The ports whose values travel as a topic."""
+        direction = {"subscribe": "source", "publish": "sink"}.get(self.communication or "")
+        return tuple(port for port in self.ports if port.direction == direction)
+
+    @property
+    def topic_parameters(self) -> tuple[str, ...]:
+        """The parameters that name topics."""
+        return {"subscribe": ("topic",), "publish": ("topic",), "echo": ("from", "to")}.get(
+            self.communication or "", ()
+        )
+
     @property
     def files(self) -> tuple[Path, ...]:
         """The files that describe and implement the kind."""
@@ -128,6 +166,7 @@ def make_kind(node: Node, folder: Path) -> Kind:
     relations = node.get("relations")
     exactly_one: list[tuple[str, ...]] = []
     at_least_one: list[tuple[str, ...]] = []
+    at_most_one: list[tuple[str, ...]] = []
     only_with: list[tuple[str, str]] = []
     needs_bound: list[NeedsBound] = []
     for relation in relations.elements() if relations else ():
@@ -135,6 +174,8 @@ def make_kind(node: Node, folder: Path) -> Kind:
             exactly_one.append(texts_of(relation, "exactly_one"))
         elif "at_least_one" in relation:
             at_least_one.append(texts_of(relation, "at_least_one"))
+        elif "at_most_one" in relation:
+            at_most_one.append(texts_of(relation, "at_most_one"))
         elif "needs_bound" in relation:
             needs_bound.append(NeedsBound(*(text_of(relation["needs_bound"], key) for key in ("key", "use", "port"))))
         else:
@@ -149,6 +190,7 @@ def make_kind(node: Node, folder: Path) -> Kind:
         uses=tuple(_use(name, child) for name, child in map_of(node, "uses").items()),
         exactly_one=tuple(exactly_one),
         at_least_one=tuple(at_least_one),
+        at_most_one=tuple(at_most_one),
         only_with=tuple(only_with),
         needs_bound=tuple(needs_bound),
         ports=tuple(_port(name, child) for name, child in map_of(node, "ports").items()),
@@ -197,6 +239,8 @@ def _port(name: str, node: Node) -> KindPort:
         actuator=flag_of(node, "actuator"),
         drive=flag_of(node, "drive"),
         description=text_of(node, "description"),
+        each=text_of(node, "each"),
+        part=name,
     )
 
 

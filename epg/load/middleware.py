@@ -23,8 +23,8 @@ class Middleware:
 
     ``platforms`` are those that it offers itself to, with transports, besides those that name it.
     ``connection`` is "stream" (bytes, by a transport that the platform has), "own" or "none".  ``uses`` names what the
-    generator makes for it: "signals", "parameters", "capture", "jog".  ``symbol`` is its ``epg_middleware_t`` in C,
-    empty when nothing runs.  ``headers`` and ``sources`` are files in ``folder``.  ``stack`` in bytes.
+    generator makes for it: "node", "signals", "parameters", "capture", "jog".  ``symbol`` is its ``epg_middleware_t``
+    in C, empty when nothing runs.  ``headers`` and ``sources`` are files in ``folder``.  ``stack`` in bytes.
     """
 
     name: str
@@ -41,6 +41,11 @@ class Middleware:
     node: Node
     folder: Path
     span: Span
+
+    @property
+    def is_node(self) -> bool:
+        """Whether it is a ROS 2 node (epg/node.h): topics have messages and quality of service."""
+        return "node" in self.uses
 
     @property
     def has_template(self) -> bool:

@@ -30,7 +30,11 @@ class Step:
 
 @dataclass(frozen=True)
 class ResolvedComponent:
-    """A component with its hardware.  ``slot`` is its place in the exchange (topics only), counted per direction."""
+    """A component with its hardware.
+
+    ``slots`` are the places of its ports' values in the exchange (topics only), counted per direction, ``slot`` is the
+    first of them.
+    """
 
     name: str
     symbol: str
@@ -38,9 +42,13 @@ class ResolvedComponent:
     parameters: Mapping[str, object]
     claims: Mapping[str, Assignment]
     uses: Mapping[str, Used]
-    slot: int | None
+    slots: Mapping[str, int]
     application: str
     span: Span
+
+    @property
+    def slot(self) -> int | None:
+        return min(self.slots.values(), default=None)
 
 
 @dataclass(frozen=True)
@@ -65,13 +73,35 @@ class Setpoint:
 
 
 @dataclass(frozen=True)
-class Topic:
-    """One topic: subscriptions have a setpoint."""
+class TopicValue:
+    """One number of a message: what people call it, the component's port, its slot; setpoints have fault handling."""
 
-    component: ResolvedComponent
     name: str
-    qos: str
+    port: str
+    slot: int
     setpoint: Setpoint | None = None
+
+
+@dataclass(frozen=True)
+class Topic:
+    """One topic.  ``key`` is what makes it: ``components.pan_publisher``, ``control.enable_topic``.
+
+    ``role`` is "values", "enable", "diagnostics" or "echo"; ``index`` is the slot of the first value, of an echo's
+    subscription the number of the publication that answers.  ``trigger`` is "period" (``period`` in seconds), "cycles"
+    (every ``cycles`` control cycles) or "change".
+    """
+
+    name: str
+    key: str
+    role: str
+    qos: str
+    depth: int
+    component: ResolvedComponent | None
+    values: tuple[TopicValue, ...]
+    index: int
+    trigger: str = "period"
+    cycles: int = 0
+    period: Fraction = Fraction(0)
 
 
 @dataclass(frozen=True)

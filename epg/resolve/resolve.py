@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -13,10 +13,10 @@ from epg.check.configuration import Component, Configuration
 from epg.check.schema import extended_from
 from epg.diagnostics import Diagnostics, Note
 from epg.load.models.model import Model
-from epg.quantity import dimension_of
 from epg.resolve.allocation import Assignment, allocate
-from epg.resolve.application import Application, Plant, ResolvedComponent, Setpoint, Topic, Wire
+from epg.resolve.application import Application, Plant, ResolvedComponent, Wire
 from epg.resolve.claims import TICK, component_claims, tick_claims
+from epg.resolve.topics import publications_of, slots_of, subscriptions_of
 from epg.resolve.wires import input_wires, output_wires, parameter_overrides
 
 _PUBLIC = frozenset(
@@ -59,7 +59,8 @@ def resolve(
     _same_model(bindings, model, diagnostics)
     period, divider = _period(configuration, model, diagnostics)
     assignments = allocate_hardware(configuration, period, diagnostics)
-    components = _components(name, configuration, assignments or {})
+    slots = slots_of(configuration.components, bindings)
+    components = _components(name, configuration, assignments or {}, slots)
     inputs = input_wires(bindings, model, configuration.components, components, diagnostics)
     outputs = output_wires(bindings, model, configuration.components, components, diagnostics)
     parameters = parameter_overrides(bindings, model, diagnostics)
@@ -90,8 +91,8 @@ def resolve(
         inputs=inputs,
         outputs=outputs,
         parameters=parameters,
-        subscriptions=_subscriptions(components, configuration, inputs),
-        publications=_publications(components),
+        subscriptions=subscriptions_of(components, configuration, inputs),
+        publications=publications_of(components, configuration),
         fail_safe=components[fail_safe] if fail_safe else None,
         tick=assignments.get(TICK),
         plant=simulated,
@@ -166,20 +167,17 @@ def allocate_hardware(
 
 
 def _components(
-    name: str, configuration: Configuration, assignments: Mapping[tuple[str, str], Assignment]
+    name: str,
+    configuration: Configuration,
+    assignments: Mapping[tuple[str, str], Assignment],
+    slots: Mapping[str, Mapping[str, int]],
 ) -> dict[str, ResolvedComponent]:
     result: dict[str, ResolvedComponent] = {}
-    slots = {"subscribe": 0, "publish": 0}
     claims: dict[str, dict[str, Assignment]] = {}
     for (owner, claim), found in assignments.items():
         claims.setdefault(owner, {})[claim] = found
     beginnings = {name[: match.start()] for name in configuration.components for match in re.finditer("(?<=.)_", name)}
     for component in configuration.components.values():
-        slot: int | None = None
-        direction = component.kind.communication
-        if direction:
-            slot = slots[direction]
-            slots[direction] += 1
         result[component.name] = ResolvedComponent(
             name=component.name,
             symbol=_symbol(name, component.name, beginnings),
@@ -187,7 +185,7 @@ def _components(
             parameters=component.parameters,
             claims=claims.get(component.name, {}),
             uses=component.uses,
-            slot=slot,
+            slots=slots.get(component.name, {}),
             application=name,
             span=component.span,
         )
@@ -206,55 +204,6 @@ def _symbol(application: str, component: str, beginnings: Collection[str]) -> st
     while symbol in beginnings:
         symbol += "_component"
     return f"{application}_{symbol}"
-
-
-def _subscriptions(
-    components: Mapping[str, ResolvedComponent], configuration: Configuration, inputs: Sequence[Wire]
-) -> tuple[Topic, ...]:
-    units: dict[str, set[str]] = {}
-    for wire in inputs:
-        units.setdefault(wire.component.name, set()).add(wire.port.unit)
-    result = []
-    for component in components.values():
-        if component.kind.communication == "subscribe":
-            setpoint = _setpoint(configuration.components[component.name], units.get(component.name, ()))
-            result.append(
-                Topic(component, str(component.parameters["topic"]), str(component.parameters["qos"]), setpoint)
-            )
-    return tuple(result)
-
-
-def _publications(components: Mapping[str, ResolvedComponent]) -> tuple[Topic, ...]:
-    return tuple(
-        Topic(component, str(component.parameters["topic"]), str(component.parameters["qos"]))
-        for component in components.values()
-        if component.kind.communication == "publish"
-    )
-
-
-def _setpoint(component: Component, units: Iterable[str]) -> Setpoint:
-    """Fault handling of a subscription; velocities time out after 0.5 s unless told otherwise, positions never.
-
-    ``units`` are those of the model ports it feeds, for a component that states none.
-    """
-    parameters = component.parameters
-    timeout = parameters.get("timeout")
-    if timeout is None:
-        stated = [component.conversion.unit] if component.conversion.unit else list(units)
-        velocity = any((dimension_of(unit) or "").endswith("velocity") for unit in stated)
-        timeout = Fraction(1, 2) if velocity else Fraction(0)
-    assert isinstance(timeout, (int, Fraction))
-    return Setpoint(
-        initial=_number(parameters.get("initial") or 0),
-        rate_limit=_number(parameters.get("rate_limit") or 0),
-        timeout=Fraction(timeout),
-        on_timeout=str(parameters.get("on_timeout") or "hold"),
-    )
-
-
-def _number(value: object) -> float:
-    assert isinstance(value, (int, float, Fraction))
-    return float(value)
 
 
 def _plant(

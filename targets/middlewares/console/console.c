@@ -266,7 +266,8 @@ static void poll_input(void)
 
 static void start(const epg_target_t *target, const epg_stream_t *stream)
 {
-    const epg_console_options_t *options = target->options;
+    const bool alone = target->middleware == &epg_console;
+    const epg_console_options_t *options = alone ? target->options : target->console_options;
     session = (epg_console_session_t){
         .target = target,
         .options = options,

@@ -147,20 +147,29 @@ static void port(epg_console_session_t *session, const char *sort, const char *n
     }
 }
 
+/** Line `*index` of the values of topics; without so many, `*index` is less by their number. */
+static bool value_line(epg_console_session_t *session, const char *sort, const epg_topic_t *topics, size_t count,
+                       size_t *index)
+{
+    for (size_t i = 0; i < count; i++) {
+        const size_t values = topics[i].role == EPG_TOPIC_VALUES ? topics[i].count : 0;
+        if (*index < values) {
+            port(session, sort, epg_topic_value_name(&topics[i], *index), "");
+            return true;
+        }
+        *index -= values;
+    }
+    return false;
+}
+
 static bool ports_line(epg_console_session_t *session, size_t index)
 {
     const epg_target_t *target = session->target;
     const epg_jog_t *jog = target->application->jog;
-    if (index < target->subscription_count) {
-        port(session, "setpoint", target->subscriptions[index].name, "");
+    if (value_line(session, "setpoint", target->subscriptions, target->subscription_count, &index) ||
+        value_line(session, "publication", target->publications, target->publication_count, &index)) {
         return true;
     }
-    index -= target->subscription_count;
-    if (index < target->publication_count) {
-        port(session, "publication", target->publications[index].name, "");
-        return true;
-    }
-    index -= target->publication_count;
     if (index < target->signal_count) {
         port(session, "signal", target->signals[index].name, target->signals[index].unit);
         return true;
@@ -182,6 +191,18 @@ void epg_console_ports(epg_console_session_t *session, const epg_console_command
 {
     (void)command;
     epg_console_answer(session, "ports", ports_line);
+}
+
+size_t epg_console_find_value(const epg_topic_t *topic, const char *name)
+{
+    const size_t count = topic->role == EPG_TOPIC_VALUES ? topic->count : 0;
+    for (size_t i = 0; i < count; i++) {
+        const char *value = epg_topic_value_name(topic, i);
+        if (strcmp(value, name) == 0 || (value[0] == '/' && strcmp(value + 1, name) == 0)) {
+            return i;
+        }
+    }
+    return SIZE_MAX;
 }
 
 size_t epg_console_find_signal(const epg_console_session_t *session, const char *name)

@@ -156,4 +156,10 @@ void epg_console_poll_watch(epg_console_session_t *session);
 /** Finds a signal by "inputs.name", or by its name alone if that is clear.  SIZE_MAX if there is none. */
 size_t epg_console_find_signal(const epg_console_session_t *session, const char *name);
 
+/**
+ * Which value of `topic` is called `name`, which may be written without the slash it begins with; SIZE_MAX if none is.
+ * Topics for other things than values have none.
+ */
+size_t epg_console_find_value(const epg_topic_t *topic, const char *name);
+
 #endif

@@ -46,16 +46,13 @@ void epg_console_echo(epg_console_session_t *session, const epg_console_command_
 
 /* Setpoints ---------------------------------------------------------------------------------------------------- */
 
-/** Setpoint of the subscription `name`, which may be written without the slash it begins with; SIZE_MAX: none. */
+/** Setpoint called `name`; SIZE_MAX: there is none. */
 static size_t find_setpoint(const epg_target_t *target, const char *name)
 {
     for (size_t i = 0; i < target->subscription_count; i++) {
-        if (target->subscriptions[i].role != EPG_TOPIC_VALUES) {
-            continue;
-        }
-        const char *topic = target->subscriptions[i].name;
-        if (strcmp(topic, name) == 0 || (topic[0] == '/' && strcmp(topic + 1, name) == 0)) {
-            return target->subscriptions[i].index;
+        const size_t value = epg_console_find_value(&target->subscriptions[i], name);
+        if (value != SIZE_MAX) {
+            return target->subscriptions[i].index + value;
         }
     }
     return SIZE_MAX;

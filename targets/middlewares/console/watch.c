@@ -11,25 +11,26 @@ static size_t find(const epg_console_session_t *session, const char *name)
 {
     const epg_target_t *target = session->target;
     for (size_t i = 0; i < target->publication_count; i++) {
-        const char *topic = target->publications[i].name;
-        if (strcmp(topic, name) == 0 || (topic[0] == '/' && strcmp(topic + 1, name) == 0)) {
-            return target->publications[i].index;
+        const size_t value = epg_console_find_value(&target->publications[i], name);
+        if (value != SIZE_MAX) {
+            return target->publications[i].index + value;
         }
     }
     const size_t signal = epg_console_find_signal(session, name);
     return signal == SIZE_MAX ? SIZE_MAX : target->signals[signal].index;
 }
 
-/** What a monitoring value is called; a publication's number for epg_target_publishing(), else SIZE_MAX. */
+/** What a monitoring value is called; the publication that begins with it, or SIZE_MAX. */
 static const char *name_of(const epg_target_t *target, size_t index, size_t *publication)
 {
+    *publication = SIZE_MAX;
     for (size_t i = 0; i < target->publication_count; i++) {
-        if (target->publications[i].index == index) {
-            *publication = i;
-            return target->publications[i].name;
+        const epg_topic_t *topic = &target->publications[i];
+        if (topic->role == EPG_TOPIC_VALUES && index >= topic->index && index - topic->index < topic->count) {
+            *publication = index == topic->index ? i : SIZE_MAX;
+            return epg_topic_value_name(topic, index - topic->index);
         }
     }
-    *publication = SIZE_MAX;
     for (size_t i = 0; i < target->signal_count; i++) {
         if (target->signals[i].index == index) {
             return target->signals[i].name;
@@ -38,15 +39,27 @@ static const char *name_of(const epg_target_t *target, size_t index, size_t *pub
     return "?";
 }
 
+static void watch_value(epg_console_session_t *session, size_t index)
+{
+    if (session->watched_count < EPG_CONSOLE_WATCHED) {
+        session->watched[session->watched_count++] = index;
+    }
+}
+
 /** Everything that is published, or if nothing is, all signals. */
 static void watch_all(epg_console_session_t *session)
 {
     const epg_target_t *target = session->target;
-    const bool published = target->publication_count > 0;
-    const size_t count = published ? target->publication_count : target->signal_count;
-    session->watched_count = count < EPG_CONSOLE_WATCHED ? count : EPG_CONSOLE_WATCHED;
-    for (size_t i = 0; i < session->watched_count; i++) {
-        session->watched[i] = published ? target->publications[i].index : target->signals[i].index;
+    session->watched_count = 0;
+    for (size_t i = 0; i < target->publication_count; i++) {
+        const epg_topic_t *topic = &target->publications[i];
+        for (size_t k = 0; topic->role == EPG_TOPIC_VALUES && k < topic->count; k++) {
+            watch_value(session, topic->index + k);
+        }
+    }
+    const bool published = session->watched_count > 0;
+    for (size_t i = 0; !published && i < target->signal_count; i++) {
+        watch_value(session, target->signals[i].index);
     }
 }
 

@@ -122,6 +122,22 @@ double epg_cdr_read_f64(epg_cdr_reader_t *reader)
     return value;
 }
 
+size_t epg_cdr_read_sequence(epg_cdr_reader_t *reader, size_t size, size_t *first)
+{
+    const size_t count = epg_cdr_read_u32(reader);
+    const size_t start = (reader->position + size - 1) / size * size;
+    *first = start;
+    if (count == 0 || reader->failed) {
+        return 0; /* without elements there is no padding to their alignment either */
+    }
+    if (start > reader->size || count > (reader->size - start) / size) {
+        reader->failed = true;
+        return 0;
+    }
+    reader->position = start + count * size;
+    return count;
+}
+
 const char *epg_cdr_read_string(epg_cdr_reader_t *reader)
 {
     const uint32_t size = epg_cdr_read_u32(reader);

@@ -99,7 +99,9 @@ void epg_node_start(epg_node_t *node, const epg_target_t *target,
     node->malformed = 0;
     (void)epg_names_expand(target->node, node->name, sizeof node->name);
     (void)epg_names_expand(target->name_space, node->name_space, sizeof node->name_space);
-    memset(node->publications, 0, target->publication_count * sizeof *node->publications);
+    for (size_t i = 0; i < target->publication_count; i++) {
+        node->publications[i] = (epg_node_publication_t){0};
+    }
 }
 
 void epg_node_connected(epg_node_t *node, uint64_t now_ns)

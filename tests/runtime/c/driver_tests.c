@@ -7,11 +7,11 @@
 #include "check.h"
 #include "digital_input.h"
 #include "digital_output.h"
+#include "epg/finite.h"
 #include "fake_port.h"
 #include "pwm.h"
 #include "pwm_h_bridge.h"
 #include "quadrature_encoder.h"
-#include "ros_publisher.h"
 
 /* Quadrature encoder -------------------------------------------------------------------------------------------- */
 
@@ -437,9 +437,9 @@ TEST(digital_output_levels)
 TEST(publisher_keeps_the_last_finite_value)
 {
     double slot = 0.0;
-    epg_ros_publisher_write(&slot, 3.0);
-    epg_ros_publisher_write(&slot, NAN);
-    epg_ros_publisher_write(&slot, INFINITY);
+    epg_assign_finite(&slot, 3.0);
+    epg_assign_finite(&slot, NAN);
+    epg_assign_finite(&slot, INFINITY);
     CHECK_EQUAL(slot, 3.0);
 }
 

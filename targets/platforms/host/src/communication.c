@@ -75,11 +75,17 @@ static void publish(epg_host_communication_t *communication, uint64_t time_ns)
         return;
     }
     for (size_t i = 0; i < target->publication_count; i++) {
+        const epg_topic_t *topic = &target->publications[i];
+        if (topic->role != EPG_TOPIC_VALUES) {
+            continue;
+        }
         epg_target_publishing(target, i);
-        epg_host_write_number(communication->topics, epg_host_seconds(time_ns));
-        fprintf(communication->topics, ",%s,", target->publications[i].name);
-        epg_host_write_number(communication->topics, communication->values[target->publications[i].index]);
-        fputc('\n', communication->topics);
+        for (size_t k = 0; k < topic->count; k++) {
+            epg_host_write_number(communication->topics, epg_host_seconds(time_ns));
+            fprintf(communication->topics, ",%s,", epg_topic_value_name(topic, k));
+            epg_host_write_number(communication->topics, communication->values[topic->index + k]);
+            fputc('\n', communication->topics);
+        }
     }
 }
 

@@ -121,7 +121,10 @@ static bool fail_topic(reader_t *reader, const char *topic)
     if (reader->errors <= ERRORS_SHOWN) {
         fputs("hint: the target subscribes to ", stderr);
         for (size_t i = 0; i < target->subscription_count; i++) {
-            fprintf(stderr, "'%s', ", target->subscriptions[i].name);
+            const epg_topic_t *subscription = &target->subscriptions[i];
+            for (size_t k = 0; k < subscription->count; k++) {
+                fprintf(stderr, "'%s', ", epg_topic_value_name(subscription, k));
+            }
         }
         fputs("and has '$enable', '$pin:<number>' and '$stall'\n", stderr);
     }
@@ -146,11 +149,13 @@ static bool read_topic(reader_t *reader, const char *topic, epg_host_event_t *ev
 {
     const epg_target_t *target = reader->target;
     for (size_t i = 0; i < target->subscription_count; i++) {
-        if (strcmp(topic, target->subscriptions[i].name) == 0) {
-            const bool enable = target->subscriptions[i].role == EPG_TOPIC_ENABLE;
-            event->kind = enable ? EPG_HOST_ENABLE : EPG_HOST_SETPOINT;
-            event->index = target->subscriptions[i].index;
-            return true;
+        const epg_topic_t *subscription = &target->subscriptions[i];
+        for (size_t k = 0; k < subscription->count; k++) {
+            if (strcmp(topic, epg_topic_value_name(subscription, k)) == 0) {
+                event->kind = subscription->role == EPG_TOPIC_ENABLE ? EPG_HOST_ENABLE : EPG_HOST_SETPOINT;
+                event->index = subscription->index + k;
+                return true;
+            }
         }
     }
     if (strcmp(topic, "$enable") == 0) {

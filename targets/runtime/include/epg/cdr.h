@@ -41,6 +41,11 @@ uint32_t epg_cdr_read_u32(epg_cdr_reader_t *reader);
 int32_t epg_cdr_read_i32(epg_cdr_reader_t *reader);
 float epg_cdr_read_f32(epg_cdr_reader_t *reader);
 double epg_cdr_read_f64(epg_cdr_reader_t *reader);
+/**
+ * The length of a sequence of numbers of `size` bytes, which is skipped; `*first` is the place of the first one.  A
+ * sequence that the message does not hold has failed, and no elements.
+ */
+size_t epg_cdr_read_sequence(epg_cdr_reader_t *reader, size_t size, size_t *first);
 /** Where the text begins in the message, zero-terminated; NULL if there is none. */
 const char *epg_cdr_read_string(epg_cdr_reader_t *reader);
 

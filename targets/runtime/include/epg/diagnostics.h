@@ -7,6 +7,9 @@
 
 #include "epg/node.h"
 
+/** Bytes of the largest message, whatever names and numbers stand in it; of a serial number up to 64 characters. */
+#define EPG_DIAGNOSTICS_SIZE 1280
+
 /** For `message` of a publication whose role is EPG_TOPIC_DIAGNOSTICS; epg_diagnostics_write() writes it. */
 extern const epg_message_t epg_message_diagnostic_array;
 

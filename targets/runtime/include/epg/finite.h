@@ -23,4 +23,12 @@ static inline bool epg_is_finite(double value)
     return (bits >> 52 & 0x7FFU) != 0x7FFU;
 }
 
+/** Puts `value` into `place`; one that is not finite (a conversion that overflows) leaves the one before it there. */
+static inline void epg_assign_finite(double *place, double value)
+{
+    if (epg_is_finite(value)) {
+        *place = value;
+    }
+}
+
 #endif

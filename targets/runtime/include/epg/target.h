@@ -36,13 +36,22 @@ typedef struct epg_topic {
     const void *layout; /**< what the message's functions want to know besides, such as names of joints; or NULL */
     size_t size;        /**< largest message in bytes */
     epg_qos_t qos;
+    uint16_t depth; /**< messages that a history keeps at most ("keep last"); at least 1 */
     epg_topic_role_t role;
     size_t index; /**< of the first setpoint (subscription) or monitoring value (publication) */
-    size_t count; /**< of values in a message */
+    size_t count; /**< of values in a message; 0: it carries none (diagnostics, echo) */
+    const char *const
+        *values; /**< `count` names by which people know them; NULL: the one value is called as the topic */
     epg_topic_trigger_t trigger;
     uint32_t cycles;
     uint64_t period_ns;
 } epg_topic_t;
+
+/** What people call value `value` of `topic`: "pan_subscriber", or "joint_states/pan.position". */
+static inline const char *epg_topic_value_name(const epg_topic_t *topic, size_t value)
+{
+    return topic->values == NULL ? topic->name : topic->values[value];
+}
 
 /** A port of the model: its value can be watched and recorded. */
 typedef struct epg_signal {

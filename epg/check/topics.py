@@ -1,0 +1,48 @@
+"""Names of the node, its namespace and its topics: each possible, and no topic twice."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from epg.check.names import absolute_topic, namespace_problem, node_name_problem, topic_problem
+from epg.check.schema import extended_from
+from epg.diagnostics import Diagnostics, Note
+from epg.source import Node, Span
+
+LONGEST = 191
+"""Characters of a topic's full name: what epg/node.h has room for."""
+
+Use = tuple[str, str, Span, Node | None]
+"""Who uses a topic, its name, where that is written, and what is written there (None: EPG's own choice)."""
+
+
+def check_names(node: Node, namespace: Node | None, topics: Iterable[Use], diagnostics: Diagnostics) -> None:
+    """Reports names that are none, and topics that have two users."""
+    _report(node, node_name_problem(str(node.value)), diagnostics)
+    if namespace is not None:
+        _report(namespace, namespace_problem(str(namespace.value)), diagnostics)
+    prefix = str(namespace.value) if namespace else ""
+    users: dict[str, tuple[str, Span]] = {}
+    for user, topic, span, written in topics:
+        problem = topic_problem(topic)
+        if problem:
+            notes = extended_from(written) if written is not None else []
+            diagnostics.error("invalid-name", span, f"'{topic}' {problem}", notes=notes)
+            continue
+        full = absolute_topic(topic, prefix, str(node.value))
+        if len(full) > LONGEST:
+            message = (
+                f"'{topic}' is too long for a topic: with node and namespace it has more than {LONGEST} characters"
+            )
+            diagnostics.error("invalid-name", span, message)
+        other = users.setdefault(full, (user, span))
+        if other[0] != user or other[1] != span:
+            message = f"topic '{topic}' is used by '{other[0]}' already"
+            notes = [Note("used here", other[1])]
+            hint = "give each its own topic; one component can feed several model ports"
+            diagnostics.error("duplicate-topic", span, message, hint=hint, notes=notes)
+
+
+def _report(node: Node, problem: str | None, diagnostics: Diagnostics) -> None:
+    if problem:
+        diagnostics.error("invalid-name", node.span, f"'{node.value}' {problem}", notes=extended_from(node))

@@ -1,0 +1,187 @@
+"""Topics of an application: those of its components, and those that every ROS 2 node of EPG has.
+
+Values travel between the two sides of a target in *slots*: setpoints in the order of the subscriptions, monitoring
+values in that of the publications.  A message of several values has consecutive ones.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping
+from fractions import Fraction
+
+from epg.check.bindings import Binding, Bindings
+from epg.check.configuration import DIAGNOSTICS_TOPIC, Component, Configuration
+from epg.load.kind import Kind
+from epg.quantity import dimension_of
+from epg.resolve.application import ResolvedComponent, Setpoint, Topic, TopicValue, Wire
+
+HISTORY = 10
+"""Messages that a publication keeps unless told otherwise: what rclcpp and rclpy call the depth, and their default."""
+
+
+def slots_of(components: Mapping[str, Component], bindings: Bindings) -> dict[str, dict[str, int]]:
+    """The slots of each component, by its ports: counted per direction, in the order in which components are written.
+
+    Of several ports those have one that are bound, in the order of the message; if none is, all of them.
+    """
+    bound = _bound_ports(components, bindings)
+    result: dict[str, dict[str, int]] = {}
+    next_slot = {"subscribe": 0, "publish": 0, "echo": 0}
+    for name, component in components.items():
+        direction, ports = component.kind.communication, component.kind.topic_ports
+        if direction is None:
+            continue
+        used = [port for port in ports if port.name in bound.get(name, ())] if len(ports) > 1 else ports
+        first = next_slot[direction]
+        result[name] = {port.name: first + number for number, port in enumerate(used or ports)}
+        next_slot[direction] += len(result[name])
+    return result
+
+
+def _bound_ports(components: Mapping[str, Component], bindings: Bindings) -> dict[str, set[str]]:
+    result: dict[str, set[str]] = {}
+    ends: list[tuple[Binding, str]] = [(binding, "source") for _, binding in bindings.inputs.values()]
+    ends += [(binding, "sink") for _, several in bindings.outputs.values() for binding in several]
+    for binding, direction in ends:
+        kind = components[binding.component].kind if binding.component in components else None
+        port = binding.port or (_main_port(kind, direction) if kind else None)
+        if port is not None:
+            result.setdefault(binding.component, set()).add(port)
+    return result
+
+
+def _main_port(kind: Kind, direction: str) -> str | None:
+    port = kind.main_port(direction)
+    return port.name if port else None
+
+
+def subscriptions_of(
+    components: Mapping[str, ResolvedComponent], configuration: Configuration, inputs: Iterable[Wire]
+) -> tuple[Topic, ...]:
+    """What is subscribed to: setpoints, then echoes, then the topic that enables."""
+    units: dict[tuple[str, str], set[str]] = {}
+    for wire in inputs:
+        units.setdefault((wire.component.name, wire.component_port.name), set()).add(wire.port.unit)
+    result = []
+    for component in components.values():
+        if component.kind.communication == "subscribe":
+            topic, written = _topic_name(component, "topic"), configuration.components[component.name]
+            values = tuple(
+                TopicValue(_value_name(topic, port, component), port, slot, _setpoint(written, port, units))
+                for port, slot in component.slots.items()
+            )
+            result.append(_topic(component, topic, "values", values, index=min(component.slots.values()), depth=1))
+    echoes = [c for c in components.values() if c.kind.communication == "echo"]
+    first = sum(c.kind.communication == "publish" for c in components.values())
+    for number, component in enumerate(echoes, first):
+        result.append(_topic(component, _topic_name(component, "from"), "echo", (), index=number))
+    enable = configuration.control.enable_topic
+    if enable is not None:
+        result.append(Topic(enable, "control.enable_topic", "enable", "reliable", 1, None, (), 0))
+    return tuple(result)
+
+
+def publications_of(components: Mapping[str, ResolvedComponent], configuration: Configuration) -> tuple[Topic, ...]:
+    """What is published: values, then echoes, then state and statistics."""
+    communication = configuration.communication
+    result = []
+    for component in components.values():
+        if component.kind.communication == "publish":
+            topic = _topic_name(component, "topic")
+            values = tuple(
+                TopicValue(_value_name(topic, port, component), port, slot) for port, slot in component.slots.items()
+            )
+            cycles = component.parameters.get("every")
+            result.append(
+                _topic(
+                    component,
+                    topic,
+                    "values",
+                    values,
+                    index=min(component.slots.values()),
+                    trigger=_trigger(component.parameters),
+                    cycles=cycles if isinstance(cycles, int) else 0,
+                    period=communication.period,
+                )
+            )
+    for component in components.values():
+        if component.kind.communication == "echo":
+            result.append(_topic(component, _topic_name(component, "to"), "echo", (), index=0))
+    every = communication.diagnostics
+    if every:
+        key = "communication.diagnostics"
+        result.append(Topic(DIAGNOSTICS_TOPIC, key, "diagnostics", "reliable", 1, None, (), 0, period=every))
+    return tuple(result)
+
+
+def _topic(
+    component: ResolvedComponent,
+    name: str,
+    role: str,
+    values: tuple[TopicValue, ...],
+    *,
+    index: int,
+    depth: int = HISTORY,
+    trigger: str = "period",
+    cycles: int = 0,
+    period: Fraction = Fraction(0),
+) -> Topic:
+    stated = component.parameters.get("depth")
+    return Topic(
+        name=name,
+        key=f"components.{component.name}",
+        role=role,
+        qos=str(component.parameters["qos"]),
+        depth=stated if isinstance(stated, int) else depth,
+        component=component,
+        values=values,
+        index=index,
+        trigger=trigger,
+        cycles=cycles,
+        period=period,
+    )
+
+
+def _topic_name(component: ResolvedComponent, parameter: str) -> str:
+    return str(component.parameters[parameter])
+
+
+def _value_name(topic: str, port: str, component: ResolvedComponent) -> str:
+    """What people call a value: the one of a topic as the topic, one of several ``joint_states/pan.position``."""
+    return (
+        topic
+        if len(component.kind.topic_ports) == 1 and not component.kind.topic_ports[0].element
+        else f"{topic}/{port}"
+    )
+
+
+def _trigger(parameters: Mapping[str, object]) -> str:
+    if parameters.get("every") is not None:
+        return "cycles"
+    return "change" if parameters.get("on_change") is True else "period"
+
+
+def _setpoint(component: Component, port: str, units: Mapping[tuple[str, str], Collection[str]]) -> Setpoint:
+    """Fault handling of a value; velocities time out after 0.5 s unless told otherwise, positions never.
+
+    ``units`` are those of the model ports that component ports feed, for those that state none.
+    """
+    parameters = component.parameters
+    timeout = parameters.get("timeout")
+    if timeout is None:
+        own = next((p.unit for p in component.kind.ports if p.name == port), "") or component.conversion.unit
+        stated = [own] if own else list(units.get((component.name, port), ()))
+        velocity = any((dimension_of(unit) or "").endswith("velocity") for unit in stated)
+        timeout = Fraction(1, 2) if velocity else Fraction(0)
+    assert isinstance(timeout, (int, Fraction))
+    return Setpoint(
+        initial=_number(parameters.get("initial") or 0),
+        rate_limit=_number(parameters.get("rate_limit") or 0),
+        timeout=Fraction(timeout),
+        on_timeout=str(parameters.get("on_timeout") or "hold"),
+    )
+
+
+def _number(value: object) -> float:
+    assert isinstance(value, (int, float, Fraction))
+    return float(value)
