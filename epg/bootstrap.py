@@ -35,6 +35,7 @@ REQUIREMENTS: dict[str, dict[str, tuple[str, tuple[int, ...]]]] = {
         "hypothesis": ("hypothesis", (6, 100)),
         "hatchling": ("hatchling", (1, 24)),
         "editables": ("editables", (0, 5)),
+        "cyclonedds": ("cyclonedds", (0, 10, 5)),
         "matplotlib": ("matplotlib", (3, 5)),
         "yaml": ("PyYAML", (5, 4)),
         "jinja2": ("Jinja2", (3, 0)),
