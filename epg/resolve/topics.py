@@ -74,7 +74,7 @@ def subscriptions_of(
     echoes = [c for c in components.values() if c.kind.communication == "echo"]
     first = sum(c.kind.communication == "publish" for c in components.values())
     for number, component in enumerate(echoes, first):
-        result.append(_topic(component, _topic_name(component, "from"), "echo", (), index=number))
+        result.append(_topic(component, _topic_name(component, "from"), "echo", (), index=number, qos="qos_from"))
     enable = configuration.control.enable_topic
     if enable is not None:
         result.append(Topic(enable, "control.enable_topic", "enable", "reliable", 1, None, (), 0))
@@ -106,7 +106,7 @@ def publications_of(components: Mapping[str, ResolvedComponent], configuration: 
             )
     for component in components.values():
         if component.kind.communication == "echo":
-            result.append(_topic(component, _topic_name(component, "to"), "echo", (), index=0))
+            result.append(_topic(component, _topic_name(component, "to"), "echo", (), index=0, qos="qos_to"))
     every = communication.diagnostics
     if every:
         key = "communication.diagnostics"
@@ -122,6 +122,7 @@ def _topic(
     *,
     index: int,
     depth: int = HISTORY,
+    qos: str = "qos",
     trigger: str = "period",
     cycles: int = 0,
     period: Fraction = Fraction(0),
@@ -131,7 +132,7 @@ def _topic(
         name=name,
         key=f"components.{component.name}",
         role=role,
-        qos=str(component.parameters["qos"]),
+        qos=str(component.parameters.get(qos) or component.parameters["qos"]),
         depth=stated if isinstance(stated, int) else depth,
         component=component,
         values=values,
