@@ -65,8 +65,17 @@ class Agent:
     answers pings of clients that it does not know.
     """
 
-    def __init__(self, link: Link, topics: Topics | None = None, seed: int = 1, heartbeat: float = 0.2) -> None:
+    def __init__(
+        self,
+        link: Link,
+        topics: Topics | None = None,
+        seed: int = 1,
+        heartbeat: float = 0.2,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        """``clock`` is in seconds: of a simulation, in which nothing waits for the clock on the wall."""
         self.link = link
+        self._clock = clock
         self.topics = topics if topics is not None else Topics()
         self.lock = self.topics.lock  # one for all: a sample goes from a board to another in one go
         self.to_board, self.from_board = Faults(), Faults()
@@ -198,14 +207,14 @@ class Agent:
                         self._beat()
 
     def _run_later(self) -> None:
-        while self._later and self._later[0][0] <= time.monotonic():
+        while self._later and self._later[0][0] <= self._clock():
             heapq.heappop(self._later)[2]()
 
     def _after(self, seconds: float, action: Callable[[], None]) -> None:
         if seconds <= 0:
             action()
         else:
-            heapq.heappush(self._later, (time.monotonic() + seconds, next(self._numbers), action))
+            heapq.heappush(self._later, (self._clock() + seconds, next(self._numbers), action))
             self._wake()
 
     def _receive(self) -> None:
@@ -298,7 +307,7 @@ class Agent:
             client.pump = self._pump
             self.clients[key] = client
         self._peers[peer] = key
-        self.created.append((time.monotonic(), key))
+        self.created.append((self._clock(), key))
 
     def _forget(self, key: bytes) -> None:
         client = self.clients.pop(key, None)
