@@ -56,7 +56,7 @@ SERIAL = "$serial"
 """What stands for the board's serial number in the names of a node and its namespace."""
 _SERIAL_NUMBER = "0123456789ABCDEF"
 _NODE_SIZE, _NAMESPACE_SIZE, _TOPIC_SIZE, _PRIVATE_SIZE = 63, 63, 127, 63
-"""Characters that epg/node.h has room for; a topic's full name is made of the three."""
+"""Characters that epg/node.h has room for: a full name, of namespace, node and private topic, has 191 at most."""
 
 
 def node_name_problem(name: str) -> str | None:

@@ -134,6 +134,8 @@ def _explain(keyword: str, error: Any, node: Node, schema: Mapping[str, Any]) ->
         kinds = [_TYPE_NAMES.get(str(option.get("type")), "") for option in limit if isinstance(option, dict)]
         expected = " or ".join(dict.fromkeys(kind for kind in kinds if kind)) or "something else"
         return "wrong-type", f"expected {expected}, found {_shown(value)}", ""
+    if keyword == "uniqueItems":
+        return "wrong-value", "something stands twice in this list", "remove one of the two"
     if keyword in ("minProperties", "minItems", "minLength"):
         return "wrong-value", "this is empty", ""
     return "wrong-value", f"{_shown(value)} is not possible here ({keyword} {limit})", ""

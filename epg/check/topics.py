@@ -9,9 +9,6 @@ from epg.check.schema import extended_from
 from epg.diagnostics import Diagnostics, Note
 from epg.source import Node, Span
 
-LONGEST = 191
-"""Characters of a topic's full name: what epg/node.h has room for."""
-
 Use = tuple[str, str, Span, Node | None]
 """Who uses a topic, its name, where that is written, and what is written there (None: EPG's own choice)."""
 
@@ -30,11 +27,6 @@ def check_names(node: Node, namespace: Node | None, topics: Iterable[Use], diagn
             diagnostics.error("invalid-name", span, f"'{topic}' {problem}", notes=notes)
             continue
         full = absolute_topic(topic, prefix, str(node.value))
-        if len(full) > LONGEST:
-            message = (
-                f"'{topic}' is too long for a topic: with node and namespace it has more than {LONGEST} characters"
-            )
-            diagnostics.error("invalid-name", span, message)
         other = users.setdefault(full, (user, span))
         if other[0] != user or other[1] != span:
             message = f"topic '{topic}' is used by '{other[0]}' already"

@@ -42,12 +42,40 @@ def test_topics(name: str) -> None:
     assert topic_problem(name) is None
 
 
-@pytest.mark.parametrize("name", ["", "/", "~/pan", "pan/", "a//b", "1/a", "pan__x", "a b", "t" * 300])
+@pytest.mark.parametrize(
+    "name", ["", "/", "~pan", "~/", "~//pan", "~/1", "pan/", "a//b", "1/a", "pan__x", "a b", "t" * 300]
+)
 def test_no_topics(name: str) -> None:
     assert topic_problem(name)
 
 
 def test_topics_stand_below_the_namespace_unless_they_are_absolute() -> None:
-    assert absolute_topic("pan", "") == "/pan"
-    assert absolute_topic("pan", "/robot1/") == "/robot1/pan"
-    assert absolute_topic("/pan", "/robot1") == "/pan"
+    assert absolute_topic("pan", "", "node") == "/pan"
+    assert absolute_topic("pan", "/robot1/", "node") == "/robot1/pan"
+    assert absolute_topic("/pan", "/robot1", "node") == "/pan"
+
+
+def test_private_topics_stand_below_the_node() -> None:
+    assert topic_problem("~/enable") is None
+    assert absolute_topic("~/enable", "", "node") == "/node/enable"
+    assert absolute_topic("~/enable", "robot1", "node") == "/robot1/node/enable"
+
+
+@pytest.mark.parametrize("name", ["robot_$serial", "r$serial", "r_$serial_x", "r_$serial$serial"])
+def test_serial_numbers_in_names(name: str) -> None:
+    assert node_name_problem(name) is None
+    assert namespace_problem(f"/fleet/{name}") is None
+
+
+@pytest.mark.parametrize("name", ["$serial", "$serial_robot", "robot_$serials!", "robot_$other", "r" * 48 + "$serial"])
+def test_serial_numbers_that_make_no_name(name: str) -> None:
+    """They may begin with a digit, and are as long as any (16 characters)."""
+    assert node_name_problem(name) is not None
+    assert namespace_problem(f"/fleet/{name}") is not None
+
+
+def test_names_that_firmware_has_room_for() -> None:
+    assert node_name_problem("n" * 63) is None
+    assert node_name_problem("n" * 64) is not None
+    assert namespace_problem("/" + "n" * 62) is None
+    assert namespace_problem("/" + "n" * 63) is not None

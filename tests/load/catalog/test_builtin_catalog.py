@@ -58,9 +58,17 @@ def test_the_kinds() -> None:
         "pwm",
         "pwm_h_bridge",
         "quadrature_encoder",
+        "ros_array_publisher",
+        "ros_array_subscriber",
+        "ros_echo",
+        "ros_joint_state_publisher",
+        "ros_joint_state_subscriber",
         "ros_publisher",
         "ros_subscriber",
+        "ros_twist_publisher",
+        "ros_twist_subscriber",
         "timing_probe",
+        "uart",
     ]
 
 
