@@ -238,6 +238,7 @@ def test_messages_that_are_none_are_counted_and_do_no_harm(jiwy: Path, net: Netw
         assert peer.spin_until(lambda: short.matched == 1 and huge.matched == 1)
         for _ in range(20):
             short.writer.write(ShortFloat64_(1))
+            peer.spin(0.01)  # a burst would push out the oldest of ten
         huge.writer.write(HugeFloat64_(bytes(200_000)))
         diagnostics_of(peer, told, lambda values: int(values["malformed"]) >= 20)
         jiwy_robot.end()
