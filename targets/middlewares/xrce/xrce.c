@@ -31,12 +31,19 @@ static const uint64_t REFUSED_NS = 2000 * MS; /* the same after the agent has re
 static const uint64_t ANSWER_NS = 2000 * MS;  /* that the agent has for one answer while creating */
 static const uint64_t PING_NS = 100 * MS;
 static const uint64_t SILENCE_NS = 1000 * MS;   /* of an agent that is lost; ten pings: of ten, noise leaves one */
+static const uint64_t STUCK_NS = 2000 * MS;     /* without progress of a stream, though the agent answers pings */
 static const uint64_t HEARTBEAT_NS = 50 * MS;   /* from a frame that is not acknowledged to the question for it */
 static const uint64_t SYNC_NS = 10000 * MS;     /* from one question for the time to the next */
 static const uint64_t SYNC_AGAIN_NS = 500 * MS; /* the same while the clock is not set */
 static const int64_t LONGEST_ROUND_NS = 100 * 1000000; /* of an answer with the time that is good enough */
 
 enum { FRAMES_PER_POLL = 32, DROPPED_PER_FRAME = 8 };
+
+/** Of a reliable stream: a number that goes up until nothing is outstanding. */
+typedef struct progress {
+    uint16_t number;
+    uint64_t since_ns; /* when it last went up; 0: nothing is outstanding */
+} progress_t;
 
 /** There is one client. */
 static struct {
@@ -54,15 +61,17 @@ static struct {
     size_t buffered; /* bytes of frames that wait in the streams, as they will be on the line */
     epg_xrce_status_t status;
 
-    uint64_t now_ns;        /* of this poll */
-    uint64_t attempt_ns;    /* when a session is asked for next */
-    uint64_t interval_ns;   /* from that to the one after it */
-    uint64_t answer_ns;     /* by when the agent has to answer */
-    uint64_t ping_ns;       /* the next */
-    uint64_t alive_ns;      /* when the agent has last shown life */
-    uint64_t sync_ns;       /* the next */
-    uint16_t acknowledged;  /* the agent's word when `unanswered_ns` was set */
-    uint64_t unanswered_ns; /* since when nothing more has been acknowledged; 0: all is */
+    uint64_t now_ns;       /* of this poll */
+    uint64_t attempt_ns;   /* when a session is asked for next */
+    uint64_t interval_ns;  /* from that to the one after it */
+    uint64_t answer_ns;    /* by when the agent has to answer */
+    uint64_t ping_ns;      /* the next */
+    uint64_t alive_ns;     /* when the agent has last shown life */
+    uint64_t sync_ns;      /* the next */
+    progress_t sent;       /* of our reliable stream: until all of it is acknowledged */
+    progress_t received;   /* of the agent's: until all that it has announced is here */
+    uint16_t asked_for;    /* what was acknowledged when `heartbeat_ns` was set */
+    uint64_t heartbeat_ns; /* the next */
 } client;
 
 /* The library's transport -------------------------------------------------------------------------------------- */
@@ -138,6 +147,50 @@ static void on_time(uxrSession *session, int64_t came, int64_t agent_received, i
     client.sync_ns = client.now_ns + SYNC_NS;
 }
 
+/* Reliable streams --------------------------------------------------------------------------------------------- */
+
+/** Whether a stream has been where it is for `longest_ns`, though something is outstanding. */
+static bool is_stuck(progress_t *progress, uint16_t number, bool outstanding, uint64_t longest_ns)
+{
+    if (!outstanding) {
+        progress->since_ns = 0;
+    } else if (progress->since_ns == 0 || progress->number != number) {
+        progress->since_ns = client.now_ns;
+        progress->number = number;
+    }
+    return outstanding && client.now_ns >= progress->since_ns + longest_ns;
+}
+
+/**
+ * An agent that answers pings and yet does not go on has lost what this side believes it has: then only a new session
+ * helps.
+ */
+static bool streams_are_stuck(void)
+{
+    const uxrOutputReliableStream *output = &client.session.streams.output_reliable[0];
+    const uxrInputReliableStream *input = &client.session.streams.input_reliable[0];
+    const bool sent = is_stuck(&client.sent, output->last_acknown, output->last_acknown != output->last_sent, STUCK_NS);
+    const bool received =
+        is_stuck(&client.received, input->last_handled, input->last_handled != input->last_announced, STUCK_NS);
+    return sent || received;
+}
+
+/**
+ * Lets the library ask for an acknowledgement in time: by itself it does so only when it was not called for 100 ms.
+ * The agent's answer names what is missing, and the library sends that again.
+ */
+static void time_heartbeat(void)
+{
+    uxrOutputReliableStream *stream = &client.session.streams.output_reliable[0];
+    if (stream->last_acknown == stream->last_sent || client.asked_for != stream->last_acknown) {
+        client.asked_for = stream->last_acknown;
+        client.heartbeat_ns = client.now_ns + HEARTBEAT_NS;
+    } else if (client.now_ns >= client.heartbeat_ns) {
+        client.heartbeat_ns = client.now_ns + HEARTBEAT_NS;
+        stream->next_heartbeat_timestamp = 0;
+    }
+}
+
 /* States ------------------------------------------------------------------------------------------------------- */
 
 static void wait_for_agent(uint64_t first_ns)
@@ -176,7 +229,8 @@ static void ask_for_session(void)
     say_goodbye();
     (void)uxr_create_session_retries(&client.session, 0);
     client.buffered = 0;
-    client.unanswered_ns = 0;
+    client.sent.since_ns = 0;
+    client.received.since_ns = 0;
     client.attempt_ns = client.now_ns + client.interval_ns;
     client.interval_ns = client.interval_ns * 3 / 2 < LAST_ATTEMPT_NS ? client.interval_ns * 3 / 2 : LAST_ATTEMPT_NS;
 }
@@ -208,7 +262,7 @@ static bool check_agent(void)
         client.guard.pong = false;
         client.alive_ns = client.now_ns;
     }
-    if (client.guard.unknown || client.now_ns >= client.alive_ns + SILENCE_NS) {
+    if (client.guard.unknown || client.now_ns >= client.alive_ns + SILENCE_NS || streams_are_stuck()) {
         lose_agent(0);
         return false;
     }
@@ -280,27 +334,6 @@ static bool send_message(size_t publication, const void *message, size_t size)
     }
     client.buffered += request != UXR_INVALID_REQUEST_ID ? cost : 0U;
     return request != UXR_INVALID_REQUEST_ID;
-}
-
-/**
- * Lets the library ask for an acknowledgement in time: by itself it does so only when it was not called for 100 ms.
- * The agent's answer names what is missing, and the library sends that again.
- */
-static void time_heartbeat(void)
-{
-    uxrOutputReliableStream *stream = &client.session.streams.output_reliable[client.reliable.index];
-    if (stream->last_acknown == stream->last_sent) {
-        client.unanswered_ns = 0;
-        return;
-    }
-    if (client.unanswered_ns == 0 || client.acknowledged != stream->last_acknown) {
-        client.unanswered_ns = client.now_ns;
-        client.acknowledged = stream->last_acknown;
-    }
-    if (client.now_ns >= client.unanswered_ns + HEARTBEAT_NS) {
-        client.unanswered_ns = client.now_ns;
-        stream->next_heartbeat_timestamp = 0;
-    }
 }
 
 /* The middleware ----------------------------------------------------------------------------------------------- */

@@ -138,7 +138,7 @@ static size_t make_empty(uint8_t *frame)
     return HEADER + sizeof nothing; /* one would be too short for the library */
 }
 
-/** Moves the submessages that pass to the front; returns where they end. */
+/** Moves the submessages that pass to the front; returns where they end, 0 if the frame is none. */
 static size_t sift(epg_xrce_guard_t *guard, uint8_t *frame, size_t size)
 {
     size_t end = HEADER;
@@ -149,7 +149,7 @@ static size_t sift(epg_xrce_guard_t *guard, uint8_t *frame, size_t size)
         const uint8_t flags = frame[position + 1];
         const size_t length = number_at(frame + position + 2);
         if ((flags & LITTLE_ENDIAN_FLAG) == 0 || length > size - position - SUBHEADER) {
-            break; /* what follows cannot be made out */
+            return 0;
         }
         const size_t padded = (SUBHEADER + length + 3U) & ~(size_t)3U;
         const size_t taken = padded < size - position ? padded : size - position;
@@ -180,7 +180,7 @@ size_t epg_xrce_guard(epg_xrce_guard_t *guard, uint8_t *frame, size_t size)
     if (left > HEADER) {
         return left;
     }
-    if (reliable) {
+    if (reliable && left > 0) {
         return make_empty(frame);
     }
     guard->dropped += (guard->pong || guard->unknown) && !pong ? 0U : 1U;
