@@ -16,6 +16,7 @@ enum {
     RELIABLE = 0x80,
     LARGEST_HISTORY = 16, /* what an ACKNACK can speak of */
     OLDEST = 4096,        /* numbers further behind are none of this session: the library would take them for new */
+    MOST_BEHIND = 10,     /* heartbeats in a row that end before what has been handled: one may be late, ten are not */
     PING_REQUEST = GET_INFO_REQUEST_PING_ID,
 };
 
@@ -60,11 +61,19 @@ static bool is_timely(const epg_xrce_guard_t *guard, uint16_t first_missing)
     return acknowledged >= 0 && acknowledged <= distance(stream->last_acknown, stream->last_sent);
 }
 
-/** The library answers with one bit for each frame that it has not got; there are 16.  False: the number is too old. */
-static bool limit_heartbeat(const epg_xrce_guard_t *guard, uint8_t *last)
+/**
+ * The library answers with one bit for each frame that it has not got; there are 16.  False: the number is too old.
+ *
+ * An agent that has sent less than has been handled here has not sent all of that: a forged or damaged frame has taken
+ * the number of one of its own.  Acknowledgements of numbers that it has not reached mean nothing to it, so that its
+ * stream may stand still for ever: the session is no good any more.
+ */
+static bool limit_heartbeat(epg_xrce_guard_t *guard, uint8_t *last)
 {
     const uint16_t handled = guard->session->streams.input_reliable[0].last_handled;
     const int ahead = distance(handled, number_at(last));
+    guard->behind = ahead < 0 ? guard->behind + 1U : 0U;
+    guard->unknown |= guard->behind >= MOST_BEHIND;
     if (ahead > LARGEST_HISTORY) {
         const uint16_t limit = (uint16_t)(handled + LARGEST_HISTORY);
         last[0] = (uint8_t)(limit & 0xFFU);
@@ -86,6 +95,7 @@ static void read_info(epg_xrce_guard_t *guard, const uint8_t *payload, size_t le
 static bool passes(epg_xrce_guard_t *guard, uint8_t stream, uint8_t id, uint8_t flags, uint8_t *payload, size_t length)
 {
     if (!guard->open) {
+        guard->behind = 0;
         /* With properties, whose names the library would write to where no pointer leads. */
         return id == STATUS_AGENT && stream == NO_STREAM && length >= 11 && payload[10] == 0;
     }

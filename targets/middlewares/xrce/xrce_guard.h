@@ -26,6 +26,7 @@ typedef struct epg_xrce_guard {
     bool reading;     /**< samples have been asked for; those that come before are of an older session */
     bool pong;        /**< the agent has answered a ping, and knows the session; the reader clears it */
     bool unknown;     /**< the agent has answered a ping, and does not know the session; the reader clears it */
+    uint32_t behind;  /**< heartbeats in a row of an agent that has sent less than has been handled */
     uint32_t dropped; /**< frames of which nothing was let through */
 } epg_xrce_guard_t;
 

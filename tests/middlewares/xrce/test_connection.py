@@ -226,16 +226,17 @@ def test_duplicates_and_another_order(robot: Path, agent: Agent) -> None:
         assert board.stop() == ""
 
 
-def test_a_slow_line(robot: Path, agent: Agent) -> None:
-    """150 ms to the agent, 150 ms back."""
-    agent.to_board.delay = agent.from_board.delay = (0.15, 0.15)
+@pytest.mark.parametrize(("delay", "sessions"), [(0.06, 1), (0.15, 5)])
+def test_a_slow_line(robot: Path, agent: Agent, delay: float, sessions: int) -> None:
+    """So many seconds to the agent, and the same back; where an answer takes longer than its patience, it asks again."""
+    agent.to_board.delay = agent.from_board.delay = (delay, delay)
     with Board(robot, agent) as board:
         board.running()
         check_alive(board, 0.5)
         began = time.monotonic()
         time.sleep(1.5)
         assert len(board.values("cycles_too", began)) > 60
-        assert len(agent.created) == 1
+        assert len(agent.created) <= sessions
         assert board.stop() == ""
 
 

@@ -113,7 +113,7 @@ def test_a_timeout_that_disables_stays_until_somebody_enables(disabling_robot: P
         for _ in range(3):
             diagnostics = board.diagnostics()
             assert diagnostics.level == "ERROR"
-            assert (diagnostics.values["fault"], diagnostics.values["component"]) == ("setpoint_timeout", "zeroed")
+            assert (diagnostics.values["fault"], diagnostics.values["component"]) == ("setpoint timeout", "zeroed")
         board.enable(True)
         agent.wait_until(lambda: board.diagnostics().level == "OK")
         assert board.stop() == ""
