@@ -36,13 +36,18 @@ class TopicView:
 
 @dataclass(frozen=True)
 class Topics:
-    """All topics of an application; ``largest`` is a C expression for the bytes of the largest message to publish."""
+    """All topics of an application.
+
+    ``largest`` and ``largest_received`` are C expressions for the bytes of the largest message that is published and
+    of the largest that is expected.
+    """
 
     subscriptions: tuple[TopicView, ...]
     publications: tuple[TopicView, ...]
     setpoint_count: int
     monitor_count: int
     largest: Code
+    largest_received: Code
     most_received: int
 
     @property
@@ -71,6 +76,7 @@ def topics_of(app: Application, macro: Macro) -> Topics:
         setpoint_count=sum(len(topic.values) for topic in app.subscriptions),
         monitor_count=sum(len(topic.values) for topic in app.publications),
         largest=_largest(publications),
+        largest_received=_largest(subscriptions),
         most_received=max((len(topic.values) for topic in app.subscriptions), default=0) or 1,
     )
 
@@ -97,8 +103,8 @@ def message_of(component: ResolvedComponent, macro: Macro) -> tuple[Code, str, C
     return message, str(macro(component, "message_type").strip()), size, macro(component, "layout").strip()
 
 
-def _largest(publications: Iterable[TopicView]) -> Code:
-    sizes = [view.size for view in publications]
+def _largest(topics: Iterable[TopicView]) -> Code:
+    sizes = [view.size for view in topics]
     largest = max((int(str(size)) for size in sizes if str(size).isdecimal()), default=8)
     others = {size for size in sizes if not str(size).isdecimal()}
     if not others:

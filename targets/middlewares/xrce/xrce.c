@@ -321,7 +321,8 @@ static bool send_message(size_t publication, const void *message, size_t size)
     const bool reliable = client.target->publications[publication].qos == EPG_QOS_RELIABLE;
     const uxrStreamId stream = reliable ? client.reliable : client.best_effort;
     const size_t cost = epg_xrce_link_cost(&client.link, message, size) + 2 * EPG_XRCE_OVERHEAD;
-    if (client.status.state != EPG_XRCE_RUNNING || epg_xrce_link_room(&client.link) < client.buffered + cost) {
+    if (client.status.state != EPG_XRCE_RUNNING || size + EPG_XRCE_OVERHEAD > client.options->output_frame ||
+        epg_xrce_link_room(&client.link) < client.buffered + cost) {
         return false;
     }
     const uxrObjectId writer = epg_xrce_writer(publication);

@@ -16,6 +16,10 @@
 /** Bytes around a message in a frame: header of the frame, of the submessage, and whose it is. */
 #define EPG_XRCE_OVERHEAD 12
 
+/** Bytes of the largest frame: `mtu`, or what a message of `message` bytes takes. */
+#define EPG_XRCE_FRAME(mtu, message)                                                                                   \
+    (((message) + EPG_XRCE_OVERHEAD > (mtu) ? (message) + EPG_XRCE_OVERHEAD : (mtu)) + 3) / 4 * 4
+
 /** Bytes of memory of a reliable stream that keeps `history` frames of `frame` bytes: each has its length before it. */
 #define EPG_XRCE_HISTORY_SIZE(history, frame) ((history) * ((frame) + 4))
 

@@ -7,8 +7,7 @@
 #include <string.h>
 
 enum {
-    ONLY = 1,   /* number of what there is one of; topics, writers and readers are numbered from 1 on */
-    DEPTH = 10, /* keep last, as ROS 2 has it by default */
+    ONLY = 1, /* number of what there is one of; topics, writers and readers are numbered from 1 on */
     /* What an agent has kept of an earlier session under the same number gives way. */
     MODE = UXR_REPLACE
 };
@@ -52,7 +51,7 @@ static uint16_t create_endpoint(const epg_xrce_entities_t *entities, size_t inde
         .durability = UXR_DURABILITY_VOLATILE,
         .reliability = topic->qos == EPG_QOS_RELIABLE ? UXR_RELIABILITY_RELIABLE : UXR_RELIABILITY_BEST_EFFORT,
         .history = UXR_HISTORY_KEEP_LAST,
-        .depth = DEPTH,
+        .depth = topic->depth,
     };
     const uxrObjectId of = uxr_object_id((uint16_t)(index + 1), UXR_TOPIC_ID);
     if (index < publications) {
