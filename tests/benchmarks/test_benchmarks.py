@@ -26,6 +26,7 @@ SMALLEST = {
     "pico_timing": ["--seeds", "1", "--milliseconds", "100", "--programs", "1", "--loads", "1"],
     "pico_cycle": ["--cycles", "20"],
     "pico_closed_loop": ["--short", "1"],
+    "network_situations": ["--only", "4", "--seconds", "3"],
 }
 PROGRAMS = sorted(
     path.stem for path in BENCHMARKS.glob("*.py") if '__name__ == "__main__"' in path.read_text(encoding="utf-8")
@@ -48,6 +49,9 @@ def test_it_runs_and_prints_what_the_page_shows(program: str) -> None:
         pytest.skip("cmake is not installed: apt install cmake")
     if program.startswith("pico"):
         skip_if_missing(pico_sdk, arm_gcc, node, rp2040js, unicorn, lambda: tool("freertos_kernel"))
+    if program == "network_situations":
+        pytest.importorskip("cyclonedds", reason="CycloneDDS for Python is not installed: pip install cyclonedds")
+        skip_if_missing(lambda: tool("cyclonedds"))
     printed = run(program)
     titles = re.findall(r"^(.+)\n-+$", printed, flags=re.MULTILINE)
     section = re.search(rf"<!-- begin {program} -->(.*?)<!-- end {program} -->", PAGE.read_text(encoding="utf-8"), re.S)

@@ -14,7 +14,9 @@ def lag(reference: Log, target: Log) -> float:
     """By how many seconds ``target`` is behind ``reference``, in multiples of the reference's interval.
 
     The target is interpolated to the times of the reference, so that both have one time scale; then the shift with the
-    largest cross-correlation is taken.  Means are removed before: a constant would favour no shift at all.
+    largest cross-correlation is taken.  The thesis does not say how it treats means and ends: here it is the
+    correlation coefficient of what overlaps.  (Sums of products, of which there are fewer the larger the shift is,
+    favour no shift.)
 
     >>> wave = [(0.033 * n, np.sin(0.05 * n)) for n in range(200)]
     >>> late = [(time + 0.066, value) for time, value in wave]
@@ -24,8 +26,12 @@ def lag(reference: Log, target: Log) -> float:
     times = np.array([time for time, _ in reference])
     values = np.array([value for _, value in reference])
     other = np.interp(times, [time for time, _ in target], [value for _, value in target])
-    products = np.correlate(other - other.mean(), values - values.mean(), "full")
-    shift = int(np.argmax(products)) - (len(values) - 1)
+    count = len(values)
+    correlations = {
+        shift: np.corrcoef(values[max(0, -shift) : count - max(0, shift)], other[max(0, shift) : count + min(0, shift)])
+        for shift in range(-count // 4, count // 4 + 1)
+    }
+    shift = max(correlations, key=lambda shift: correlations[shift][0, 1])
     return shift * float(np.mean(np.diff(times)))
 
 

@@ -15,11 +15,12 @@ effort, and both log with the time at which they send or hear something.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from epg.simulate.scenario import Profile
+from tests.ros2.build import Build
 from tests.ros2.messages import Float64_
 from tests.ros2.network import Network, running
 from tests.ros2.peer import Peer, Publisher
@@ -89,7 +90,7 @@ def run(
     profiles: Mapping[str, Profile],
     duration: float,
     net: Network,
-    build: Callable[[str], Path],
+    build: Build,
     folder: Path,
 ) -> Logs:
     """Starts robots and nodes, waits until everybody knows everybody, and publishes ``profiles`` for ``duration`` s.

@@ -19,6 +19,7 @@ import pytest
 
 pytest.importorskip("cyclonedds", reason="CycloneDDS for Python is not installed: python -m pip install cyclonedds")
 
+from tests.ros2.build import Build
 from tests.ros2.messages import (
     Bool_,
     DiagnosticArray_,
@@ -31,7 +32,6 @@ from tests.ros2.messages import (
 from tests.ros2.network import Network, network, running
 from tests.ros2.peer import Endpoint, Peer, Subscription
 
-Build = Callable[[str], Path]
 NODE = "/robot_7/JIWY_node"
 
 

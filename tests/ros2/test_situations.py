@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -11,11 +10,10 @@ import pytest
 pytest.importorskip("cyclonedds", reason="CycloneDDS for Python is not installed: python -m pip install cyclonedds")
 
 from epg.simulate.scenario import Part, Profile
+from tests.ros2.build import Build
 from tests.ros2.correlation import errors, fine_lag, lag
 from tests.ros2.network import Network
 from tests.ros2.situations import JIWY, PERIOD, RELBOT, SITUATIONS, Follower, Logs, run
-
-Build = Callable[[str], Path]
 
 HOMED = 4.5  # s: until then JIWY's axes look for their end stops
 JIWY_PROFILE = Profile(0.0, (Part("raised_cosine", HOMED, 3.0, 1.0),))

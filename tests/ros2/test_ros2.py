@@ -1,0 +1,114 @@
+"""The middleware `dds` and ROS 2 itself, where it is installed and sourced: the command line's tools and rclpy.
+
+None of this has run where there is no ROS 2: tests/ros2/test_dds_node.py does the same against a peer of our own.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.ros2.build import Build
+from tests.ros2.messages import type_hash
+from tests.ros2.network import Network, running
+
+if shutil.which("ros2") is None:
+    pytest.skip("ROS 2 is not sourced: source /opt/ros/jazzy/setup.bash", allow_module_level=True)
+
+NODE = "/robot_7/JIWY_node"
+IMPLEMENTATIONS = ["rmw_cyclonedds_cpp", "rmw_fastrtps_cpp"]
+
+
+@pytest.fixture(params=IMPLEMENTATIONS)
+def ros(request: pytest.FixtureRequest, net: Network) -> dict[str, str]:
+    """The environment for ROS 2 with one of its DDS implementations."""
+    prefixes = os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
+    if not any((Path(prefix) / "share" / request.param).is_dir() for prefix in prefixes):
+        package = f"ros-{os.environ.get('ROS_DISTRO', 'jazzy')}-{request.param.replace('_', '-')}"
+        pytest.skip(f"ROS 2 is not sourced with {request.param}: apt install {package}")
+    environment = {**net.environment, "RMW_IMPLEMENTATION": request.param}
+    if request.param != "rmw_cyclonedds_cpp":  # which alone understands the test network's tag
+        for mapping in (net.environment, environment):
+            mapping.pop("CYCLONEDDS_URI", None)
+            mapping["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+            mapping["ROS_DOMAIN_ID"] = str(100 + os.getpid() % 100)
+    return environment
+
+
+@pytest.fixture
+def robot(ros: dict[str, str], net: Network, build: Build, tmp_path: Path) -> Iterator[Path]:
+    """Runs JIWY; gives the file of its trace, which is complete when it has ended."""
+    trace = tmp_path / "trace.csv"
+    options = ("--quiet", "--serial", "7", "--duration", "40", "--trace", str(trace))
+    with running([net.run(build("jiwy"), *options)]):
+        time.sleep(1.0)
+        yield trace
+
+
+def ask(environment: dict[str, str], *arguments: str, seconds: float = 30.0) -> str:
+    """What `ros2` prints.  Without its daemon, which would keep what it has seen in other domains."""
+    done = subprocess.run(
+        ["ros2", *arguments], env=environment, capture_output=True, text=True, check=False, timeout=seconds
+    )
+    return done.stdout
+
+
+def test_ros2_lists_the_node_and_its_topics(robot: Path, ros: dict[str, str]) -> None:
+    assert NODE in ask(ros, "node", "list", "--no-daemon", "--spin-time", "4").split()
+    topics = ask(ros, "topic", "list", "-t", "--no-daemon", "--spin-time", "4").splitlines()
+    for topic in ("pan_publisher", "tilt_publisher", "pan_subscriber", "tilt_subscriber"):
+        assert f"/robot_7/{topic} [std_msgs/msg/Float64]" in topics
+    assert "/robot_7/JIWY_node/enable [std_msgs/msg/Bool]" in topics
+    told = ask(ros, "topic", "info", "--verbose", "/robot_7/pan_publisher", "--no-daemon", "--spin-time", "4")
+    assert "Node name: JIWY_node" in told and "Node namespace: /robot_7" in told
+    assert type_hash("std_msgs/msg/Float64") in told and "RELIABLE" in told
+
+
+def test_ros2_echoes_positions_and_publishes_setpoints(robot: Path, ros: dict[str, str]) -> None:
+    echoed = ask(ros, "topic", "echo", "--once", "/robot_7/pan_publisher", "std_msgs/msg/Float64")
+    assert echoed.startswith("data: ")
+    best_effort = ("--qos-reliability", "best_effort")
+    echoed = ask(ros, "topic", "echo", "--once", *best_effort, "/robot_7/tilt_publisher", "std_msgs/msg/Float64")
+    assert echoed.startswith("data: ")
+    printed = ask(
+        ros, "topic", "pub", "-t", "3", "-w", "1", "/robot_7/pan_subscriber", "std_msgs/msg/Float64", "data: 0.5"
+    )
+    assert "publishing #3" in printed
+
+
+RCLPY = """
+import sys, time
+import rclpy
+from diagnostic_msgs.msg import DiagnosticArray
+from std_msgs.msg import Bool, Float64
+
+rclpy.init()
+node = rclpy.create_node("default_qos")
+heard, told = [], []
+node.create_subscription(Float64, "/robot_7/pan_publisher", heard.append, 10)
+node.create_subscription(DiagnosticArray, "/diagnostics", told.append, 10)
+enable = node.create_publisher(Bool, "/robot_7/JIWY_node/enable", 10)
+end = time.monotonic() + 20
+while time.monotonic() < end and (len(heard) < 60 or not told or told[-1].status[0].message != "disabled"):
+    rclpy.spin_once(node, timeout_sec=0.1)
+    if len(heard) == 30:
+        enable.publish(Bool(data=False))
+print(len(heard), told[-1].status[0].message if told else "nothing")
+"""
+
+
+def test_a_node_of_rclpy_with_default_qos(robot: Path, ros: dict[str, str]) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", RCLPY], env=ros, capture_output=True, text=True, check=False, timeout=60
+    )
+    if "No module named 'rclpy'" in done.stderr:
+        pytest.skip("ROS 2 is not sourced for this Python: run the tests with the system's")
+    heard, state = done.stdout.split()
+    assert int(heard) >= 60 and state == "disabled"
