@@ -1,0 +1,6 @@
+"""What `firmware` can be asked (enum request of its src/main.c)."""
+
+READ, FETCH, PRESET, WATCH, SUSPEND, RESUME, SKIPPED, POKE = range(1, 9)
+
+EIO, EHOSTDOWN = 5, 117
+"""Error numbers of newlib and of Zephyr's own C library."""

@@ -1,0 +1,120 @@
+"""A Zephyr workspace on this computer, and builds in it, in folders of EPG's cache that are used again.
+
+>>> # skip_if_missing(partial(workspace, "rpi_pico"), arm_gcc)
+>>> # build("tests/zephyr/firmware", "rpi_pico") / "zephyr" / "zephyr.elf"
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from epg.bootstrap import cache_folder
+from tests.emulator.toolchain import ROOT, Missing, arm_gcc, locked, tool
+
+NATIVE = "native_sim/native/64"
+"""native_sim of 64 bits, which needs no 32-bit libraries on the host."""
+
+HALS = {"rpi_pico": "rpi_pico", "rpi_pico2/rp2350a/m33": "rpi_pico", "nucleo_h743zi": "stm32"}
+"""The vendor's module that a board needs; CMSIS comes with it."""
+
+PYTHON_NEEDS = "elftools, packaging, pykwalify, west, yaml"
+"""Modules that Zephyr's build imports (its scripts/requirements-base.txt)."""
+
+
+class BuildError(Exception):
+    """CMake or a compiler has failed; the message is what they said."""
+
+
+@dataclass(frozen=True)
+class Workspace:
+    """Zephyr, the Python for its scripts, and the modules beside it, EPG's last."""
+
+    base: Path
+    python: Path
+    modules: tuple[Path, ...]
+
+    def environment(self) -> dict[str, str]:
+        """For CMake and twister: Zephyr's Python first, and nothing of the tests' own."""
+        environment = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "PYTHONHOME")}
+        environment["ZEPHYR_BASE"] = str(self.base)
+        environment["PATH"] = os.pathsep.join([str(self.python.parent), environment.get("PATH", "")])
+        if "ZEPHYR_TOOLCHAIN_VARIANT" not in environment:
+            environment["ZEPHYR_TOOLCHAIN_VARIANT"] = "gnuarmemb"
+            environment["GNUARMEMB_TOOLCHAIN_PATH"] = str(arm_gcc().parent.parent)
+        return environment
+
+
+def workspace(*boards: str) -> Workspace:
+    """The workspace, with what ``boards`` need.  Raises :class:`Missing`."""
+    base = tool("zephyr")
+    modules = []
+    for name in ("cmsis", "cmsis_6", *dict.fromkeys(HALS[board] for board in boards if board in HALS)):
+        module = base.parent / "modules" / "hal" / name
+        if (module / "zephyr" / "module.yml").is_file():
+            modules.append(module)
+        elif not name.startswith("cmsis"):
+            raise Missing(f"Zephyr's module hal_{name} is not in the workspace: cd {base.parent} && west update")
+    if shutil.which("dtc") is None:
+        raise Missing("Zephyr's build needs dtc: apt install device-tree-compiler")
+    return Workspace(base, _python(base), (*modules, ROOT))
+
+
+def _python(base: Path) -> Path:
+    """A Python with what Zephyr's scripts import: this one, west's, or that of the workspace's environment."""
+    candidates = [Path(sys.executable)]
+    west = shutil.which("west")
+    if west is not None:
+        candidates.append(Path(west).parent / "python")
+    candidates.append(base.parent / ".venv" / "bin" / "python")
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    for python in candidates:
+        if python.exists():
+            command = [str(python), "-c", f"import {PYTHON_NEEDS}"]
+            if subprocess.run(command, capture_output=True, check=False, env=environment).returncode == 0:
+                return python
+    requirements = base / "scripts" / "requirements-base.txt"
+    raise Missing(f"Zephyr's Python packages are not installed: python -m pip install west -r {requirements}")
+
+
+def build(
+    application: str | Path,
+    board: str,
+    *,
+    settings: Mapping[str, str] | None = None,
+    modules: Sequence[Path] | None = None,
+    keep_going: bool = False,
+) -> Path:
+    """Configures and builds an application (a path in the repository, or anywhere); returns the build folder.
+
+    ``modules`` instead of the workspace's own; ``keep_going`` after the first file that does not compile.  Raises
+    :class:`BuildError` and :class:`Missing`.
+    """
+    here = workspace(board)
+    source = (ROOT / application).resolve()
+    given = dict(settings or {})
+    given["ZEPHYR_MODULES"] = ";".join(str(path) for path in (here.modules if modules is None else modules))
+    key = repr((str(source), board, str(here), sorted(given.items())))
+    digest = hashlib.sha256(key.encode()).hexdigest()[:16]
+    folder = cache_folder() / "test-build" / f"zephyr-{source.name}-{board.replace('/', '-')}-{digest}"
+    with locked(folder):
+        if not (folder / "build.ninja").is_file():
+            shutil.rmtree(folder, ignore_errors=True)
+            command = ["cmake", "-G", "Ninja", "-S", str(source), "-B", str(folder), f"-DBOARD={board}"]
+            run([*command, *(f"-D{name}={value}" for name, value in given.items())], here)
+        run(["cmake", "--build", str(folder), "--", "-j2", *(["-k0"] if keep_going else [])], here)
+    return folder
+
+
+def run(command: Sequence[str], here: Workspace) -> str:
+    """Runs a command in the workspace's environment; what it said.  Raises :class:`BuildError`."""
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=here.environment())
+    if done.returncode != 0:
+        raise BuildError(f"{' '.join(command)}\n{done.stdout}\n{done.stderr}")
+    return done.stdout + done.stderr
