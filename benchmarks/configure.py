@@ -58,6 +58,7 @@ def copied(output: Path) -> str:
     command += ["--model", JIWY / "model", "--bindings", JIWY / "jiwy.bindings.yaml"]
     run([*command, "--output", output])
     runtime, host = ROOT / "targets" / "runtime", ROOT / "targets" / "platforms" / "host"
+    console = ROOT / "targets" / "middlewares" / "console"
     platform = [path for path in sorted((host / "src").glob("*.c")) if path.name != "main.c"]
     exported = [output / "jiwy_model_export.c", *sorted((JIWY / "model").glob("*.c"))]
     kinds = [str(path) for path in sorted((ROOT / "targets" / "components").iterdir()) if path.is_dir()]
@@ -66,6 +67,9 @@ target_include_directories(epg_runtime PUBLIC "{runtime / "include"}")
 add_library(epg_host STATIC EXCLUDE_FROM_ALL {listed(platform)})
 target_include_directories(epg_host PUBLIC "{host / "include"}")
 target_link_libraries(epg_host PUBLIC epg_runtime -pthread m)
+add_library(console STATIC EXCLUDE_FROM_ALL {listed(sorted(console.glob("*.c")))})
+target_include_directories(console PUBLIC "{console}")
+target_link_libraries(console PUBLIC epg_runtime)
 add_library(export OBJECT EXCLUDE_FROM_ALL {listed(exported)})
 target_include_directories(export PRIVATE "{JIWY / "model"}" "{output}")
 target_compile_options(export PRIVATE -w "SHELL:-include {output / "jiwy_model_names.h"}")
@@ -73,7 +77,7 @@ add_library(model STATIC "{output / "jiwy_model.c"}" $<TARGET_OBJECTS:export>)
 target_include_directories(model PUBLIC "{output}")
 add_library(jiwy STATIC {listed(sorted(output / f"jiwy_{part}.c" for part in ("app", "host", "version")))})
 target_include_directories(jiwy PRIVATE {" ".join(kinds)})
-target_link_libraries(jiwy PUBLIC epg_host model)
+target_link_libraries(jiwy PUBLIC epg_host model console)
 """
 
 

@@ -34,25 +34,27 @@ FEWEST_CHANGES = 1000
 
 
 def main() -> None:
-    options = arguments(__doc__, seeds=20, milliseconds=3000, programs=5, loads=4)
+    options = arguments(__doc__, seeds=20, comparison=20, milliseconds=3000, programs=5, loads=4)
+    seeds = {True: range(options.seeds), False: range(options.comparison)}  # of EPG's programs, of those by hand
     try:
         for need in (pico_sdk, arm_gcc, node, rp2040js, freertos_kernel):
             need()
     except Missing as missing:
         raise SystemExit(str(missing)) from None
     measured = [
-        (program, load, measure_many(program, load, range(options.seeds), options.milliseconds / 1000))
+        (program, load, measure_many(program, load, seeds[is_ours(program)], options.milliseconds / 1000))
         for program, load in chosen(options.programs, options.loads)
     ]
     rows = [row(program, load, timing) for program, load, timing in measured]
-    ours = [timing for program, _, timing in measured if program.title.startswith("EPG")]
+    ours = [timing for program, _, timing in measured if is_ours(program)]
     notes = [
         "Deviations from t0 + k T in cycles of 8 ns, smallest ... largest, and the share of cycles that deviate. "
         "Entry: the first instruction of the tick's handler. Encoders: the start of each read. Written: the end of the "
         "last PWM write, in microseconds from the tick. Output: the PWM wrap (every 6,250 cycles) at which a level "
         "takes effect, against the wrap at which most do.",
-        f"Each row: {options.seeds} USB hosts with random phase and a clock within 500 ppm, "
-        f"{options.milliseconds / 1000:g} s from reset each. Flooded: packets both ways as fast as USB takes them.",
+        f"EPG's rows: {options.seeds} USB hosts with random phase and a clock within 500 ppm, the others: "
+        f"{options.comparison} of them; {options.milliseconds / 1000:g} s from reset each. Flooded: packets both ways "
+        "as fast as USB takes them.",
         *judged(ours),
         NOT_HARDWARE,
     ]
@@ -68,6 +70,10 @@ def chosen(programs: int, loads: int) -> Iterator[tuple[Program, Load]]:
     for make in [*ours, *hands][:programs]:
         for load in LOADS[:loads]:
             yield make(load), load
+
+
+def is_ours(program: Program) -> bool:
+    return program.title.startswith("EPG")
 
 
 def row(program: Program, load: Load, timing: Timing) -> list[str]:
