@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import epg
-from epg.check.configuration import Configuration
+from epg.check.configuration import CONSOLE, Configuration
 from epg.check.names import identifier_problem
 from epg.data import data_folder, targets_roots
 from epg.diagnostics import Diagnostics, did_you_mean
@@ -22,6 +22,7 @@ from epg.emit.bindings import new_bindings
 from epg.emit.folder import write_folder
 from epg.emit.project import ProjectPlan, StandIn, project_files, project_folder, project_names
 from epg.load.catalog import Catalog, Target
+from epg.load.middleware import Middleware
 from epg.load.models import Model, load_model
 from epg.load.tcf import predefined_tcf_names
 from epg.load.tools import load_tools
@@ -67,7 +68,8 @@ class NewProject:
 class _Base:
     """What a project begins with: a target, with the predefined configuration ``extends`` if one was named.
 
-    ``middleware`` is the one to write into the project's ``.tcf``, empty where the configuration's own stays.
+    ``middleware`` is the one to write into the project's ``.tcf``, empty where the configuration's own stays, when
+    ``written`` is None.
     """
 
     target: Target
@@ -75,6 +77,7 @@ class _Base:
     extends: str
     configuration: Configuration | None
     middleware: str
+    written: Middleware | None
 
 
 def new_project(request: ProjectRequest, diagnostics: Diagnostics) -> NewProject | None:
@@ -136,7 +139,8 @@ def _find_base(request: ProjectRequest, catalog: Catalog, diagnostics: Diagnosti
         diagnostics.error("no-project", _argument(name), message, hint=hint)
         return None
     middleware = _choose_middleware(target, configuration, request.middleware, catalog, diagnostics)
-    return _Base(target, templates, extends, configuration, middleware)
+    written = catalog.find_middleware(middleware) if middleware else None
+    return _Base(target, templates, extends, configuration, middleware, written)
 
 
 def _choose_middleware(
@@ -146,7 +150,7 @@ def _choose_middleware(
     catalog: Catalog,
     diagnostics: Diagnostics,
 ) -> str:
-    """The one ``wanted``; else "" where the configuration's own has code; else one that a person can type."""
+    """The one ``wanted``; else "" where the configuration's own has code; else the platform's first that has."""
     offered = target.platform.middlewares
     if wanted is not None:
         if wanted not in offered:
@@ -157,7 +161,7 @@ def _choose_middleware(
     if configuration is not None and configuration.communication.middleware.builds:
         return ""
     good = [name for name in offered if (found := catalog.find_middleware(name)) is not None and found.builds]
-    return "console" if "console" in good else next(iter(good), "none")
+    return next(iter(good), "none")
 
 
 def _model_files(request: ProjectRequest, model: Model, diagnostics: Diagnostics) -> tuple[str, dict[str, bytes]]:
@@ -182,7 +186,11 @@ def _plan(name: str, base: _Base, model: Model, place: str, request: ProjectRequ
     target, configuration = base.target, base.configuration
     transports = target.platform.middlewares.get(base.middleware, ())
     components = list(configuration.components.values()) if configuration is not None else []
-    kept = configuration.communication.middleware.name if configuration is not None else ""
+    middleware = base.written or (configuration.communication.middleware if configuration is not None else None)
+    node = middleware is not None and middleware.is_node
+    beside = node and CONSOLE in target.platform.middlewares
+    if configuration is not None and base.written is None:
+        beside = configuration.communication.console is not None
     tools = load_tools(request.roots, Diagnostics())
     return ProjectPlan(
         name=name,
@@ -190,7 +198,8 @@ def _plan(name: str, base: _Base, model: Model, place: str, request: ProjectRequ
         extends=base.extends,
         middleware=base.middleware,
         transport=transports[0] if transports else "null",
-        console=(base.middleware or kept) == "console",
+        console=beside or (middleware is not None and middleware.name == CONSOLE),
+        node=node,
         model=place,
         model_name=model.name,
         stand_ins=(),

@@ -32,7 +32,8 @@ class ProjectPlan:
     """What templates know of a project.
 
     ``extends`` is the predefined ``.tcf`` it builds on, empty for one that begins with ``stand_ins``.  ``middleware``
-    and ``transport`` are empty where those of ``extends`` stay; ``console``: a person can type to the firmware.
+    and ``transport`` are empty where those of ``extends`` stay; ``console``: a person can type to the firmware;
+    ``node``: it is a node of ROS 2.
     ``model`` is the model's place relative to the project, ``versions`` those of EPG and of the tools, by name.
     """
 
@@ -42,6 +43,7 @@ class ProjectPlan:
     middleware: str
     transport: str
     console: bool
+    node: bool
     model: str
     model_name: str
     stand_ins: Sequence[StandIn]

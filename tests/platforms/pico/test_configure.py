@@ -26,7 +26,7 @@ epg_add_target(jiwy TCF rpi_pico_{{platform}}_jiwy.tcf MODEL {ROOT}/examples/jiw
 EXECUTABLE = """
 epg_add_executable(jiwy_firmware EPG::jiwy)
 """
-NONE = "communication.middleware=none communication.transport=null"
+NONE = "communication.middleware=none communication.transport=null communication.console=null"
 CONSOLE = "communication.middleware=console"
 
 
