@@ -18,7 +18,7 @@ HERE = Path(__file__).resolve().parent
 SANITIZERS = "-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all"
 
 
-def build(project: str, folder: Path, flags: str) -> Path:
+def build(project: str, folder: Path, flags: str, *settings: str) -> Path:
     """The folder with the executables."""
     try:
         libraries()
@@ -27,7 +27,7 @@ def build(project: str, folder: Path, flags: str) -> Path:
     for tool, package in (("cmake", "cmake"), ("ninja", "ninja-build")):
         if not shutil.which(tool):
             pytest.skip(f"{tool} is missing: apt install {package}")
-    options = [f"-DPython3_EXECUTABLE={sys.executable}", f"-DCMAKE_C_FLAGS={flags}"]
+    options = [f"-DPython3_EXECUTABLE={sys.executable}", f"-DCMAKE_C_FLAGS={flags}", *settings]
     for command in (
         ["cmake", "-S", str(HERE / project), "-B", str(folder), "-G", "Ninja", *options],
         ["cmake", "--build", str(folder)],

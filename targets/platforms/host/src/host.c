@@ -133,13 +133,10 @@ static int run_with_link(const epg_host_target_t *host, const epg_host_options_t
     if (host->agent == NULL || !options->realtime) {
         return run_with_terminal(host, options, events, outputs, NULL);
     }
-    agent = agent != NULL ? agent : host->agent;
-    if (agent != options->device && epg_host_link_is_address(agent)) {
-        if (!epg_host_link_udp(&link, agent)) {
-            return FAILED;
-        }
-    } else {
-        epg_host_link_serial(&link, agent, host->baud_rate);
+    if (options->device != NULL) {
+        epg_host_link_serial(&link, options->device, host->baud_rate);
+    } else if (!epg_host_link_open(&link, agent != NULL ? agent : host->agent, host->baud_rate)) {
+        return FAILED;
     }
     const int status = run_with_terminal(host, options, events, outputs, &link);
     epg_host_link_close(&link);

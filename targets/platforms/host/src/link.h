@@ -33,6 +33,9 @@ bool epg_host_link_udp(epg_host_link_t *link, const char *address);
 /** To the terminal `device`, as soon as it is there. */
 void epg_host_link_serial(epg_host_link_t *link, const char *device, uint32_t baud_rate);
 
+/** To `agent`, HOST:PORT or a terminal; false, with a message, if there is no such host. */
+bool epg_host_link_open(epg_host_link_t *link, const char *agent, uint32_t baud_rate);
+
 void epg_host_link_close(epg_host_link_t *link);
 
 #endif

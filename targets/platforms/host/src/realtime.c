@@ -215,27 +215,80 @@ bool epg_host_run_realtime(epg_host_run_t *run)
 
 /* In a program with its own main() ----------------------------------------------------------------------------- */
 
-static epg_host_run_t own_run;
-static control_thread_t own_control;
-static bool own_running;
+static struct {
+    bool running;
+    epg_host_run_t run;
+    control_thread_t control;
+    epg_host_link_t link;
+    pthread_t communication;
+    bool communicates;
+    atomic_bool stop;
+} own;
+
+/** Serves the middleware until the program stops the target. */
+static void *communication_main(void *argument)
+{
+    (void)argument;
+    epg_host_services_start(&own.run.services);
+    while (!atomic_load(&own.stop)) {
+        epg_control_alive(own.run.host->target->control);
+        epg_host_services_serve(&own.run.services, UINT64_MAX);
+    }
+    epg_host_services_stop(&own.run.services);
+    return NULL;
+}
+
+/** A thread for the target's middleware, if it has one that is connected to something; false if that fails. */
+static bool start_communication(const epg_host_target_t *host)
+{
+    own.run.services.target = host->target;
+    if (!epg_host_is_connected(host)) {
+        return true;
+    }
+    if (host->agent != NULL) {
+        if (!epg_host_link_open(&own.link, host->agent, host->baud_rate)) {
+            return false;
+        }
+        own.run.services.link = &own.link;
+    }
+    atomic_init(&own.stop, false);
+    own.communicates = pthread_create(&own.communication, NULL, communication_main, NULL) == 0;
+    return own.communicates;
+}
+
+static void stop_communication(void)
+{
+    if (own.communicates) {
+        atomic_store(&own.stop, true);
+        pthread_join(own.communication, NULL);
+        own.communicates = false;
+    }
+    if (own.run.services.link != NULL) {
+        epg_host_link_close(own.run.services.link);
+    }
+}
 
 bool epg_host_start(const epg_host_target_t *host)
 {
-    if (own_running) {
+    if (own.running) {
         return false;
     }
-    own_run = (epg_host_run_t){.host = host, .end_ns = UINT64_MAX};
-    epg_host_run_start(&own_run, host->target->application);
-    own_running = start_thread(&own_control, &own_run);
-    return own_running;
+    own.run = (epg_host_run_t){.host = host, .end_ns = UINT64_MAX};
+    epg_host_run_start(&own.run, host->target->application);
+    own.running = start_communication(host) && start_thread(&own.control, &own.run);
+    if (!own.running) {
+        stop_communication();
+    }
+    return own.running;
 }
 
 void epg_host_stop(void)
 {
-    if (own_running) {
-        atomic_store(&own_control.stop, true);
-        join_thread(&own_control);
-        own_running = false;
+    if (own.running) {
+        stop_communication();
+        atomic_store(&own.control.stop, true);
+        join_thread(&own.control);
+        own.running = false;
     }
 }
 

@@ -23,6 +23,15 @@ bool epg_host_link_is_address(const char *text)
     return *end == '\0' && port > 0 && port <= 65535;
 }
 
+bool epg_host_link_open(epg_host_link_t *link, const char *agent, uint32_t baud_rate)
+{
+    if (agent[0] != '/' && epg_host_link_is_address(agent)) {
+        return epg_host_link_udp(link, agent);
+    }
+    epg_host_link_serial(link, agent, baud_rate);
+    return true;
+}
+
 #if defined(__linux__)
 
 #include <errno.h>
