@@ -24,7 +24,7 @@
 #endif
 
 /**
- * Bytes of core 1's stack; epg_pico_status() tells how many are used.  Measured on RP2040 with JIWY, all that the console
+ * Bytes of core 1's stack; epg_pico_status() tells how many are used.  Measured on RP2040 with JIWY, all the console
  * can do, and USB flooded: 528.  The rest is for models that need more: nothing else lies in SCRATCH_X.
  */
 #ifndef EPG_PICO_CONTROL_STACK_SIZE
