@@ -36,8 +36,10 @@ static struct {
     size_t in_taken;
     uint8_t out[LINE]; /* bytes of a frame of the board */
     size_t out_size;
+    bool out_escaped;
     uint8_t damage_at;
-    uint8_t damage; /* exclusive or of one byte of the next frame from the agent; 0: none */
+    unsigned int since_beat; /* ms */
+    uint8_t damage;          /* exclusive or of one byte of the next frame from the agent; 0: none */
 } line;
 
 static agent_t agent;
@@ -130,20 +132,19 @@ static size_t read_line(void *context, void *data, size_t size)
 /** Takes stuffed bytes of the board apart. */
 static void take_out(uint8_t byte)
 {
-    static bool escaped;
     if (byte == BEGIN) {
         line.out_size = 0;
-        escaped = false;
+        line.out_escaped = false;
         return;
     }
     if (byte == ESCAPE) {
-        escaped = true;
+        line.out_escaped = true;
         return;
     }
     if (line.out_size < LINE) {
-        line.out[line.out_size++] = escaped ? byte ^ XOR : byte;
+        line.out[line.out_size++] = line.out_escaped ? byte ^ XOR : byte;
     }
-    escaped = false;
+    line.out_escaped = false;
     if (line.out_size >= 4 && line.out_size == 6U + line.out[2] + 256U * line.out[3]) {
         agent_receive(&agent, line.out + 4, line.out_size - 6);
         line.out_size = 0;
@@ -301,7 +302,9 @@ static void start(bool datagrams)
     fake.application.monitor_count = MONITORED;
     fake.application.monitor_values = monitor_values;
     fake.application.monitor_exchange = &monitor_exchange;
-    memset(&line, 0, sizeof line);
+    line.in_size = line.in_taken = line.out_size = 0;
+    line.damage = 0;
+    line.since_beat = 0;
     memset(&agent, 0, offsetof(agent_t, sent));
     agent.queued = agent.taken = agent.readers = agent.written = 0;
     line.datagrams = datagrams;
@@ -323,14 +326,13 @@ static void start(bool datagrams)
 /** A cycle and a poll, `milliseconds` after the last. */
 static void step(unsigned int milliseconds)
 {
-    static unsigned int since_beat;
     fake_port.now_ns += (milliseconds - 1) * MS;
     fake.tick = fake_port.now_ns / FAKE_PERIOD_NS;
     fake_cycle();
     epg_xrce.poll(fake_port.now_ns);
-    since_beat += milliseconds;
-    if (since_beat >= 200) {
-        since_beat = 0;
+    line.since_beat += milliseconds;
+    if (line.since_beat >= 200) {
+        line.since_beat = 0;
         agent_beat(&agent);
     }
 }

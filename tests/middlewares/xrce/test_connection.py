@@ -228,7 +228,7 @@ def test_duplicates_and_another_order(robot: Path, agent: Agent) -> None:
 
 @pytest.mark.parametrize(("delay", "sessions"), [(0.06, 1), (0.15, 5)])
 def test_a_slow_line(robot: Path, agent: Agent, delay: float, sessions: int) -> None:
-    """So many seconds to the agent, and the same back; where an answer takes longer than its patience, it asks again."""
+    """Seconds to the agent, and the same back; where an answer takes longer than a board waits, it asks again."""
     agent.to_board.delay = agent.from_board.delay = (delay, delay)
     with Board(robot, agent) as board:
         board.running()

@@ -1,0 +1,57 @@
+"""A board that has to connect again and again: what that costs it."""
+
+from __future__ import annotations
+
+import statistics
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from tests.xrce_agent import Agent
+
+from .board import PATIENCE, Board
+
+
+@dataclass
+class Account:
+    """Of each turn: resident bytes, open descriptors, and seconds from the agent's start to the first sample."""
+
+    memory: list[int] = field(default_factory=list)
+    descriptors: list[int] = field(default_factory=list)
+    latency: list[float] = field(default_factory=list)
+
+
+def reconnect(robot: Path, agent: Agent, count: int) -> Account:
+    """Restarts the agent ``count`` times; asserts that all was counted, and that the loop has gone on."""
+    account = Account()
+    with Board(robot, agent) as board:
+        board.running()
+        first_time, first = board.timed("cycles_too")[-1]
+        for turn in range(count):
+            agent.topics.clear()
+            agent.log.clear()
+            agent.restart()
+            account.latency.append(board.running())
+            value = turn / 1024
+            end = time.monotonic() + PATIENCE
+            while board.values("got_reliable")[-1:] != [value]:
+                assert time.monotonic() < end, f"no setpoint arrives in turn {turn}:\n{agent.tail()}"
+                board.set("reliable", value)
+                time.sleep(0.005)
+            account.memory.append(board.memory())
+            account.descriptors.append(board.descriptors())
+        agent.wait_until(lambda: board.statistic("reconnects") == count)
+        last_time, last = board.timed("cycles_too")[-1]
+        missed = board.statistic("missed")
+        assert abs(last + missed - first - (last_time - first_time) * 1000) < 100
+        assert board.stop() == ""
+    return account
+
+
+def check(account: Account, warm: int) -> None:
+    """Nothing grows after the first ``warm`` turns."""
+    assert max(account.memory[warm:]) - account.memory[warm] <= 256 * 1024
+    assert set(account.descriptors[warm:]) == {account.descriptors[warm]}
+    half = (len(account.latency) + warm) // 2
+    before, after = statistics.median(account.latency[warm:half]), statistics.median(account.latency[half:])
+    assert after < 1.5 * before + 0.05, (before, after)

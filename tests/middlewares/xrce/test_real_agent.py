@@ -1,0 +1,173 @@
+"""The board, eProsima's agent with Fast DDS, and a peer with CycloneDDS that looks like a ROS 2 node."""
+
+from __future__ import annotations
+
+import itertools
+import signal
+import subprocess
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from tests.emulator.toolchain import Missing
+from tests.xrce_agent.ptys import Cable
+from tests.xrce_agent.real_agent import RealAgent, free_domain, on_loopback, program
+
+pytest.importorskip("cyclonedds", reason="CycloneDDS for Python is not installed: python -m pip install cyclonedds")
+
+from cyclonedds.builtin import BuiltinDataReader, BuiltinTopicDcpsParticipant
+from cyclonedds.core import Policy
+
+from tests.ros2.messages import Bool_, DiagnosticArray_, Float64_, numbers
+from tests.ros2.peer import Peer, Publisher, Subscription
+
+
+@pytest.fixture(autouse=True)
+def _agent_program() -> None:
+    try:
+        program()
+    except Missing as missing:
+        pytest.skip(str(missing))
+
+
+@contextmanager
+def board(robot: Path, *way: str) -> Iterator[subprocess.Popen[str]]:
+    command = [str(robot), "--realtime", "--quiet", *way]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    try:
+        yield process
+    finally:
+        process.kill()
+        process.communicate()
+
+
+def stop(process: subprocess.Popen[str]) -> str:
+    """What it has said: nothing, unless a sanitizer has found something."""
+    process.terminate()
+    return process.communicate(timeout=20)[0]
+
+
+def check_alive(peer: Peer, commands: Publisher, answers: Subscription, value: float, seconds: float = 20.0) -> float:
+    """A setpoint goes to the board and its answer comes back; returns how long that took."""
+    began = time.monotonic()
+    seen = len(answers.messages)
+
+    def done() -> bool:
+        commands.publish(Float64_(value))
+        return value in numbers(answers.messages[seen:])
+
+    assert peer.spin_until(done, seconds)
+    return time.monotonic() - began
+
+
+def test_a_peer_sees_a_node_with_its_topics(robot: Path, tmp_path: Path) -> None:
+    with on_loopback(), RealAgent.udp(tmp_path) as agent, Peer(agent.domain, "peer") as peer:
+        reliable, answers = peer.publisher("/lab/reliable", Float64_), peer.subscription("/lab/got_reliable", Float64_)
+        quick, quick_answers = (
+            peer.publisher("/lab/quick", Float64_, reliable=False),
+            peer.subscription("/lab/got_quick", Float64_, reliable=False),
+        )
+        hopeless = peer.subscription("/lab/got_quick", Float64_, reliable=True)
+        diagnostics = peer.subscription("/diagnostics", DiagnosticArray_)
+        with board(robot, "--serial", "9", "--agent", agent.address) as process:
+            check_alive(peer, reliable, answers, 0.5)
+            check_alive(peer, quick, quick_answers, 0.75)
+            assert hopeless.messages == [] and hopeless.refused_for == "RELIABILITY"
+            assert peer.spin_until(lambda: len(diagnostics.messages) > 2)
+            status = diagnostics.messages[-1].status[0]
+            assert (status.name, status.level, status.message) == ("robot_9", 0, "enabled")
+            stamp = diagnostics.messages[-1].header.stamp
+            assert abs(stamp.sec + stamp.nanosec / 1e9 - time.time()) < 1.0
+            theirs = {(end.topic, end.type, end.reliable) for end in peer.graph.publications()}
+            assert theirs >= {
+                ("/lab/got_reliable", "std_msgs/msg/Float64", True),
+                ("/lab/got_quick", "std_msgs/msg/Float64", False),
+                ("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray", True),
+            }
+            participants = BuiltinDataReader(peer._participant, BuiltinTopicDcpsParticipant)
+            names = {s.qos[Policy.EntityName].name for s in participants.read(20) if Policy.EntityName in s.qos}
+            assert "robot_9" in names
+            enable = peer.publisher("/lab/robot_9/enable", Bool_)
+            assert peer.spin_until(lambda: enable.matched == 1)
+            enable.publish(Bool_(False))
+            assert peer.spin_until(lambda: diagnostics.messages[-1].status[0].level == 1)
+            assert stop(process) == ""
+        assert peer.spin_until(lambda: reliable.matched == 0)  # the board has taken leave
+
+
+def test_the_period_is_kept(robot: Path, tmp_path: Path) -> None:
+    with on_loopback(), RealAgent.udp(tmp_path) as agent, Peer(agent.domain, "peer") as peer:
+        cycles = peer.subscription("/lab/cycles", Float64_, depth=200)
+        with board(robot, "--agent", agent.address) as process:
+            assert peer.spin_until(lambda: len(cycles.messages) > 5)
+            seen = len(cycles.messages)
+            peer.spin(2.0)
+            values = numbers(cycles.messages[seen:])
+            assert abs(len(values) - 100) <= 6
+            steps = sorted(after - before for before, after in itertools.pairwise(values))
+            assert steps[len(steps) // 2] == 20
+            assert stop(process) == ""
+
+
+def test_it_is_killed_and_started_again(robot: Path, tmp_path: Path) -> None:
+    with on_loopback(), RealAgent.udp(tmp_path) as agent, Peer(agent.domain, "peer") as peer:
+        commands, answers = peer.publisher("/lab/reliable", Float64_), peer.subscription("/lab/got_reliable", Float64_)
+        diagnostics = peer.subscription("/diagnostics", DiagnosticArray_)
+        with board(robot, "--agent", agent.address) as process:
+            check_alive(peer, commands, answers, 0.5)
+            for turn in range(5):
+                agent.restart()
+                check_alive(peer, commands, answers, 1.0 + turn / 8)
+            values = {}
+
+            def counted() -> bool:
+                if diagnostics.messages:
+                    values.update({pair.key: pair.value for pair in diagnostics.messages[-1].status[0].values})
+                return values.get("reconnects") == "5"
+
+            assert peer.spin_until(counted)
+            assert values["faults"] == "0"
+            assert stop(process) == ""
+
+
+def test_it_is_stopped_for_a_while(robot: Path, tmp_path: Path) -> None:
+    with on_loopback(), RealAgent.udp(tmp_path) as agent, Peer(agent.domain, "peer") as peer:
+        commands, answers = peer.publisher("/lab/reliable", Float64_), peer.subscription("/lab/got_reliable", Float64_)
+        with board(robot, "--agent", agent.address) as process:
+            check_alive(peer, commands, answers, 0.5)
+            agent.signal(signal.SIGSTOP)
+            peer.spin(2.5)
+            agent.signal(signal.SIGCONT)
+            check_alive(peer, commands, answers, 0.75)
+            assert stop(process) == ""
+
+
+@pytest.mark.parametrize("way", ["killed", "stopped"])
+def test_the_board_is_restarted(robot: Path, tmp_path: Path, way: str) -> None:
+    """Under setpoints all the time."""
+    with on_loopback(), RealAgent.udp(tmp_path) as agent, Peer(agent.domain, "peer") as peer:
+        commands, answers = peer.publisher("/lab/reliable", Float64_), peer.subscription("/lab/got_reliable", Float64_)
+        for turn in range(5):
+            with board(robot, "--agent", agent.address) as process:
+                check_alive(peer, commands, answers, 1.0 + turn / 8)
+                if way == "killed":
+                    process.kill()
+                else:
+                    assert stop(process) == ""
+
+
+def test_on_a_serial_line(robot: Path, tmp_path: Path) -> None:
+    with on_loopback(), Cable() as cable:
+        agent = RealAgent(["serial", "-b", "115200", "-D", cable.ends[0]], free_domain(), tmp_path)
+        with agent, Peer(agent.domain, "peer") as peer:
+            commands = peer.publisher("/lab/reliable", Float64_)
+            answers = peer.subscription("/lab/got_reliable", Float64_)
+            with board(robot, "--serial-device", cable.ends[1]) as process:
+                for turn in range(3):
+                    check_alive(peer, commands, answers, 1.0 + turn / 8)
+                    agent.restart()
+                check_alive(peer, commands, answers, 0.5)
+                assert stop(process) == ""

@@ -1,0 +1,91 @@
+"""Framing, and the middleware with eProsima's client in the clock of a test: each ``TEST(name)`` below ``c/``.
+
+Everything is compiled under sanitizers, the client library as well.
+"""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from tests.emulator.toolchain import Missing
+from tests.middlewares.test_console_c import program
+from tests.xrce_agent.bare import libraries
+
+ROOT = Path(__file__).resolve().parents[3]
+XRCE = ROOT / "targets" / "middlewares" / "xrce"
+HERE = Path(__file__).resolve().parent / "c"
+
+
+@pytest.fixture(scope="session")
+def client(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[str]]:
+    """The client library as EPG compiles it, under sanitizers: the archive, and options for its headers."""
+    try:
+        libraries()
+    except Missing as missing:
+        pytest.skip(str(missing))
+    if not shutil.which("ninja"):
+        pytest.skip("ninja is missing: apt install ninja-build")
+    folder = tmp_path_factory.mktemp("xrce_client")
+    (folder / "CMakeLists.txt").write_text(
+        f"""cmake_minimum_required(VERSION 3.22)
+project(client LANGUAGES C)
+include("{ROOT.as_posix()}/cmake/EPGConfig.cmake")
+include("{XRCE.as_posix()}/middleware.cmake")
+add_library(middleware STATIC "{XRCE.as_posix()}/xrce_clock.c")
+target_include_directories(middleware PRIVATE "{ROOT.as_posix()}/targets/runtime/include")
+_epg_middleware_xrce(middleware)
+set_target_properties(epg_micro_xrce_dds_client PROPERTIES EXCLUDE_FROM_ALL FALSE)
+get_target_property(folders epg_micro_xrce_dds_client INTERFACE_INCLUDE_DIRECTORIES)
+file(WRITE "${{CMAKE_BINARY_DIR}}/folders.txt" "${{folders}}")
+"""
+    )
+    flags = " ".join(["-O1", "-g", *program.ADDRESS_SANITIZER])
+    for command in (
+        ["cmake", "-S", str(folder), "-B", str(folder / "build"), "-G", "Ninja", f"-DCMAKE_C_FLAGS={flags}"],
+        ["cmake", "--build", str(folder / "build"), "--target", "epg_micro_xrce_dds_client"],
+    ):
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stdout + done.stderr
+    folders = (folder / "build" / "folders.txt").read_text().split(";")
+    options = [option for name in folders for option in ("-isystem", name)]
+    return folder / "build" / "libepg_micro_xrce_dds_client.a", options
+
+
+@pytest.fixture(scope="session")
+def link_tests(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    output: Path = program.compile_program(
+        tmp_path_factory.mktemp("xrce_link") / "link_tests",
+        [HERE / "link_tests.c", XRCE / "xrce_link.c"],
+        includes=[XRCE, HERE],
+    )
+    return output
+
+
+@pytest.fixture(scope="session")
+def session_tests(client: tuple[Path, list[str]], tmp_path_factory: pytest.TempPathFactory) -> Path:
+    archive, options = client
+    fakes = [program.SOURCES / "fake_port.c", program.SOURCES / "fake_application.c"]
+    sources = [HERE / "session_tests.c", HERE / "agent.c", *fakes, *sorted(XRCE.glob("*.c")), *program.runtime_sources()]
+    output: Path = program.compile_program(
+        tmp_path_factory.mktemp("xrce_session") / "session_tests",
+        [*sources, archive],
+        options=("-O1", *program.ADDRESS_SANITIZER, *options),
+        includes=[XRCE, HERE],
+    )
+    return output
+
+
+@pytest.mark.parametrize("name", program.names_in(HERE / "link_tests.c"))
+def test_link(link_tests: Path, name: str) -> None:
+    done = program.run_program([link_tests, name])
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("name", program.names_in(HERE / "session_tests.c"))
+def test_session(session_tests: Path, name: str) -> None:
+    done = program.run_program([session_tests, name])
+    assert done.returncode == 0, done.stderr

@@ -1,0 +1,122 @@
+"""eProsima's agent, where there is one: ``EPG_XRCE_AGENT`` names the program, or ``MicroXRCEAgent`` is on ``PATH``.
+
+It is confined to the loopback interface and to one DDS domain, so that tests see nothing of each other.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from tests.emulator.toolchain import Missing
+
+FAST_DDS = """<?xml version="1.0" encoding="UTF-8"?>
+<dds xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles"><profiles>
+<transport_descriptors><transport_descriptor>
+  <transport_id>loopback</transport_id><type>UDPv4</type>
+  <interfaceWhiteList><address>127.0.0.1</address></interfaceWhiteList>
+</transport_descriptor></transport_descriptors>
+<participant profile_name="default" is_default_profile="true"><rtps>
+  <userTransports><transport_id>loopback</transport_id></userTransports>
+  <useBuiltinTransports>false</useBuiltinTransports>
+</rtps></participant>
+</profiles></dds>
+"""
+CYCLONE = (
+    "<CycloneDDS><Domain><General><Interfaces>"
+    '<NetworkInterface address="127.0.0.1" multicast="true"/>'
+    "</Interfaces></General></Domain></CycloneDDS>"
+)
+
+
+def program() -> Path:
+    """The agent; raises :class:`Missing`."""
+    named = os.environ.get("EPG_XRCE_AGENT") or shutil.which("MicroXRCEAgent")
+    if not named or not Path(named).is_file():
+        raise Missing("EPG_XRCE_AGENT does not name eProsima's agent: tests/xrce_agent/README.md says how to get one")
+    return Path(named)
+
+
+def free_port() -> int:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.bind(("127.0.0.1", 0))
+        port: int = probe.getsockname()[1]
+        return port
+
+
+def free_domain() -> int:
+    """One that other test processes hardly have at the same time; ROS 2 allows 0 to 101 on Linux."""
+    return 30 + (os.getpid() + time.time_ns() // 10**9) % 70
+
+
+@contextmanager
+def on_loopback() -> Iterator[None]:
+    """CycloneDDS of this process sees the loopback interface only, in domains that it has not joined before."""
+    before = os.environ.get("CYCLONEDDS_URI")
+    os.environ["CYCLONEDDS_URI"] = CYCLONE
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ["CYCLONEDDS_URI"]
+        else:
+            os.environ["CYCLONEDDS_URI"] = before
+
+
+@dataclass
+class RealAgent:
+    """``arguments`` as "udp4 -p 8888" or "serial -D /dev/pts/3"."""
+
+    arguments: list[str]
+    domain: int
+    folder: Path
+    process: subprocess.Popen[bytes] | None = field(default=None, init=False)
+
+    @classmethod
+    def udp(cls, folder: Path) -> RealAgent:
+        return cls(["udp4", "-p", str(free_port())], free_domain(), folder)
+
+    @property
+    def address(self) -> str:
+        return f"127.0.0.1:{self.arguments[-1]}" if self.arguments[0] == "udp4" else self.arguments[-1]
+
+    def start(self) -> None:
+        profile = self.folder / "fast_dds.xml"
+        profile.write_text(FAST_DDS)
+        environment = {**os.environ, "FASTRTPS_DEFAULT_PROFILES_FILE": str(profile)}
+        environment["XRCE_DOMAIN_ID_OVERRIDE"] = str(self.domain)
+        self.process = subprocess.Popen(
+            [str(program()), *self.arguments],
+            env=environment,
+            stdin=subprocess.PIPE,  # it ends when its input does
+            stdout=subprocess.DEVNULL,
+        )
+
+    def signal(self, number: signal.Signals) -> None:
+        assert self.process is not None
+        self.process.send_signal(number)
+
+    def kill(self) -> None:
+        if self.process is not None:
+            self.process.kill()
+            self.process.communicate()
+            self.process = None
+
+    def restart(self) -> None:
+        self.kill()
+        self.start()
+
+    def __enter__(self) -> RealAgent:
+        self.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.kill()
