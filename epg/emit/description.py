@@ -105,7 +105,9 @@ def describe_divider(found: Assignment) -> dict[str, Any] | None:
 
 
 def _topic(view: TopicView) -> dict[str, Any]:
-    """``values`` are the names of its numbers in CSV files of topics and setpoints."""
+    """``values`` are the names of its numbers in CSV files of topics and setpoints, ``elements`` all that the message
+    has, bound or not.
+    """
     topic = view.topic
     return {
         "topic": topic.name,
@@ -115,6 +117,7 @@ def _topic(view: TopicView) -> dict[str, Any]:
         "depth": topic.depth,
         "role": topic.role,
         "values": [value.name for value in topic.values],
+        "elements": [port.name for port in topic.component.kind.topic_ports] if topic.component else [],
     }
 
 

@@ -5,31 +5,37 @@
 
 from dataclasses import dataclass
 
+import cyclonedds.idl.annotations as annotate
 from cyclonedds.idl import IdlStruct
 from cyclonedds.idl.types import float32, float64, int32, sequence, uint32
 
 
 @dataclass
+@annotate.final
 class Float64(IdlStruct, typename="std_msgs::msg::dds_::Float64_"):
     data: float64
 
 
 @dataclass
+@annotate.final
 class Float32(IdlStruct, typename="std_msgs::msg::dds_::Float32_"):
     data: float32
 
 
 @dataclass
+@annotate.final
 class Int32(IdlStruct, typename="std_msgs::msg::dds_::Int32_"):
     data: int32
 
 
 @dataclass
+@annotate.final
 class Bool(IdlStruct, typename="std_msgs::msg::dds_::Bool_"):
     data: bool
 
 
 @dataclass
+@annotate.final
 class MultiArrayDimension(IdlStruct, typename="std_msgs::msg::dds_::MultiArrayDimension_"):
     label: str
     size: uint32
@@ -37,30 +43,35 @@ class MultiArrayDimension(IdlStruct, typename="std_msgs::msg::dds_::MultiArrayDi
 
 
 @dataclass
+@annotate.final
 class MultiArrayLayout(IdlStruct, typename="std_msgs::msg::dds_::MultiArrayLayout_"):
     dim: sequence[MultiArrayDimension]
     data_offset: uint32
 
 
 @dataclass
+@annotate.final
 class Float64MultiArray(IdlStruct, typename="std_msgs::msg::dds_::Float64MultiArray_"):
     layout: MultiArrayLayout
     data: sequence[float64]
 
 
 @dataclass
+@annotate.final
 class Time(IdlStruct, typename="builtin_interfaces::msg::dds_::Time_"):
     sec: int32
     nanosec: uint32
 
 
 @dataclass
+@annotate.final
 class Header(IdlStruct, typename="std_msgs::msg::dds_::Header_"):
     stamp: Time
     frame_id: str
 
 
 @dataclass
+@annotate.final
 class JointState(IdlStruct, typename="sensor_msgs::msg::dds_::JointState_"):
     header: Header
     name: sequence[str]
@@ -70,6 +81,7 @@ class JointState(IdlStruct, typename="sensor_msgs::msg::dds_::JointState_"):
 
 
 @dataclass
+@annotate.final
 class Vector3(IdlStruct, typename="geometry_msgs::msg::dds_::Vector3_"):
     x: float64
     y: float64
@@ -77,12 +89,14 @@ class Vector3(IdlStruct, typename="geometry_msgs::msg::dds_::Vector3_"):
 
 
 @dataclass
+@annotate.final
 class Twist(IdlStruct, typename="geometry_msgs::msg::dds_::Twist_"):
     linear: Vector3
     angular: Vector3
 
 
 @dataclass
+@annotate.final
 class TwistStamped(IdlStruct, typename="geometry_msgs::msg::dds_::TwistStamped_"):
     header: Header
     twist: Twist

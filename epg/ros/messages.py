@@ -3,16 +3,13 @@
 Works on any object with the fields of the message, so on those of CycloneDDS and of rclpy alike.
 
 >>> from types import SimpleNamespace as Message
->>> numbers("std_msgs/msg/Bool", Message(data=True), [""])
+>>> topic = Topic("joints", "sensor_msgs/msg/JointState", "reliable", "values", ("joints/pan.position",), ())
+>>> numbers(topic, Message(name=["tilt", "pan"], position=[2.0, 1.0], velocity=[], effort=[]))
 [1.0]
->>> joints = Message(name=["tilt", "pan"], position=[2.0, 1.0], velocity=[], effort=[])
->>> numbers("sensor_msgs/msg/JointState", joints, ["pan.position", "pan.velocity"])
-[1.0, None]
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 from epg.ros.robot import Topic
@@ -28,22 +25,27 @@ TYPES = (
 """The types that can be recorded."""
 
 
-def numbers(type: str, message: Any, fields: Sequence[str]) -> list[float | None]:
-    """One number for each of ``fields``; None where the message has none."""
-    if type in SCALARS:
+def numbers(topic: Topic, message: Any) -> list[float | None]:
+    """One number for each of ``topic.values``; None where the message has none."""
+    if topic.type in SCALARS:
         return [float(message.data)]
-    if type == "std_msgs/msg/Float64MultiArray":
-        data = list(message.data)
-        return [float(data[i]) if i < len(data) else None for i in range(len(fields))]
-    if type == "sensor_msgs/msg/JointState":
+    fields = fields_of(topic)
+    if topic.type == "std_msgs/msg/Float64MultiArray":
+        return [_element(message, topic.elements.index(field)) for field in fields]
+    if topic.type == "sensor_msgs/msg/JointState":
         return [_joint(message, field) for field in fields]
-    twist = message.twist if type == "geometry_msgs/msg/TwistStamped" else message
+    twist = message.twist if topic.type == "geometry_msgs/msg/TwistStamped" else message
     return [_component(twist, field) for field in fields]
 
 
 def fields_of(topic: Topic) -> list[str]:
     """What ``topic.values`` name within the message: ``joints/pan.position`` is ``pan.position`` of ``joints``."""
     return [value.removeprefix(topic.name).removeprefix("/") for value in topic.values]
+
+
+def _element(message: Any, index: int) -> float | None:
+    position = message.layout.data_offset + index
+    return float(message.data[position]) if position < len(message.data) else None
 
 
 def _joint(message: Any, field: str) -> float | None:
@@ -55,5 +57,5 @@ def _joint(message: Any, field: str) -> float | None:
 
 
 def _component(twist: Any, field: str) -> float:
-    vector, _, axis = field.partition(".")
+    vector, _, axis = field.partition("_")
     return float(getattr(getattr(twist, vector), axis))

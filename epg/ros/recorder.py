@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TextIO
 
-from epg.ros.messages import TYPES, fields_of, numbers
+from epg.ros.messages import TYPES, numbers
 from epg.ros.robot import Robot, Topic
 from epg.ros.source import Sample, Source, Subscription
 
@@ -113,7 +113,6 @@ class _Count:
 
 def _write(file: TextIO, channel: Channel, sample: Sample, begin: int) -> None:
     seconds = f"{1e-9 * (sample.time_ns - begin):.6f}"
-    values = numbers(channel.topic.type, sample.message, fields_of(channel.topic))
-    for name, value in zip(channel.topic.values, values):
+    for name, value in zip(channel.topic.values, numbers(channel.topic, sample.message)):
         if value is not None:
             file.write(f"{seconds},{name},{value!r}\n")

@@ -21,13 +21,16 @@ SERIAL = "$serial"
 
 @dataclass(frozen=True)
 class Topic:
-    """A topic: ``name`` as written in the ``.tcf``, ``values`` the names of its numbers in CSV files."""
+    """A topic: ``name`` as written in the ``.tcf``, ``values`` the names of its numbers in CSV files, ``elements`` all
+    that its message has.
+    """
 
     name: str
     type: str
     qos: str
     role: str
     values: tuple[str, ...]
+    elements: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -125,4 +128,4 @@ def _robot(file: Path, data: dict[str, Any]) -> Robot:
 
 
 def _topic(data: dict[str, Any]) -> Topic:
-    return Topic(data["topic"], data["type"], data["qos"], data["role"], tuple(data["values"]))
+    return Topic(data["topic"], data["type"], data["qos"], data["role"], tuple(data["values"]), tuple(data["elements"]))

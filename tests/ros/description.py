@@ -9,7 +9,15 @@ from typing import Any
 
 
 def topic(name: str, type: str = "std_msgs/msg/Float64", **more: Any) -> dict[str, Any]:
-    return {"topic": name, "type": type, "qos": "reliable", "role": "values", "values": [name], **more}
+    return {
+        "topic": name,
+        "type": type,
+        "qos": "reliable",
+        "role": "values",
+        "values": [name],
+        "elements": ["value"],
+        **more,
+    }
 
 
 def write_description(

@@ -42,8 +42,9 @@ MESSAGES: dict[str, tuple[Callable[[int], Any], dict[str, Callable[[int], float]
     "std_msgs/msg/Int32": (lambda n: msg.Int32(-n), {"": lambda n: -n}),
     "std_msgs/msg/Bool": (lambda n: msg.Bool(n % 2 == 1), {"": lambda n: n % 2}),
     "std_msgs/msg/Float64MultiArray": (
-        lambda n: msg.Float64MultiArray(msg.MultiArrayLayout([], 0), [n, n / 7]),
-        {"first": lambda n: n, "second": lambda n: n / 7},
+        # what comes first belongs to somebody else, and nobody wants "second"
+        lambda n: msg.Float64MultiArray(msg.MultiArrayLayout([], 1), [-1.0, n, 0.0, n / 7]),
+        {"first": lambda n: n, "third": lambda n: n / 7},
     ),
     "sensor_msgs/msg/JointState": (  # in another order than the target's
         lambda n: msg.JointState(header(), ["tilt", "pan"], [n, n / 7], [], [n / 9, n / 11]),
@@ -51,11 +52,11 @@ MESSAGES: dict[str, tuple[Callable[[int], Any], dict[str, Callable[[int], float]
     ),
     "geometry_msgs/msg/Twist": (
         lambda n: msg.Twist(msg.Vector3(n / 7, 0, 0), msg.Vector3(0, 0, n / 9)),
-        {"linear.x": lambda n: n / 7, "angular.z": lambda n: n / 9},
+        {"linear_x": lambda n: n / 7, "angular_z": lambda n: n / 9},
     ),
     "geometry_msgs/msg/TwistStamped": (
         lambda n: msg.TwistStamped(header(), msg.Twist(msg.Vector3(0, n / 7, 0), msg.Vector3(0, 0, 0))),
-        {"linear.y": lambda n: n / 7},
+        {"linear_y": lambda n: n / 7},
     ),
 }
 
@@ -97,7 +98,12 @@ def record(*options: str | Path) -> int:
 def test_every_type(net: Network, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     topics = {type.rsplit("/", 1)[1].lower(): type for type in MESSAGES}
     described = [
-        topic(name, type, values=[f"{name}/{field}" if field else name for field in MESSAGES[type][1]])
+        topic(
+            name,
+            type,
+            values=[f"{name}/{field}" if field else name for field in MESSAGES[type][1]],
+            elements=["first", "second", "third"],
+        )
         for name, type in topics.items()
     ]
     robot = write_description(tmp_path / "robot.json", namespace="/cell", publications=described)

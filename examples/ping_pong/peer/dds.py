@@ -5,6 +5,7 @@
 import time
 from dataclasses import dataclass
 
+import cyclonedds.idl.annotations as annotate
 from cyclonedds.core import InstanceState, Policy, Qos, ReadCondition, SampleState, ViewState, WaitSet
 from cyclonedds.domain import DomainParticipant
 from cyclonedds.idl import IdlStruct
@@ -16,6 +17,7 @@ from cyclonedds.util import duration
 
 
 @dataclass
+@annotate.final
 class Float64(IdlStruct, typename="std_msgs::msg::dds_::Float64_"):
     data: float64
 
