@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
+import random
 import socket
 import termios
 import tty
@@ -37,13 +38,20 @@ class Link(Protocol):
 
 
 class UdpLink:
-    """A port of the loopback interface; 0 takes a free one and keeps it."""
+    """A port of the loopback interface; 0 takes a free one.
+
+    It is none of those that the system gives to sockets which ask for any: closed for a moment, it would be taken.
+    """
 
     def __init__(self, port: int = 0, host: str = "127.0.0.1") -> None:
         self.host, self.port = host, port
         self._socket: socket.socket | None = None
-        if port == 0:
-            self.open()
+        while self.port == 0:
+            self.port = random.SystemRandom().randrange(15000, 32000)
+            try:
+                self.open()
+            except OSError:
+                self.port = 0
 
     @property
     def address(self) -> str:
@@ -51,10 +59,14 @@ class UdpLink:
 
     def open(self) -> None:
         if self._socket is None:
-            self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-            self._socket.setblocking(False)
-            self._socket.bind((self.host, self.port))
-            self.port = self._socket.getsockname()[1]
+            new = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+            new.setblocking(False)
+            try:
+                new.bind((self.host, self.port))
+            except OSError:
+                new.close()
+                raise
+            self._socket = new
 
     def close(self) -> None:
         if self._socket is not None:

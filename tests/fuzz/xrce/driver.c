@@ -2,10 +2,10 @@
  * @file
  * Runs a fuzz target without libFuzzer:
  *
- *     xrce_fuzz [-random=<count>] [-seed=<seed>] [file...]
+ *     xrce_fuzz [-random=<count>] [-seed=<seed>] [-corpus=<text file>] [file...]
  *
- * Each file is an input; then `count` inputs are made from them: pieces of two put together, with bytes changed, or
- * nothing but chance.  The same seed makes the same inputs.
+ * Each file is an input, and so is each line of the text file, in hexadecimal digits.  Then `count` inputs are made from
+ * them: pieces of two put together, with bytes changed, or nothing but chance.  The same seed makes the same inputs.
  */
 #include <inttypes.h>
 #include <stdint.h>
@@ -15,14 +15,14 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-enum { LARGEST = 4096, MOST_FILES = 4096 };
+enum { LARGEST = 4096, MOST_SAMPLES = 65536 };
 
 typedef struct sample {
     size_t size;
     uint8_t *data;
 } sample_t;
 
-static sample_t samples[MOST_FILES];
+static sample_t samples[MOST_SAMPLES];
 static size_t sample_count;
 static uint64_t chance;
 
@@ -71,19 +71,53 @@ static void run_random(void)
     free(exact);
 }
 
+/** Keeps an input in memory of exactly its size, and runs it. */
+static int run_sample(const uint8_t *data, size_t size)
+{
+    uint8_t *exact = malloc(size > 0 ? size : 1);
+    if (exact == NULL || sample_count == MOST_SAMPLES) {
+        fputs("too many inputs\n", stderr);
+        return 1;
+    }
+    memcpy(exact, data, size);
+    samples[sample_count++] = (sample_t){size, exact};
+    (void)LLVMFuzzerTestOneInput(exact, size);
+    return 0;
+}
+
 static int run_file(const char *path)
 {
+    static uint8_t data[LARGEST];
     FILE *file = fopen(path, "rb");
-    if (file == NULL || sample_count == MOST_FILES) {
+    if (file == NULL) {
         fprintf(stderr, "cannot read %s\n", path);
         return 1;
     }
-    sample_t *sample = &samples[sample_count++];
-    sample->data = malloc(LARGEST);
-    sample->size = sample->data != NULL ? fread(sample->data, 1, LARGEST, file) : 0;
+    const size_t size = fread(data, 1, sizeof data, file);
     fclose(file);
-    (void)LLVMFuzzerTestOneInput(sample->data, sample->size);
-    return 0;
+    return run_sample(data, size);
+}
+
+static int run_corpus(const char *path)
+{
+    static uint8_t data[LARGEST];
+    static char line[2 * LARGEST + 2];
+    FILE *file = fopen(path, "r");
+    if (file == NULL) {
+        fprintf(stderr, "cannot read %s\n", path);
+        return 1;
+    }
+    int failed = 0;
+    while (failed == 0 && fgets(line, sizeof line, file) != NULL) {
+        size_t size = 0;
+        unsigned int byte;
+        while (sscanf(line + 2 * size, "%2x", &byte) == 1) {
+            data[size++] = (uint8_t)byte;
+        }
+        failed = run_sample(data, size);
+    }
+    fclose(file);
+    return failed;
 }
 
 int main(int argc, char **argv)
@@ -94,6 +128,10 @@ int main(int argc, char **argv)
             count = strtoull(argv[i] + 8, NULL, 10);
         } else if (strncmp(argv[i], "-seed=", 6) == 0) {
             seed = strtoull(argv[i] + 6, NULL, 10);
+        } else if (strncmp(argv[i], "-corpus=", 8) == 0) {
+            if (run_corpus(argv[i] + 8) != 0) {
+                return 1;
+            }
         } else if (run_file(argv[i]) != 0) {
             return 1;
         }
@@ -102,6 +140,6 @@ int main(int argc, char **argv)
     for (uint64_t i = 0; i < count; i++) {
         run_random();
     }
-    printf("%zu files, %" PRIu64 " random inputs\n", sample_count, count);
+    printf("%zu samples, %" PRIu64 " random inputs\n", sample_count, count);
     return 0;
 }

@@ -1,0 +1,51 @@
+"""Hostile bytes for a board that is a ROS 2 node: xrce/ has the programs, which run here without libFuzzer.
+
+With clang, a longer search (docs/development.md):
+
+    cmake -S tests/fuzz/xrce -B build/fuzz -G Ninja -DCMAKE_C_COMPILER=clang -DLIBFUZZER=ON && cmake --build build/fuzz
+    build/fuzz/xrce_fuzz -max_len=400 corpus/
+"""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from tests.emulator.toolchain import Missing
+from tests.xrce_agent.bare import libraries
+
+PROJECT = Path(__file__).resolve().parent / "xrce"
+INPUTS = 20_000
+
+
+@pytest.fixture(scope="module")
+def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder they are in, under sanitizers."""
+    try:
+        libraries()
+    except Missing as missing:
+        pytest.skip(str(missing))
+    for tool, package in (("cmake", "cmake"), ("ninja", "ninja-build")):
+        if not shutil.which(tool):
+            pytest.skip(f"{tool} is missing: apt install {package}")
+    folder = tmp_path_factory.mktemp("received_bytes")
+    for command in (
+        ["cmake", "-S", str(PROJECT), "-B", str(folder), "-G", "Ninja"],
+        ["cmake", "--build", str(folder)],
+    ):
+        done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)
+        assert done.returncode == 0, done.stdout + done.stderr
+    return folder
+
+
+@pytest.mark.parametrize("name", ["xrce_fuzz", "message_fuzz"])
+def test_samples_and_random_inputs(programs: Path, name: str) -> None:
+    """Samples are what libFuzzer has found to lead to different places, and what was a bug once."""
+    corpus = PROJECT / f"{name}.txt"
+    command = [str(programs / name), f"-corpus={corpus}", f"-random={INPUTS}"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert done.stdout == f"{len(corpus.read_text().splitlines())} samples, {INPUTS} random inputs\n"
