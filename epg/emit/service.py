@@ -80,6 +80,7 @@ class Service:
     time_slot: int | None
     monitor_count: int
     node: bool
+    store: bool
     parameters: tuple[ParameterView, ...]
     capture: int
     actuators: tuple[ActuatorView, ...]
@@ -106,6 +107,7 @@ def service_of(app: Application, macro: Macro) -> Service:
         time_slot=time_slot,
         monitor_count=monitor_count,
         node=node,
+        store=node or "parameters" in uses,
         parameters=tuple(_parameters(app)) if "parameters" in uses else (),
         capture=max((size for size in captures if isinstance(size, int)), default=0),
         actuators=tuple(a for c in app.components for a in _actuators(c, macro)) if jog else (),

@@ -27,9 +27,10 @@ _PUBLIC = frozenset(
 STATIC_NAMES = frozenset(
     """read_inputs inputs_finite model_init model_step model_finite model_stopped write_outputs safe_outputs fail_safe
     setpoint_states setpoint_slots setpoint_exchange monitor_values monitor_slots monitor_exchange plant_init
-    plant_step set_parameter parameter_table parameter_values parameter_applied parameter_changed parameter_store
+    plant_step set_parameter parameter_table parameter_values parameter_applied parameter_changed store_bytes
     capture_memory jog_actuators jog_encoders jog_first jog_last middleware_options middleware_output
-    middleware_values node node_values node_sent_values node_received node_publications node_buffer""".split()
+    middleware_values node node_values node_sent_values node_received node_publications node_buffer console_options console_output
+    console_values""".split()
 )
 """Names of two words in generated files: a target and a component's name could make one of them."""
 

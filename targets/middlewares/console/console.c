@@ -6,7 +6,9 @@
 
 #include <string.h>
 
+#include "epg/names.h"
 #include "epg/port.h"
+#include "epg/store.h"
 #include "session.h"
 
 enum {
@@ -87,6 +89,14 @@ uint64_t epg_console_since_start(const epg_console_session_t *self, uint64_t tim
     return time_ns > self->start_ns ? time_ns - self->start_ns : 0U;
 }
 
+void epg_console_node(epg_console_session_t *self)
+{
+    char name[EPG_STORE_NAME_SIZE];
+    (void)epg_names_expand(epg_names_node(self->target), name, sizeof name);
+    epg_console_key(&self->output, "node");
+    epg_console_text(&self->output, name);
+}
+
 /** A new reader, or none any more: nothing of the session before is left, and nothing moves by hand. */
 static void begin_session(bool connected)
 {
@@ -110,8 +120,7 @@ static void begin_session(bool connected)
     }
     session.connected_before = true;
     epg_console_begin(&session.output, "ready");
-    epg_console_key(&session.output, "node");
-    epg_console_text(&session.output, session.target->node);
+    epg_console_node(&session);
     epg_console_key(&session.output, "epg");
     epg_console_text(&session.output, session.target->version);
     epg_console_key(&session.output, "hash");

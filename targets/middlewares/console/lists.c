@@ -5,6 +5,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "epg/node.h"
 #include "session.h"
 
 static const char *const help[] = {
@@ -15,6 +16,7 @@ static const char *const help[] = {
     "stats                        what the control loop counts",
     "get [<parameter> ...]        parameters of the model",
     "set <parameter>=<number> ... changes up to 8 of them in the same cycle",
+    "get|set node, namespace      names of the ROS 2 node, from the next start on: set node=robot_$serial",
     "save                         keeps the changes; while disabled",
     "capture <port> ... [rows=<n>] [before=<n>] [every=<n>] [when=<port>><number>|when=fault]",
     "capture [read|stop]          how far it is; its rows; ends it",
@@ -59,8 +61,7 @@ void epg_console_version(epg_console_session_t *session, const epg_console_comma
     epg_console_ok(session, "version");
     epg_console_key(&session->output, "name");
     epg_console_text(&session->output, target->application->name);
-    epg_console_key(&session->output, "node");
-    epg_console_text(&session->output, target->node);
+    epg_console_node(session);
     epg_console_key(&session->output, "epg");
     epg_console_text(&session->output, target->version);
     epg_console_key(&session->output, "hash");
@@ -101,7 +102,8 @@ static bool stats_line(epg_console_session_t *session, size_t index)
 {
     const epg_status_t *status = &session->status;
     epg_console_output_t *output = &session->output;
-    if (index > COUNTERS + 2U) {
+    const epg_node_t *node = session->target->node_state;
+    if (index > COUNTERS + (node != NULL ? 4U : 2U)) {
         return false;
     }
     epg_console_begin(output, "stat");
@@ -119,8 +121,12 @@ static bool stats_line(epg_console_session_t *session, size_t index)
         const uint32_t cycles = status->statistics.cycles;
         epg_console_key(output, "computation_mean_ns");
         epg_console_integer(output, cycles == 0 ? 0 : (int64_t)(status->statistics.computation_total / cycles));
-    } else {
+    } else if (index == COUNTERS + 2U || node == NULL) {
         epg_console_count(output, "lines_dropped", output->dropped);
+    } else if (index == COUNTERS + 3U) {
+        epg_console_count(output, "unsent", node->unsent);
+    } else {
+        epg_console_count(output, "malformed", node->malformed);
     }
     return true;
 }

@@ -1,11 +1,13 @@
 /**
  * @file
- * Commands about parameters: get, set, save.
+ * Commands about what can be kept: get, set, save of parameters and names.
  */
 #include "epg/parameters.h"
 
 #include <string.h>
 
+#include "epg/names.h"
+#include "epg/store.h"
 #include "session.h"
 
 static size_t find(const epg_parameters_t *parameters, const char *name)
@@ -52,8 +54,54 @@ static bool parameter_line(epg_console_session_t *session, size_t index)
     return true;
 }
 
+/* Names -------------------------------------------------------------------------------------------------------- */
+
+static bool is_name(const char *word)
+{
+    return strcmp(word, "node") == 0 || strcmp(word, "namespace") == 0;
+}
+
+/** The name as it is kept, and as it is with the board's serial number. */
+static void tell_name(epg_console_session_t *session, const char *word)
+{
+    const epg_target_t *target = session->target;
+    const char *space = epg_names_space(target);
+    const char *pattern = strcmp(word, "node") == 0 ? epg_names_node(target) : space[0] == '\0' ? "/" : space;
+    char name[EPG_STORE_NAME_SIZE];
+    (void)epg_names_expand(pattern, name, sizeof name);
+    epg_console_ok(session, "get");
+    epg_console_key(&session->output, word);
+    epg_console_text(&session->output, pattern);
+    epg_console_key(&session->output, "name");
+    epg_console_text(&session->output, name);
+    epg_console_end_or_drop(&session->output);
+}
+
+static void set_name(epg_console_session_t *session, const char *word, const char *text)
+{
+    const epg_target_t *target = session->target;
+    const bool node = strcmp(word, "node") == 0;
+    const bool good = node ? epg_names_set_node(target, text) : epg_names_set_space(target, text);
+    if (target->store == NULL) {
+        epg_console_error(session, "set", "names cannot be kept here", NULL);
+    } else if (!good) {
+        epg_console_error(session, "set", node ? "this is no name of a node:" : "this is no namespace:", text);
+    } else {
+        epg_console_ok(session, "set");
+        epg_console_key(&session->output, "acts");
+        epg_console_text(&session->output, "at_next_start_if_saved");
+        epg_console_end_or_drop(&session->output);
+    }
+}
+
+/* Parameters --------------------------------------------------------------------------------------------------- */
+
 void epg_console_get(epg_console_session_t *session, const epg_console_command_t *command)
 {
+    if (command->count == 2 && is_name(command->words[1])) {
+        tell_name(session, command->words[1]);
+        return;
+    }
     const epg_parameters_t *parameters = parameters_of(session, "get");
     if (parameters == NULL) {
         return;
@@ -70,8 +118,28 @@ void epg_console_get(epg_console_session_t *session, const epg_console_command_t
     epg_console_answer(session, "get", parameter_line);
 }
 
+/** A command that sets one name; false if it is about parameters. */
+static bool sets_name(epg_console_session_t *session, const epg_console_command_t *command)
+{
+    char *assignment = command->count == 2 ? strchr(command->words[1], '=') : NULL;
+    if (assignment == NULL) {
+        return false;
+    }
+    *assignment = '\0';
+    const bool name = is_name(command->words[1]);
+    if (name) {
+        set_name(session, command->words[1], assignment + 1);
+    } else {
+        *assignment = '=';
+    }
+    return name;
+}
+
 void epg_console_set(epg_console_session_t *session, const epg_console_command_t *command)
 {
+    if (sets_name(session, command)) {
+        return;
+    }
     epg_parameters_t *parameters = parameters_of(session, "set");
     epg_parameter_change_t changes[EPG_PARAMETER_CHANGES];
     if (parameters == NULL) {
@@ -106,14 +174,13 @@ void epg_console_set(epg_console_session_t *session, const epg_console_command_t
 void epg_console_save(epg_console_session_t *session, const epg_console_command_t *command)
 {
     (void)command;
-    epg_parameters_t *parameters = parameters_of(session, "save");
+    epg_store_t *store = session->target->store;
     size_t count = 0;
-    if (parameters == NULL) {
-        return;
-    }
-    if (!session->has_status || session->status.enabled || session->jogging) {
+    if (store == NULL) {
+        epg_console_error(session, "save", "there is nothing to keep", NULL);
+    } else if (!session->has_status || session->status.enabled || session->jogging) {
         epg_console_error(session, "save", "only while actuators are off: disable first", NULL);
-    } else if (!epg_parameters_save(parameters, &count)) {
+    } else if (!epg_store_save(store, &count)) {
         epg_console_error(session, "save", "nothing can be stored here", NULL);
     } else {
         epg_console_ok(session, "save");

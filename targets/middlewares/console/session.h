@@ -104,6 +104,9 @@ void epg_console_wait_for(epg_console_session_t *session, const char *command, e
 /** `fault` as one word. */
 void epg_console_fault(epg_console_session_t *session, const epg_status_t *status);
 
+/** The node's name, with the board's serial number in it. */
+void epg_console_node(epg_console_session_t *session);
+
 /** Seconds since the start of a time of epg_port_time_ns(). */
 uint64_t epg_console_since_start(const epg_console_session_t *session, uint64_t time_ns);
 

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "epg/port.h"
+#include "epg/store.h"
 
 static const char serial_word[] = "$serial";
 
@@ -37,4 +38,98 @@ bool epg_names_expand(const char *pattern, char *name, size_t size)
     }
     name[length] = '\0';
     return fits;
+}
+
+static bool is_letter(char c)
+{
+    return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_';
+}
+
+static bool is_digit(char c)
+{
+    return c >= '0' && c <= '9';
+}
+
+/** Length of the part of a name that `text` begins with; 0 if there is none. */
+static size_t part(const char *text)
+{
+    size_t length = 0;
+    while (is_letter(text[length]) || (length > 0 && is_digit(text[length])) ||
+           (length > 0 && strncmp(text + length, serial_word, sizeof serial_word - 1) == 0)) {
+        length += text[length] == '$' ? sizeof serial_word - 1 : 1;
+    }
+    return length;
+}
+
+/** Whether `text` is not too long, as it stands and with the serial number. */
+static bool fits(const char *text)
+{
+    char name[EPG_STORE_NAME_SIZE];
+    return strlen(text) < EPG_STORE_NAME_SIZE && epg_names_expand(text, name, sizeof name);
+}
+
+bool epg_names_is_node(const char *text)
+{
+    const size_t length = part(text);
+    return length > 0 && text[length] == '\0' && fits(text);
+}
+
+bool epg_names_is_space(const char *text)
+{
+    if (strcmp(text, "/") == 0) {
+        return true;
+    }
+    const char *rest = text;
+    size_t length = 0;
+    while (*rest == '/') {
+        length = part(rest + 1);
+        if (length == 0) {
+            return false;
+        }
+        rest += 1 + length;
+    }
+    return *rest == '\0' && length > 0 && strstr(text, "__") == NULL && fits(text);
+}
+
+const char *epg_names_node(const epg_target_t *target)
+{
+    return target->store != NULL && target->store->node[0] != '\0' ? target->store->node : target->node;
+}
+
+const char *epg_names_space(const epg_target_t *target)
+{
+    const char *stored = target->store != NULL ? target->store->name_space : "";
+    if (stored[0] == '\0') {
+        return target->name_space;
+    }
+    return strcmp(stored, "/") == 0 ? "" : stored;
+}
+
+/** Keeps `text`, which fits, in `name`, unless it is as `generated`. */
+static void keep(char *name, const char *text, const char *generated)
+{
+    const size_t size = strlen(text) + 1;
+    if (strcmp(text, generated) == 0) {
+        name[0] = '\0';
+    } else {
+        memcpy(name, text, size);
+    }
+}
+
+bool epg_names_set_node(const epg_target_t *target, const char *text)
+{
+    const bool good = target->store != NULL && epg_names_is_node(text);
+    if (good) {
+        keep(target->store->node, text, target->node);
+    }
+    return good;
+}
+
+bool epg_names_set_space(const epg_target_t *target, const char *text)
+{
+    const bool good = target->store != NULL && epg_names_is_space(text);
+    if (good) {
+        keep(target->store->name_space, text, target->name_space[0] == '\0' ? "/" : target->name_space);
+    }
+    return good;
 }

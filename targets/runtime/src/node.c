@@ -97,8 +97,8 @@ void epg_node_start(epg_node_t *node, const epg_target_t *target,
     node->epoch_ns = 0;
     node->unsent = 0;
     node->malformed = 0;
-    (void)epg_names_expand(target->node, node->name, sizeof node->name);
-    (void)epg_names_expand(target->name_space, node->name_space, sizeof node->name_space);
+    (void)epg_names_expand(epg_names_node(target), node->name, sizeof node->name);
+    (void)epg_names_expand(epg_names_space(target), node->name_space, sizeof node->name_space);
     for (size_t i = 0; i < target->publication_count; i++) {
         node->publications[i] = (epg_node_publication_t){0};
     }

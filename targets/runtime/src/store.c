@@ -1,25 +1,42 @@
 /**
  * @file
- * Parameters that outlive a restart.
+ * Names and parameters that outlive a restart.
  *
- * | bytes | what                                                              |
- * |-------|-------------------------------------------------------------------|
- * | 4     | "EPGP"                                                            |
- * | 4     | version of this layout, 1                                         |
- * | 8     | the model                                                         |
- * | 4     | number of values                                                  |
- * | 12    | for each: index (4), value (8, IEEE 754 binary64)                 |
- * | 4     | CRC-32 of everything before it (IEEE 802.3, reflected)            |
+ * | bytes | what                                                                         |
+ * |-------|------------------------------------------------------------------------------|
+ * | 4     | "EPGP"                                                                       |
+ * | 4     | version of this layout, 2                                                    |
+ * | 64    | name of the node, zero-padded; empty: as generated                           |
+ * | 64    | its namespace, the same                                                      |
+ * | 4     | CRC-32 of everything before it (IEEE 802.3, reflected): names stand alone    |
+ * | 8     | the model                                                                    |
+ * | 4     | number of values                                                             |
+ * | 12    | for each: index (4), value (8, IEEE 754 binary64)                            |
+ * | 4     | CRC-32 of everything before it                                               |
  *
  * Numbers are little-endian, so that a store reads the same wherever it was written.
  */
+#include "epg/store.h"
+
 #include <string.h>
 
 #include "epg/finite.h"
-#include "epg/parameters.h"
+#include "epg/names.h"
 #include "epg/port.h"
 
-enum { HEADER = 20, ENTRY = 12, CHECK = 4, VERSION = 1 };
+enum {
+    NODE = 8,
+    NAME_SPACE = NODE + EPG_STORE_NAME_SIZE,
+    NAMES_CHECK = NAME_SPACE + EPG_STORE_NAME_SIZE,
+    MODEL = NAMES_CHECK + 4,
+    COUNT = MODEL + 8,
+    HEADER = COUNT + 4,
+    ENTRY = 12,
+    CHECK = 4,
+    VERSION = 2
+};
+
+static_assert(EPG_STORE_SIZE(0) == HEADER + CHECK, "the layout of a store");
 
 static const uint32_t MAGIC = 0x50475045U; /* "EPGP" */
 
@@ -67,59 +84,67 @@ static uint32_t crc32(const unsigned char *bytes, size_t size)
     return ~crc;
 }
 
-/** Number of values in a store that is whole, of whatever model; SIZE_MAX for any other. */
-static size_t whole(const epg_parameters_t *parameters, size_t size)
+/** Writes the CRC of everything before `place` there. */
+static void seal(unsigned char *bytes, size_t place)
 {
-    const unsigned char *store = parameters->store;
-    if (size < HEADER + CHECK || get(store, 4) != MAGIC || get(store + 4, 4) != VERSION) {
+    put(bytes + place, crc32(bytes, place), CHECK);
+}
+
+static bool is_sealed(const unsigned char *bytes, size_t place)
+{
+    return get(bytes + place, CHECK) == crc32(bytes, place);
+}
+
+/** Number of values in a store of `size` bytes that is whole, of whatever model; SIZE_MAX for any other. */
+static size_t whole(const unsigned char *bytes, size_t size)
+{
+    if (size < HEADER + CHECK) {
         return SIZE_MAX;
     }
-    const size_t count = (size_t)get(store + 16, 4);
+    const size_t count = (size_t)get(bytes + COUNT, 4);
     if (count > (size - HEADER - CHECK) / ENTRY) {
         return SIZE_MAX;
     }
-    const size_t checked = HEADER + count * ENTRY;
-    return get(store + checked, CHECK) == crc32(store, checked) ? count : SIZE_MAX;
+    return is_sealed(bytes, HEADER + count * ENTRY) ? count : SIZE_MAX;
 }
 
 /** True when every entry names a parameter and has a finite value. */
-static bool sound(const epg_parameters_t *parameters, size_t count)
+static bool sound(const epg_store_t *store, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        const unsigned char *entry = parameters->store + HEADER + i * ENTRY;
-        if (get(entry, 4) >= parameters->count || !epg_is_finite(get_value(entry + 4))) {
+        const unsigned char *entry = store->bytes + HEADER + i * ENTRY;
+        if (get(entry, 4) >= store->parameters->count || !epg_is_finite(get_value(entry + 4))) {
             return false;
         }
     }
     return true;
 }
 
-/** Reads the store; `*count` values of it are right if it belongs to this model. */
-static epg_parameters_stored_t read_store(const epg_parameters_t *parameters, size_t *count)
+/** What became of parameters in a store of `size` bytes; `*count` of them are right if they belong to this model. */
+static epg_parameters_stored_t judge(const epg_store_t *store, size_t size, size_t *count)
 {
-    const size_t room = EPG_PARAMETERS_STORE_SIZE(parameters->count);
-    const size_t size = epg_port_store_read(parameters->store, room);
-    if (size < HEADER || get(parameters->store, 4) != MAGIC) {
+    if (size < HEADER || get(store->bytes, 4) != MAGIC || get(store->bytes + 4, 4) != VERSION) {
         return EPG_STORED_NOTHING;
     }
-    if (get(parameters->store + 8, 8) != parameters->model) {
+    if (get(store->bytes + MODEL, 8) != store->parameters->model) {
         return EPG_STORED_FOR_OTHER;
     }
-    *count = whole(parameters, size);
-    return *count != SIZE_MAX && sound(parameters, *count) ? EPG_STORED_LOADED : EPG_STORED_NOTHING;
+    *count = whole(store->bytes, size);
+    return *count != SIZE_MAX && sound(store, *count) ? EPG_STORED_LOADED : EPG_STORED_NOTHING;
 }
 
-void epg_parameters_load(epg_parameters_t *parameters)
+static void load_parameters(epg_store_t *store, size_t size)
 {
+    epg_parameters_t *parameters = store->parameters;
     size_t count = 0;
     epg_handover_clear(&parameters->handover);
     for (size_t i = 0; i < parameters->count; i++) {
         parameters->values[i] = parameters->table[i].value;
         parameters->changed[i] = false;
     }
-    parameters->stored = read_store(parameters, &count);
+    parameters->stored = judge(store, size, &count);
     for (size_t i = 0; i < count && parameters->stored == EPG_STORED_LOADED; i++) {
-        const unsigned char *entry = parameters->store + HEADER + i * ENTRY;
+        const unsigned char *entry = store->bytes + HEADER + i * ENTRY;
         const size_t index = (size_t)get(entry, 4);
         parameters->values[index] = get_value(entry + 4);
         parameters->applied[index] = parameters->values[index];
@@ -127,24 +152,66 @@ void epg_parameters_load(epg_parameters_t *parameters)
     }
 }
 
-bool epg_parameters_save(epg_parameters_t *parameters, size_t *stored)
+static void load_names(epg_store_t *store, size_t size)
 {
-    unsigned char *store = parameters->store;
+    const unsigned char *bytes = store->bytes;
+    store->node[0] = '\0';
+    store->name_space[0] = '\0';
+    if (size < MODEL || get(bytes, 4) != MAGIC || get(bytes + 4, 4) != VERSION || !is_sealed(bytes, NAMES_CHECK)) {
+        return;
+    }
+    memcpy(store->node, bytes + NODE, sizeof store->node - 1);
+    memcpy(store->name_space, bytes + NAME_SPACE, sizeof store->name_space - 1);
+    store->node[sizeof store->node - 1] = '\0';
+    store->name_space[sizeof store->name_space - 1] = '\0';
+    /* What another firmware took for names need be none for this one. */
+    if (!epg_names_is_node(store->node)) {
+        store->node[0] = '\0';
+    }
+    if (!epg_names_is_space(store->name_space)) {
+        store->name_space[0] = '\0';
+    }
+}
+
+void epg_store_load(epg_store_t *store)
+{
+    const size_t room = EPG_STORE_SIZE(store->parameters != NULL ? store->parameters->count : 0U);
+    const size_t size = epg_port_store_read(store->bytes, room);
+    load_names(store, size);
+    if (store->parameters != NULL) {
+        load_parameters(store, size);
+    }
+}
+
+/** Copies a name, whose rest is zeros: what was in it before tells nobody anything. */
+static void put_name(unsigned char *bytes, const char *name)
+{
+    const size_t length = strlen(name);
+    memset(bytes, 0, EPG_STORE_NAME_SIZE);
+    memcpy(bytes, name, length);
+}
+
+bool epg_store_save(epg_store_t *store, size_t *values)
+{
+    const epg_parameters_t *parameters = store->parameters;
+    unsigned char *bytes = store->bytes;
     size_t count = 0;
-    for (size_t i = 0; i < parameters->count; i++) {
+    for (size_t i = 0; parameters != NULL && i < parameters->count; i++) {
         if (bits_of(parameters->values[i]) != bits_of(parameters->table[i].value)) {
-            unsigned char *entry = store + HEADER + count * ENTRY;
+            unsigned char *entry = bytes + HEADER + count * ENTRY;
             put(entry, i, 4);
             put(entry + 4, bits_of(parameters->values[i]), 8);
             count++;
         }
     }
-    put(store, MAGIC, 4);
-    put(store + 4, VERSION, 4);
-    put(store + 8, parameters->model, 8);
-    put(store + 16, count, 4);
-    const size_t checked = HEADER + count * ENTRY;
-    put(store + checked, crc32(store, checked), CHECK);
-    *stored = count;
-    return epg_port_store_write(store, checked + CHECK);
+    put(bytes, MAGIC, 4);
+    put(bytes + 4, VERSION, 4);
+    put_name(bytes + NODE, store->node);
+    put_name(bytes + NAME_SPACE, store->name_space);
+    seal(bytes, NAMES_CHECK);
+    put(bytes + MODEL, parameters != NULL ? parameters->model : 0U, 8);
+    put(bytes + COUNT, count, 4);
+    seal(bytes, HEADER + count * ENTRY);
+    *values = count;
+    return epg_port_store_write(bytes, HEADER + count * ENTRY + CHECK);
 }

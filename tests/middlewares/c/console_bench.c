@@ -48,7 +48,8 @@ static size_t writable(void *context)
     return bench.room;
 }
 
-static const epg_stream_t stream = {connected, read_bytes, write_bytes, writable, NULL};
+static const epg_stream_t stream = {
+    .connected = connected, .read = read_bytes, .write = write_bytes, .writable = writable};
 
 /* Target --------------------------------------------------------------------------------------------------------- */
 
@@ -58,7 +59,7 @@ static const epg_parameter_t table[BENCH_PARAMETERS] = {
 static double values[BENCH_PARAMETERS];
 static double applied[BENCH_PARAMETERS];
 static bool changed[BENCH_PARAMETERS];
-static unsigned char store[EPG_PARAMETERS_STORE_SIZE(BENCH_PARAMETERS)];
+static unsigned char store_bytes[EPG_STORE_SIZE(BENCH_PARAMETERS)];
 
 static void set(size_t index, double value)
 {
@@ -134,6 +135,7 @@ void bench_start(bool enabled)
                    .hash = "0123456789abcdef",
                    .middleware = &epg_console,
                    .options = &bench.options,
+                   .store = &bench.store,
                    .signal_count = 4,
                    .signals = signals,
                    .time_index = 5},
@@ -148,8 +150,8 @@ void bench_start(bool enabled)
                        .set = set,
                        .values = values,
                        .applied = applied,
-                       .changed = changed,
-                       .store = store},
+                       .changed = changed},
+        .store = {.bytes = store_bytes, .parameters = &bench.parameters},
         .capture = {.memory = memory, .capacity = BENCH_CAPTURE},
         .jog = {.actuator_count = 1,
                 .actuators = actuators,
@@ -168,7 +170,7 @@ void bench_start(bool enabled)
     fake.application.parameters = &bench.parameters;
     fake.application.capture = &bench.capture;
     fake.application.jog = &bench.jog;
-    epg_parameters_load(&bench.parameters);
+    epg_store_load(&bench.store);
     fake_start();
     epg_console.start(&bench.target, &stream);
     bench_run(5);

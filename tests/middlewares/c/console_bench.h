@@ -10,6 +10,7 @@
 
 #include "console.h"
 #include "epg/parameters.h"
+#include "epg/store.h"
 
 enum { BENCH_OUTPUT = 1024, BENCH_CAPTURE = 300, BENCH_PARAMETERS = 12 };
 
@@ -17,6 +18,7 @@ typedef struct bench {
     epg_target_t target;
     epg_console_options_t options;
     epg_parameters_t parameters;
+    epg_store_t store;
     epg_capture_t capture;
     epg_jog_t jog;
 

@@ -141,6 +141,65 @@ TEST(parameters_are_saved_only_while_outputs_are_safe)
     check_answer("save\n", "error save nothing can be stored here\r\n");
 }
 
+TEST(names_are_read_and_set_and_kept)
+{
+    bench_start(false);
+    check_answer("get node\n", "ok get node=bench_node name=bench_node\r\n");
+    check_answer("get namespace\n", "ok get namespace=/ name=/\r\n");
+    check_answer("set node=robot_$serial\n", "ok set acts=at_next_start_if_saved\r\n");
+    check_answer("set namespace=/fleet\n", "ok set acts=at_next_start_if_saved\r\n");
+    check_answer("get node\n", "ok get node=robot_$serial name=robot_E6616407E3A51B2C\r\n");
+    check_answer("set node=1st\n", "error set this is no name of a node: '1st'\r\n");
+    check_answer("set node=\n", "error set this is no name of a node: ''\r\n");
+    check_answer("set namespace=fleet\n", "error set this is no namespace: 'fleet'\r\n");
+    check_answer("set node=a PID\\kp=1\n", "error set there is no parameter 'node'\r\n");
+    check_answer("get namespace\n", "ok get namespace=/fleet name=/fleet\r\n");
+    check_answer("save\n", "ok save values=0\r\n");
+    epg_store_load(&bench.store); /* the next start */
+    check_answer("get node\n", "ok get node=robot_$serial name=robot_E6616407E3A51B2C\r\n");
+    check_answer("set node=bench_node\n", "ok set acts=at_next_start_if_saved\r\n");
+    CHECK(bench.store.node[0] == '\0'); /* as generated: whatever that will be */
+}
+
+TEST(names_cannot_be_set_without_a_store)
+{
+    bench_start(false);
+    bench.target.store = NULL;
+    check_answer("get node\n", "ok get node=bench_node name=bench_node\r\n");
+    check_answer("set node=other\n", "error set names cannot be kept here\r\n");
+    check_answer("save\n", "error save there is nothing to keep\r\n");
+}
+
+static const epg_topic_t values_and_others[3] = {
+    {.name = "~/enable", .role = EPG_TOPIC_ENABLE, .count = 1},
+    {.name = "joints", .values = (const char *const[]){"joints/pan.position", "joints/tilt.position"}, .count = 2},
+    {.name = "/ping", .role = EPG_TOPIC_ECHO},
+};
+
+TEST(values_of_a_topic_have_names_of_their_own)
+{
+    bench_start(true);
+    bench.target.subscriptions = values_and_others;
+    bench.target.subscription_count = 3;
+    bench.target.publications = values_and_others;
+    bench.target.publication_count = 3;
+    const char *ports = bench_say("ports\n");
+    CHECK(strstr(ports, "port setpoint joints/pan.position\r\nport setpoint joints/tilt.position\r\n"
+                        "port publication joints/pan.position\r\nport publication joints/tilt.position\r\n") != NULL);
+    CHECK(strstr(ports, "enable") == NULL && strstr(ports, "ping") == NULL);
+    check_answer("joints/tilt.position=2 joints/pan.position=1\n", "ok setpoint\r\n");
+    bench_run(2);
+    CHECK_EQUAL(epg_control_setpoint(&fake.control, 0), 1.0);
+    CHECK_EQUAL(epg_control_setpoint(&fake.control, 1), 2.0);
+    check_answer("~/enable=0\n", "error setpoint there is no setpoint '~/enable'\r\n");
+    check_answer("joints=0\n", "error setpoint there is no setpoint 'joints'\r\n");
+    bench.out_length = 0;
+    bench_say("watch\n");
+    bench_run(20);
+    CHECK(strstr(bench.out, " joints/pan.position=") != NULL && strstr(bench.out, " joints/tilt.position=") != NULL);
+    CHECK(strstr(bench.out, "enable=") == NULL);
+}
+
 TEST(watch_shows_values_of_one_cycle_at_the_communication_period)
 {
     bench_start(true);
@@ -430,7 +489,8 @@ TEST(a_target_without_any_of_it)
     fake.application.jog = NULL;
     check_answer("get\n", "error get the model has no parameters\r\n");
     check_answer("set a=1\n", "error set the model has no parameters\r\n");
-    check_answer("save\n", "error save the model has no parameters\r\n");
+    bench.store.parameters = NULL;
+    check_answer("save\n", "error save only while actuators are off: disable first\r\n");
     check_answer("capture duty\n", "error capture this target has no memory for it\r\n");
     check_answer("jog motor 0.1 5\n", "error jog this target has none\r\n");
     check_answer("version\n", "ok version name=fake node=bench_node epg=1.2.3 hash=0123456789abcdef\r\n");
@@ -480,7 +540,8 @@ RUN(ENTRY(it_greets), ENTRY(setpoints_of_one_line_act_in_one_cycle), ENTRY(setpo
     ENTRY(enabling_is_answered_with_what_came_of_it), ENTRY(enabling_that_is_refused_says_why),
     ENTRY(faults_are_told_unasked), ENTRY(a_loop_that_does_not_run_is_no_reason_to_hang),
     ENTRY(parameters_are_read_and_changed_by_name), ENTRY(parameters_change_all_or_not_at_all),
-    ENTRY(parameters_are_saved_only_while_outputs_are_safe),
+    ENTRY(parameters_are_saved_only_while_outputs_are_safe), ENTRY(names_are_read_and_set_and_kept),
+    ENTRY(names_cannot_be_set_without_a_store), ENTRY(values_of_a_topic_have_names_of_their_own),
     ENTRY(watch_shows_values_of_one_cycle_at_the_communication_period),
     ENTRY(watch_without_ports_shows_what_is_published), ENTRY(watch_is_silent_while_the_model_rests),
     ENTRY(a_capture_is_told_and_read), ENTRY(a_capture_waits_for_its_trigger),

@@ -7,10 +7,11 @@
 #include <math.h>
 
 #include "check.h"
+#include "epg/store.h"
 #include "fake_application.h"
 #include "fake_port.h"
 
-enum { COUNT = 10 };
+enum { COUNT = 10, MODEL = 140 /* place of the model in a store */ };
 
 static double model[COUNT]; /* as the model has them */
 static unsigned int sets;   /* calls of set() */
@@ -31,8 +32,9 @@ static const epg_parameter_t table[COUNT] = {
 static double values[COUNT];
 static double applied[COUNT];
 static bool changed[COUNT];
-static unsigned char store[EPG_PARAMETERS_STORE_SIZE(COUNT)];
+static unsigned char bytes[EPG_STORE_SIZE(COUNT)];
 static epg_parameters_t parameters;
+static epg_store_t store;
 
 static void make(uint64_t model_id)
 {
@@ -46,9 +48,9 @@ static void make(uint64_t model_id)
                                     .set = set,
                                     .values = values,
                                     .applied = applied,
-                                    .changed = changed,
-                                    .store = store};
-    epg_parameters_load(&parameters);
+                                    .changed = changed};
+    store = (epg_store_t){.bytes = bytes, .parameters = &parameters};
+    epg_store_load(&store);
 }
 
 static void begin(void)
@@ -181,7 +183,7 @@ TEST(stored_values_are_back_after_a_restart)
     fake_cycle();
     CHECK(change(9, -1e-300));
     fake_cycle();
-    CHECK(epg_parameters_save(&parameters, &stored));
+    CHECK(epg_store_save(&store, &stored));
     CHECK_EQUAL(stored, 2);
 
     make(1); /* the next start: the store is as it was */
@@ -204,7 +206,7 @@ TEST(a_value_that_is_as_generated_again_is_not_stored)
     fake_cycle();
     CHECK(change(0, 2.6));
     fake_cycle();
-    CHECK(epg_parameters_save(&parameters, &stored));
+    CHECK(epg_store_save(&store, &stored));
     CHECK_EQUAL(stored, 0);
     make(1);
     CHECK(parameters.stored == EPG_STORED_LOADED);
@@ -218,7 +220,7 @@ static void store_some(void)
     fake_cycle();
     CHECK(change(0, 0.1));
     fake_cycle();
-    CHECK(epg_parameters_save(&parameters, &stored));
+    CHECK(epg_store_save(&store, &stored));
 }
 
 static void check_as_generated(epg_parameters_stored_t expected)
@@ -243,7 +245,7 @@ TEST(a_store_with_any_wrong_bit_is_refused)
     for (size_t bit = 0; bit < fake_port.store_size * 8U; bit++) {
         fake_port.store[bit / 8U] ^= (unsigned char)(1U << bit % 8U);
         make(1);
-        check_as_generated(bit / 8U >= 8U && bit / 8U < 16U ? EPG_STORED_FOR_OTHER : EPG_STORED_NOTHING);
+        check_as_generated(bit / 8U >= MODEL && bit / 8U < MODEL + 8U ? EPG_STORED_FOR_OTHER : EPG_STORED_NOTHING);
         fake_port.store[bit / 8U] ^= (unsigned char)(1U << bit % 8U);
     }
     make(1);
@@ -267,14 +269,16 @@ TEST(random_bytes_are_no_store)
     fake_reset();
     srand(1);
     for (int i = 0; i < 20000; i++) {
-        fake_port.store_size = (size_t)rand() % 200U;
+        fake_port.store_size = (size_t)rand() % 340U;
         for (size_t k = 0; k < fake_port.store_size; k++) {
             fake_port.store[k] = (unsigned char)rand();
         }
         if (i % 2 == 0) { /* with a beginning that is right */
-            static const unsigned char head[20] = {'E', 'P', 'G', 'P', 1, 0, 0, 0, 1};
+            static const unsigned char head[8] = {'E', 'P', 'G', 'P', 2};
+            static const unsigned char model_one[12] = {1};
             memcpy(fake_port.store, head, sizeof head);
-            fake_port.store[16] = (unsigned char)(rand() % 16);
+            memcpy(fake_port.store + MODEL, model_one, sizeof model_one);
+            fake_port.store[MODEL + 8] = (unsigned char)(rand() % 16);
         }
         make(1);
         check_as_generated(parameters.stored);
@@ -287,7 +291,7 @@ TEST(a_port_that_stores_nothing_says_so)
     size_t stored;
     begin();
     fake_port.store_refuses = true;
-    CHECK(!epg_parameters_save(&parameters, &stored));
+    CHECK(!epg_store_save(&store, &stored));
 }
 
 TEST(a_change_that_a_stop_has_left_is_forgotten)

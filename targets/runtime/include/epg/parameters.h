@@ -7,8 +7,8 @@
  * what was changed is changed again then, and what the model computed from its parameters while it was initialised
  * (initial values of states) is as generated.
  *
- * Changed values can be stored (epg_port_store_write()) and are back after the next start, unless model or generated
- * values have changed since: the store names the model it belongs to.
+ * Changed values can be stored (epg/store.h) and are back after the next start, unless model or generated values have
+ * changed since: the store names the model it belongs to.
  */
 #ifndef EPG_PARAMETERS_H
 #define EPG_PARAMETERS_H
@@ -33,9 +33,6 @@ typedef struct epg_parameter_change {
     double value;
 } epg_parameter_change_t;
 
-/** Bytes of a store that holds `count` changed values. */
-#define EPG_PARAMETERS_STORE_SIZE(count) (24U + 12U * (count))
-
 /** What became of stored values. */
 typedef enum epg_parameters_stored {
     EPG_STORED_NOTHING,   /**< nothing was stored, or it is damaged */
@@ -52,19 +49,12 @@ typedef struct epg_parameters {
     double *values;                          /**< `count`: the communication side's, as changed last */
     double *applied;                         /**< `count`: the control side's */
     bool *changed;                           /**< `count`: the control side's: which of `applied` mean something */
-    unsigned char *store;                    /**< EPG_PARAMETERS_STORE_SIZE(count) bytes; the communication side's */
 
     epg_parameters_stored_t stored;
     epg_handover_t handover; /**< of what follows */
     epg_parameter_change_t changes[EPG_PARAMETER_CHANGES];
     size_t change_count;
 } epg_parameters_t;
-
-/**
- * Sets all values as generated, then those that are stored for this model, all or none of them: `stored` tells.  Before
- * the control loop and the communication start.
- */
-void epg_parameters_load(epg_parameters_t *parameters);
 
 /* Control side ----------------------------------------------------------------------------------------------- */
 
@@ -88,11 +78,5 @@ bool epg_parameters_change(epg_parameters_t *parameters, const epg_parameter_cha
 
 /** Value of parameter `index`, which exists, as changed last. */
 double epg_parameters_value(const epg_parameters_t *parameters, size_t index);
-
-/**
- * Stores all values that are not as generated.  May take as long as epg_port_store_write() does: only while outputs
- * are safe.  Returns whether that could be done; `*stored` is how many there were.
- */
-bool epg_parameters_save(epg_parameters_t *parameters, size_t *stored);
 
 #endif

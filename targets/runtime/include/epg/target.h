@@ -86,6 +86,7 @@ typedef struct epg_target {
     const void *options;                     /**< of that middleware, whose header says what */
     const struct epg_middleware *console;    /**< runs beside it on a stream of its own; NULL: none */
     const void *console_options;
+    struct epg_store *store;     /**< what is kept over a restart: epg/store.h; NULL: nothing is */
     struct epg_node *node_state; /**< memory of a middleware that uses epg/node.h; NULL */
     size_t signal_count;         /**< 0: signals are not monitored */
     const epg_signal_t *signals;
