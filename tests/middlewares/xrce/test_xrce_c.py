@@ -40,7 +40,9 @@ target_include_directories(middleware PRIVATE "{ROOT.as_posix()}/targets/runtime
 _epg_middleware_xrce(middleware)
 set_target_properties(epg_micro_xrce_dds_client PROPERTIES EXCLUDE_FROM_ALL FALSE)
 get_target_property(folders epg_micro_xrce_dds_client INTERFACE_INCLUDE_DIRECTORIES)
+get_target_property(sources epg_micro_xrce_dds_client SOURCES)
 file(WRITE "${{CMAKE_BINARY_DIR}}/folders.txt" "${{folders}}")
+file(WRITE "${{CMAKE_BINARY_DIR}}/sources.txt" "${{sources}}")
 """
     )
     flags = " ".join(["-O1", "-g", *program.ADDRESS_SANITIZER])
@@ -69,7 +71,13 @@ def link_tests(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def session_tests(client: tuple[Path, list[str]], tmp_path_factory: pytest.TempPathFactory) -> Path:
     archive, options = client
     fakes = [program.SOURCES / "fake_port.c", program.SOURCES / "fake_application.c"]
-    sources = [HERE / "session_tests.c", HERE / "agent.c", *fakes, *sorted(XRCE.glob("*.c")), *program.runtime_sources()]
+    sources = [
+        HERE / "session_tests.c",
+        HERE / "agent.c",
+        *fakes,
+        *sorted(XRCE.glob("*.c")),
+        *program.runtime_sources(),
+    ]
     output: Path = program.compile_program(
         tmp_path_factory.mktemp("xrce_session") / "session_tests",
         [*sources, archive],
@@ -89,3 +97,53 @@ def test_link(link_tests: Path, name: str) -> None:
 def test_session(session_tests: Path, name: str) -> None:
     done = program.run_program([session_tests, name])
     assert done.returncode == 0, done.stderr
+
+
+def test_it_needs_no_heap(client: tuple[Path, list[str]], tmp_path: Path) -> None:
+    """What middleware and client library leave for the linker besides EPG's runtime: copying and comparing bytes."""
+    archive, options = client
+    undefined: set[str] = set()
+    defined: set[str] = set()
+    library = (archive.parent / "sources.txt").read_text().split(";")
+    sources = [*XRCE.glob("*.c"), *program.runtime_sources(), *map(Path, library)]
+    for number, source in enumerate(sources):
+        output = tmp_path / f"{number}.o"
+        command = ["gcc", "-Os", "-w", "-fno-stack-protector", "-fno-builtin", f"-I{program.RUNTIME / 'include'}"]
+        subprocess.run([*command, *options, "-c", str(source), "-o", str(output)], check=True)
+        for line in subprocess.run(["nm", str(output)], capture_output=True, text=True, check=True).stdout.splitlines():
+            sort, name = line.split()[-2:]
+            (undefined if sort == "U" else defined).add(name)
+    port = {"epg_port_time_ns", "epg_port_serial", "epg_port_store_read", "epg_port_store_write"}
+    text = {"memcpy", "memmove", "memset", "memchr", "memcmp", "strchr", "strcmp", "strcspn", "strlen", "strncmp"}
+    text |= {"strspn", "strstr"}
+    assert undefined - defined <= {*port, *text, "_GLOBAL_OFFSET_TABLE_"}
+
+
+@pytest.mark.skipif(shutil.which("clang-format") is None, reason="clang-format is missing: apt install clang-format-14")
+def test_files_are_formatted() -> None:
+    shown = subprocess.run(["clang-format", "--version"], capture_output=True, text=True, check=True).stdout
+    if " version 14" not in f" {shown}":
+        pytest.skip("clang-format 14 is not installed: apt install clang-format-14")
+    files = [*sorted(XRCE.glob("*.[ch]")), *sorted(HERE.glob("*.[ch]"))]
+    command = ["clang-format", f"--style=file:{ROOT / '.clang-format'}", "--dry-run", "--Werror", *map(str, files)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("core", ["cortex-m0plus", "cortex-m33", "cortex-m7"])
+def test_it_compiles_for_microcontrollers_without_a_warning(
+    client: tuple[Path, list[str]], tmp_path: Path, core: str
+) -> None:
+    compiler = shutil.which("arm-none-eabi-gcc")
+    if compiler is None:
+        pytest.skip("arm-none-eabi-gcc is missing: apt install gcc-arm-none-eabi libnewlib-arm-none-eabi")
+    command = [compiler, f"-mcpu={core}", "-mthumb", "-Os", "-std=c11", *program.WARNINGS, "-c"]
+    command += [f"-I{program.RUNTIME / 'include'}", *client[1]]
+    for source in XRCE.glob("*.c"):
+        done = subprocess.run(
+            [*command, str(source), "-o", str(tmp_path / f"{source.stem}.o")],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert done.returncode == 0, done.stderr

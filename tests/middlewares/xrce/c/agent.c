@@ -259,16 +259,6 @@ static uint8_t first_submessage(const agent_frame_t *frame)
     return frame->data[frame->data[0] < 0x80 ? HEADER + KEY : HEADER];
 }
 
-const agent_frame_t *agent_last(uint8_t id)
-{
-    for (size_t i = agent.sent_count; i > 0; i--) {
-        if (first_submessage(&agent.sent[i - 1]) == id) {
-            return &agent.sent[i - 1];
-        }
-    }
-    return NULL;
-}
-
 unsigned int agent_count(uint8_t id)
 {
     unsigned int count = 0;

@@ -77,10 +77,7 @@ void agent_say_raw(const void *data, size_t size);
 /** A sample for the reader asked for last. */
 void agent_publish(double value);
 
-/** The newest frame that the board has sent and that has submessage `id` first; NULL: none has been sent. */
-const agent_frame_t *agent_last(uint8_t id);
-
-/** How many it has sent. */
+/** How many frames the board has sent that have submessage `id` first. */
 unsigned int agent_count(uint8_t id);
 
 #endif
