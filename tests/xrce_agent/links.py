@@ -8,6 +8,7 @@ import os
 import random
 import socket
 import termios
+import time
 import tty
 from collections.abc import Hashable
 from pathlib import Path
@@ -16,6 +17,8 @@ from typing import Protocol
 from .framing import AGENT, Deframer, frame
 
 READ = 65536
+PATIENCE = 2.0
+"""Seconds for a port to become free."""
 
 
 class Link(Protocol):
@@ -49,7 +52,7 @@ class UdpLink:
         while self.port == 0:
             self.port = random.SystemRandom().randrange(15000, 32000)
             try:
-                self.open()
+                self._bind()
             except OSError:
                 self.port = 0
 
@@ -58,15 +61,25 @@ class UdpLink:
         return f"{self.host}:{self.port}"
 
     def open(self) -> None:
-        if self._socket is None:
-            new = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-            new.setblocking(False)
+        end = time.monotonic() + PATIENCE
+        while self._socket is None:
             try:
-                new.bind((self.host, self.port))
+                self._bind()
             except OSError:
-                new.close()
-                raise
-            self._socket = new
+                # A thread that was waiting for the old socket holds it for a moment still.
+                if time.monotonic() > end:
+                    raise
+                time.sleep(0.001)
+
+    def _bind(self) -> None:
+        new = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        new.setblocking(False)
+        try:
+            new.bind((self.host, self.port))
+        except OSError:
+            new.close()
+            raise
+        self._socket = new
 
     def close(self) -> None:
         if self._socket is not None:
