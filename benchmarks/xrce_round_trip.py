@@ -21,8 +21,7 @@ from typing import Protocol
 from measure import ROOT, run
 from report import Table, arguments, command_line, show
 
-EXAMPLE = ROOT / "examples" / "ping_pong"
-sys.path.insert(0, str(EXAMPLE / "peer"))
+sys.path.insert(0, str(ROOT / "examples" / "ping_pong" / "peer"))
 sys.path.insert(0, str(ROOT))
 
 from summary import Run, Summary, summarise
@@ -33,6 +32,7 @@ from tests.xrce_agent.bare import bare_client
 from tests.xrce_agent.real_agent import RealAgent, on_loopback, program
 from tests.xrce_agent.topics import Endpoint as Writer
 
+EXAMPLE = ROOT / "examples" / "ping_pong"
 QOS = {"best effort": "best", "reliable": "default"}
 WARM_UP = 50
 PATIENCE = 1.0  # s, until a ping is lost
