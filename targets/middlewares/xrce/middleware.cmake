@@ -9,6 +9,10 @@ function(_epg_middleware_xrce library)
       message(FATAL_ERROR "Middleware 'xrce' needs ${tool}.  ${${tool}_PROBLEM}")
     endif()
   endforeach()
+  if(NOT micro_xrce_dds_client_VERSION MATCHES "^2\\.4\\.")
+    message(FATAL_ERROR "Middleware 'xrce' is written for Micro XRCE-DDS client 2.4; the one in "
+      "${micro_xrce_dds_client} is ${micro_xrce_dds_client_VERSION}.  MICRO_XRCE_DDS_CLIENT_PATH names another one")
+  endif()
   set(headers "${CMAKE_BINARY_DIR}/epg/xrce")
   _epg_xrce_configure("${headers}" "${micro_cdr}" "${micro_cdr_VERSION}" "${micro_xrce_dds_client}"
     "${micro_xrce_dds_client_VERSION}")
