@@ -13,9 +13,9 @@ from pathlib import Path
 LOOPBACK = (
     "<CycloneDDS><Domain>"
     '<General><Interfaces><NetworkInterface address="127.0.0.1" multicast="true"/></Interfaces></General>'
-    "<Discovery><Tag>{tag}</Tag></Discovery>"
-    "</Domain></CycloneDDS>"
+    "{discovery}</Domain></CycloneDDS>"
 )
+TAG = "<Discovery><Tag>{tag}</Tag></Discovery>"
 """Participants with different tags do not see each other, whatever their domain: other tests, and the user's robots."""
 
 
@@ -35,9 +35,12 @@ class Network:
 
 
 @contextmanager
-def network(domain: int = 17) -> Iterator[Network]:
-    """CycloneDDS reads the environment when a process makes its first participant in a domain."""
-    uri = LOOPBACK.format(tag=f"epg_{uuid.uuid4().hex}")
+def network(domain: int = 17, tagged: bool = True) -> Iterator[Network]:
+    """CycloneDDS reads the environment when a process makes its first participant in a domain.
+
+    Others than CycloneDDS know no tags: without them a domain must be nobody else's.
+    """
+    uri = LOOPBACK.format(discovery=TAG.format(tag=f"epg_{uuid.uuid4().hex}") if tagged else "")
     added = {"CYCLONEDDS_URI": uri, "ROS_DOMAIN_ID": str(domain)}
     removed = ("ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_STATIC_PEERS", "ROS_LOCALHOST_ONLY")
     before = dict(os.environ)
