@@ -79,6 +79,7 @@ static const struct {
 } counters[] = {
     {"cycles", offsetof(epg_statistics_t, cycles)},
     {"overruns", offsetof(epg_statistics_t, overruns)},
+    {"outputs_late", offsetof(epg_statistics_t, outputs_late)},
     {"missed", offsetof(epg_statistics_t, missed)},
     {"lateness_max_ns", offsetof(epg_statistics_t, lateness_max)},
     {"computation_min_ns", offsetof(epg_statistics_t, computation_min)},

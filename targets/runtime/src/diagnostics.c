@@ -42,6 +42,7 @@ static void write_pairs(epg_cdr_writer_t *writer, const epg_node_t *node, const 
         {"cycles", counted->cycles},
         {"overruns", counted->overruns},
         {"missed", counted->missed},
+        {"outputs_late", counted->outputs_late},
         {"lateness_max_ns", counted->lateness_max},
         {"computation_min_ns", counted->computation_min},
         {"computation_mean_ns", counted->cycles > 0 ? counted->computation_total / counted->cycles : 0},

@@ -81,7 +81,7 @@ static void publish(epg_node_t *node, size_t index)
         epg_target_publishing(node->target, index);
     }
     state->waiting = !node->send(index, node->buffer, size);
-    if (!state->waiting && topic->role == EPG_TOPIC_VALUES && node->sent_values != NULL) {
+    if (!state->waiting && topic->trigger == EPG_TOPIC_CHANGE) {
         memcpy(&node->sent_values[topic->index], &node->values[topic->index], topic->count * sizeof(double));
         state->sent = true;
     }

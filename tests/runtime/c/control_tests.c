@@ -393,6 +393,43 @@ TEST(a_model_that_never_stops_needs_no_function_for_it)
     CHECK_EQUAL(fake.actuator, 3.0);
 }
 
+static void begin_with_output_delay(uint64_t step_ns)
+{
+    fake_reset();
+    fake.application.output_delay_ns = FAKE_PERIOD_NS / 2;
+    fake_start();
+    fake.step_ns = step_ns;
+    fake_cycle();
+}
+
+TEST(outputs_are_written_at_the_output_delay_whatever_computing_takes)
+{
+    for (uint64_t step_ns = 0; step_ns < FAKE_PERIOD_NS / 2; step_ns += FAKE_PERIOD_NS / 16) {
+        begin_with_output_delay(step_ns);
+        CHECK_EQUAL(fake.actuator, 1.0);
+        CHECK_EQUAL(fake.written_ns, FAKE_PERIOD_NS / 2);
+        CHECK_EQUAL(fake_status().statistics.computation_max, step_ns);
+        CHECK_EQUAL(fake_status().statistics.outputs_late, 0);
+    }
+}
+
+TEST(outputs_that_are_not_ready_at_the_output_delay_follow_at_once_and_are_counted)
+{
+    begin_with_output_delay(FAKE_PERIOD_NS / 2 + 1);
+    CHECK_EQUAL(fake.actuator, 1.0);
+    CHECK_EQUAL(fake.written_ns, FAKE_PERIOD_NS / 2 + 1);
+    CHECK_EQUAL(fake_status().statistics.outputs_late, 1);
+    CHECK_EQUAL(fake_status().statistics.overruns, 0);
+}
+
+TEST(safe_outputs_do_not_wait_for_the_output_delay)
+{
+    begin_with_output_delay(0);
+    request(false);
+    fake_cycle();
+    CHECK_EQUAL(fake_port.now_ns, FAKE_PERIOD_NS);
+}
+
 TEST(overruns_in_a_row)
 {
     fake_reset();
@@ -656,7 +693,10 @@ RUN(ENTRY(start_makes_peripherals_safe_and_runs_nothing), ENTRY(nothing_is_read_
     ENTRY(after_not_finite_the_model_rests_and_its_last_finite_values_stay),
     ENTRY(nothing_is_published_when_the_first_step_is_not_finite), ENTRY(not_finite_while_disabled_is_latched_too),
     ENTRY(enabling_while_the_input_is_not_finite_fails_and_the_model_rests), ENTRY(model_asks_to_stop),
-    ENTRY(a_model_that_never_stops_needs_no_function_for_it), ENTRY(overruns_in_a_row),
+    ENTRY(a_model_that_never_stops_needs_no_function_for_it),
+    ENTRY(outputs_are_written_at_the_output_delay_whatever_computing_takes),
+    ENTRY(outputs_that_are_not_ready_at_the_output_delay_follow_at_once_and_are_counted),
+    ENTRY(safe_outputs_do_not_wait_for_the_output_delay), ENTRY(overruns_in_a_row),
     ENTRY(overruns_with_a_good_cycle_between_do_not_disable), ENTRY(overruns_without_a_limit_are_only_counted),
     ENTRY(enabling_forgets_the_overruns_before), ENTRY(fail_safe_input_falls), ENTRY(fail_safe_input_at_start),
     ENTRY(fail_safe_input_refuses_enabling), ENTRY(an_active_fail_safe_input_changes_nothing),

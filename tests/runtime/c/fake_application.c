@@ -85,6 +85,7 @@ static void write_outputs(void)
 {
     called('w');
     fake.writes++;
+    fake.written_ns = fake_port.now_ns;
     fake.actuator = fake.output;
 }
 

@@ -39,6 +39,7 @@ typedef struct fake_application {
     unsigned int inits;
     unsigned int steps;
     unsigned int writes;
+    uint64_t written_ns; /**< when outputs were written last */
     unsigned int safes;
     char calls[64]; /**< letters of the functions called in the last cycle, in order */
     uint64_t tick;  /**< of the next cycle, from 0 */

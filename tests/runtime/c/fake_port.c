@@ -102,6 +102,12 @@ bool epg_port_store_write(const void *data, size_t size)
     return true;
 }
 
+void epg_port_wait_until(uint64_t time_ns)
+{
+    CHECK(time_ns >= fake_port.now_ns);
+    fake_port.now_ns = time_ns;
+}
+
 const char *epg_port_serial(void)
 {
     return "E6616407E3A51B2C";

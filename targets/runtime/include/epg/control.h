@@ -75,8 +75,9 @@ typedef struct epg_setpoint_state {
 typedef struct epg_application {
     const char *name;
     uint64_t period_ns;
-    uint32_t step_divider;  /**< the model runs every n-th cycle; at least 1 */
-    uint32_t overrun_limit; /**< overruns in a row that disable; 0: never */
+    uint32_t step_divider;    /**< the model runs every n-th cycle; at least 1 */
+    uint64_t output_delay_ns; /**< from a tick to its outputs; 0: they follow as soon as they are computed */
+    uint32_t overrun_limit;   /**< overruns in a row that disable; 0: never */
     bool enable_at_start;
 
     void (*start)(void);  /**< configures all peripherals, outputs safe; before the first cycle */

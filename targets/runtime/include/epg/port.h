@@ -21,6 +21,12 @@ extern "C" {
 /** Monotonic time in nanoseconds.  Callable from every context. */
 uint64_t epg_port_time_ns(void);
 
+/**
+ * Returns when epg_port_time_ns() is `time_ns` or more.  Called within a control cycle with a time less than a period
+ * ahead.  In simulated time it returns at once: there outputs act at the instant of their tick.
+ */
+void epg_port_wait_until(uint64_t time_ns);
+
 /** A quadrature decoder.  `block` and `unit` name the peripheral (PIO block and state machine, timer, ...). */
 typedef struct epg_port_quadrature {
     uint8_t pin_a;

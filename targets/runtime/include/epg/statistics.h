@@ -25,6 +25,7 @@ typedef struct epg_statistics {
     uint32_t cycles;            /**< control cycles run */
     uint32_t overruns;          /**< cycles that ended after the next one was due, or before which ticks were missed */
     uint32_t missed;            /**< ticks at which no cycle ran */
+    uint32_t outputs_late;      /**< cycles whose outputs were not ready at the output delay, and came later */
     uint32_t lateness_max;      /**< largest delay from tick to start of a cycle */
     uint32_t computation_min;   /**< shortest cycle */
     uint32_t computation_max;   /**< longest cycle */
