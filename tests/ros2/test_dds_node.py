@@ -9,6 +9,7 @@ import os
 import signal
 import statistics
 import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -33,6 +34,7 @@ from tests.ros2.network import Network, network, running
 from tests.ros2.peer import Endpoint, Peer, Subscription
 
 NODE = "/robot_7/JIWY_node"
+ROOT = Path(__file__).resolve().parents[2]
 
 
 @pytest.fixture(scope="session")
@@ -266,6 +268,36 @@ def test_a_peer_that_comes_and_goes_leaves_the_node_as_it_was(jiwy: Path, net: N
                 assert hear(peer, peer.subscription("/robot_7/pan_publisher", Float64_), 3)
                 setpoint.publish(Float64_(0.25))
         assert jiwy_robot.end() == ""
+
+
+FROZEN = """
+import sys
+from tests.ros2.messages import Float64_
+from tests.ros2.peer import Peer
+
+with Peer(int(sys.argv[1]), "frozen") as peer:
+    pan = peer.subscription("/robot_7/pan_publisher", Float64_)
+    print("up" if peer.spin_until(lambda: len(pan.received) > 3) else "nothing", flush=True)
+    peer.spin(60)
+"""
+
+
+def test_a_frozen_reliable_subscriber_holds_nobody_up(jiwy: Path, net: Network, tmp_path: Path) -> None:
+    """It acknowledges nothing for seconds: reliable, but the publisher does not wait for it."""
+    command = [sys.executable, "-c", FROZEN, str(net.domain)]
+    with robot(net, jiwy, tmp_path), Peer(net.domain, "monitor") as peer:
+        frozen = subprocess.Popen(command, cwd=ROOT, env=net.environment, stdout=subprocess.PIPE, text=True)
+        with running([frozen]):
+            assert frozen.stdout is not None and frozen.stdout.readline() == "up\n"
+            frozen.send_signal(signal.SIGSTOP)
+            pan = peer.subscription("/robot_7/pan_publisher", Float64_)
+            assert hear(peer, pan, 3)
+            begin = len(pan.received)
+            peer.spin(4.0)
+            times = [message.sample_info.source_timestamp / 1e9 for message in pan.messages[begin:]]
+            assert len(times) > 110  # of 121
+            assert max(after - before for before, after in itertools.pairwise(times)) < 0.3
+            frozen.send_signal(signal.SIGCONT)
 
 
 def test_domains_do_not_meet(jiwy: Path, net: Network, tmp_path: Path) -> None:
