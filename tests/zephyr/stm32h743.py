@@ -5,8 +5,8 @@
 >>> # chip.attach("TIM4", ("D", 12), ("D", 13), alternate_function=2)
 >>> # chip.move("TIM4", -70_000)
 
-There is no time, no SysTick and no cache.  Interrupts are entered between instructions when NVIC, PRIMASK and BASEPRI let
-them, and run to their end; they do not nest, and nothing switches threads.  Registers without a model keep what is
+There is no time, no SysTick and no cache.  Interrupts are entered between instructions when NVIC, PRIMASK and BASEPRI
+let them, and run to their end; they do not nest, and nothing switches threads.  Registers without a model keep what is
 written; of the clock tree only the flags move, on which its drivers wait (RM0433, 8.7 and 6.8).
 """
 

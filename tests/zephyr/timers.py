@@ -1,8 +1,8 @@
 """Timers of an STM32H743 in encoder mode, as far as a decoder uses them (RM0433, chapters 38 and 39).
 
 A timer counts the edges at its inputs as its registers say: encoder mode 3 counts each, the inputs' polarities turn the
-direction, the prescaler in effect divides, and ARR is where it wraps.  Channels 3 and 4, as outputs, set their flag when
-the count matches.  A timer whose clock is off counts nothing, reads as 0 and ignores writes.
+direction, the prescaler in effect divides, and ARR is where it wraps.  Channels 3 and 4, as outputs, set their flag
+when the count matches.  A timer whose clock is off counts nothing, reads as 0 and ignores writes.
 """
 
 from __future__ import annotations

@@ -28,6 +28,10 @@ PYTHON_NEEDS = "elftools, packaging, pykwalify, west, yaml"
 """Modules that Zephyr's build imports (its scripts/requirements-base.txt)."""
 
 
+TWISTER_NEEDS = "colorama, jsonschema, junitparser, natsort, ply, psutil, pytest, tabulate"
+"""Modules that Zephyr's test runner imports besides (its scripts/requirements-build-test.txt and -run-test.txt)."""
+
+
 class BuildError(Exception):
     """CMake or a compiler has failed; the message is what they said."""
 
@@ -49,6 +53,16 @@ class Workspace:
             environment["ZEPHYR_TOOLCHAIN_VARIANT"] = "gnuarmemb"
             environment["GNUARMEMB_TOOLCHAIN_PATH"] = str(arm_gcc().parent.parent)
         return environment
+
+
+def twister(here: Workspace) -> None:
+    """Raises :class:`Missing` when Zephyr's test runner cannot run."""
+    command = [str(here.python), "-c", f"import {TWISTER_NEEDS}"]
+    if subprocess.run(command, capture_output=True, check=False, env=here.environment()).returncode != 0:
+        raise Missing(
+            "Python packages of Zephyr's twister are not installed: "
+            f"{here.python} -m pip install {TWISTER_NEEDS.replace(',', '')}"
+        )
 
 
 def workspace(*boards: str) -> Workspace:

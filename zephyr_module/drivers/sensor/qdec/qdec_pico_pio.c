@@ -248,6 +248,8 @@ static DEVICE_API(sensor, qdec_pico_pio_driver_api) = {
 	QDEC_COMMON_ASSERT_DT_INST(n);                                                             \
 	BUILD_ASSERT(DT_NODE_HAS_COMPAT(DT_INST_PARENT(n), raspberrypi_pico_pio),                  \
 		     "epg,pico-pio-qdec must be a child of a PIO block (raspberrypi,pico-pio)");   \
+	BUILD_ASSERT(DT_CHILD_NUM_STATUS_OKAY(DT_INST_PARENT(n)) <= NUM_PIO_STATE_MACHINES,        \
+		     "a PIO block has four state machines, for as many decoders");                 \
 	BUILD_ASSERT(DT_NODE_EXISTS(QDEC_PICO_PIO_PINS(n)),                                        \
 		     "the pins of an epg,pico-pio-qdec must be in a group ab_pins");               \
 	BUILD_ASSERT(DT_PROP_LEN(QDEC_PICO_PIO_PINS(n), pinmux) == 2,                              \

@@ -1,0 +1,10 @@
+/*
+ * Copyright (c) The EPG contributors
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+
+int main(void)
+{
+	return 0;
+}

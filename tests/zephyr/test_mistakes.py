@@ -1,0 +1,41 @@
+"""What the hardware cannot do is an error of the build, in words: `mistakes` has a decoder for each."""
+
+from __future__ import annotations
+
+import re
+from functools import partial
+
+import pytest
+
+from tests.emulator.toolchain import arm_gcc, skip_if_missing
+
+from .workspace import BuildError, build, workspace
+
+EXPECTED = {
+    "rpi_pico2/rp2350a/m33": {
+        "A and B of an epg,pico-pio-qdec must be neighbouring pins",
+        "a PIO block has four state machines, for as many decoders",
+        "counts-per-revolution must be 1 or more",
+        "no bias-pull-down for inputs of RP2350 (erratum RP2350-E9)",
+        "the function of pins in ab_pins must be that of the decoder's PIO block",
+        "the group ab_pins must have two pins: A, then B",
+        "the group ab_pins needs input-enable",
+    },
+    "nucleo_h743zi": {
+        "epg,stm32-qdec must be a child of a timer (st,stm32-timers)",
+        "the timer of an epg,stm32-qdec can have no other function",
+        "the timer of an epg,stm32-qdec has no encoder mode",
+        "the timer of an epg,stm32-qdec has no interrupts",
+        "the timer of an epg,stm32-qdec is not enabled: status = okay",
+        "the timer of an epg,stm32-qdec needs four channels",
+    },
+}
+
+
+@pytest.mark.parametrize("board", EXPECTED)
+def test_mistakes_have_messages(board: str) -> None:
+    skip_if_missing(partial(workspace, board), arm_gcc)
+    with pytest.raises(BuildError) as said:
+        build("tests/zephyr/mistakes", board, keep_going=True)
+    messages = re.findall(r'error: static assertion failed: "(.*)"$', str(said.value), re.MULTILINE)
+    assert {message.replace("\\'", "'").replace('\\"', "") for message in messages} == EXPECTED[board]

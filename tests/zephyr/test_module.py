@@ -1,0 +1,47 @@
+"""EPG as a module of Zephyr: free of charge for applications that do not use it."""
+
+from __future__ import annotations
+
+import re
+from functools import partial
+from pathlib import Path
+
+from tests.emulator.toolchain import ROOT, arm_gcc, skip_if_missing
+
+from .workspace import build, workspace
+
+APPLICATION = "tests/zephyr/empty"
+
+
+def configuration(folder: Path) -> list[str]:
+    return (folder / "zephyr" / ".config").read_text(encoding="utf-8").splitlines()
+
+
+def test_an_application_that_does_not_use_it_builds_as_without_it() -> None:
+    """The same binary, and the same .config but for the symbol that Zephyr itself gives each module."""
+    skip_if_missing(partial(workspace, "rpi_pico"), arm_gcc)
+    modules = workspace("rpi_pico").modules
+    assert modules[-1] == ROOT
+    plain = build(APPLICATION, "rpi_pico", modules=modules[:-1])
+    with_epg = build(APPLICATION, "rpi_pico")
+    added = [line for line in configuration(with_epg) if line not in configuration(plain)]
+    assert [line for line in added if line.startswith("CONFIG_") and line != "CONFIG_ZEPHYR_EPG_MODULE=y"] == []
+    assert [line for line in configuration(plain) if line not in configuration(with_epg)] == []
+    image = (plain / "zephyr" / "zephyr.bin").read_bytes()
+    assert len(image) > 10_000
+    assert (with_epg / "zephyr" / "zephyr.bin").read_bytes() == image
+
+
+def test_python_packages_are_those_of_the_wheel() -> None:
+    """`west packages pip` gets what the generator needs."""
+    project = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+    (listed,) = re.findall(r"^dependencies = \[(.*)\]$", project, re.MULTILINE)
+    lines = (ROOT / "zephyr_module" / "requirements.txt").read_text(encoding="utf-8").splitlines()
+    assert [line for line in lines if not line.startswith("#")] == re.findall(r'"([^"]+)"', listed)
+
+
+def test_what_module_yml_names_is_there() -> None:
+    text = (ROOT / "zephyr" / "module.yml").read_text(encoding="utf-8")
+    named = re.findall(r"(?:zephyr_module|tests/zephyr)[\w/.]*", text)
+    assert len(named) >= 6
+    assert [name for name in named if not (ROOT / name).exists()] == []
