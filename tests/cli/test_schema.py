@@ -114,7 +114,7 @@ def test_the_files_of_the_tests_of_messages_are_right() -> None:
 
 
 STRUCTURE = {"unknown-key", "missing-key", "wrong-type", "wrong-unit", "wrong-quantity", "exactly-one", "only-with"}
-STRUCTURE |= {"unknown-kind", "unknown-target", "unknown-middleware", "unknown-transport"}
+STRUCTURE |= {"unknown-kind", "unknown-target", "unknown-middleware"}
 """Mistakes that a schema can know of; others need the model, the bindings or the pins."""
 READABLE = re.compile(r"^robot\.tcf:\d+:\d+: error: .* \[([a-z-]+)\]$", re.MULTILINE)
 
@@ -202,9 +202,9 @@ def component(**keys: Any) -> dict[str, Any]:
         (component(kind="quadrature_encoder", pins={"a": 1, "b": 2}, counts_per_revolution=1, gear="3:2"), False),
         (component(kind="quadrature_encoder", pins={"a": 1, "b": 2}, counts_per_revolution=0), False),
         (complete(target="host", communication={"middleware": "files"}), True),
-        (complete(target="host", communication={"middleware": "xrce"}), False),
+        (complete(target="host", communication={"middleware": "xrce"}), True),
+        (complete(communication={"middleware": "dds"}), False),
         (complete(communication={"middleware": "xrce", "transport": "usb"}), True),
-        (complete(communication={"middleware": "xrce", "transport": "udp"}), False),
         (complete(communication={"middleware": "none", "transport": "usb"}), False),
         (complete(target="hots"), False),
         (complete(namespace=None), True),
