@@ -62,7 +62,7 @@ static size_t part(const char *text)
 }
 
 /** Whether `text` is not too long, as it stands and with the serial number. */
-static bool fits(const char *text)
+static bool has_room(const char *text)
 {
     char name[EPG_STORE_NAME_SIZE];
     return strlen(text) < EPG_STORE_NAME_SIZE && epg_names_expand(text, name, sizeof name);
@@ -71,7 +71,7 @@ static bool fits(const char *text)
 bool epg_names_is_node(const char *text)
 {
     const size_t length = part(text);
-    return length > 0 && text[length] == '\0' && fits(text);
+    return length > 0 && text[length] == '\0' && has_room(text);
 }
 
 bool epg_names_is_space(const char *text)
@@ -88,7 +88,7 @@ bool epg_names_is_space(const char *text)
         }
         rest += 1 + length;
     }
-    return *rest == '\0' && length > 0 && strstr(text, "__") == NULL && fits(text);
+    return *rest == '\0' && length > 0 && strstr(text, "__") == NULL && has_room(text);
 }
 
 const char *epg_names_node(const epg_target_t *target)
