@@ -29,9 +29,9 @@ ENCAPSULATION = b"\x00\x01\x00\x00"
 
 
 def known_types() -> dict[str, Any]:
-    """By DDS name."""
-    found = (item for item in vars(messages).values() if isinstance(item, type) and issubclass(item, IdlStruct))
-    return {item.__idl__.idl_transformed_typename: item for item in found if item is not IdlStruct}
+    """By DDS name; of several of one name the first: the others are wrong on purpose."""
+    found = [item for item in vars(messages).values() if isinstance(item, type) and issubclass(item, IdlStruct)]
+    return {item.__idl__.idl_transformed_typename: item for item in reversed(found) if item is not IdlStruct}
 
 
 class DdsBridge:
