@@ -27,6 +27,7 @@ SMALLEST = {
     "pico_cycle": ["--cycles", "20"],
     "pico_closed_loop": ["--short", "1"],
     "network_situations": ["--only", "4", "--seconds", "3"],
+    "xrce_round_trip": ["--count", "5"],
 }
 PROGRAMS = sorted(
     path.stem for path in BENCHMARKS.glob("*.py") if '__name__ == "__main__"' in path.read_text(encoding="utf-8")
@@ -52,6 +53,8 @@ def test_it_runs_and_prints_what_the_page_shows(program: str) -> None:
     if program == "network_situations":
         pytest.importorskip("cyclonedds", reason="CycloneDDS for Python is not installed: pip install cyclonedds")
         skip_if_missing(lambda: tool("cyclonedds"))
+    if program == "xrce_round_trip":
+        skip_if_missing(lambda: tool("micro_xrce_dds_client"), lambda: tool("micro_cdr"))
     printed = run(program)
     titles = re.findall(r"^(.+)\n-+$", printed, flags=re.MULTILINE)
     section = re.search(rf"<!-- begin {program} -->(.*?)<!-- end {program} -->", PAGE.read_text(encoding="utf-8"), re.S)
