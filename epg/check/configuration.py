@@ -37,10 +37,12 @@ COMMON_PARAMETERS = ("kind", "scale", "offset", "unit", "limits")
 
 @dataclass(frozen=True)
 class Control:
-    """The control loop; ``period`` in seconds, None to follow the model's step."""
+    """The control loop; times in seconds: ``period`` None to follow the model's step, ``output_delay`` None for none."""
 
     period: Fraction | None
     period_span: Span
+    output_delay: Fraction | None
+    output_delay_span: Span
     enable_at_start: bool
     overrun_limit: int
     enable_topic: str | None  # None: there is none
@@ -205,7 +207,7 @@ def _control(
     seconds = _time(period, diagnostics)
     if period is not None and seconds is not None and seconds <= 0:
         diagnostics.error("out-of-range", period.span, "the control period must be more than 0")
-    topic, fail_safe = node.get("enable_topic"), node.get("fail_safe")
+    topic, fail_safe, delay = node.get("enable_topic"), node.get("fail_safe"), node.get("output_delay")
     limit = node.get("overrun_limit")
     default_topic = ENABLE_TOPIC if communication is not None and communication.middleware.is_node else None
     if fail_safe is not None:
@@ -213,6 +215,8 @@ def _control(
     return Control(
         period=seconds,
         period_span=period.span if period else node.span,
+        output_delay=_time(delay, diagnostics),
+        output_delay_span=delay.span if delay else node.span,
         enable_at_start=bool(node["enable_at_start"].value),
         overrun_limit=limit.value if limit is not None and isinstance(limit.value, int) else 10,
         enable_topic=(str(topic.value) if topic.value is not False else None) if topic else default_topic,

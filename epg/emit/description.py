@@ -28,6 +28,7 @@ def describe(app: Application, topics: Topics, names: PathNames, hash: str = "")
         "namespace": app.namespace,
         "control": {
             "period": float(app.period),
+            "output_delay": None if app.control.output_delay is None else float(app.control.output_delay),
             "step_divider": app.step_divider,
             "enable_at_start": app.control.enable_at_start,
             "overrun_limit": app.control.overrun_limit,

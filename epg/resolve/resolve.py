@@ -143,6 +143,11 @@ def _period(configuration: Configuration, model: Model, diagnostics: Diagnostics
         notes = [] if stated else [Note("it is the model's step", model.span)]
         diagnostics.error("out-of-range", configuration.control.period_span, message, notes=notes)
         return Fraction(1, 1000), 1
+    delay = configuration.control.output_delay
+    if delay is not None and not 0 < delay < period:
+        message = f"an output delay of {_ms(delay)} is out of range: must be more than 0 and less than the control period"
+        notes = [Note(f"the control period is {_ms(period)}", configuration.control.period_span)]
+        diagnostics.error("out-of-range", configuration.control.output_delay_span, message, notes=notes)
     ratio = model.step / period
     if ratio.denominator != 1:
         message = f"the model's step of {_ms(model.step)} is no multiple of the control period of {_ms(period)}"

@@ -6,6 +6,7 @@
 #define FAKE_PORT_H
 
 #include "epg/port.h"
+#include "epg/port_uart.h"
 
 enum { FAKE_UNITS = 8, FAKE_PINS = 32, FAKE_STORE = 1024 };
 

@@ -8,6 +8,7 @@
 
 #include "clock.h"
 
+#include <errno.h>
 #include <stdbool.h>
 #include <time.h>
 
@@ -60,3 +61,21 @@ uint64_t epg_port_time_ns(void)
 {
     return simulated ? simulated_ns : epg_host_monotonic_ns();
 }
+
+#if defined(__linux__)
+
+void epg_port_wait_until(uint64_t time_ns)
+{
+    const struct timespec until = {.tv_sec = (time_t)(time_ns / 1000000000U), .tv_nsec = (long)(time_ns % 1000000000U)};
+    while (!simulated && clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, NULL) == EINTR) {
+    }
+}
+
+#else /* there is no real time either */
+
+void epg_port_wait_until(uint64_t time_ns)
+{
+    (void)time_ns;
+}
+
+#endif

@@ -101,6 +101,7 @@ void epg_host_write_statistics(FILE *file, const epg_host_run_t *run)
     write_count(file, "cycles", statistics.cycles);
     write_count(file, "overruns", statistics.overruns);
     write_count(file, "missed", statistics.missed);
+    write_count(file, "outputs_late", statistics.outputs_late);
     write_time(file, "lateness_min", (double)timing->lateness.min);
     write_time(file, "lateness_mean", epg_host_histogram_mean(&timing->lateness));
     write_time(file, "lateness_p99", (double)epg_host_histogram_quantile(&timing->lateness, 0.99));

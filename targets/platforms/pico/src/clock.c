@@ -78,3 +78,11 @@ uint64_t __not_in_flash_func(epg_port_time_ns)(void)
     }
     return cycle.begin_ns + epg_pico_clocks_to_ns((cycle.begin_systick - systick_hw->cvr) & SYSTICK_BITS);
 }
+
+void __not_in_flash_func(epg_port_wait_until)(uint64_t time_ns)
+{
+    /* Core 1 has nothing else to do; time passes, so this ends. */
+    while (epg_port_time_ns() < time_ns) {
+        tight_loop_contents();
+    }
+}
