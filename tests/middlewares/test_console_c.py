@@ -59,8 +59,8 @@ def test_it_needs_no_heap_and_no_printf(tmp_path: Path) -> None:
             sort, name = line.split()[-2:]
             (undefined if sort == "U" else defined).add(name)
     port = {f"epg_port_{name}" for name in ("time_ns", "wait_until", "serial", "store_read", "store_write")}
-    text = {"memcpy", "memset", "memchr", "memcmp", "strchr", "strcmp", "strcspn", "strlen", "strncmp", "strspn", "strstr"}
-    assert undefined - defined <= {*port, *text, "_GLOBAL_OFFSET_TABLE_"}
+    text = {"memcpy", "memset", "memchr", "memcmp", "strchr", "strcmp", "strcspn", "strlen", "strncmp", "strspn"}
+    assert undefined - defined <= {*port, *text, "strstr", "_GLOBAL_OFFSET_TABLE_"}
 
 
 @pytest.mark.skipif(shutil.which("cppcheck") is None, reason="cppcheck is not installed: apt install cppcheck")

@@ -10,6 +10,7 @@
 #include "check.h"
 #include "epg/control.h"
 #include "epg/host.h"
+#include "epg/target.h"
 
 static epg_control_t app_control;
 
@@ -307,6 +308,46 @@ TEST(topics_and_constant)
     CHECK_EQUAL(number_read_value(), 0.1);
 }
 
+/** Bytes of the message of `topic` for its values from `numbers` on. */
+static size_t message_size(const epg_topic_t *topic, const double *numbers, unsigned char bytes[512])
+{
+    const epg_stamp_t stamp = {0};
+    return topic->message->write(topic, numbers, stamp, bytes, 512);
+}
+
+TEST(messages_are_as_large_as_kinds_say)
+{
+    const double numbers[6] = {0};
+    static const epg_topic_t *const topics[] = {&publisher_topic,  &flag_topic,      &array_out_topic,
+                                                &joints_out_topic, &twist_out_topic, &answer_topic};
+    for (size_t i = 0; i < sizeof topics / sizeof topics[0]; i++) {
+        unsigned char bytes[512];
+        const size_t size = message_size(topics[i], numbers, bytes);
+        CHECK(size > 0 && size <= topics[i]->size);
+        CHECK(topics[i]->size - size < 48); /* room for padding, not for another message */
+    }
+}
+
+TEST(values_of_messages_are_where_their_ports_say)
+{
+    double values[18] = {0};
+    double read[6] = {0};
+    unsigned char bytes[512];
+    joints_out_monitor_pan_position(values, 1.0);
+    joints_out_monitor_tilt_effort(values, 2.0);
+    size_t size = message_size(&joints_out_topic, &values[6], bytes);
+    CHECK(joints_in_topic.message->read(&joints_in_topic, bytes, size, read));
+    CHECK_EQUAL(read[0], 1.0);
+    CHECK_EQUAL(read[5], 2.0);
+    twist_out_monitor_angular_z(values, 3.0);
+    CHECK_EQUAL(values[17], 3.0);
+    array_out_monitor_second(values, 4.0);
+    size = message_size(&array_out_topic, &values[4], bytes);
+    CHECK(array_in_topic.message->read(&array_in_topic, bytes, size, read));
+    CHECK_EQUAL(read[0], 0.0);
+    CHECK_EQUAL(read[1], 4.0);
+}
+
 RUN(ENTRY(span_gives_radians_at_the_load), ENTRY(inverted_span_counts_backwards_and_reads_the_same_angle),
     ENTRY(counts_per_revolution_and_gear), ENTRY(pins_and_pull_up_are_handed_on),
     ENTRY(reset_loads_the_preset_in_the_next_cycle), ENTRY(bridge_drives_the_plant_with_the_duty_written),
@@ -315,4 +356,5 @@ RUN(ENTRY(span_gives_radians_at_the_load), ENTRY(inverted_span_counts_backwards_
     ENTRY(dual_bridge_with_slow_decay_moves_the_plant_the_same), ENTRY(guard_sees_duty_and_angle),
     ENTRY(guard_knows_the_resets_of_its_encoder), ENTRY(encoder_whose_decoder_has_stopped),
     ENTRY(probes_toggle_at_their_point_only), ENTRY(pwm_drives_the_plant_with_the_duty_written),
-    ENTRY(digital_input_from_the_plant), ENTRY(digital_output_to_the_plant), ENTRY(topics_and_constant))
+    ENTRY(digital_input_from_the_plant), ENTRY(digital_output_to_the_plant), ENTRY(topics_and_constant),
+    ENTRY(messages_are_as_large_as_kinds_say), ENTRY(values_of_messages_are_where_their_ports_say))
