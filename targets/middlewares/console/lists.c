@@ -5,6 +5,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "epg/middleware.h"
 #include "epg/node.h"
 #include "session.h"
 
@@ -98,13 +99,21 @@ static const struct {
 
 enum { COUNTERS = sizeof counters / sizeof counters[0] };
 
-/** First the state, then the counters, then what is computed from them. */
+/** What a middleware that the console runs beside says of its connection; NULL: nothing. */
+static const char *connection(const epg_target_t *target)
+{
+    const epg_middleware_t *middleware = target->middleware;
+    return middleware != NULL && middleware->state != NULL ? middleware->state() : NULL;
+}
+
+/** First the state, then the counters, then what is computed from them, last what there is of a node. */
 static bool stats_line(epg_console_session_t *session, size_t index)
 {
     const epg_status_t *status = &session->status;
     epg_console_output_t *output = &session->output;
     const epg_node_t *node = session->target->node_state;
-    if (index > COUNTERS + (node != NULL ? 4U : 2U)) {
+    const char *connected = connection(session->target);
+    if (index > COUNTERS + 2U + (node != NULL ? 2U : 0U) + (node != NULL && connected != NULL ? 1U : 0U)) {
         return false;
     }
     epg_console_begin(output, "stat");
@@ -126,8 +135,11 @@ static bool stats_line(epg_console_session_t *session, size_t index)
         epg_console_count(output, "lines_dropped", output->dropped);
     } else if (index == COUNTERS + 3U) {
         epg_console_count(output, "unsent", node->unsent);
-    } else {
+    } else if (index == COUNTERS + 4U) {
         epg_console_count(output, "malformed", node->malformed);
+    } else {
+        epg_console_key(output, "connection");
+        epg_console_text(output, connected);
     }
     return true;
 }

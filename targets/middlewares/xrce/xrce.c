@@ -449,4 +449,10 @@ epg_xrce_status_t epg_xrce_status(void)
     return status;
 }
 
-const epg_middleware_t epg_xrce = {.start = start, .poll = poll, .stop = stop};
+static const char *state(void)
+{
+    static const char *const names[] = {"waiting", "creating", "running"};
+    return names[client.status.state];
+}
+
+const epg_middleware_t epg_xrce = {.start = start, .poll = poll, .stop = stop, .state = state};

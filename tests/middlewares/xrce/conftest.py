@@ -48,6 +48,11 @@ def robot(robot_build: Path) -> Path:
 
 
 @pytest.fixture(scope="session")
+def spoken_robot(robot_build: Path) -> Path:
+    return robot_build / "spoken_host"
+
+
+@pytest.fixture(scope="session")
 def disabling_robot(robot_build: Path) -> Path:
     return robot_build / "disabling_host"
 

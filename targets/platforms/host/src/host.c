@@ -95,10 +95,11 @@ static int run_target(const epg_host_target_t *host, const epg_host_options_t *o
 
 /** With a terminal for the console, if one is wanted. */
 static int run_with_terminal(const epg_host_target_t *host, const epg_host_options_t *options,
-                             const epg_host_events_t *events, const outputs_t *outputs, epg_host_link_t *link)
+                             const epg_host_events_t *events, const outputs_t *outputs, epg_host_link_t *link,
+                             const char *agent)
 {
     epg_host_terminal_t terminal;
-    epg_host_services_t services = {.target = host->target, .link = link};
+    epg_host_services_t services = {.target = host->target, .link = link, .agent = options->quiet ? NULL : agent};
     if (!options->console && options->console_pty == NULL) {
         return run_target(host, options, events, outputs, &services);
     }
@@ -131,14 +132,15 @@ static int run_with_link(const epg_host_target_t *host, const epg_host_options_t
         return WRONG_INPUT;
     }
     if (host->agent == NULL || !options->realtime) {
-        return run_with_terminal(host, options, events, outputs, NULL);
+        return run_with_terminal(host, options, events, outputs, NULL, NULL);
     }
+    agent = agent != NULL ? agent : host->agent;
     if (options->device != NULL) {
-        epg_host_link_serial(&link, options->device, host->baud_rate);
-    } else if (!epg_host_link_open(&link, agent != NULL ? agent : host->agent, host->baud_rate)) {
+        epg_host_link_serial(&link, agent, host->baud_rate);
+    } else if (!epg_host_link_open(&link, agent, host->baud_rate)) {
         return FAILED;
     }
-    const int status = run_with_terminal(host, options, events, outputs, &link);
+    const int status = run_with_terminal(host, options, events, outputs, &link, agent);
     epg_host_link_close(&link);
     return status;
 }

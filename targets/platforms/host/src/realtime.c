@@ -172,7 +172,7 @@ static void join_thread(control_thread_t *self)
 }
 
 /** Sleeps until monotonic time `time_ns`, less if there is a middleware with something to do. */
-static void sleep_or_serve(const epg_host_run_t *run, uint64_t time_ns)
+static void sleep_or_serve(epg_host_run_t *run, uint64_t time_ns)
 {
     if (epg_host_services_run(&run->services)) {
         epg_host_services_serve(&run->services, time_ns);

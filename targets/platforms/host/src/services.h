@@ -20,6 +20,8 @@
 typedef struct epg_host_services {
     const epg_target_t *target;
     epg_host_link_t *link;         /**< to the agent of the target's middleware; NULL: there is none */
+    const char *agent;             /**< where it is, for people; NULL: nothing is said of the connection */
+    const char *state;             /**< of the connection, as said last; NULL: it is not running */
     epg_host_terminal_t *terminal; /**< NULL: there is none */
 } epg_host_services_t;
 
@@ -34,8 +36,11 @@ bool epg_host_services_run(const epg_host_services_t *services);
 
 void epg_host_services_start(const epg_host_services_t *services);
 
-/** Sleeps until monotonic time `time_ns` or until something arrives, a millisecond at most; then serves all. */
-void epg_host_services_serve(const epg_host_services_t *services, uint64_t time_ns);
+/**
+ * Sleeps until monotonic time `time_ns` or until something arrives, a millisecond at most; then serves all.  What
+ * becomes of the connection to an agent is said on stderr.
+ */
+void epg_host_services_serve(epg_host_services_t *services, uint64_t time_ns);
 
 void epg_host_services_stop(const epg_host_services_t *services);
 

@@ -29,6 +29,8 @@ typedef struct epg_middleware {
      * at `until_ns` at the latest.  NULL: the platform waits for the stream.
      */
     void (*wait)(uint64_t until_ns);
+    /** How its connection stands, in a word: "waiting", "running".  The same pointer while it is the same. */
+    const char *(*state)(void);
 } epg_middleware_t;
 
 #endif

@@ -1,0 +1,64 @@
+"""Where the agent is, on the command line of a host executable, and what it tells people."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from tests.xrce_agent import Agent
+
+from ..client import Host, stat
+
+PATIENCE = 20.0
+
+
+def run(program: Path, *options: str) -> tuple[int, str]:
+    done = subprocess.run([program, *options], capture_output=True, text=True, check=False, timeout=PATIENCE)
+    return done.returncode, done.stderr
+
+
+@pytest.mark.parametrize(
+    ("options", "status", "message"),
+    [
+        (["--agent", "127.0.0.1:8888", "--duration", "1"], 2, "error: --agent without --realtime\n"),
+        (["--serial-device", "/dev/null", "--duration", "1"], 2, "error: --serial-device without --realtime\n"),
+        (["--realtime", "--agent", "127.0.0.1"], 2, "error: --agent '127.0.0.1' is no HOST:PORT\n"),
+        (["--realtime", "--agent", "127.0.0.1:70000"], 2, "error: --agent '127.0.0.1:70000' is no HOST:PORT\n"),
+        (["--realtime", "--agent", "a:1", "--serial-device", "b"], 2, "error: --agent and --serial-device\n"),
+        (["--realtime", "--agent", "no.such.host.invalid:1"], 1, "error: there is no host 'no.such.host.invalid'"),
+        (["--realtime", "--console", "--duration", "1"], 2, "error: this target has no console\n"),
+    ],
+)
+def test_mistakes(robot: Path, options: list[str], status: int, message: str) -> None:
+    found, errors = run(robot, *options)
+    assert found == status and errors.startswith(message)
+
+
+def test_in_simulated_time_it_runs_without_an_agent(robot: Path) -> None:
+    assert run(robot, "--duration", "0.5") == (0, "")
+
+
+def test_it_says_whether_there_is_an_agent(robot: Path, agent: Agent) -> None:
+    command = [str(robot), "--realtime", "--agent", agent.address]
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stderr is not None
+        try:
+            assert process.stderr.readline() == f"robot: connected to the agent at {agent.address}\n"
+            agent.kill()
+            assert process.stderr.readline() == f"robot: lost the agent at {agent.address}\n"
+            agent.start()
+            assert process.stderr.readline() == f"robot: connected to the agent at {agent.address}\n"
+        finally:
+            process.terminate()
+        assert process.wait(PATIENCE) == 130
+
+
+def test_the_console_beside_it_tells_of_the_connection(spoken_robot: Path, agent: Agent) -> None:
+    with Host(spoken_robot, "--quiet", "--agent", agent.address) as host:
+        agent.topics.wait_for_sample("rt/lab/cycles_too", PATIENCE, "robot_host")
+        assert stat(host.ask("stats"), "connection") == "running"
+        agent.kill()
+        agent.wait_until(lambda: stat(host.ask("stats"), "connection") == "waiting", PATIENCE)
+        assert host.ask("quick=0.5") == ["ok setpoint"]
