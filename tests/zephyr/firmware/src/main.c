@@ -42,7 +42,7 @@ enum request {
 volatile uint32_t request;
 /* The request that has been done last. */
 volatile uint32_t done;
-/* Reads of all decoders while the request is WATCH, and how many of them went backwards or failed. */
+/* Reads of all decoders while the request is WATCH, and how many of them failed. */
 volatile uint32_t rounds;
 volatile uint32_t failures;
 

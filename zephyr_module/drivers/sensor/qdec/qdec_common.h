@@ -56,8 +56,7 @@ struct qdec_common_data {
 	{                                                                                          \
 		.read = read_fn,                                                                   \
 		.counts_per_revolution = DT_INST_PROP(inst, counts_per_revolution),                \
-		.counter_bits = bits,                                                              \
-		.invert = DT_INST_PROP(inst, invert),                                              \
+		.counter_bits = bits, .invert = DT_INST_PROP(inst, invert),                        \
 		.notices_skips = skips,                                                            \
 	}
 

@@ -62,8 +62,8 @@ void qdec_emul_move(const struct device *dev, int64_t edges)
 		bool interrupt = false;
 
 		K_SPINLOCK(&data->common.lock) {
-			const int64_t step = CLAMP(edges, -data->to_lower_compare,
-						   data->to_upper_compare);
+			const int64_t step =
+				CLAMP(edges, -data->to_lower_compare, data->to_upper_compare);
 
 			data->register_value = (data->register_value + (uint32_t)step) & mask;
 			data->to_upper_compare -= step;

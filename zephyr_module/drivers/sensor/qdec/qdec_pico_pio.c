@@ -268,13 +268,14 @@ static DEVICE_API(sensor, qdec_pico_pio_driver_api) = {
 	QDEC_PICO_PIO_ASSERT(n);                                                                   \
 	PINCTRL_DT_INST_DEFINE(n);                                                                 \
 	static const struct qdec_pico_pio_config qdec_pico_pio_config_##n = {                      \
-		.common = {                                                                        \
-			.read = qdec_pico_pio_read,                                                \
-			.counts_per_revolution = DT_INST_PROP(n, counts_per_revolution),           \
-			.counter_bits = 32,                                                        \
-			.invert = DT_INST_PROP(n, invert) != QDEC_PICO_PIO_REVERSED(n),            \
-			.notices_skips = true,                                                     \
-		},                                                                                 \
+		.common =                                                                          \
+			{                                                                          \
+				.read = qdec_pico_pio_read,                                        \
+				.counts_per_revolution = DT_INST_PROP(n, counts_per_revolution),   \
+				.counter_bits = 32,                                                \
+				.invert = DT_INST_PROP(n, invert) != QDEC_PICO_PIO_REVERSED(n),    \
+				.notices_skips = true,                                             \
+			},                                                                         \
 		.piodev = DEVICE_DT_GET(DT_INST_PARENT(n)),                                        \
 		.pincfg = PINCTRL_DT_INST_DEV_CONFIG_GET(n),                                       \
 		.lower_pin = QDEC_PICO_PIO_LOWER(n),                                               \

@@ -11,9 +11,9 @@
  * For devices with one of the compatibles epg,pico-pio-qdec, epg,stm32-qdec and epg,qdec-emul.
  *
  * The sensor API gives the angle: after sensor_sample_fetch(), sensor_channel_get() of
- * SENSOR_CHAN_ROTATION is the angle in degrees since the start (or since where a preset has put 0),
- * with micro-degrees and with full turns: -450.18 degrees is val1 = -450, val2 = -180000. Controllers
- * want the count instead, which is exact and needs no fetch:
+ * SENSOR_CHAN_ROTATION is the angle in degrees from where the count is 0, with micro-degrees and
+ * with full turns: -450.18 degrees is val1 = -450, val2 = -180000. Controllers want the count
+ * instead, which is exact and needs no fetch:
  *
  * @code{.c}
  *	const struct device *const dev = DEVICE_DT_GET(DT_NODELABEL(qdec));
@@ -43,15 +43,15 @@ extern "C" {
 /** @brief Attributes of SENSOR_CHAN_ROTATION */
 enum sensor_attribute_epg_qdec {
 	/**
-	 * The count now, read from the hardware, as 64-bit two's complement: val1 is the upper half,
-	 * val2 the lower. Setting it is a preset: the count at this moment becomes the given one, no
-	 * edge is lost, and a sample that has been fetched before stays as it is.
+	 * The count now, read from the hardware, as 64-bit two's complement: val1 is the upper
+	 * half, val2 the lower. Setting it is a preset: the count at this moment becomes the given
+	 * one, no edge is lost, and a sample that has been fetched before stays as it is.
 	 */
 	SENSOR_ATTR_QDEC_COUNT = SENSOR_ATTR_PRIV_START,
 	/**
-	 * How often both phases had changed at once, which counts nothing: edges too fast, noise, or
-	 * a broken wire. val1, up to INT32_MAX; several such changes between two reads are one. Only
-	 * epg,pico-pio-qdec and epg,qdec-emul can tell; read-only.
+	 * How often both phases had changed at once, which counts nothing: edges too fast, noise,
+	 * or a broken wire. val1, up to INT32_MAX; several such changes between two reads are one.
+	 * Only epg,pico-pio-qdec and epg,qdec-emul can tell; read-only.
 	 */
 	SENSOR_ATTR_QDEC_SKIPPED,
 };
