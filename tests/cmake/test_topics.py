@@ -5,12 +5,12 @@ from __future__ import annotations
 import csv
 import json
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
-from tests.cmake.project import Project
+from epg.cli.main import main
+from tests.cmake.project import PROJECTS, Project
 
 SETPOINTS = """time,topic,value
 0.1,cmd_vel/linear_x,2
@@ -106,24 +106,11 @@ def test_description(folder: Path) -> None:
     assert data["namespace"] == "/fleet"
 
 
-def test_a_ros_2_node_has_more_topics(tmp_path: Path) -> None:
+def test_a_ros_2_node_has_more_topics(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Generated only: what it takes to compile the middleware is not everywhere."""
-    project = Path(__file__).parent / "projects" / "topics"
-    command = [
-        sys.executable,
-        "-m",
-        "epg",
-        "generate",
-        "robot",
-        "--tcf",
-        "robot.tcf",
-        "--model",
-        "model",
-        "--bindings",
-        "bindings.yaml",
-    ]
-    command += ["--output", str(tmp_path), "--set", "communication.middleware=xrce"]
-    subprocess.run(command, cwd=project, check=True)
+    monkeypatch.chdir(PROJECTS / "topics")
+    command = ["generate", "robot", "--tcf", "robot.tcf", "--model", "model", "--bindings", "bindings.yaml"]
+    assert main([*command, "--output", str(tmp_path), "--set", "communication.middleware=xrce"]) == 0
     data = json.loads((tmp_path / "robot.json").read_text())
     assert [(t["topic"], t["role"]) for t in data["subscriptions"]][-1] == ("~/enable", "enable")
     assert [(t["topic"], t["role"], t["qos"]) for t in data["publications"]][-1] == (
