@@ -163,8 +163,9 @@ def evaluate(ticks: Passages, reads: Passages, writes: Passages, taken: Passages
     timing.written.update(ends)
 
     instants = [(entry[0] - zero) % PERIOD for entry in taken if entry[0] > entries[0]]
-    reference = Counter(instants).most_common(1)[0][0]
-    timing.actuation.update(instant - reference for instant in instants)
+    if instants:
+        reference = Counter(instants).most_common(1)[0][0]
+        timing.actuation.update(instant - reference for instant in instants)
     return timing
 
 

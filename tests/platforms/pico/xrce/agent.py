@@ -1,0 +1,175 @@
+"""The XRCE agent on a serial port of the emulated board, in simulated time: each run gives the same frames.
+
+>>> # with Emulator(elf, usb={"seed": 3, "open": False}) as pico, BoardAgent(pico) as agent:
+>>> #     agent.run_until(lambda: agent.running, milliseconds=2000)
+>>> #     agent.topics.publish("rt/pan_subscriber", float64(0.5))
+>>> #     agent.run(milliseconds=100)
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable, Hashable
+from dataclasses import dataclass
+
+from tests.emulator.emulator import CYCLES_PER_MILLISECOND, Emulator
+from tests.xrce_agent.agent import Agent
+from tests.xrce_agent.framing import AGENT, Deframer, frame
+from tests.xrce_agent.topics import Endpoint
+
+CLOCK = 1000 * CYCLES_PER_MILLISECOND
+HEARTBEAT = 0.2
+"""Seconds between two heartbeats of the agent."""
+SLICE = 0.005
+"""Seconds after which the agent looks what is due although nothing has arrived."""
+
+
+@dataclass(frozen=True)
+class Said:
+    """A sample of the board; ``time`` in simulated seconds."""
+
+    time: float
+    topic: str
+    data: bytes
+
+
+class UsbLink:
+    """A serial port over USB: opened as a terminal, so that the board sees DTR."""
+
+    address = "usb"
+
+    def __init__(self, pico: Emulator, port: int = 0) -> None:
+        self._pico, self._port = pico, port
+        self.is_open = False
+        self._deframer = Deframer()
+
+    @property
+    def stop(self) -> dict[str, object]:
+        """The emulator's condition for "something has arrived"."""
+        return {"data": True, "port": self._port}
+
+    @property
+    def broken(self) -> int:
+        """Frames from the board that were none."""
+        return self._deframer.broken
+
+    def open(self) -> None:
+        if not self.is_open:
+            self.is_open = True
+            self._deframer = Deframer()
+            self._pico.receive_bytes(port=self._port)
+            self._pico.call("usb_open", port=self._port)
+
+    def close(self) -> None:
+        if self.is_open:
+            self.is_open = False
+            self._pico.call("usb_open", open=False, port=self._port)
+
+    def fileno(self) -> int:
+        return -1
+
+    def receive(self) -> list[tuple[Hashable, bytes]]:
+        return [*self._deframer.feed(self._pico.receive_bytes(port=self._port))]
+
+    def send(self, peer: Hashable, data: bytes) -> None:
+        assert isinstance(peer, int)
+        self.send_raw(peer, frame(data, AGENT, peer))
+
+    def send_raw(self, peer: Hashable, data: bytes) -> None:
+        if self.is_open:
+            self._pico.send(data, port=self._port)
+
+
+class UartLink(UsbLink):
+    """A UART of the chip, wired to the agent's computer."""
+
+    address = "uart"
+
+    def __init__(self, pico: Emulator, uart: int, baud: int) -> None:
+        super().__init__(pico)
+        self._uart, self._baud = uart, baud
+
+    @property
+    def stop(self) -> dict[str, object]:
+        return {"data": True, "port": f"uart{self._uart}"}
+
+    def open(self) -> None:
+        self.is_open = True
+        self._pico.call("uart_send", uart=self._uart, baud=self._baud)
+
+    def close(self) -> None:
+        self.is_open = False
+
+    def receive(self) -> list[tuple[Hashable, bytes]]:
+        data = bytes.fromhex(self._pico.call("uart_receive", uart=self._uart))
+        return [*self._deframer.feed(data)] if self.is_open else []
+
+    def send_raw(self, peer: Hashable, data: bytes) -> None:
+        if self.is_open:
+            self._pico.call("uart_send", uart=self._uart, hex=data.hex())
+
+
+class BoardAgent(Agent):
+    """An agent that works when the test lets time pass, instead of in a thread."""
+
+    def __init__(self, pico: Emulator, link: UsbLink | None = None, seed: int = 1) -> None:
+        self.pico = pico
+        self.serial = link if link is not None else UsbLink(pico)
+        self.said: list[Said] = []
+        self._next_beat = 0.0
+        super().__init__(self.serial, seed=seed, heartbeat=HEARTBEAT, clock=self.now)
+        self.topics.taps.append(self._hear)
+
+    def now(self) -> float:
+        """Simulated seconds."""
+        return self.pico.cycle / CLOCK
+
+    def _run(self) -> None:
+        """No thread."""
+
+    def _now(self) -> bytes:
+        """Of the year 2026, and the same in each run."""
+        seconds, fraction = divmod(self.pico.cycle, CLOCK)
+        return struct.pack("<iI", 1_790_000_000 + seconds, fraction * 10**9 // CLOCK)
+
+    def _hear(self, writer: Endpoint, data: bytes) -> None:
+        self.said.append(Said(self.now(), writer.topic, data))
+
+    def heard(self, topic: str, since: float = 0.0) -> list[Said]:
+        """What the board has published of a topic from ``since`` on."""
+        return [sample for sample in self.said if sample.topic == topic and sample.time >= since]
+
+    def wait_for(self, topic: str, milliseconds: float = 2000) -> Said:
+        """The next sample of a topic."""
+        before = self.now()
+        found = self.run_until(lambda: bool(self.heard(topic, before)), milliseconds)
+        assert found, f"nothing on {topic} within {milliseconds} ms; {self.tail()}"
+        return self.heard(topic, before)[0]
+
+    def turn(self) -> None:
+        """What is to be done now."""
+        if not self._alive or self._frozen:
+            return
+        self._receive()
+        self._run_later()
+        if self.now() >= self._next_beat:
+            self._next_beat = self.now() + HEARTBEAT
+            self._beat()
+
+    def run(self, milliseconds: float) -> None:
+        self.run_until(lambda: False, milliseconds)
+
+    def run_until(self, condition: Callable[[], bool], milliseconds: float) -> bool:
+        """Lets time pass until ``condition``, but no longer than so; whether it has come true."""
+        end = self.pico.cycle + round(milliseconds * CYCLES_PER_MILLISECOND)
+        while not condition():
+            left = (end - self.pico.cycle) / CYCLES_PER_MILLISECOND
+            if left <= 0:
+                return False
+            wait = min(left, 1000 * SLICE)
+            if self._later:
+                wait = min(wait, max(0.01, 1000 * (self._later[0][0] - self.now())))
+            listening = self._alive and not self._frozen
+            self.pico.run(milliseconds=wait, **(self.serial.stop if listening else {}))
+            self.turn()
+        return True

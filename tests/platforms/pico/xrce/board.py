@@ -1,0 +1,114 @@
+"""JIWY's predefined firmware as a ROS 2 node: the robot on its pins, an agent on one port, a person on the other.
+
+>>> # with Jiwy("bare_metal") as jiwy:
+>>> #     jiwy.home()
+>>> #     jiwy.point(0.5, 0.4)
+>>> #     jiwy.agent.run(500)
+>>> #     jiwy.angle("pan")
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection
+from pathlib import Path
+from types import TracebackType
+
+from tests.emulator.emulator import Emulator
+from tests.platforms.pico.closed_loop.robot import AXES, angle, connect
+from tests.platforms.pico.images import images
+from tests.platforms.pico.timing.measure import MOTOR_SLICES, Timing, evaluate
+from tests.xrce_agent.messages import float64, read_float64
+
+from .agent import BoardAgent
+
+AGENT_PORT, CONSOLE_PORT = 0, 1
+HOMED = 900
+"""ms after which both axes have homed from 0.12 rad and stand."""
+SPANS = {"tick": "on_wrap", "read": "epg_port_quadrature_count", "write": "epg_port_pwm_write"}
+"""Functions of the control cycle whose calls are timed."""
+
+
+def image(platform: str) -> Path:
+    return images("pico", platform, "jiwy_firmware", middleware="xrce_console") / "jiwy_firmware.elf"
+
+
+class Jiwy:
+    """A Pico that has started, its console open, connected to its agent."""
+
+    def __init__(self, platform: str, seed: int = 3, connected: bool = True) -> None:
+        self.platform = platform
+        self._reconnects = 0
+        self._since = 0
+        self.pico = Emulator(image(platform), usb={"seed": seed, "open": False})
+        connect(self.pico, {"pan": 0.12, "tilt": 0.12})
+        for name, symbol in SPANS.items():
+            self.pico.call("watch_span", name=name, core=1, **{"from": symbol, "to": "return"})
+        self.pico.call("watch_pwm", slices=list(MOTOR_SLICES))
+        self.pico.run(milliseconds=40)
+        assert self.pico.call("usb")["state"] == "configured"
+        self.pico.call("usb_open", port=CONSOLE_PORT)
+        self.pico.run(milliseconds=5)
+        self.agent = BoardAgent(self.pico)
+        if connected:
+            self.agent.wait_for("rt/pan_publisher")
+
+    def __enter__(self) -> Jiwy:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.agent.close()
+        self.pico.close()
+
+    def home(self) -> None:
+        self.agent.run(HOMED)
+        for axis in AXES:
+            assert abs(self.angle(axis.name)) < axis.rad_per_count, "homed"
+
+    def point(self, pan: float, tilt: float) -> None:
+        self.agent.topics.publish("rt/pan_subscriber", float64(pan), reliable=False)
+        self.agent.topics.publish("rt/tilt_subscriber", float64(tilt), reliable=False)
+
+    def angle(self, axis: str) -> float:
+        """Where the camera is, in rad."""
+        return angle(self.pico, axis)
+
+    def position(self, axis: str) -> float:
+        """Where the node says that it is: the newest message."""
+        return read_float64(self.agent.heard(f"rt/{axis}_publisher")[-1].data)
+
+    def stats(self) -> dict[str, str]:
+        """What the console says, on the second serial port."""
+        self.pico.receive(port=CONSOLE_PORT)
+        self.pico.send("\nstats\n", port=CONSOLE_PORT)
+        said = ""
+
+        def answered() -> bool:
+            nonlocal said
+            said += self.pico.receive(port=CONSOLE_PORT)
+            return "ok stats" in said
+
+        assert self.agent.run_until(answered, milliseconds=500), said
+        return dict(re.findall(r"(\w+)=(\S+)", said))
+
+    def begin(self) -> None:
+        """What reconnects() and timing() say counts from here."""
+        self._reconnects = int(self.stats()["reconnects"])
+        self.timing()
+
+    def reconnects(self) -> int:
+        """Since :meth:`begin`: the agent's, and the console's."""
+        return int(self.stats()["reconnects"]) - self._reconnects
+
+    def timing(self) -> Timing:
+        """Of all control cycles since the last call, by the emulator's clock."""
+        ticks, *others = (self.pico.call("span", name=name)["passages"] for name in SPANS)
+        whole = [tick for tick in ticks if tick[0] >= self._since]  # the last call may have come within a cycle
+        self._since = self.pico.cycle
+        return evaluate(whole, *others, self.pico.call("take", log="pwm"))
+
+    def faults(self) -> Collection[object]:
+        found: list[object] = self.pico.call("faults")
+        return found

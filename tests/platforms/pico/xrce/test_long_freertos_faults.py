@@ -1,0 +1,22 @@
+"""The faults of an agent that test_agent_faults.py leaves out on FreeRTOS."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.platforms.pico.images import skip_unless_emulated
+
+from .board import Jiwy
+from .scenarios import SCENARIOS, assert_is_back, hold
+
+pytestmark = pytest.mark.long
+
+
+def test_all_of_them() -> None:
+    skip_unless_emulated("freertos")
+    with Jiwy("freertos") as jiwy:
+        jiwy.home()
+        for scenario in SCENARIOS.values():
+            hold(jiwy)
+            scenario(jiwy)
+            assert_is_back(jiwy)
