@@ -28,6 +28,7 @@ SMALLEST = {
     "pico_closed_loop": ["--short", "1"],
     "network_situations": ["--only", "4", "--seconds", "3"],
     "xrce_round_trip": ["--count", "5"],
+    "ping_pong": ["--pings", "5", "--flat", "20"],
 }
 PROGRAMS = sorted(
     path.stem for path in BENCHMARKS.glob("*.py") if '__name__ == "__main__"' in path.read_text(encoding="utf-8")
@@ -50,7 +51,7 @@ def test_it_runs_and_prints_what_the_page_shows(program: str) -> None:
         pytest.skip("cmake is not installed: apt install cmake")
     if program.startswith("pico"):
         skip_if_missing(pico_sdk, arm_gcc, node, rp2040js, unicorn, lambda: tool("freertos_kernel"))
-    if program == "network_situations":
+    if program in ("network_situations", "ping_pong"):
         pytest.importorskip("cyclonedds", reason="CycloneDDS for Python is not installed: pip install cyclonedds")
         skip_if_missing(lambda: tool("cyclonedds"))
     if program == "xrce_round_trip":

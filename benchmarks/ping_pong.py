@@ -1,0 +1,129 @@
+"""Round trip of a Float64 through a target: ``examples/ping_pong`` on this computer, in the four combinations of QoS.
+
+    python benchmarks/ping_pong.py [--pings 300] [--flat 5000] [--write]
+
+Through the middleware dds; and through xrce, by UDP, and eProsima's agent where one is found (``EPG_XRCE_AGENT``, or
+``MicroXRCEAgent`` on PATH).  The first row is an echo in Python instead of a target: what peer and DDS take.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+from measure import ROOT, run
+from report import Table, arguments, command_line, show
+
+EXAMPLE = ROOT / "examples/ping_pong"
+sys.path[:0] = [str(ROOT), str(EXAMPLE / "peer")]
+
+from summary import head, read_run, rows, summarise  # noqa: E402  # of the example
+
+from epg import bootstrap  # noqa: E402
+
+QOS = {"best": "best_effort", "default": "reliable"}
+COMBINATIONS = [(publisher, subscriber) for publisher in QOS for subscriber in QOS]
+PORT = 8899
+DOMAIN = 92
+"""Of this benchmark: agents with Fast DDS know nothing of the tags that keep tests apart."""
+
+THESIS = """\
+bare-metal Pico 2 RPi5 best/best	1.92	0.05	1.42	10.79	1.92
+bare-metal Pico 2 RPi5 best/default	2.47	0.45	1.44	11.46	2.76
+bare-metal Pico 2 RPi5 default/best	1.92	0.06	1.38	12.42	1.92
+bare-metal Pico 2 RPi5 default/default	2.91	0.07	1.43	10.98	2.92
+FreeRTOS Pico 2 RPi5 best/best	3.55	0.48	2.46	12.83	3.85
+FreeRTOS Pico 2 RPi5 best/default	3.98	0.27	2.54	12.36	3.91
+FreeRTOS Pico 2 RPi5 default/best	4.59	0.44	3.41	11.66	4.85
+FreeRTOS Pico 2 RPi5 default/default	4.96	0.24	3.61	10.72	4.90"""
+"""Of its table E.1: name, mean, standard deviation, minimum, maximum, median in ms."""
+
+HARDWARE = "Boards on USB, micro-ROS, its agent and the peer on a Raspberry Pi 5: here for the order of size only."
+
+
+def build(folder: Path, middleware: str) -> Path:
+    """The folder with the four programs, optimised."""
+    options = [f"-DPING_PONG_MIDDLEWARE={middleware}", "-DCMAKE_BUILD_TYPE=Release"]
+    run(["cmake", "-S", EXAMPLE, "-B", folder / middleware, f"-DPython3_EXECUTABLE={sys.executable}", *options])
+    run(["cmake", "--build", folder / middleware, "--parallel"])
+    return folder / middleware
+
+
+@contextmanager
+def process(command: Sequence[str | Path], environment: dict[str, str]) -> Iterator[None]:
+    started = subprocess.Popen(
+        list(map(str, command)), env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+    )
+    try:
+        yield
+    finally:
+        started.terminate()
+        started.wait()
+
+
+def measure(name: str, options: Sequence[str], environment: dict[str, str], pings: int, flat: int) -> list[list[str]]:
+    """The rows of 30 Hz and of flat out."""
+    cells = []
+    with tempfile.TemporaryDirectory() as folder:
+        for rate, count in ((30, pings), (0, flat)):
+            file = Path(folder) / f"{rate}.csv"
+            command = [sys.executable, str(EXAMPLE / "peer/measure.py"), "--label", name, "--csv", str(file)]
+            command += ["--rate", str(rate), "--count", str(count), *options]
+            subprocess.run(command, env=environment, check=True, stdout=subprocess.DEVNULL)
+            cells += rows([summarise(read_run(file))])
+    return cells
+
+
+def main() -> int:
+    options = arguments(__doc__ or "", pings=300, flat=5000)
+    bootstrap.ensure("ros")
+    from tests.ros2.network import network
+
+    agent = os.environ.get("EPG_XRCE_AGENT") or shutil.which("MicroXRCEAgent")
+    found: list[list[str]] = []
+    with tempfile.TemporaryDirectory() as temporary, network(DOMAIN, tagged=agent is None) as net:
+        folder = Path(temporary)
+        packages = str(bootstrap.package_folder("ros"))
+        environment = {**net.environment, "PYTHONPATH": f"{packages}:{net.environment.get('PYTHONPATH', '')}"}
+        found += measure("echo in Python", ["--baseline"], environment, options.pings, options.flat)
+        for middleware in ("dds", *(("xrce",) if agent else ())):
+            programs = build(folder, middleware)
+            for publisher, subscriber in COMBINATIONS:
+                program = programs / f"ping_pong_{publisher}_{subscriber}_host"
+                own = ["--agent", f"127.0.0.1:{PORT}"] if middleware == "xrce" else []
+                qos = ["--publisher", QOS[publisher], "--subscriber", QOS[subscriber]]
+                # a new agent each time: none has to clear up after the client before
+                listening = [agent, "udp4", "-p", str(PORT)] if own else ["sleep", "infinity"]
+                outer = {**environment, "XRCE_DOMAIN_ID_OVERRIDE": str(net.domain)}
+                with process(listening, outer), process([program, "--realtime", "--quiet", *own], environment):
+                    found += measure(f"host, {middleware}", qos, environment, options.pings, options.flat)
+    shown = [[*row[:5], *row[6:]] for row in found]  # what a mean is compared with depends on the rate
+    columns = ["what, publisher/subscriber, rate", *head()[1:5], *head()[6:]]
+    load = os.getloadavg()[0]
+    notes = [f"The load average of this computer was {load:.0f}: where it is high, maxima are other programs'."]
+    notes += [] if agent else ["xrce was not measured: no agent was found."]
+    thesis = [line.split("\t") for line in THESIS.splitlines()]
+    measured = [
+        "target, publisher/subscriber",
+        "mean (ms)",
+        "standard deviation (ms)",
+        "min (ms)",
+        "max (ms)",
+        "median (ms)",
+    ]
+    tables = [
+        Table("Round trip on this computer", columns, shown, notes),
+        Table("Round trip the thesis measured, on other hardware, from its table E.1", measured, thesis, [HARDWARE]),
+    ]
+    show("ping_pong", tables, options.write, command_line("ping_pong"))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
