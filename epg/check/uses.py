@@ -57,7 +57,7 @@ def _used(
         message = f"a {other.name} has no port '{port_name}'"
         diagnostics.error("unknown-port", node.span, message, hint=hint, notes=notes)
         return None
-    if (use.topic and (other.communication is None or port_name)) or (not use.topic and port is None):
+    if (use.topic and (not other.topic_ports or port_name)) or (not use.topic and port is None):
         what = f"a port of a {other.name}" if port_name else f"a {other.name}"
         message = f"'{text}' is {what}; '{use.name}' of a {kind.name} is {use.description}"
         hint = did_you_mean(text, possible, "possible")
@@ -69,7 +69,7 @@ def _used(
 def _references(use: KindUse, name: str, kind: Kind) -> list[str]:
     """How a component of ``kind`` can be named, the short form where there is one."""
     if use.topic:
-        return [name] if kind.communication else []
+        return [name] if kind.topic_ports else []
     main = _port(use, kind, "")
     return [name if port is main else f"{name}.{port.name}" for port in kind.ports if _fits(use, port)]
 

@@ -45,7 +45,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
                             "name": k.name,
                             "summary": k.summary,
                             "ports": [
-                                {"name": p.name, "direction": p.direction, "unit": p.unit, "type": p.type}
+                                {"name": k.shown_port(p), "direction": p.direction, "unit": p.unit, "type": p.type}
                                 for p in k.ports
                             ],
                         }
@@ -60,7 +60,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         rows = [
             (
                 k.name,
-                ", ".join(f"{p.name} ({p.direction}{', ' + p.unit if p.unit else ''})" for p in k.ports),
+                ", ".join(f"{k.shown_port(p)} ({p.direction}{', ' + p.unit if p.unit else ''})" for p in k.ports),
                 k.summary,
             )
             for k in kinds

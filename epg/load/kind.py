@@ -141,6 +141,13 @@ class Kind:
                     ports.append(replace(port, name=name, each="", element=element, part=port.name))
         return replace(self, ports=tuple(ports))
 
+    def shown_port(self, port: KindPort) -> str:
+        """How people are told of a port: ``position``, or ``<joints>.position`` where there is one for each joint."""
+        if not port.each:
+            return port.name
+        alone = sum(other.each == port.each for other in self.ports) == 1
+        return f"<{port.each}>" if alone else f"<{port.each}>.{port.name}"
+
     @property
     def topic_ports(self) -> tuple[KindPort, ...]:
         """The ports whose values travel as a topic."""
