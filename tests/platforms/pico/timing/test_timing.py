@@ -27,9 +27,6 @@ def test_ticks_and_encoders_are_on_time(timings: dict[Load, Timing]) -> None:
         assert_on_time(timing)
 
 
-@pytest.mark.xfail(
-    strict=True, reason="a level acts at the first wrap after it is written, and computation varies by more"
-)
 def test_outputs_act_at_the_same_instant_of_every_cycle(timings: dict[Load, Timing]) -> None:
     for timing in timings.values():
         assert set(timing.actuation) == {0}
