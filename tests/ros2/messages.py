@@ -110,6 +110,15 @@ class ShortFloat64_(IdlStruct, typename="std_msgs::msg::dds_::Float64_"):
 
 @dataclass
 @annotate.final
+class LongFloat64_(IdlStruct, typename="std_msgs::msg::dds_::Float64_"):
+    """too long, so that it comes in fragments,"""
+
+    data: float64
+    more: array[uint8, 20_000]
+
+
+@dataclass
+@annotate.final
 class HugeFloat64_(IdlStruct, typename="std_msgs::msg::dds_::Float64_"):
     """or much too long."""
 

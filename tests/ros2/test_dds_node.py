@@ -10,6 +10,7 @@ import signal
 import statistics
 import subprocess
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -26,6 +27,7 @@ from tests.ros2.messages import (
     DiagnosticArray_,
     Float64_,
     HugeFloat64_,
+    LongFloat64_,
     ShortFloat64_,
     numbers,
     type_hash,
@@ -248,6 +250,18 @@ def test_messages_that_are_none_are_counted_and_do_no_harm(jiwy: Path, net: Netw
         assert set(jiwy_robot.signal("inputs.setpoint_tilt")) == {0.0}
 
 
+def test_a_message_in_fragments_is_put_together(jiwy: Path, net: Network, tmp_path: Path) -> None:
+    """What follows the number is ignored, as ROS 2 ignores it."""
+    with robot(net, jiwy, tmp_path) as jiwy_robot, Peer(net.domain, "stranger") as peer:
+        long = peer.raw_publisher("/robot_7/pan_subscriber", LongFloat64_)
+        assert peer.spin_until(lambda: long.matched == 1)
+        for value in (0.75, 0.5, 0.25):
+            long.writer.write(LongFloat64_(value, bytes(range(200)) * 100))
+            peer.spin(0.3)
+        jiwy_robot.end()
+        assert {0.5, 0.25} <= set(jiwy_robot.signal("inputs.setpoint_pan")) <= {0.0, 0.75, 0.5, 0.25}
+
+
 def test_a_node_that_ends_is_gone_at_once_and_comes_back(jiwy: Path, net: Network, tmp_path: Path) -> None:
     with Peer(net.domain, "monitor") as peer:
         pan = peer.subscription("/robot_7/pan_publisher", Float64_)
@@ -262,12 +276,46 @@ def test_a_node_that_ends_is_gone_at_once_and_comes_back(jiwy: Path, net: Networ
 
 def test_a_peer_that_comes_and_goes_leaves_the_node_as_it_was(jiwy: Path, net: Network, tmp_path: Path) -> None:
     with robot(net, jiwy, tmp_path) as jiwy_robot:
+        opened = []
         for _ in range(10):
             with Peer(net.domain, "visitor") as peer:
                 setpoint = peer.publisher("/robot_7/pan_subscriber", Float64_)
                 assert hear(peer, peer.subscription("/robot_7/pan_publisher", Float64_), 3)
                 setpoint.publish(Float64_(0.25))
+            opened.append(len(os.listdir(f"/proc/{jiwy_robot.process.pid}/fd")))
+        assert len(set(opened)) == 1  # descriptors of files and sockets
         assert jiwy_robot.end() == ""
+
+
+def cycles_of(peer: Peer, told: Subscription) -> tuple[int, int]:
+    """Cycles run and ticks missed so far, as the next diagnostics tell."""
+    count = len(told.received)
+    assert hear(peer, told, count)
+    values = _values(told.messages[-1].status[0])
+    return int(values["cycles"]), int(values["missed"])
+
+
+def test_the_loop_keeps_its_cycles_under_a_flood(jiwy: Path, net: Network, tmp_path: Path) -> None:
+    """Setpoints as fast as Python sends them, on both topics."""
+    with robot(net, jiwy, tmp_path), Peer(net.domain, "flood") as peer:
+        told = peer.subscription("/diagnostics", DiagnosticArray_)
+        pan = peer.publisher("/robot_7/pan_subscriber", Float64_)
+        tilt = peer.publisher("/robot_7/tilt_subscriber", Float64_, reliable=False)
+        assert peer.spin_until(lambda: pan.matched == 1 and tilt.matched == 1 and bool(told.received))
+        quiet = cycles_of(peer, told)
+        before = cycles_of(peer, told)
+        end = time.monotonic() + 2.0
+        while time.monotonic() < end:
+            pan.writer.write(Float64_(0.5))
+            tilt.writer.write(Float64_(0.25))
+            pan.sent.append((0.0, None))
+        assert len(pan.sent) > 2000
+        cycles_of(peer, told)
+        after = cycles_of(peer, told)
+        ticks = sum(after) - sum(before)
+        assert ticks > 1900
+        idle_share = (before[1] - quiet[1]) / (sum(before) - sum(quiet))
+        assert (after[1] - before[1]) / ticks <= idle_share + 0.05
 
 
 FROZEN = """
