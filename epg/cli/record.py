@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import re
 import signal
 import sys
 from dataclasses import replace
@@ -86,7 +87,8 @@ def _robot(options: argparse.Namespace, diagnostics: Diagnostics) -> Robot | Non
         return None
     robot = robots[0]
     if options.board:
-        robot = robot.with_serial(options.board.upper())
+        pico = re.fullmatch("[0-9A-Fa-f]{16}", options.board)  # which says it in capitals
+        robot = robot.with_serial(options.board.upper() if pico else options.board)
     if options.namespace is not None:
         robot = replace(robot, namespace=f"/{options.namespace.strip('/')}" if options.namespace.strip("/") else "")
     if options.node:
