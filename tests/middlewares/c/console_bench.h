@@ -9,6 +9,7 @@
 #include <stddef.h>
 
 #include "console.h"
+#include "epg/node.h"
 #include "epg/parameters.h"
 #include "epg/store.h"
 

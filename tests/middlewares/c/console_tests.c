@@ -469,6 +469,19 @@ TEST(stats_are_those_of_the_loop)
     CHECK(has_line(stats, "ok stats\r\n"));
 }
 
+TEST(stats_of_a_node_are_shown_too)
+{
+    static epg_node_t node;
+    bench_start(true);
+    CHECK(strstr(bench_say("stats\n"), "unsent") == NULL);
+    node = (epg_node_t){.unsent = 3, .malformed = 4000000000U};
+    bench.target.node_state = &node;
+    const char *stats = bench_say("stats\n");
+    CHECK(has_line(stats, "stat unsent=3\r\n"));
+    CHECK(has_line(stats, "stat malformed=4000000000\r\n"));
+    CHECK(has_line(stats, "ok stats\r\n"));
+}
+
 TEST(ports_and_help_name_everything)
 {
     bench_start(true);
@@ -549,5 +562,5 @@ RUN(ENTRY(it_greets), ENTRY(setpoints_of_one_line_act_in_one_cycle), ENTRY(setpo
     ENTRY(jog_refuses_what_is_not_safe), ENTRY(who_goes_away_leaves_nothing_moving), ENTRY(lines_that_are_none),
     ENTRY(typing_is_shown_and_corrected), ENTRY(answers_of_several_lines_come_whole_through_a_narrow_stream),
     ENTRY(what_must_act_at_once_does_not_wait_for_an_answer), ENTRY(commands_act_though_nobody_reads),
-    ENTRY(stats_are_those_of_the_loop), ENTRY(ports_and_help_name_everything), ENTRY(a_target_without_any_of_it),
-    ENTRY(any_bytes_at_all))
+    ENTRY(stats_are_those_of_the_loop), ENTRY(stats_of_a_node_are_shown_too), ENTRY(ports_and_help_name_everything),
+    ENTRY(a_target_without_any_of_it), ENTRY(any_bytes_at_all))

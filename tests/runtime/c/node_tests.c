@@ -9,6 +9,7 @@
 #include "check.h"
 #include "epg/cdr.h"
 #include "epg/diagnostics.h"
+#include "epg/store.h"
 #include "fake_application.h"
 #include "fake_port.h"
 
@@ -259,6 +260,20 @@ TEST(topics_have_full_names)
     CHECK(epg_node_topic(&node, &subscriptions[PAIR], name, sizeof name) > 0 && strcmp(name, "/pair") == 0);
 }
 
+TEST(names_that_the_board_keeps_replace_those_of_the_firmware)
+{
+    epg_store_t store = {.node = "kept_$serial", .name_space = "/lab"};
+    char name[EPG_NODE_TOPIC_SIZE];
+    begin();
+    target.store = &store;
+    epg_node_start(&node, &target, send_message);
+    CHECK(strcmp(node.name, "kept_E6616407E3A51B2C") == 0);
+    CHECK(epg_node_topic(&node, &subscriptions[PAIR], name, sizeof name) > 0 && strcmp(name, "/lab/pair") == 0);
+    store.name_space[1] = '\0'; /* none */
+    epg_node_start(&node, &target, send_message);
+    CHECK(epg_node_topic(&node, &subscriptions[PAIR], name, sizeof name) > 0 && strcmp(name, "/pair") == 0);
+}
+
 TEST(stamps_are_of_the_control_cycle)
 {
     begin();
@@ -360,5 +375,5 @@ RUN(ENTRY(each_publication_has_its_own_time), ENTRY(a_late_poll_makes_nothing_up
     ENTRY(without_room_the_newest_values_wait), ENTRY(a_connection_begins_with_what_is_new),
     ENTRY(values_of_a_message_arrive_together), ENTRY(a_message_of_another_type_is_counted), ENTRY(enabling_by_a_topic),
     ENTRY(an_echo_goes_out_at_once_and_unchanged), ENTRY(topics_have_full_names),
-    ENTRY(stamps_are_of_the_control_cycle), ENTRY(diagnostics_tell_state_and_statistics),
-    ENTRY(diagnostics_fit_whatever_they_hold))
+    ENTRY(names_that_the_board_keeps_replace_those_of_the_firmware), ENTRY(stamps_are_of_the_control_cycle),
+    ENTRY(diagnostics_tell_state_and_statistics), ENTRY(diagnostics_fit_whatever_they_hold))
