@@ -146,7 +146,7 @@ class Agent:
         with self.lock:
             for peer in self._peers:
                 self.log.add(False, peer, data, "injected")
-                (self.link.send_raw if raw else self.link.send)(peer, data)
+                self.link.send_raw(peer, data if raw else self.link.raw(peer, data))
 
     def refuse(self, status: Status, kind: Kind | None = None, name: str = "", times: int = 1_000_000) -> None:
         self.refusals.append(Refusal(status, kind, name, times))
@@ -219,16 +219,21 @@ class Agent:
 
     def _receive(self) -> None:
         for peer, data in self.link.receive():
-            arriving = self.from_board.apply(data, self._chance)
-            self.log.add(True, peer, data, "" if arriving else "lost")
-            for wait, frame in arriving:
+            arrivals = self.from_board.arrivals(self._chance)
+            frame = self.from_board.damage(data, self._chance)
+            if frame != data and self.link.checked:
+                arrivals = []
+            self.log.add(True, peer, data, "" if arrivals else "lost")
+            for wait in arrivals:
                 self._after(wait, lambda peer=peer, frame=frame: self._handle_frame(peer, frame))  # type: ignore[misc]
 
     def _send(self, peer: Hashable, data: bytes) -> None:
-        leaving = self.to_board.apply(data, self._chance)
-        self.log.add(False, peer, data, "" if leaving else "lost")
-        for wait, frame in leaving:
-            self._after(wait, lambda peer=peer, frame=frame: self.link.send(peer, frame))  # type: ignore[misc]
+        arrivals = self.to_board.arrivals(self._chance)
+        self.log.add(False, peer, data, "" if arrivals else "lost")
+        for wait in arrivals:
+            self._after(
+                wait, lambda: self.link.send_raw(peer, self.to_board.damage(self.link.raw(peer, data), self._chance))
+            )
 
     def _beat(self) -> None:
         for client in self.clients.values():

@@ -34,10 +34,15 @@ class Link(Protocol):
     def receive(self) -> list[tuple[Hashable, bytes]]:
         """Frames that are there, with who sent them."""
 
-    def send(self, peer: Hashable, data: bytes) -> None: ...
+    @property
+    def checked(self) -> bool:
+        """Whether a damaged frame is seen to be one."""
+
+    def raw(self, peer: Hashable, data: bytes) -> bytes:
+        """The bytes that carry a message: the datagram, or its frame on the line."""
 
     def send_raw(self, peer: Hashable, data: bytes) -> None:
-        """Bytes that are no frame: a datagram as it is, or bytes on the line."""
+        """Such bytes, or any."""
 
 
 class UdpLink:
@@ -55,6 +60,8 @@ class UdpLink:
                 self._bind()
             except OSError:
                 self.port = 0
+
+    checked = False
 
     @property
     def address(self) -> str:
@@ -101,16 +108,19 @@ class UdpLink:
             frames.append((peer, data))
         return frames
 
-    def send(self, peer: Hashable, data: bytes) -> None:
+    def raw(self, peer: Hashable, data: bytes) -> bytes:
+        return data
+
+    def send_raw(self, peer: Hashable, data: bytes) -> None:
         if self._socket is not None:
             with contextlib.suppress(OSError):
                 self._socket.sendto(data, peer)  # type: ignore[call-overload]
 
-    send_raw = send
-
 
 class SerialLink:
     """What pseudo terminals and devices have in common; peers are addresses on the line, of which there is one."""
+
+    checked = True
 
     def __init__(self) -> None:
         self._file = -1
@@ -140,9 +150,9 @@ class SerialLink:
     def _nobody(self) -> None:
         """Nothing is at the other end."""
 
-    def send(self, peer: Hashable, data: bytes) -> None:
+    def raw(self, peer: Hashable, data: bytes) -> bytes:
         assert isinstance(peer, int)
-        self.send_raw(peer, frame(data, AGENT, peer))
+        return frame(data, AGENT, peer)
 
     def send_raw(self, peer: Hashable, data: bytes) -> None:
         """What does not fit is lost, as on a line."""

@@ -247,7 +247,9 @@ def test_garbage_and_damaged_frames(robot: Path, tmp_path: Path, line: str) -> N
     link: Link = PtyLink(tmp_path / "line") if line == "serial" else UdpLink()
     with Agent(link) as agent, Board(robot, agent) as board:
         board.running()
-        agent.to_board.truncate = agent.to_board.corrupt = agent.from_board.truncate = agent.from_board.corrupt = 0.1
+        agent.to_board.truncate = agent.from_board.truncate = 0.1
+        if line == "serial":  # of datagrams, the system's checksums would show it
+            agent.to_board.corrupt = agent.from_board.corrupt = 0.1
         end = time.monotonic() + 3.0
         while time.monotonic() < end:
             size = chance.randrange(1, 600)
