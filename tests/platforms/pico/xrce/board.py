@@ -29,18 +29,18 @@ SPANS = {"tick": "on_wrap", "read": "epg_port_quadrature_count", "write": "epg_p
 """Functions of the control cycle whose calls are timed."""
 
 
-def image(platform: str) -> Path:
-    return images("pico", platform, "jiwy_firmware", middleware="xrce_console") / "jiwy_firmware.elf"
+def image(platform: str, executable: str) -> Path:
+    return images("pico", platform, executable, middleware="xrce_console") / f"{executable}.elf"
 
 
 class Jiwy:
     """A Pico that has started, its console open, connected to its agent."""
 
-    def __init__(self, platform: str, seed: int = 3, connected: bool = True) -> None:
+    def __init__(self, platform: str, executable: str = "jiwy_firmware", seed: int = 3) -> None:
         self.platform = platform
         self._reconnects = 0
         self._since = 0
-        self.pico = Emulator(image(platform), usb={"seed": seed, "open": False})
+        self.pico = Emulator(image(platform, executable), usb={"seed": seed, "open": False})
         connect(self.pico, {"pan": 0.12, "tilt": 0.12})
         for name, symbol in SPANS.items():
             self.pico.call("watch_span", name=name, core=1, **{"from": symbol, "to": "return"})
@@ -50,8 +50,7 @@ class Jiwy:
         self.pico.call("usb_open", port=CONSOLE_PORT)
         self.pico.run(milliseconds=5)
         self.agent = BoardAgent(self.pico)
-        if connected:
-            self.agent.wait_for("rt/pan_publisher")
+        self.agent.wait_for("rt/pan_publisher")
 
     def __enter__(self) -> Jiwy:
         return self

@@ -80,3 +80,18 @@ def test_a_value_that_is_none_is_dropped(jiwy: Jiwy) -> None:
     jiwy.agent.run(20)
     stats = jiwy.stats()
     assert (stats["setpoints_dropped"], stats["fault"]) == ("1", "none")
+
+
+@pytest.mark.parametrize("platform", PLATFORMS)
+def test_in_a_program_of_the_users(platform: str) -> None:
+    """Which runs from flash, with a main() of its own; the control cycle does not read flash."""
+    skip_unless_emulated(platform)
+    with Jiwy(platform, "user_jiwy") as jiwy:
+        jiwy.begin()
+        jiwy.agent.run(500)
+        jiwy.agent.restart()
+        jiwy.agent.wait_for("rt/pan_publisher")
+        span = jiwy.pico.call("span", name="tick")
+        assert len(span["passages"]) > 500
+        assert span["flash_total"] == 0
+        assert jiwy.stats()["missed"] == "0"
