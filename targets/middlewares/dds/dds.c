@@ -18,7 +18,7 @@
 #include "message.h"
 
 enum {
-    DEPTH = 10,         /* messages kept for a reader or by a writer: ROS 2's default */
+    BATCH = 16,         /* messages taken of a reader at once; more wait for the next turn, which is soon */
     PREFIX = 2,         /* "rt" before names of topics */
     SECOND = 1000000000 /* ns */
 };
@@ -51,13 +51,13 @@ static bool send_message(size_t publication, const void *data, size_t size)
 
 /* Making it ---------------------------------------------------------------------------------------------------- */
 
-/** Reliable is never waiting: beyond DEPTH the oldest message is dropped, and a write that would block fails. */
+/** Reliable is never waiting: beyond the depth the oldest message is dropped, and a write that would block fails. */
 static dds_qos_t *qos_of(const epg_topic_t *topic)
 {
     dds_qos_t *qos = dds_create_qos();
     const bool reliable = topic->qos == EPG_QOS_RELIABLE;
     dds_qset_reliability(qos, reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT, 0);
-    dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, DEPTH);
+    dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, topic->depth);
     dds_qset_durability(qos, DDS_DURABILITY_VOLATILE);
     dds_qset_writer_data_lifecycle(qos, false);
     epg_dds_set_type_hash(qos, topic->message->hash);
@@ -225,9 +225,9 @@ static void start(const epg_target_t *target, const epg_stream_t *stream)
 
 static void receive(size_t subscription, uint64_t now_ns)
 {
-    struct ddsi_serdata *messages[DEPTH] = {NULL};
-    dds_sample_info_t infos[DEPTH];
-    const dds_return_t count = dds_takecdr(dds.readers[subscription].entity, messages, DEPTH, infos, DDS_ANY_STATE);
+    struct ddsi_serdata *messages[BATCH] = {NULL};
+    dds_sample_info_t infos[BATCH];
+    const dds_return_t count = dds_takecdr(dds.readers[subscription].entity, messages, BATCH, infos, DDS_ANY_STATE);
     for (dds_return_t i = 0; i < count; i++) {
         size_t size = 0;
         const void *data = epg_dds_content(messages[i], &size);
