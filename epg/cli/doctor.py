@@ -67,6 +67,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         Item("python", "Python", HOST, True, "found", platform.python_version(), sys.executable),
         *(_package("generator", *package, required=True) for package in bootstrap.REQUIREMENTS["generator"].values()),
         *(_package("plot", *package, required=False) for package in bootstrap.REQUIREMENTS["plot"].values()),
+        *(_package("ros", *package, required=False) for package in bootstrap.REQUIREMENTS["ros"].values()),
         *(_item(find_tool(tool, where), where.cache) for tool in tools.values()),
     ]
     host = all(item.good for item in items if item.needed_for == HOST and item.required)
@@ -96,9 +97,16 @@ def _cache_note(cache: Path) -> str:
     return "" if cache.is_dir() else " (not yet there)"
 
 
+_USES = {
+    "plot": "for the plots of 'epg simulate' and 'epg plot'",
+    "ros": "for 'epg record', where ROS 2 is not sourced",
+}
+"""What optional packages are for."""
+
+
 def _package(group: str, name: str, oldest: tuple[int, ...], *, required: bool) -> Item:
     """A Python package: the interpreter's own, or the one in EPG's cache."""
-    note = "" if required else "for the plots of 'epg simulate'"
+    note = _USES.get(group, "")
     old = ""
     for source, places in (("", sys.path), ("EPG's cache", [str(bootstrap.package_folder(group))])):
         found = next(iter(metadata.distributions(name=name, path=places)), None)
@@ -109,7 +117,7 @@ def _package(group: str, name: str, oldest: tuple[int, ...], *, required: bool) 
     remedy = f"{sys.executable} -m pip install {name}"
     if importlib.util.find_spec("pip") is not None and not os.environ.get("EPG_NO_INSTALL"):
         return Item(name.lower(), name, HOST, required, "later", old, note=note, remedy=remedy)
-    if _manager() == "apt":
+    if _manager() == "apt" and group != "ros":  # Debian has no package of it
         remedy = f"{_privileged('apt')}apt install python3-{'yaml' if name == 'PyYAML' else name.lower()}"
     return Item(name.lower(), name, HOST, required, "old" if old else "missing", old, note=note, remedy=remedy)
 
