@@ -36,6 +36,11 @@ def test_mistakes(robot: Path, options: list[str], status: int, message: str) ->
     assert found == status and errors.startswith(message)
 
 
+def test_a_serial_line_needs_its_terminal(spoken_robot: Path) -> None:
+    status, errors = run(spoken_robot, "--realtime", "--duration", "1")
+    assert status == 2 and errors.startswith("error: nobody says which terminal the agent is on\n")
+
+
 def test_in_simulated_time_it_runs_without_an_agent(robot: Path) -> None:
     assert run(robot, "--duration", "0.5") == (0, "")
 

@@ -135,6 +135,12 @@ static int run_with_link(const epg_host_target_t *host, const epg_host_options_t
         return run_with_terminal(host, options, events, outputs, NULL, NULL);
     }
     agent = agent != NULL ? agent : host->agent;
+    if (agent[0] == '\0') {
+        fputs("error: nobody says which terminal the agent is on\n"
+              "hint: --serial-device PATH, or 'communication: {transport: serial, device: PATH}' in the .tcf\n",
+              stderr);
+        return WRONG_INPUT;
+    }
     if (options->device != NULL) {
         epg_host_link_serial(&link, agent, host->baud_rate);
     } else if (!epg_host_link_open(&link, agent, host->baud_rate)) {
