@@ -199,3 +199,24 @@ def test_a_halted_state_machine_is_an_error(board: Board) -> None:
     board.pico.write_word("poke_value", 0)
     board.ask(POKE)
     assert board.ask(READ) == [-EIO] * 4 + [0]
+
+
+def test_the_sample_says_count_and_angle(image: Path) -> None:
+    """With a console in memory, as the emulator has no serial port for UARTs."""
+    console = {"CONFIG_RAM_CONSOLE": "y", "CONFIG_UART_CONSOLE": "n", "CONFIG_RAM_CONSOLE_BUFFER_SIZE": "4096"}
+    sample = build("zephyr_module/samples/qdec", "rpi_pico", settings=console) / "zephyr" / "zephyr.elf"
+    with Emulator(sample) as pico:
+        pico.run(milliseconds=10)
+        pico.call("encoder", name="shaft", a=10, b=11)
+        pico.call("move", name="shaft", kind="constant", interval=12_500, direction=-1)  # 10 counts a millisecond
+        pico.run(milliseconds=350)
+        pico.call("move", name="shaft", kind="rest")
+        turned = pico.call("encoder_count", name="shaft")
+        pico.run(milliseconds=200)
+        said = pico.read("ram_console_buf").split(b"\0")[0].decode().splitlines()
+        assert pico.call("faults") == []
+    assert "count 0, angle 0.000000 degrees" in said
+    assert turned < -3000
+    degrees, thousandths = divmod(-turned * 180, 1000)
+    assert said[-1] == f"count {turned}, angle -{degrees}.{thousandths:03}000 degrees"
+    assert len(said) == 7  # the kernel's first line, and one each 100 ms

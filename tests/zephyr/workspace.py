@@ -103,11 +103,11 @@ def build(
     *,
     settings: Mapping[str, str] | None = None,
     modules: Sequence[Path] | None = None,
-    keep_going: bool = False,
+    only: str = "",
 ) -> Path:
     """Configures and builds an application (a path in the repository, or anywhere); returns the build folder.
 
-    ``modules`` instead of the workspace's own; ``keep_going`` after the first file that does not compile.  Raises
+    ``modules`` instead of the workspace's own; ``only`` the object file of one source, by name.  Raises
     :class:`BuildError` and :class:`Missing`.
     """
     here = workspace(board)
@@ -122,8 +122,15 @@ def build(
             shutil.rmtree(folder, ignore_errors=True)
             command = ["cmake", "-G", "Ninja", "-S", str(source), "-B", str(folder), f"-DBOARD={board}"]
             run([*command, *(f"-D{name}={value}" for name, value in given.items())], here)
-        run(["cmake", "--build", str(folder), "--", "-j2", *(["-k0"] if keep_going else [])], here)
+        targets = _objects(folder, only, here) if only else []
+        run(["ninja", "-C", str(folder), "-j2", *targets], here)
     return folder
+
+
+def _objects(folder: Path, source: str, here: Workspace) -> list[str]:
+    """Targets of the object files of a source."""
+    targets = run(["ninja", "-C", str(folder), "-t", "targets", "all"], here).splitlines()
+    return [name for name in (line.split(": ")[0] for line in targets) if name.endswith(f"/{source}.obj")]
 
 
 def run(command: Sequence[str], here: Workspace) -> str:
