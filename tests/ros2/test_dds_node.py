@@ -6,6 +6,7 @@ import csv
 import itertools
 import math
 import os
+import re
 import signal
 import statistics
 import subprocess
@@ -324,6 +325,20 @@ def test_the_loop_keeps_its_cycles_under_a_flood(jiwy: Path, net: Network, tmp_p
         assert ticks > 1900
         idle_share = (before[1] - quiet[1]) / (sum(before) - sum(quiet))
         assert (after[1] - before[1]) / ticks <= idle_share + 0.05
+
+
+def test_a_console_beside_it(jiwy: Path, net: Network) -> None:
+    """Both are served: a setpoint of the console acts, and the node is on the network."""
+    command = [str(jiwy), "--realtime", "--console", "--serial", "7"]
+    process = subprocess.Popen(
+        command, env=net.environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    with running([process]), Peer(net.domain, "monitor") as peer:
+        meet(peer)
+        output, errors = process.communicate("pan_subscriber=0.5\nstats\nenable\n", timeout=30)
+        assert (process.returncode, errors) == (0, "")
+        assert "ok setpoint" in output and "ok enable" in output
+        assert re.search(r"connection=running\b", output), output
 
 
 FROZEN = """

@@ -291,4 +291,10 @@ static void stop(void)
     dds.writers = NULL;
 }
 
-const epg_middleware_t epg_dds = {.start = start, .poll = poll_node, .stop = stop, .wait = wait_for_message};
+static const char *state(void)
+{
+    return dds.participant > 0 ? "running" : "waiting";
+}
+
+const epg_middleware_t epg_dds = {
+    .start = start, .poll = poll_node, .stop = stop, .wait = wait_for_message, .state = state};
