@@ -8,6 +8,8 @@ from functools import partial
 from typing import Any
 
 import rclpy
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rosidl_runtime_py.utilities import get_message
 
@@ -20,10 +22,10 @@ class RclpySource:
     """See :class:`epg.ros.source.Source`."""
 
     def __init__(self, subscriptions: Sequence[Subscription], domain: int) -> None:
-        self._context = rclpy.Context()
+        self._context = Context()
         self._context.init(domain_id=domain)
         self._node = rclpy.create_node("epg_record", context=self._context)
-        self._executor = rclpy.executors.SingleThreadedExecutor(context=self._context)
+        self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self._node)
         self._samples: list[Sample] = []
         self._names = [subscription.name for subscription in subscriptions]

@@ -88,7 +88,7 @@ def main() -> int:
     if options.echo:
         reliable = (options.publisher == "reliable", options.subscriber == "reliable")
         echo(Endpoint(options.domain, names[1], names[0], write_reliable=reliable[0], read_reliable=reliable[1]))
-    helper = _start_echo(options) if options.baseline else None
+    answering = _start_echo(options) if options.baseline else None
     try:
         endpoint = Endpoint(
             options.domain,
@@ -110,9 +110,9 @@ def main() -> int:
             first=options.warm_up,
         )
     finally:
-        if helper is not None:
-            helper.terminate()
-            helper.wait()
+        if answering is not None:
+            answering.terminate()
+            answering.wait()
     print(table([summarise(run)]))
     print(f"\n{histogram.text(run.times)}")
     if options.csv:
