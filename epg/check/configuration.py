@@ -37,7 +37,7 @@ COMMON_PARAMETERS = ("kind", "scale", "offset", "unit", "limits")
 
 @dataclass(frozen=True)
 class Control:
-    """The control loop; times in seconds: ``period`` None to follow the model's step, ``output_delay`` None for none."""
+    """The control loop; times in seconds: ``period`` None follows the model's step, ``output_delay`` None is none."""
 
     period: Fraction | None
     period_span: Span

@@ -145,7 +145,8 @@ def _period(configuration: Configuration, model: Model, diagnostics: Diagnostics
         return Fraction(1, 1000), 1
     delay = configuration.control.output_delay
     if delay is not None and not 0 < delay < period:
-        message = f"an output delay of {_ms(delay)} is out of range: must be more than 0 and less than the control period"
+        message = f"an output delay of {_ms(delay)} is out of range: "
+        message += "must be more than 0 and less than the control period"
         notes = [Note(f"the control period is {_ms(period)}", configuration.control.period_span)]
         diagnostics.error("out-of-range", configuration.control.output_delay_span, message, notes=notes)
     ratio = model.step / period
