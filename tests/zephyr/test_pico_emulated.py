@@ -203,7 +203,7 @@ def test_a_halted_state_machine_is_an_error(board: Board) -> None:
 
 def test_the_sample_says_count_and_angle(image: Path) -> None:
     """With a console in memory, as the emulator has no serial port for UARTs."""
-    console = {"CONFIG_RAM_CONSOLE": "y", "CONFIG_UART_CONSOLE": "n", "CONFIG_RAM_CONSOLE_BUFFER_SIZE": "4096"}
+    console = {"CONFIG_RAM_CONSOLE": "y", "CONFIG_UART_CONSOLE": "n", "CONFIG_LOG": "n"}
     sample = build("zephyr_module/samples/qdec", "rpi_pico", settings=console) / "zephyr" / "zephyr.elf"
     with Emulator(sample) as pico:
         pico.run(milliseconds=10)
