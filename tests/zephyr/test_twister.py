@@ -7,12 +7,12 @@ from pathlib import Path
 from tests.emulator.toolchain import arm_gcc, skip_if_missing
 
 from .twister import statuses_of
-from .workspace import NATIVE, twister, workspace
+from .workspace import NATIVE, need_twister, workspace
 
 
 def test_emulated_decoders(tmp_path: Path) -> None:
     """The sensor API's semantics and the sample, run on native_sim."""
-    skip_if_missing(arm_gcc, lambda: twister(workspace(NATIVE)))
+    skip_if_missing(arm_gcc, lambda: need_twister(workspace(NATIVE)))
     statuses = statuses_of(tmp_path / "twister", NATIVE)
     assert statuses == {
         ("drivers.sensor.epg_qdec.emulated", "native_sim"): "passed",

@@ -13,7 +13,10 @@ FOLDERS = ["tests/zephyr", "zephyr_module/samples"]
 
 
 def statuses_of(output: Path, *boards: str) -> dict[tuple[str, str], str]:
-    """Builds and runs what is for these boards; status by (test, board without qualifiers).  Raises :class:`BuildError`."""
+    """Builds and runs what is for these boards; status by (test, board without qualifiers).
+
+    Raises :class:`BuildError`.
+    """
     here = workspace(*boards)
     command = [str(here.python), str(here.base / "scripts" / "twister"), "--jobs", "2", "--outdir", str(output)]
     command += [f"--extra-args=ZEPHYR_MODULES={';'.join(str(module) for module in here.modules)}"]

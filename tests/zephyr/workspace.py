@@ -55,7 +55,7 @@ class Workspace:
         return environment
 
 
-def twister(here: Workspace) -> None:
+def need_twister(here: Workspace) -> None:
     """Raises :class:`Missing` when Zephyr's test runner cannot run."""
     command = [str(here.python), "-c", f"import {TWISTER_NEEDS}"]
     if subprocess.run(command, capture_output=True, check=False, env=here.environment()).returncode != 0:
