@@ -16,6 +16,9 @@ import pytest
 
 from .client import Host, Lines, stat, values
 
+MODEL = 140
+"""Where a store names its model: targets/runtime/src/store.c."""
+
 
 def test_setpoints_reach_the_model(jiwy_host: Path) -> None:
     with Host(jiwy_host) as console:
@@ -60,7 +63,7 @@ def test_parameters_are_set_saved_and_back_after_a_restart(jiwy_host: Path, tmp_
         assert console.ask("get Pan\\PID\\kp") == ["parameter Pan\\PID\\kp=0.1 generated=2.6", "ok get"]
         assert "stored=loaded" in console.ask("version")[-1]
     data = bytearray(store.read_bytes())
-    data[8] ^= 1  # as if another model had saved it
+    data[MODEL] ^= 1  # as if another model had saved it
     store.write_bytes(data)
     with Host(jiwy_host, "--store", str(store)) as console:
         assert console.ask("get Pan\\PID\\kp") == ["parameter Pan\\PID\\kp=2.6", "ok get"]

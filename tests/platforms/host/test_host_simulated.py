@@ -198,8 +198,8 @@ def test_statistics(motor: Program, tmp_path: Path) -> None:
     statistics = motor.run_good(tmp_path, 0.5).statistics
     assert list(statistics) == [
         "name", "mode", "scheduler", "memory_locked", "period", "duration", "wall_time", "interrupted", "cycles",
-        "overruns", "missed", "lateness_min", "lateness_mean", "lateness_p99", "lateness_p999", "lateness_max",
-        "interval_deviation_min", "interval_deviation_rms", "interval_deviation_max", "computation_min",
+        "overruns", "missed", "outputs_late", "lateness_min", "lateness_mean", "lateness_p99", "lateness_p999",
+        "lateness_max", "interval_deviation_min", "interval_deviation_rms", "interval_deviation_max", "computation_min",
         "computation_mean", "computation_max", "clamped", "setpoints_dropped", "setpoint_timeouts", "faults",
         "enabled", "fault", "fault_component", "lateness_histogram",
     ]  # fmt: skip
