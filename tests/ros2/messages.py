@@ -56,6 +56,38 @@ class Header_(IdlStruct, typename="std_msgs::msg::dds_::Header_"):
 
 @dataclass
 @annotate.final
+class MultiArrayDimension_(IdlStruct, typename="std_msgs::msg::dds_::MultiArrayDimension_"):
+    label: str
+    size: uint32
+    stride: uint32
+
+
+@dataclass
+@annotate.final
+class MultiArrayLayout_(IdlStruct, typename="std_msgs::msg::dds_::MultiArrayLayout_"):
+    dim: sequence[MultiArrayDimension_]
+    data_offset: uint32
+
+
+@dataclass
+@annotate.final
+class Float64MultiArray_(IdlStruct, typename="std_msgs::msg::dds_::Float64MultiArray_"):
+    layout: MultiArrayLayout_
+    data: sequence[float64]
+
+
+@dataclass
+@annotate.final
+class JointState_(IdlStruct, typename="sensor_msgs::msg::dds_::JointState_"):
+    header: Header_
+    name: sequence[str]
+    position: sequence[float64]
+    velocity: sequence[float64]
+    effort: sequence[float64]
+
+
+@dataclass
+@annotate.final
 class KeyValue_(IdlStruct, typename="diagnostic_msgs::msg::dds_::KeyValue_"):
     key: str
     value: str
@@ -136,6 +168,16 @@ _DEFINITIONS: dict[str, list[tuple[str, str]]] = {
     "std_msgs/msg/String": [("data", "string")],
     "std_msgs/msg/Header": [("stamp", "builtin_interfaces/msg/Time"), ("frame_id", "string")],
     "builtin_interfaces/msg/Time": [("sec", "int32"), ("nanosec", "uint32")],
+    "std_msgs/msg/MultiArrayDimension": [("label", "string"), ("size", "uint32"), ("stride", "uint32")],
+    "std_msgs/msg/MultiArrayLayout": [("dim", "std_msgs/msg/MultiArrayDimension[]"), ("data_offset", "uint32")],
+    "std_msgs/msg/Float64MultiArray": [("layout", "std_msgs/msg/MultiArrayLayout"), ("data", "float64[]")],
+    "sensor_msgs/msg/JointState": [
+        ("header", "std_msgs/msg/Header"),
+        ("name", "string[]"),
+        ("position", "float64[]"),
+        ("velocity", "float64[]"),
+        ("effort", "float64[]"),
+    ],
     "diagnostic_msgs/msg/KeyValue": [("key", "string"), ("value", "string")],
     "diagnostic_msgs/msg/DiagnosticStatus": [
         ("level", "byte"),

@@ -27,8 +27,12 @@ from tests.ros2.messages import (
     Bool_,
     DiagnosticArray_,
     Float64_,
+    Float64MultiArray_,
     HugeFloat64_,
+    JointState_,
     LongFloat64_,
+    MultiArrayDimension_,
+    MultiArrayLayout_,
     ShortFloat64_,
     numbers,
     type_hash,
@@ -339,6 +343,34 @@ def test_a_console_beside_it(jiwy: Path, net: Network) -> None:
         assert (process.returncode, errors) == (0, "")
         assert "ok setpoint" in output and "ok enable" in output
         assert re.search(r"connection=running\b", output), output
+
+
+def test_messages_of_several_values(build_checked: Build, net: Network, tmp_path: Path) -> None:
+    """CycloneDDS for Python reads and writes them by the definitions of ROS 2, not by EPG's code."""
+    with robot(net, build_checked("joints"), tmp_path) as jiwy_robot, Peer(net.domain, "rviz") as peer:
+        states = peer.subscription("/robot_7/joint_states", JointState_)
+        setpoints = peer.publisher("/robot_7/setpoints", Float64MultiArray_)
+        assert meet_and_wait(peer, lambda: setpoints.matched == 1 and len(states.received) > 20)
+        dimension = MultiArrayDimension_("axis", 2, 2)
+        setpoints.publish(Float64MultiArray_(MultiArrayLayout_([dimension], 0), [0.125, -0.5]))
+        peer.spin(0.2)
+        setpoints.publish(Float64MultiArray_(MultiArrayLayout_([], 0), [1.0, 2.0, 3.0]))  # one too many
+        peer.spin(0.2)
+        own = [e for e in [*peer.graph.publications(), *peer.graph.subscriptions()] if e.node == NODE]
+        assert {e.topic for e in own} >= {"/robot_7/joint_states", "/robot_7/setpoints", "/diagnostics"}
+        assert [e.hash for e in own] == [type_hash(e.type) for e in own]
+        jiwy_robot.end()
+    last = states.messages[-1]
+    assert (last.header.frame_id, last.name, last.velocity, last.effort) == ("base_link", ["pan", "tilt"], [], [])
+    stamps = [message.header.stamp.sec + message.header.stamp.nanosec / 1e9 for message in states.messages[2:]]
+    intervals = [after - before for before, after in itertools.pairwise(stamps)]
+    assert statistics.median(intervals) == pytest.approx(0.033, abs=0.0015), intervals
+    assert min(intervals) > 0.0, intervals
+    assert abs(stamps[-1] - time.time()) < 60.0
+    positions = set(zip(jiwy_robot.signal("outputs.pan_logging"), jiwy_robot.signal("outputs.tilt_logging")))
+    assert {tuple(message.position) for message in states.messages[2:]} <= positions  # each of one control cycle
+    assert set(jiwy_robot.signal("inputs.setpoint_pan")) == {0.0, 0.125}
+    assert set(jiwy_robot.signal("inputs.setpoint_tilt")) == {0.0, -0.5}
 
 
 FROZEN = """
