@@ -26,6 +26,7 @@ SMALLEST = {
     "pico_timing": ["--seeds", "1", "--milliseconds", "100", "--programs", "1", "--loads", "1"],
     "pico_cycle": ["--cycles", "20"],
     "pico_closed_loop": ["--short", "1"],
+    "pico_communication": ["--targets", "1"],
     "network_situations": ["--only", "4", "--seconds", "3"],
     "xrce_round_trip": ["--count", "5"],
     "ping_pong": ["--pings", "5", "--flat", "20"],

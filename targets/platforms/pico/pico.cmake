@@ -30,7 +30,8 @@ function(_epg_pico_target name)
   if(ports GREATER 0)
     _epg_pico_usb_library()
     target_link_libraries(${name}_port INTERFACE epg_pico_usb)
-    target_compile_definitions(${name}_port INTERFACE EPG_PICO_USB_PORTS=${ports})
+    target_compile_definitions(${name}_port INTERFACE EPG_PICO_USB_PORTS=${ports}
+      EPG_PICO_TARGET_HEADER="${name}_pico.h")
     # Only when a directory is done is it known what the user has set of executables.
     cmake_language(EVAL CODE "cmake_language(DEFER DIRECTORY [[${CMAKE_SOURCE_DIR}]] CALL _epg_pico_check_stdio [[${name}]] [[${CMAKE_SOURCE_DIR}]])")
   endif()

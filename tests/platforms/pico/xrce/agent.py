@@ -37,6 +37,7 @@ class UsbLink:
     """A serial port over USB: opened as a terminal, so that the board sees DTR."""
 
     address = "usb"
+    checked = True  # frames have a CRC
 
     def __init__(self, pico: Emulator, port: int = 0) -> None:
         self._pico, self._port = pico, port
@@ -71,9 +72,9 @@ class UsbLink:
     def receive(self) -> list[tuple[Hashable, bytes]]:
         return [*self._deframer.feed(self._pico.receive_bytes(port=self._port))]
 
-    def send(self, peer: Hashable, data: bytes) -> None:
+    def raw(self, peer: Hashable, data: bytes) -> bytes:
         assert isinstance(peer, int)
-        self.send_raw(peer, frame(data, AGENT, peer))
+        return frame(data, AGENT, peer)
 
     def send_raw(self, peer: Hashable, data: bytes) -> None:
         if self.is_open:

@@ -10,12 +10,32 @@
 #error "EPG_PICO_USB_PORTS must be 1 or 2"
 #endif
 
-/* Bytes of each port.  What a middleware sends in one turn has to fit, as it does not wait. */
+#ifdef EPG_PICO_TARGET_HEADER
+#include EPG_PICO_TARGET_HEADER
+#else
+#define EPG_PICO_LARGEST_MESSAGE 0
+#endif
+
+/** Bytes of a frame around a message, and twice those of a frame of which each byte is escaped. */
+#define EPG_PICO_USB_FRAME 32
+#define EPG_PICO_USB_LARGEST_FRAME (2 * (EPG_PICO_LARGEST_MESSAGE + EPG_PICO_USB_FRAME))
+
+/* Bytes of each port.  The largest message has to fit whatever is in it, as no middleware waits. */
 #ifndef EPG_PICO_USB_RECEIVE_SIZE
 #define EPG_PICO_USB_RECEIVE_SIZE 512
 #endif
 #ifndef EPG_PICO_USB_SEND_SIZE
+#if EPG_PICO_USB_LARGEST_FRAME > 1024
+#define EPG_PICO_USB_SEND_SIZE EPG_PICO_USB_LARGEST_FRAME
+#else
 #define EPG_PICO_USB_SEND_SIZE 1024
+#endif
+#endif
+#if EPG_PICO_USB_SEND_SIZE < EPG_PICO_USB_LARGEST_FRAME
+#error "EPG_PICO_USB_SEND_SIZE: the target's largest message does not fit"
+#endif
+#if EPG_PICO_USB_SEND_SIZE > 32768
+#error "a message of the target is too large for USB's buffers: EPG_PICO_USB_SEND_SIZE is at most 32768"
 #endif
 
 #define CFG_TUSB_RHPORT0_MODE OPT_MODE_DEVICE

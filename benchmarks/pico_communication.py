@@ -1,0 +1,89 @@
+"""What communication takes on a Pico: size of JIWY's images by middleware, and the stack of the communication side.
+
+All four targets with no middleware, the console, xrce, and xrce with the console beside it, which is the predefined
+one.  Stacks are those of RP2040 images that ran in EPG's emulator, with an agent and a person at the other ends.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+
+from measure import ROOT
+from report import Table, arguments, command_line, show
+
+sys.path.insert(0, str(ROOT))
+
+from tests.emulator.emulator import Emulator
+from tests.emulator.toolchain import Missing, arm_gcc, node, pico_sdk, rp2040js
+from tests.platforms.pico.images import freertos_kernel, images, size_of
+from tests.platforms.pico.xrce.agent import BoardAgent
+
+MIDDLEWARES = {"none": "none", "console": "console", "xrce": "xrce", "xrce_console": "xrce and console"}
+TARGETS = {
+    ("pico", "bare_metal"): "Pico, bare metal",
+    ("pico", "freertos"): "Pico, FreeRTOS",
+    ("pico2", "bare_metal"): "Pico 2, bare metal",
+    ("pico2", "freertos"): "Pico 2, FreeRTOS",
+}
+RAM = {"pico": 256 * 1024, "pico2": 512 * 1024}
+"""Bytes that images share with the user's data: SRAM without the two banks of stacks."""
+COMMANDS = ("help", "ports", "stats", "get", "watch", "capture 1")
+
+
+def main() -> None:
+    options = arguments(__doc__, targets=len(TARGETS))
+    try:
+        for need in (pico_sdk, arm_gcc, node, rp2040js, freertos_kernel):
+            need()
+    except Missing as missing:
+        raise SystemExit(str(missing)) from None
+    rows = [row(*target, middleware) for target in list(TARGETS)[: options.targets] for middleware in MIDDLEWARES]
+    head = ["image", "middleware", "text", "data", "bss", "of RAM", "stack used", "stack"]
+    notes = [
+        "Bytes. Executables of EPG's own, which run from RAM: text, data and bss all take it; of RAM: without the two "
+        "banks of 4 KiB for stacks. Float and double arithmetic is the compiler's on Pico. Stack: that of the "
+        "communication side, within bss; used: at most, in two simulated seconds on RP2040, as the console says."
+    ]
+    table = Table("Size of JIWY's images by middleware", head, rows, notes)
+    show("pico_communication", [table], options.write, command_line("pico_communication"))
+
+
+def row(board: str, platform: str, middleware: str) -> list[str]:
+    elf = images(board, platform, "jiwy_firmware", middleware=middleware) / "jiwy_firmware.elf"
+    size = size_of(elf)
+    share = 100 * (size.text + size.data + size.bss) / RAM[board]
+    used, reserved = stack(platform, middleware) if board == "pico" and "console" in middleware else ("", "")
+    name = TARGETS[board, platform]
+    numbers = [str(size.text), str(size.data), str(size.bss), f"{share:.0f} %"]
+    return [name, MIDDLEWARES[middleware], *numbers, used, reserved]
+
+
+def stack(platform: str, middleware: str) -> tuple[str, str]:
+    """Bytes used and reserved, as the firmware counts them."""
+    elf = images("pico", platform, "jiwy_firmware", middleware=middleware) / "jiwy_firmware.elf"
+    with Emulator(elf, usb={"seed": 3, "open": middleware == "console"}) as pico:
+        pico.run(milliseconds=50)
+        if middleware == "console":
+            return on_the_console(pico, 0, lambda milliseconds: pico.run(milliseconds=milliseconds))
+        with BoardAgent(pico) as agent:
+            agent.wait_for("rt/pan_publisher")
+            pico.call("usb_open", port=1)
+            return on_the_console(pico, 1, agent.run)
+
+
+def on_the_console(pico: Emulator, port: int, run: object) -> tuple[str, str]:
+    assert callable(run)
+    for command in COMMANDS:
+        pico.send(command + "\n", port=port)
+        run(200)
+    run(800)
+    pico.receive(port=port)
+    pico.send("\nstats\n", port=port)
+    run(100)
+    found = dict(re.findall(r"communication_stack_(\w+)=(\d+)", pico.receive(port=port)))
+    return found["used"], found["size"]
+
+
+if __name__ == "__main__":
+    main()
