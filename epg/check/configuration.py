@@ -263,12 +263,14 @@ def _communication(
         message = f"{target.platform.name} has no middleware '{name}'"
         hint = did_you_mean(name, possible, "it has")
         diagnostics.error("unknown-middleware", middleware.span, message, hint=hint, notes=extended_from(middleware))
-    elif target and transport is not None and str(transport.value) not in _transports(name, possible, components):
-        message = f"'{name}' on {target.platform.name} has no transport '{transport.value}'"
-        hint = did_you_mean(str(transport.value), _transports(name, possible, components), "it has")
-        if not possible[name]:
-            hint = "remove it: there is nothing to choose"
-        diagnostics.error("unknown-transport", transport.span, message, hint=hint, notes=extended_from(transport))
+    elif target and transport is not None and not _is_reported(str(transport.value), root, components):
+        known = _transports(name, possible, components)
+        if str(transport.value) not in known:
+            message = f"'{name}' on {target.platform.name} has no transport '{transport.value}'"
+            hint = did_you_mean(str(transport.value), known, "it has")
+            if not known:
+                hint = "remove it: there is nothing to choose"
+            diagnostics.error("unknown-transport", transport.span, message, hint=hint, notes=extended_from(transport))
     seconds = _time(period, diagnostics) if period is not None else Fraction(33, 1000)
     if period is not None and seconds is not None and not Fraction(1, 1000) <= seconds <= 3600:
         diagnostics.error("out-of-range", period.span, "must be from 1 ms to 3600 s")
@@ -331,6 +333,11 @@ def _transports(
     """What ``communication.transport`` may name: transports of the platform, and components that carry bytes."""
     own = possible[middleware]
     return (*own, *(c.name for c in components.values() if c.kind.transport)) if own else ()
+
+
+def _is_reported(name: str, root: Node, components: Mapping[str, Component]) -> bool:
+    """Whether ``name`` is that of a component with which something else is wrong."""
+    return name in root["components"] and name not in components
 
 
 def _topics(components: Mapping[str, Component], control: Control, communication: Communication | None) -> list[Use]:
