@@ -32,6 +32,11 @@ uint64_t epg_port_time_ns(void)
     return now_ns;
 }
 
+void epg_port_wait_until(uint64_t time_ns)
+{
+    now_ns = time_ns; /* nobody asks for it: there is no output delay */
+}
+
 void epg_port_quadrature_start(const epg_port_quadrature_t *decoder)
 {
     counts[decoder->unit] = 0;

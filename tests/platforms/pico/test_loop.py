@@ -82,6 +82,7 @@ def test_statistics_tell_the_same(pico: Emulator, ticks: list[int]) -> None:
     """Lateness and computation time as the firmware measures them, against what the harness sees."""
     assert statistics(pico)["missed"] == 0
     assert statistics(pico)["overruns"] == 0
+    assert statistics(pico)["outputs_late"] == 0
     assert abs(statistics(pico)["cycles"] - len(ticks)) <= 2
     assert statistics(pico)["lateness_max"] < 1500, "ns; interrupt latency and the way to the cycle"
     assert 10_000 < statistics(pico)["computation_min"] < 400_000
@@ -89,6 +90,6 @@ def test_statistics_tell_the_same(pico: Emulator, ticks: list[int]) -> None:
 
 def statistics(pico: Emulator) -> dict[str, int]:
     """The first members of epg_statistics_t, as the user's code copies them to `status`."""
-    raw = pico.read("status", 16 + 7 * 4)
-    names = ("cycles", "overruns", "missed", "lateness_max", "computation_min", "computation_max")
-    return dict(zip(names, struct.unpack_from("<6I", raw, 16)))
+    raw = pico.read("status", 16 + 8 * 4)
+    names = ("cycles", "overruns", "missed", "outputs_late", "lateness_max", "computation_min", "computation_max")
+    return dict(zip(names, struct.unpack_from("<7I", raw, 16)))

@@ -4,7 +4,7 @@
 >>> # processor.call("epg_control_start", processor.address("jiwy_control"), processor.address("application"))
 
 The image is loaded as its start-up code leaves it.  There is no time and there are no interrupts: whoever calls a
-function says what the microsecond timer and the PIO's FIFOs show.  unicorn has none of the chip's coprocessors: that
+function says what the microsecond timer and the PIO's FIFOs show.  Only where the firmware waits, the timer goes on.  unicorn has none of the chip's coprocessors: that
 for pins is simulated here; instead of that for doubles, images have the compiler's own (COMPILER_ARITHMETIC).
 """
 
@@ -60,6 +60,14 @@ class Processor:
         self.time_us = 0
         self._map_memory(elf)
         self._add_pin_coprocessor(elf)
+        wait = self.symbols.get("epg_port_wait_until")
+        if wait is not None:
+            self.cpu.hook_add(self.module.UC_HOOK_CODE, self._pass_time, None, wait, wait)
+
+    def _pass_time(self, cpu: Any, address: int, size: int, _: Any) -> None:
+        """``epg_port_wait_until(time_ns)`` begins: it will be that time when it looks."""
+        time_ns = cpu.reg_read(self.arm.UC_ARM_REG_R0) | cpu.reg_read(self.arm.UC_ARM_REG_R1) << 32
+        self.time_us = max(self.time_us, -(-time_ns // 1000))
 
     def _add_pin_coprocessor(self, elf: Path) -> None:
         for line in binutils("objdump", "-d", str(elf)).splitlines():
