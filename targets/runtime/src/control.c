@@ -159,9 +159,6 @@ static bool move_by_hand(epg_control_t *control, epg_jog_t *jog)
  */
 static uint64_t wait_for_outputs(epg_control_t *control, const epg_application_t *application, uint64_t tick_ns)
 {
-    if (application->output_delay_ns == 0U) {
-        return 0;
-    }
     const uint64_t due_ns = tick_ns + application->output_delay_ns;
     const uint64_t now_ns = epg_port_time_ns();
     if (now_ns > due_ns) {
@@ -177,23 +174,23 @@ static uint32_t saturated(uint64_t value)
     return value < UINT32_MAX ? (uint32_t)value : UINT32_MAX;
 }
 
-/**
- * Counts a cycle that ran from `begin_ns` to `end_ns` and waited for `waited_ns` of that; true if it was an overrun, not
- * over when the next one was due.
- */
-static bool count_cycle(epg_control_t *control, uint64_t tick_ns, uint64_t begin_ns, uint64_t end_ns,
-                        uint64_t waited_ns, uint32_t missed)
+static void count_lateness(epg_control_t *control, uint64_t tick_ns, uint64_t begin_ns)
+{
+    const uint32_t lateness = begin_ns > tick_ns ? saturated(begin_ns - tick_ns) : 0U;
+    if (lateness > control->statistics.lateness_max) {
+        control->statistics.lateness_max = lateness;
+    }
+}
+
+/** Counts a cycle that computed from `begin_ns` to `end_ns`; true if it was an overrun, not over at `next_ns`. */
+static bool count_cycle(epg_control_t *control, uint64_t next_ns, uint64_t begin_ns, uint64_t end_ns, uint32_t missed)
 {
     epg_statistics_t *statistics = &control->statistics;
-    const uint32_t lateness = begin_ns > tick_ns ? saturated(begin_ns - tick_ns) : 0U;
-    const uint32_t computation = saturated(end_ns - begin_ns - waited_ns);
-    const bool overrun = end_ns > tick_ns + control->application->period_ns || missed > 0;
+    const uint32_t computation = saturated(end_ns - begin_ns);
+    const bool overrun = end_ns > next_ns || missed > 0;
 
     statistics->cycles++;
     statistics->missed += missed;
-    if (lateness > statistics->lateness_max) {
-        statistics->lateness_max = lateness;
-    }
     if (computation < statistics->computation_min || statistics->cycles == 1) {
         statistics->computation_min = computation;
     }
@@ -239,9 +236,10 @@ static void publish_status(epg_control_t *control)
 void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed)
 {
     const epg_application_t *application = control->application;
-    const uint64_t begin_ns = epg_port_time_ns();
+    uint64_t begin_ns = epg_port_time_ns();
 
     application->sample();
+    count_lateness(control, tick_ns, begin_ns);
     control->time_ns = tick_ns;
     command(control, application, begin_ns);
     application->read();
@@ -250,13 +248,14 @@ void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed
     }
     const bool jogging = move_by_hand(control, application->jog);
     const bool stepped = !jogging && run_model(control);
-    uint64_t waited_ns = 0;
     if (jogging) {
         /* nothing but the actuator that is moved by hand: the others are safe since before */
     } else if (!control->enabled) {
         application->safe();
     } else if (stepped) {
-        waited_ns = wait_for_outputs(control, application, tick_ns);
+        if (application->output_delay_ns > 0U) {
+            begin_ns += wait_for_outputs(control, application, tick_ns); /* it is no computation */
+        }
         application->write();
     }
     if (stepped && application->monitor != NULL) {
@@ -267,9 +266,11 @@ void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed
         epg_capture_cycle(application->capture, tick_ns, control->fault != EPG_FAULT_NONE);
     }
 
-    const bool overrun = count_cycle(control, tick_ns, begin_ns, epg_port_time_ns(), waited_ns, missed);
-    control->consecutive_overruns = overrun ? control->consecutive_overruns + 1U : 0U;
-    if (application->overrun_limit > 0 && control->consecutive_overruns >= application->overrun_limit) {
+    const uint64_t next_ns = tick_ns + application->period_ns;
+    const bool overrun = count_cycle(control, next_ns, begin_ns, epg_port_time_ns(), missed);
+    if (!overrun) {
+        control->consecutive_overruns = 0;
+    } else if (++control->consecutive_overruns >= application->overrun_limit && application->overrun_limit > 0) {
         latch(control, EPG_FAULT_OVERRUN);
         application->safe();
     }

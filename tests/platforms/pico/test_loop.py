@@ -90,6 +90,7 @@ def test_statistics_tell_the_same(pico: Emulator, ticks: list[int]) -> None:
 
 def statistics(pico: Emulator) -> dict[str, int]:
     """The first members of epg_statistics_t, as the user's code copies them to `status`."""
-    raw = pico.read("status", 16 + 8 * 4)
-    names = ("cycles", "overruns", "missed", "outputs_late", "lateness_max", "computation_min", "computation_max")
-    return dict(zip(names, struct.unpack_from("<7I", raw, 16)))
+    raw = pico.read("status", 16 + 9 * 4)
+    names = ("cycles", "overruns", "missed", "lateness_max", "computation_min", "computation_max")
+    values = struct.unpack_from("<6IQI", raw, 16)
+    return {**dict(zip(names, values)), "outputs_late": values[-1]}

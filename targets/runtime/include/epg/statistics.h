@@ -25,11 +25,11 @@ typedef struct epg_statistics {
     uint32_t cycles;            /**< control cycles run */
     uint32_t overruns;          /**< cycles that ended after the next one was due, or before which ticks were missed */
     uint32_t missed;            /**< ticks at which no cycle ran */
-    uint32_t outputs_late;      /**< cycles whose outputs were not ready at the output delay, and came later */
     uint32_t lateness_max;      /**< largest delay from tick to start of a cycle */
     uint32_t computation_min;   /**< shortest cycle */
     uint32_t computation_max;   /**< longest cycle */
     uint64_t computation_total; /**< sum over all cycles: divide by `cycles` for the mean */
+    uint32_t outputs_late;      /**< cycles whose outputs were not ready at the output delay, and came later */
     uint32_t clamped;           /**< values limited by a conversion, `max_duty` or the range of an actuator */
     uint32_t setpoints_dropped; /**< setpoints refused because they were not finite */
     uint32_t setpoint_timeouts; /**< times a setpoint became too old */
