@@ -60,6 +60,8 @@ class EncoderView:
 class MiddlewareView:
     """The middleware as its own template sees it; ``monitor_count`` numbers are monitored in each cycle.
 
+    ``publications`` and ``subscriptions`` are how many topics there are, diagnostics and enabling among them.
+
     ``prefix`` begins the names that the template makes: "middleware", or "console" for one beside a middleware.
     """
 
@@ -68,6 +70,8 @@ class MiddlewareView:
     prefix: Code
     options: Mapping[str, object]
     monitor_count: int
+    publications: int
+    subscriptions: int
 
 
 @dataclass(frozen=True)
@@ -101,8 +105,8 @@ def service_of(app: Application, macro: Macro) -> Service:
     captures = [options.get("capture")] if "capture" in middleware.uses else []
     captures += [communication.console_options.get("capture")] if console and "capture" in console.uses else []
     return Service(
-        middleware=_view(middleware, "middleware", options, monitor_count),
-        console=_view(console, "console", communication.console_options, monitor_count) if console else None,
+        middleware=_view(app, middleware, "middleware", options, monitor_count),
+        console=_view(app, console, "console", communication.console_options, monitor_count) if console else None,
         signals=signals,
         time_slot=time_slot,
         monitor_count=monitor_count,
@@ -116,11 +120,19 @@ def service_of(app: Application, macro: Macro) -> Service:
 
 
 def _view(
-    middleware: Middleware, prefix: str, options: Mapping[str, object], monitor_count: int
+    app: Application, middleware: Middleware, prefix: str, options: Mapping[str, object], monitor_count: int
 ) -> MiddlewareView | None:
     if not middleware.symbol:
         return None
-    return MiddlewareView(middleware.name, identifier(middleware.symbol), Code(prefix), options, monitor_count)
+    return MiddlewareView(
+        name=middleware.name,
+        symbol=identifier(middleware.symbol),
+        prefix=Code(prefix),
+        options=options,
+        monitor_count=monitor_count,
+        publications=len(app.publications),
+        subscriptions=len(app.subscriptions),
+    )
 
 
 def _signals(app: Application, first_slot: int) -> Iterable[SignalView]:

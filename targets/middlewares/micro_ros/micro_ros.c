@@ -1,0 +1,263 @@
+/**
+ * @file
+ * ROS 2 through an agent, by rcl and libmicroros.
+ *
+ * | state    | what is done                                                | and then                                 |
+ * |----------|-------------------------------------------------------------|------------------------------------------|
+ * | waiting  | a ping every 0.2 s                                          | answered: session and node; creating     |
+ * | creating | publishers and subscriptions, one per poll                  | all there: running; refused: waiting     |
+ * | running  | topics; a ping every 0.2 s, the time every 10 s             | silent for 1 s, or stuck for 2: waiting  |
+ */
+#include "micro_ros.h"
+
+#include <string.h>
+
+#include <rcl/error_handling.h>
+#include <rmw_microros/rmw_microros.h>
+
+#include "epg/node.h"
+#include "epg/port.h"
+#include "micro_ros_entities.h"
+#include "micro_ros_transport.h"
+
+#define MS ((uint64_t)1000000)
+
+static const uint64_t PING_NS = 200 * MS;
+static const uint64_t SILENCE_NS = 1000 * MS; /* of an agent that is lost */
+static const uint64_t REFUSED_NS = 2000 * MS; /* from a refusal to the next attempt */
+static const uint64_t SYNC_NS = 10000 * MS;   /* from one question for the time to the next */
+static const uint64_t SYNC_AGAIN_NS = 500 * MS;
+static const uint64_t FULL_NS = 150 * MS; /* without room for a reliable message, until what is missing is asked for */
+static const uint64_t STUCK_NS = 2000 * MS; /* the same, until the session is given up */
+/* The client library asks what the agent has missed only if it was not called for 100 ms. */
+static const uint64_t REST_NS = 105 * MS;
+
+enum { ANSWER_MS = 20, FRAMES_PER_POLL = 32 };
+
+static const char WAITING[] = "waiting";
+static const char CREATING[] = "creating";
+static const char RUNNING[] = "running";
+
+/** There is one node. */
+static struct {
+    const epg_target_t *target;
+    const epg_stream_t *stream;
+    const epg_micro_ros_options_t *options;
+    epg_node_t *node;
+    epg_micro_ros_entities_t entities;
+    const char *state;
+    bool usable; /* libmicroros has taken the stream */
+    bool again;  /* it has been running before */
+
+    uint64_t now_ns;   /* of this poll */
+    uint64_t ping_ns;  /* the next */
+    uint64_t alive_ns; /* when the agent has last answered */
+    uint64_t sync_ns;  /* the next */
+    uint64_t full_ns;  /* since when reliable messages find no room; 0: they do */
+    uint64_t asked_ns; /* when it has rested last for that */
+    uint64_t rest_ns;  /* until when it rests */
+} ros;
+
+/** Never 0, and not the same for two boards, nor for two nodes on one computer: FNV-1a over what tells them apart. */
+static uint32_t client_key(void)
+{
+    const char *const parts[] = {epg_port_serial(), ros.node->name_space, ros.node->name};
+    uint32_t hash = 2166136261U;
+    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
+        for (const char *text = parts[i]; *text != '\0'; text++) {
+            hash = (hash ^ (uint8_t)*text) * 16777619U;
+        }
+        hash = (hash ^ '/') * 16777619U;
+    }
+    return hash == 0 ? 1 : hash;
+}
+
+static bool agent_answers(void)
+{
+    ros.ping_ns = ros.now_ns + PING_NS;
+    return rmw_uros_ping_agent(ANSWER_MS, 1) == RMW_RET_OK;
+}
+
+static void lose_agent(uint64_t pause_ns)
+{
+    epg_micro_ros_entities_drop(&ros.entities);
+    ros.state = WAITING;
+    ros.ping_ns = epg_port_time_ns() + pause_ns;
+}
+
+/* Topics ------------------------------------------------------------------------------------------------------- */
+
+/** The node's: hands a message to a stream of libmicroros, whole or not at all. */
+static bool send_message(size_t publication, const void *message, size_t size)
+{
+    bool taken = false;
+    const epg_micro_ros_sent_t sent = {.data = message, .size = size, .taken = &taken};
+    if (ros.state != RUNNING) {
+        return false;
+    }
+    /* It says "error" too when the agent has not confirmed yet. */
+    if (rcl_publish(&ros.options->publishers[publication], &sent, NULL) != RCL_RET_OK) {
+        rcl_reset_error();
+    }
+    if (ros.target->publications[publication].qos == EPG_QOS_RELIABLE) {
+        if (taken) {
+            ros.full_ns = 0;
+        } else if (ros.full_ns == 0) {
+            ros.full_ns = ros.now_ns;
+            ros.asked_ns = ros.now_ns;
+        }
+    }
+    return taken;
+}
+
+static void take_message(size_t index)
+{
+    epg_micro_ros_received_t message = {.data = ros.options->received, .capacity = ros.options->received_size};
+    if (rcl_take(&ros.options->subscriptions[index], &message, NULL, NULL) == RCL_RET_OK) {
+        epg_node_receive(ros.node, index, message.data, message.size, ros.now_ns);
+    } else {
+        ros.node->malformed++; /* larger than any that its topics can use */
+        rcl_reset_error();
+    }
+}
+
+/** One frame at most; true: there may be more. */
+static bool take_frame(void)
+{
+    static const rmw_time_t AT_ONCE = {0, 0};
+    rmw_subscriptions_t subscriptions = {.subscriber_count = ros.target->subscription_count,
+                                         .subscribers = ros.options->ready};
+    for (size_t i = 0; i < subscriptions.subscriber_count; i++) {
+        ros.options->ready[i] = rcl_subscription_get_rmw_handle(&ros.options->subscriptions[i])->data;
+    }
+    (void)epg_micro_ros_transport_heard();
+    const bool any = rmw_wait(&subscriptions, NULL, NULL, NULL, NULL, NULL, &AT_ONCE) == RMW_RET_OK;
+    for (size_t i = 0; any && i < subscriptions.subscriber_count; i++) {
+        if (ros.options->ready[i] != NULL) {
+            take_message(i);
+        }
+    }
+    return epg_micro_ros_transport_heard() || any;
+}
+
+/* States ------------------------------------------------------------------------------------------------------- */
+
+static void poll_waiting(void)
+{
+    if (ros.now_ns < ros.ping_ns || !agent_answers()) {
+        return;
+    }
+    if (!epg_micro_ros_entities_connect(&ros.entities, client_key())) {
+        lose_agent(REFUSED_NS);
+        return;
+    }
+    ros.state = CREATING;
+}
+
+static void poll_creating(void)
+{
+    bool complete = false;
+    if (!epg_micro_ros_entities_make(&ros.entities, &complete)) {
+        lose_agent(REFUSED_NS);
+    } else if (complete) {
+        ros.now_ns = epg_port_time_ns();
+        ros.state = RUNNING;
+        ros.alive_ns = ros.now_ns;
+        ros.ping_ns = ros.now_ns + PING_NS;
+        ros.sync_ns = ros.now_ns;
+        ros.full_ns = 0;
+        ros.rest_ns = 0;
+        if (ros.again) {
+            epg_control_count_reconnect(ros.target->control);
+        }
+        ros.again = true;
+        epg_node_connected(ros.node, ros.now_ns);
+    }
+}
+
+/** False: the agent is given up. */
+static bool check_agent(void)
+{
+    if (ros.now_ns >= ros.ping_ns && agent_answers()) {
+        ros.alive_ns = ros.now_ns;
+    }
+    const bool stuck = ros.full_ns != 0 && ros.now_ns >= ros.full_ns + STUCK_NS;
+    if (stuck || ros.now_ns >= ros.alive_ns + SILENCE_NS) {
+        lose_agent(0);
+        return false;
+    }
+    return true;
+}
+
+static void ask_for_time(void)
+{
+    ros.sync_ns = ros.now_ns + SYNC_AGAIN_NS;
+    if (rmw_uros_sync_session(ANSWER_MS) == RMW_RET_OK) {
+        epg_node_set_time(ros.node, (uint64_t)rmw_uros_epoch_nanos(), epg_port_time_ns());
+        ros.sync_ns = ros.now_ns + SYNC_NS;
+    }
+}
+
+static void poll_running(void)
+{
+    if (ros.now_ns < ros.rest_ns) {
+        return;
+    }
+    for (int i = 0; i < FRAMES_PER_POLL && take_frame(); i++) {
+    }
+    if (!check_agent()) {
+        return;
+    }
+    if (ros.now_ns >= ros.sync_ns) {
+        ask_for_time();
+    }
+    epg_node_poll(ros.node, ros.now_ns);
+    if (ros.full_ns != 0 && ros.now_ns >= ros.asked_ns + FULL_NS) {
+        ros.rest_ns = ros.now_ns + REST_NS;
+        ros.asked_ns = ros.rest_ns;
+    }
+}
+
+/* The middleware ----------------------------------------------------------------------------------------------- */
+
+static void start(const epg_target_t *target, const epg_stream_t *stream)
+{
+    memset(&ros, 0, sizeof ros);
+    ros.target = target;
+    ros.stream = stream;
+    ros.options = target->options;
+    ros.node = target->node_state;
+    ros.state = WAITING;
+    ros.usable = epg_micro_ros_transport_start(stream);
+    epg_node_start(ros.node, target, send_message);
+    ros.entities = (epg_micro_ros_entities_t){.node = ros.node, .options = ros.options};
+}
+
+static void poll(uint64_t now_ns)
+{
+    ros.now_ns = now_ns;
+    if (!ros.usable || !ros.stream->connected(ros.stream->context)) {
+        if (ros.state != WAITING) {
+            lose_agent(0);
+        }
+    } else if (ros.state == WAITING) {
+        poll_waiting();
+    } else if (ros.state == CREATING) {
+        poll_creating();
+    } else {
+        poll_running();
+    }
+}
+
+static void stop(void)
+{
+    epg_micro_ros_entities_drop(&ros.entities);
+    ros.state = WAITING;
+}
+
+static const char *state(void)
+{
+    return ros.state;
+}
+
+const epg_middleware_t epg_micro_ros = {.start = start, .poll = poll, .stop = stop, .state = state};

@@ -1,0 +1,70 @@
+/**
+ * @file
+ * EPG's stream as a custom transport of libmicroros.
+ *
+ * libmicroros asks for bytes with a time that it is willing to wait.  The stream never waits, so this does: in naps.
+ */
+#define _POSIX_C_SOURCE 200809L
+
+#include "micro_ros_transport.h"
+
+#include <time.h>
+
+#include <rmw_microros/rmw_microros.h>
+
+#include "epg/port.h"
+
+#define MS ((uint64_t)1000000)
+
+static const struct timespec NAP = {.tv_nsec = 100000};
+
+static const epg_stream_t *stream;
+static bool heard;
+
+static bool open_or_close(struct uxrCustomTransport *transport)
+{
+    (void)transport;
+    return true; /* the stream is the platform's */
+}
+
+static size_t write_bytes(struct uxrCustomTransport *transport, const uint8_t *data, size_t size, uint8_t *error)
+{
+    (void)transport;
+    *error = 0;
+    if (!stream->connected(stream->context) || (stream->datagrams && stream->writable(stream->context) < size)) {
+        *error = 1;
+        return 0;
+    }
+    return stream->write(stream->context, data, size);
+}
+
+static size_t read_bytes(struct uxrCustomTransport *transport, uint8_t *data, size_t size, int timeout_ms,
+                         uint8_t *error)
+{
+    (void)transport;
+    const uint64_t until_ns = epg_port_time_ns() + (timeout_ms > 0 ? (uint64_t)timeout_ms * MS : 0U);
+    *error = 0;
+    for (;;) {
+        const size_t count = stream->connected(stream->context) ? stream->read(stream->context, data, size) : 0;
+        heard = heard || count > 0;
+        if (count > 0 || epg_port_time_ns() >= until_ns) {
+            return count;
+        }
+        (void)nanosleep(&NAP, NULL);
+    }
+}
+
+bool epg_micro_ros_transport_heard(void)
+{
+    const bool was = heard;
+    heard = false;
+    return was;
+}
+
+bool epg_micro_ros_transport_start(const epg_stream_t *our_stream)
+{
+    stream = our_stream;
+    heard = false;
+    return rmw_uros_set_custom_transport(!our_stream->datagrams, NULL, open_or_close, open_or_close, write_bytes,
+                                         read_bytes) == RMW_RET_OK;
+}

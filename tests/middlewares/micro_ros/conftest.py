@@ -1,0 +1,74 @@
+"""Host executables with the middleware ``micro_ros``, as a user builds them, against a libmicroros of the user's."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.middlewares.xrce.board import Board as XrceBoard
+from tests.xrce_agent import Agent, UdpLink
+
+HERE = Path(__file__).resolve().parent
+SANITIZERS = "-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all"
+WARNINGS = "-Wall -Wextra -Wconversion -Wdouble-promotion -Werror"
+
+
+class Board(XrceBoard):
+    """micro-ROS calls a node's participant by namespace and name."""
+
+    def __init__(self, program: Path, agent: Agent, *options: str, serial: str = "1") -> None:
+        super().__init__(program, agent, *options, serial=serial)
+        self.node = f"/lab/robot_{serial}"
+
+    def enable(self, on: bool) -> None:
+        self.topics.publish(f"rt{self.node}/enable", bytes([on]))
+
+
+def configure(folder: Path, *settings: str) -> subprocess.CompletedProcess[str]:
+    if not os.environ.get("MICRO_ROS_PATH"):
+        pytest.skip(
+            "MICRO_ROS_PATH does not name a libmicroros for this computer: docs/micro-ros.md says how to build one"
+        )
+    for tool, package in (("cmake", "cmake"), ("ninja", "ninja-build")):
+        if not shutil.which(tool):
+            pytest.skip(f"{tool} is missing: apt install {package}")
+    flags = f"-DCMAKE_C_FLAGS={SANITIZERS} {WARNINGS}"
+    python = f"-DPython3_EXECUTABLE={sys.executable}"
+    command = ["cmake", "-S", str(HERE / "robot"), "-B", str(folder), "-G", "Ninja", flags, python, *settings]
+    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)
+
+
+def build(folder: Path, *targets: str) -> subprocess.CompletedProcess[str]:
+    command = ["cmake", "--build", str(folder), *(("--target", *targets) if targets else ())]
+    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)
+
+
+@pytest.fixture(scope="session")
+def builds(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder with the executables."""
+    folder = tmp_path_factory.mktemp("micro_ros")
+    for done in (configure(folder), build(folder)):
+        assert done.returncode == 0, done.stdout + done.stderr
+    return folder
+
+
+@pytest.fixture(scope="session")
+def robot(builds: Path) -> Path:
+    return builds / "robot_host"
+
+
+@pytest.fixture(scope="session")
+def serial_robot(builds: Path) -> Path:
+    return builds / "serial_robot_host"
+
+
+@pytest.fixture
+def agent() -> Iterator[Agent]:
+    with Agent(UdpLink()) as made:
+        yield made
