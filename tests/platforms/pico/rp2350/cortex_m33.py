@@ -4,8 +4,9 @@
 >>> # processor.call("epg_control_start", processor.address("jiwy_control"), processor.address("application"))
 
 The image is loaded as its start-up code leaves it.  There is no time and there are no interrupts: whoever calls a
-function says what the microsecond timer and the PIO's FIFOs show.  Only where the firmware waits, the timer goes on.  unicorn has none of the chip's coprocessors: that
-for pins is simulated here; instead of that for doubles, images have the compiler's own (COMPILER_ARITHMETIC).
+function says what the microsecond timer and the PIO's FIFOs show.  Only where the firmware waits, the timer goes on.
+unicorn has none of the chip's coprocessors: that for pins is simulated here; instead of that for doubles, images have
+the compiler's own (COMPILER_ARITHMETIC).
 """
 
 from __future__ import annotations
