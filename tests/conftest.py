@@ -21,6 +21,8 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, exitstatu
         with open(log, "a", encoding="utf-8") as file:
             for report in skipped:
                 reason = report.longrepr[2] if isinstance(report.longrepr, tuple) else str(report.longrepr)
-                file.write(f"{report.nodeid}: {reason.removeprefix('Skipped: ')}\n")
+                # Parameters of a test are any text: with ": " in them, nobody could tell where the reason begins.
+                name = report.nodeid.partition("[")[0]
+                file.write(f"{name}: {reason.removeprefix('Skipped: ')}\n")
     if skipped and exitstatus in (0, 5):
         terminalreporter.write_line(f"EPG: {len(skipped)} tests skipped")
