@@ -36,6 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
+    from epg.cli.progress import Progress
     from epg.cli.report import to_json
     from epg.ros.recorder import SETPOINTS, TOPICS, channels_of, record
     from epg.ros.source import open_source
@@ -52,7 +53,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         message = f"'{topic.name}' is not recorded: EPG does not know {topic.type}"
         diagnostics.warning("type-not-recorded", Span(str(robot.file)), message)
     source = open_source(options.through, [channel.subscription for channel in channels], _domain(options, robot))
-    progress = _Progress(quiet=options.json)
+    progress = Progress(quiet=options.json)
     try:
         with _Stop() as stop:
             heard = record(source, channels, options.output, options.duration, stop, progress)
@@ -146,22 +147,6 @@ class _Stop:
     def __exit__(self, *_: object) -> None:
         for number, handler in self.before.items():
             signal.signal(number, handler)
-
-
-class _Progress:
-    """A line on a terminal that is written over."""
-
-    def __init__(self, quiet: bool) -> None:
-        self.active = not quiet and sys.stderr.isatty()
-
-    def __call__(self, message: str) -> None:
-        if self.active:
-            sys.stderr.write(f"\r\x1b[K{message}")
-            sys.stderr.flush()
-
-    def done(self) -> None:
-        if self.active:
-            sys.stderr.write("\r\x1b[K")
 
 
 def _seconds(text: str) -> float:

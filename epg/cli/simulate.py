@@ -24,6 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from epg import bootstrap
+    from epg.cli.progress import Progress
     from epg.cli.report import to_json
     from epg.simulate import format_table, simulate
 
@@ -31,7 +32,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         bootstrap.ensure("plot")
     except bootstrap.MissingPackages as problem:
         sys.stderr.write(f"epg: no plot will be drawn: {problem}\n")
-    progress = _Progress(quiet=options.json)
+    progress = Progress(quiet=options.json)
     result = simulate(
         options.executable, options.scenario, options.output, realtime=options.realtime, progress=progress
     )
@@ -51,20 +52,3 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         kept = [file for file in result.files if file.name.startswith("tracking")]
         print("\nwrote " + ", ".join(str(file) for file in kept))
     return 0 if result.passed else EXIT_LIMITS
-
-
-class _Progress:
-    """A line on a terminal that is written over; nothing where the output goes to a file."""
-
-    def __init__(self, quiet: bool) -> None:
-        self.active = not quiet and sys.stderr.isatty()
-
-    def __call__(self, message: str) -> None:
-        if self.active:
-            sys.stderr.write(f"\r\x1b[K{message}")
-            sys.stderr.flush()
-
-    def done(self) -> None:
-        if self.active:
-            sys.stderr.write("\r\x1b[K")
-            sys.stderr.flush()
