@@ -58,20 +58,6 @@ static struct {
     uint64_t rest_ns;  /* until when it rests */
 } ros;
 
-/** Never 0, and not the same for two boards, nor for two nodes on one computer: FNV-1a over what tells them apart. */
-static uint32_t client_key(void)
-{
-    const char *const parts[] = {epg_port_serial(), ros.node->name_space, ros.node->name};
-    uint32_t hash = 2166136261U;
-    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
-        for (const char *text = parts[i]; *text != '\0'; text++) {
-            hash = (hash ^ (uint8_t)*text) * 16777619U;
-        }
-        hash = (hash ^ '/') * 16777619U;
-    }
-    return hash == 0 ? 1 : hash;
-}
-
 static bool agent_answers(void)
 {
     ros.ping_ns = ros.now_ns + PING_NS;
@@ -147,7 +133,7 @@ static void poll_waiting(void)
     if (ros.now_ns < ros.ping_ns || !agent_answers()) {
         return;
     }
-    if (!epg_micro_ros_entities_connect(&ros.entities, client_key())) {
+    if (!epg_micro_ros_entities_connect(&ros.entities, epg_node_key(ros.node))) {
         lose_agent(REFUSED_NS);
         return;
     }

@@ -339,20 +339,6 @@ static bool send_message(size_t publication, const void *message, size_t size)
 
 /* The middleware ----------------------------------------------------------------------------------------------- */
 
-/** Never 0, and not the same for two boards, nor for two nodes on one computer: FNV-1a over what tells them apart. */
-static uint32_t client_key(void)
-{
-    const char *const parts[] = {epg_port_serial(), client.node->name_space, client.node->name};
-    uint32_t hash = 2166136261U;
-    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
-        for (const char *text = parts[i]; *text != '\0'; text++) {
-            hash = (hash ^ (uint8_t)*text) * 16777619U;
-        }
-        hash = (hash ^ '/') * 16777619U;
-    }
-    return hash == 0 ? 1 : hash;
-}
-
 static void start_session(void)
 {
     const epg_xrce_options_t *options = client.options;
@@ -363,7 +349,7 @@ static void start_session(void)
         /* The library tells the agent 4 bytes less. */
         .mtu = (uint16_t)(options->input_frame + 4),
     };
-    uxr_init_session(&client.session, &client.communication, client_key());
+    uxr_init_session(&client.session, &client.communication, epg_node_key(client.node));
     client.session.info.id = EPG_XRCE_SESSION_ID;
     uxr_set_status_callback(&client.session, on_status, NULL);
     uxr_set_topic_callback(&client.session, on_sample, NULL);

@@ -9,6 +9,7 @@
 #include "epg/diagnostics.h"
 #include "epg/finite.h"
 #include "epg/names.h"
+#include "epg/port.h"
 
 #define SECOND_NS 1000000000
 
@@ -195,4 +196,17 @@ size_t epg_node_topic(const epg_node_t *node, const epg_topic_t *topic, char *na
         length += count;
     }
     return length;
+}
+
+uint32_t epg_node_key(const epg_node_t *node)
+{
+    const char *const parts[] = {epg_port_serial(), node->name_space, node->name};
+    uint32_t hash = 2166136261U;
+    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) {
+        for (const char *text = parts[i]; *text != '\0'; text++) {
+            hash = (hash ^ (uint8_t)*text) * 16777619U;
+        }
+        hash = (hash ^ '/') * 16777619U;
+    }
+    return hash == 0 ? 1 : hash;
 }

@@ -72,4 +72,10 @@ void epg_node_set_time(epg_node_t *node, uint64_t epoch_ns, uint64_t now_ns);
  */
 size_t epg_node_topic(const epg_node_t *node, const epg_topic_t *topic, char *name, size_t size);
 
+/**
+ * A number by which an agent tells this node from others: never 0, and not the same for two boards, nor for two nodes on
+ * one computer.  FNV-1a (Fowler, Noll, Vo), 32 bits, over serial number, namespace and name.
+ */
+uint32_t epg_node_key(const epg_node_t *node);
+
 #endif
