@@ -1,0 +1,102 @@
+"""`west epg`: the command line of EPG in a workspace whose manifest names its commands."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.emulator.toolchain import ROOT, skip_if_missing
+
+from .workspace import workspace
+
+COMMANDS = "zephyr_module/west/west-commands.yml"
+MANIFEST = f"""manifest:
+  projects:
+    - {{name: epg, url: https://example.org/epg, revision: main, west-commands: {COMMANDS}}}
+"""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A workspace of west with this EPG in it, and nothing else."""
+    skip_if_missing(workspace)
+    top = tmp_path_factory.mktemp("workspace")
+    (top / "manifest").mkdir()
+    (top / "manifest" / "west.yml").write_text(MANIFEST)
+    (top / "epg").symlink_to(ROOT, target_is_directory=True)
+    assert west(top, "init", "-l", "manifest").returncode == 0
+    return top
+
+
+def west(folder: Path, *words: str, **variables: str) -> subprocess.CompletedProcess[str]:
+    here = workspace()
+    environment = {**here.environment(), **variables}
+    del environment["ZEPHYR_BASE"]  # where west looks for a workspace first
+    command = [str(here.python), "-m", "west", *words]
+    return subprocess.run(command, capture_output=True, text=True, cwd=folder, env=environment, check=False)
+
+
+def epg(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, str(ROOT / "epg"), *words]
+    return subprocess.run(command, capture_output=True, text=True, cwd=folder, env=os.environ, check=False)
+
+
+TCF = """version: 1
+target: host
+node: a_node
+control: {period: 1 ms}
+components:
+  motor: {kind: pwm, frequency: 20 kHzz}
+"""
+
+
+@pytest.mark.parametrize(
+    ("status", "words"),
+    [
+        (0, ["--version"]),
+        (0, ["--help"]),
+        (0, ["check", "--help"]),
+        (0, ["targets", "--json"]),
+        (1, ["check", "--format", "json", "wrong.tcf"]),
+        (1, ["check", "--", "wrong.tcf"]),
+        (2, ["check", "--no-such-option"]),
+        (2, ["-v"]),
+    ],
+)
+def test_it_says_what_epg_says(status: int, words: list[str], folder: Path) -> None:
+    """The same output, on the same stream, and the same exit status: options are EPG's, not west's."""
+    (folder / "wrong.tcf").write_text(TCF)
+    said, expected = west(folder, "epg", *words), epg(folder, *words)
+    assert expected.returncode == status, expected.stderr
+    assert (said.returncode, said.stdout, said.stderr) == (status, expected.stdout, expected.stderr)
+
+
+def test_it_writes_where_west_was_called(folder: Path) -> None:
+    """In a folder below the workspace, whose name has a blank."""
+    below = folder / "my robots"
+    below.mkdir()
+    model = ROOT / "examples" / "jiwy" / "model"
+    said = west(below, "epg", "new", "--json", "--target", "host_jiwy", "--model", str(model), "jiwy")
+    assert said.returncode == 0, said.stderr
+    assert json.loads(said.stdout)["folder"] == "jiwy"
+    assert (below / "jiwy" / "jiwy.tcf").is_file()
+
+
+def test_west_lists_it_and_hands_over_help(folder: Path) -> None:
+    assert "  epg:" in west(folder, "help").stdout
+    assert west(folder, "help", "epg").stdout == epg(folder, "--help").stdout
+
+
+def test_packages_that_the_python_of_west_lacks_are_asked_for(folder: Path, tmp_path: Path) -> None:
+    """It runs in the Python of west: what that lacks is missing when nothing may be installed."""
+    here = workspace()
+    needs = [str(here.python), "-c", "import jinja2, jsonschema, yaml"]
+    complete = subprocess.run(needs, capture_output=True, check=False, env=here.environment()).returncode == 0
+    said = west(folder, "epg", "targets", EPG_CACHE=str(tmp_path), EPG_NO_INSTALL="1")
+    assert said.returncode == (0 if complete else 4)
+    assert complete or f"for {here.python}: installing them is turned off" in said.stderr
