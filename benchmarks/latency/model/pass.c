@@ -1,0 +1,15 @@
+/**
+ * @file
+ * A controller that passes its setpoint on.
+ */
+#include "pass.h"
+
+void pass_init(const pass_inputs_t *inputs, pass_outputs_t *outputs)
+{
+    pass_step(inputs, outputs);
+}
+
+void pass_step(const pass_inputs_t *inputs, pass_outputs_t *outputs)
+{
+    outputs->duty = inputs->setpoint;
+}

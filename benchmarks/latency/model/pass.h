@@ -1,0 +1,19 @@
+/**
+ * @file
+ * A controller that passes its setpoint on.
+ */
+#ifndef PASS_H
+#define PASS_H
+
+typedef struct {
+    double setpoint;
+} pass_inputs_t;
+
+typedef struct {
+    double duty;
+} pass_outputs_t;
+
+void pass_init(const pass_inputs_t *inputs, pass_outputs_t *outputs);
+void pass_step(const pass_inputs_t *inputs, pass_outputs_t *outputs);
+
+#endif

@@ -1,0 +1,35 @@
+"""Steps of a setpoint to a program on this computer, by UDP and in real time."""
+
+from __future__ import annotations
+
+import os
+import random
+import subprocess
+import time
+from pathlib import Path
+
+from tests.xrce_agent import Agent, UdpLink, float64
+from tests.xrce_agent.latency import TOPIC, Step, duty, parse
+
+
+def measure(program: Path, count: int, folder: Path, seed: int = 1) -> list[Step]:
+    """``count`` steps, 3 to 7 ms apart, at any phase of the control cycle; those that were heard."""
+    file, draw = folder / f"{program.name}.txt", random.Random(seed)
+    with Agent(UdpLink()) as agent:
+        command = [str(program), "--realtime", "--quiet", "--agent", agent.address]
+        process = subprocess.Popen(command, env={**os.environ, "LATENCY_FILE": str(file)}, stdout=subprocess.DEVNULL)
+        try:
+            agent.topics.wait_for_reader(TOPIC)
+            agent.wait_until(lambda: any(client.readings for client in agent.clients.values()))
+            time.sleep(0.2)
+            sent = []
+            for number in range(count):
+                time.sleep(draw.uniform(0.003, 0.007))
+                sent.append(time.monotonic())
+                agent.topics.publish(TOPIC, float64(duty(number)), reliable=False)
+            time.sleep(0.2)
+        finally:
+            process.terminate()
+            status = process.wait(timeout=10)
+    assert status == 130
+    return parse(file, sent)
