@@ -1,0 +1,19 @@
+"""The snippet `epg-debug`: what it switches on, and that an application's own settings go before it."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from tests.emulator.toolchain import arm_gcc, skip_if_missing
+
+from .workspace import build, workspace
+
+
+def test_epg_debug() -> None:
+    skip_if_missing(partial(workspace, "rpi_pico"), arm_gcc)
+    settings = {"SNIPPET": "epg-debug", "CONFIG_THREAD_NAME": "n"}
+    folder = build("tests/zephyr/empty", "rpi_pico", settings=settings, only="main.c")
+    lines = set((folder / "zephyr" / ".config").read_text(encoding="utf-8").splitlines())
+    wanted = ("ASSERT", "DEBUG_THREAD_INFO", "INIT_STACKS", "LOG", "LOG_BACKEND_UART", "STACK_SENTINEL")
+    assert {f"CONFIG_{name}=y" for name in wanted} <= lines
+    assert "# CONFIG_THREAD_NAME is not set" in lines
