@@ -9,7 +9,7 @@
 
 #include "check.h"
 #include "epg/control.h"
-#include "epg/host.h"
+#include "epg/plant.h"
 #include "epg/target.h"
 
 static epg_control_t app_control;
@@ -88,7 +88,7 @@ TEST(bridge_drives_the_plant_with_the_duty_written)
     CHECK_EQUAL(bridge_plant_read_duty(), 0.5);
     bridge_write_duty(-0.25);
     CHECK_EQUAL(bridge_plant_read_duty(), -1563.0 / 6250.0);
-    CHECK(epg_host_output(8) && !epg_host_output(7));
+    CHECK(epg_plant_output(8) && !epg_plant_output(7));
     CHECK_EQUAL(app_control.statistics.clamped, 0);
     bridge_write_duty(-1.0);
     CHECK_EQUAL(bridge_plant_read_duty(), -0.96);
@@ -101,7 +101,7 @@ TEST(inverted_bridge_is_wired_the_other_way_and_moves_the_plant_the_same)
 {
     begin();
     bridge_inverted_write_duty(0.5);
-    CHECK(epg_host_output(6) && !epg_host_output(5));
+    CHECK(epg_plant_output(6) && !epg_plant_output(5));
     CHECK_EQUAL(bridge_inverted_plant_read_duty(), 0.5);
     bridge_inverted_write_duty(-0.5);
     CHECK_EQUAL(bridge_inverted_plant_read_duty(), -0.5);
@@ -123,12 +123,12 @@ TEST(bridge_with_dead_time_and_brake)
     begin();
     CHECK_EQUAL(bridge_braking_config.bridge.dead_writes, 2); /* 1.5 ms in control cycles of 1 ms */
     bridge_braking_write_duty(0.0);
-    CHECK(epg_host_output(25) && epg_host_output(26));
+    CHECK(epg_plant_output(25) && epg_plant_output(26));
     CHECK_EQUAL(bridge_braking_plant_read_duty(), 0.0); /* no voltage */
     bridge_braking_write_duty(0.5);
     CHECK_EQUAL(bridge_braking_plant_read_duty(), 0.5);
     safe_all();
-    CHECK(!epg_host_output(25) && !epg_host_output(26));
+    CHECK(!epg_plant_output(25) && !epg_plant_output(26));
 }
 
 TEST(dual_bridge_drives_the_plant_with_the_duty_written)
@@ -137,8 +137,8 @@ TEST(dual_bridge_drives_the_plant_with_the_duty_written)
     CHECK_EQUAL(dual_plant_read_duty(), 0.0);
     dual_write_duty(0.25 + 0.25);
     CHECK_EQUAL(dual_plant_read_duty(), 0.5);
-    CHECK_EQUAL(epg_host_pwm_duty(10), 0.5);
-    CHECK_EQUAL(epg_host_pwm_duty(11), 0.0);
+    CHECK_EQUAL(epg_plant_pwm_duty(10), 0.5);
+    CHECK_EQUAL(epg_plant_pwm_duty(11), 0.0);
     dual_write_duty(-2.0);
     CHECK_EQUAL(dual_plant_read_duty(), -0.96);
     CHECK_EQUAL(dual_applied_duty(), -0.96);
@@ -152,12 +152,12 @@ TEST(dual_bridge_with_slow_decay_moves_the_plant_the_same)
     begin();
     CHECK_EQUAL(dual_inverted_config.bridge.dead_writes, 1); /* a whole cycle holds a whole period of the PWM */
     CHECK(dual_inverted_config.slow_decay);
-    CHECK_EQUAL(epg_host_pwm_duty(12), 1.0); /* brakes when safe */
-    CHECK_EQUAL(epg_host_pwm_duty(13), 1.0);
+    CHECK_EQUAL(epg_plant_pwm_duty(12), 1.0); /* brakes when safe */
+    CHECK_EQUAL(epg_plant_pwm_duty(13), 1.0);
     dual_inverted_write_duty(0.25);
     CHECK(fabs(dual_inverted_plant_read_duty() - 0.25) < 1e-3);
-    CHECK_EQUAL(epg_host_pwm_duty(13), 1.0); /* inverted: the other pin has the pulses' begin */
-    CHECK(fabs(epg_host_pwm_duty(12) - 0.75) < 1e-3);
+    CHECK_EQUAL(epg_plant_pwm_duty(13), 1.0); /* inverted: the other pin has the pulses' begin */
+    CHECK(fabs(epg_plant_pwm_duty(12) - 0.75) < 1e-3);
 }
 
 static void check_guard(double duty, double angle)
@@ -222,30 +222,30 @@ TEST(encoder_whose_decoder_has_stopped)
 {
     begin();
     CHECK(encoder_inverted_check() == EPG_FAULT_NONE);
-    epg_host_quadrature_fail(1, true);
+    epg_plant_quadrature_fail(1, true);
     CHECK(encoder_inverted_check() == EPG_FAULT_SENSOR);
     CHECK(encoder_span_check() == EPG_FAULT_NONE);
-    epg_host_quadrature_fail(1, false);
+    epg_plant_quadrature_fail(1, false);
     CHECK(encoder_inverted_check() == EPG_FAULT_NONE);
 }
 
 TEST(probes_toggle_at_their_point_only)
 {
     begin();
-    CHECK(!epg_host_output(31) && !epg_host_output(32));
+    CHECK(!epg_plant_output(31) && !epg_plant_output(32));
     probe_model_probe_model();
-    CHECK(epg_host_output(31));
+    CHECK(epg_plant_output(31));
     probe_model_probe_cycle();
     probe_model_probe_inputs();
     probe_model_probe_outputs();
     probe_model_probe_topic();
-    CHECK(epg_host_output(31));
+    CHECK(epg_plant_output(31));
     probe_model_probe_model();
-    CHECK(!epg_host_output(31));
+    CHECK(!epg_plant_output(31));
     probe_topic_probe_model();
-    CHECK(!epg_host_output(32));
+    CHECK(!epg_plant_output(32));
     probe_topic_probe_topic();
-    CHECK(epg_host_output(32));
+    CHECK(epg_plant_output(32));
 }
 
 TEST(pwm_drives_the_plant_with_the_duty_written)
@@ -258,7 +258,7 @@ TEST(pwm_drives_the_plant_with_the_duty_written)
     CHECK_EQUAL(servo_plant_read_duty(), 0.9);
     CHECK_EQUAL(app_control.statistics.clamped, 1);
     lamp_write_duty(0.2);
-    CHECK_EQUAL(epg_host_pwm_duty(7), 0.8); /* the pin's level */
+    CHECK_EQUAL(epg_plant_pwm_duty(7), 0.8); /* the pin's level */
     CHECK(fabs(lamp_plant_read_duty() - 0.2) < 1e-15);
 }
 
@@ -281,7 +281,7 @@ TEST(digital_output_to_the_plant)
     begin();
     CHECK_EQUAL(valve_plant_read_level(), 0.0);
     CHECK_EQUAL(brake_plant_read_level(), 1.0);
-    CHECK(!epg_host_output(18)); /* on is low */
+    CHECK(!epg_plant_output(18)); /* on is low */
     valve_write_level(1.0);
     brake_write_level(0.0);
     CHECK_EQUAL(valve_plant_read_level(), 1.0);

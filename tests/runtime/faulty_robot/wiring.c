@@ -16,10 +16,10 @@
 
 #include "epg/port.h"
 
-void __real_epg_host_quadrature_set(uint8_t unit, int64_t count);
-double __real_epg_host_pwm_duty(uint8_t unit);
-void __wrap_epg_host_quadrature_set(uint8_t unit, int64_t count);
-double __wrap_epg_host_pwm_duty(uint8_t unit);
+void __real_epg_plant_quadrature_set(uint8_t unit, int64_t count);
+double __real_epg_plant_pwm_duty(uint8_t unit);
+void __wrap_epg_plant_quadrature_set(uint8_t unit, int64_t count);
+double __wrap_epg_plant_pwm_duty(uint8_t unit);
 bool __real_epg_port_quadrature_healthy(const epg_port_quadrature_t *decoder);
 bool __wrap_epg_port_quadrature_healthy(const epg_port_quadrature_t *decoder);
 uint32_t __real_epg_port_quadrature_count(const epg_port_quadrature_t *decoder);
@@ -40,7 +40,7 @@ static bool wired(const char *what)
            (double)epg_port_time_ns() * 1e-9 >= atof(at + 1);
 }
 
-void __wrap_epg_host_quadrature_set(uint8_t unit, int64_t count)
+void __wrap_epg_plant_quadrature_set(uint8_t unit, int64_t count)
 {
     static int64_t last; /* of the pan axis, while everything was right */
     int64_t seen = count;
@@ -57,12 +57,12 @@ void __wrap_epg_host_quadrature_set(uint8_t unit, int64_t count)
             last = count;
         }
     }
-    __real_epg_host_quadrature_set(unit, seen);
+    __real_epg_plant_quadrature_set(unit, seen);
 }
 
-double __wrap_epg_host_pwm_duty(uint8_t unit)
+double __wrap_epg_plant_pwm_duty(uint8_t unit)
 {
-    const double duty = __real_epg_host_pwm_duty(unit);
+    const double duty = __real_epg_plant_pwm_duty(unit);
     if (unit == PAN && wired("motor-swapped")) {
         return -duty;
     }

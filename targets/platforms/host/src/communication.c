@@ -6,7 +6,7 @@
 
 #include <stdlib.h>
 
-#include "epg/host.h"
+#include "epg/plant.h"
 #include "number.h"
 
 bool epg_host_communication_start(epg_host_communication_t *communication, const epg_target_t *target,
@@ -58,7 +58,7 @@ static void deliver(epg_host_communication_t *communication, uint64_t time_ns)
         epg_control_request(communication->target->control, event->value > 0.5);
         break;
     case EPG_HOST_PIN:
-        epg_host_input_set((uint8_t)event->index, event->value > 0.5);
+        epg_plant_input_set((uint8_t)event->index, event->value > 0.5);
         break;
     case EPG_HOST_STALL:
     default:

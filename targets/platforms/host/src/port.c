@@ -10,7 +10,7 @@
 
 #include <stdatomic.h>
 
-#include "epg/host.h"
+#include "epg/plant.h"
 #include "epg/port.h"
 
 enum { UNITS = UINT8_MAX + 1, PINS = UINT8_MAX + 1 };
@@ -57,12 +57,12 @@ bool epg_port_quadrature_healthy(const epg_port_quadrature_t *decoder)
     return !GET(decoders[decoder->unit].failed);
 }
 
-void epg_host_quadrature_fail(uint8_t unit, bool failed)
+void epg_plant_quadrature_fail(uint8_t unit, bool failed)
 {
     SET(decoders[unit].failed, failed);
 }
 
-void epg_host_quadrature_set(uint8_t unit, int64_t count)
+void epg_plant_quadrature_set(uint8_t unit, int64_t count)
 {
     SET(decoders[unit].signal, count);
 }
@@ -80,7 +80,7 @@ void epg_port_pwm_write(const epg_port_pwm_t *pwm, uint32_t level)
     SET(pwms[pwm->unit].level, level);
 }
 
-double epg_host_pwm_duty(uint8_t unit)
+double epg_plant_pwm_duty(uint8_t unit)
 {
     const uint32_t level = GET(pwms[unit].level);
     const uint32_t clocks = GET(pwms[unit].top) + 1U;
@@ -99,7 +99,7 @@ void epg_port_output_write(uint8_t pin, bool level)
     SET(outputs[pin], level);
 }
 
-bool epg_host_output(uint8_t pin)
+bool epg_plant_output(uint8_t pin)
 {
     return GET(outputs[pin]);
 }
@@ -116,7 +116,7 @@ bool epg_port_input_read(uint8_t pin)
     return driver == UNDRIVEN ? GET(pulls[pin]) == EPG_PULL_UP : driver == DRIVEN_HIGH;
 }
 
-void epg_host_input_set(uint8_t pin, bool level)
+void epg_plant_input_set(uint8_t pin, bool level)
 {
     SET(driven[pin], level ? DRIVEN_HIGH : DRIVEN_LOW);
 }

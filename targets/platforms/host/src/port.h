@@ -1,6 +1,6 @@
 /**
  * @file
- * What the host's own code asks of the simulated peripherals, beyond epg/host.h.
+ * What the host's own code asks of the simulated peripherals, beyond epg/plant.h.
  */
 #ifndef EPG_HOST_PORT_H
 #define EPG_HOST_PORT_H

@@ -80,13 +80,13 @@ static void control_loop(control_thread_t *self)
         const uint64_t begun_ns = epg_host_monotonic_ns();
         epg_control_cycle(run->host->target->control, due_ns, missed);
         const uint64_t ended_ns = epg_host_monotonic_ns();
-        epg_host_plant_actuate(&run->plant);
+        epg_plant_actuate(&run->plant);
         epg_host_timing_add(&run->timing, begun_ns - due_ns, ended_ns - begun_ns);
         epg_host_trace_add(&run->trace, tick_ns, begun_ns - due_ns, ended_ns - begun_ns);
-        epg_host_plant_advance(&run->plant, tick_ns + period_ns);
+        epg_plant_advance(&run->plant, tick_ns + period_ns);
         next_ns = epg_host_next_tick(tick_ns, period_ns, epg_host_monotonic_ns() - self->start_ns, &missed);
-        epg_host_plant_advance(&run->plant, next_ns);
-        epg_host_plant_sense(&run->plant);
+        epg_plant_advance(&run->plant, next_ns);
+        epg_plant_sense(&run->plant);
     }
     epg_host_run_end(run, tick_ns, next_ns);
 }

@@ -11,7 +11,7 @@
 
 #include "communication.h"
 #include "epg/host.h"
-#include "plant.h"
+#include "epg/plant.h"
 #include "services.h"
 #include "timing.h"
 #include "trace.h"
@@ -19,7 +19,7 @@
 typedef struct epg_host_run {
     const epg_host_target_t *host;
     uint64_t end_ns; /**< no cycle starts at or after this time; UINT64_MAX: until stopped */
-    epg_host_plant_run_t plant;
+    epg_plant_run_t plant;
     epg_host_communication_t communication;
     epg_host_services_t services; /**< real time only */
     bool ends_with_input;         /**< the run ends when standard input does */

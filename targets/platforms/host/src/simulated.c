@@ -26,7 +26,7 @@ static void set_time(uint64_t time_ns)
 static void move_on(uint64_t time_ns)
 {
     epg_host_communicate_simulated(&simulation.run->communication, time_ns);
-    epg_host_plant_advance(&simulation.run->plant, time_ns);
+    epg_plant_advance(&simulation.run->plant, time_ns);
     set_time(time_ns);
 }
 
@@ -63,7 +63,7 @@ static void cycle(epg_host_run_t *run, uint64_t tick_ns, uint32_t missed)
     const uint64_t entered_ns = epg_host_monotonic_ns();
     epg_control_cycle(run->host->target->control, tick_ns, missed);
     const uint64_t spent_ns = epg_host_monotonic_ns() - entered_ns - simulation.outside_ns;
-    epg_host_plant_actuate(&run->plant);
+    epg_plant_actuate(&run->plant);
     epg_host_timing_add(&run->timing, begun_ns - tick_ns, spent_ns);
     epg_host_trace_add(&run->trace, tick_ns, begun_ns - tick_ns, simulation.now_ns - begun_ns);
 }
@@ -79,7 +79,7 @@ void epg_host_run_simulated(epg_host_run_t *run)
     while (next_ns < run->end_ns && !epg_host_interrupted) {
         tick_ns = next_ns;
         move_on(simulation.now_ns > tick_ns ? simulation.now_ns : tick_ns);
-        epg_host_plant_sense(&run->plant);
+        epg_plant_sense(&run->plant);
         cycle(run, tick_ns, missed);
         next_ns = epg_host_next_tick(tick_ns, period_ns, simulation.now_ns, &missed);
     }

@@ -180,7 +180,7 @@ static void plant_init(void)
 
 static void plant_actuate(void)
 {
-    plant_duty = epg_host_pwm_duty(1) * (epg_host_output(DIRECTION) ? -1.0 : 1.0);
+    plant_duty = epg_plant_pwm_duty(1) * (epg_plant_output(DIRECTION) ? -1.0 : 1.0);
 }
 
 static void plant_step(void)
@@ -193,11 +193,11 @@ static void plant_step(void)
 
 static void plant_sense(void)
 {
-    epg_host_quadrature_set(0, (int64_t)floor(angle / RADIANS_PER_COUNT));
+    epg_plant_quadrature_set(0, (int64_t)floor(angle / RADIANS_PER_COUNT));
 }
 
-extern const epg_host_plant_t motor_plant; /* not static: it may be unused */
-const epg_host_plant_t motor_plant = {
+extern const epg_plant_t motor_plant; /* not static: it may be unused */
+const epg_plant_t motor_plant = {
     .steps_per_period = STEPS_PER_PERIOD,
     .init = plant_init,
     .actuate = plant_actuate,

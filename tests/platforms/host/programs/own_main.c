@@ -39,7 +39,7 @@ static int run_once(void)
     epg_control_receive(control, 0, 2.0, epg_port_time_ns(), true);
     for (int i = 0; i < 25; i++) {
         wait_ms(20);
-        duty_moving = fmax(duty_moving, epg_host_pwm_duty(1));
+        duty_moving = fmax(duty_moving, epg_plant_pwm_duty(1));
         if (epg_control_monitor(control, values) && epg_control_status(control, &status)) {
             printf("position %.3f setpoint %.3f cycles %u\n", values[0], values[1], (unsigned)status.statistics.cycles);
         }
@@ -52,7 +52,7 @@ static int run_once(void)
     if (fabs(values[0] - 2.0) > 0.05) {
         return failed("the setpoint was not reached");
     }
-    if (epg_host_pwm_duty(1) > 0.0) {
+    if (epg_plant_pwm_duty(1) > 0.0) {
         return failed("the output is not safe after the stop");
     }
     if (!epg_control_status(control, &status) || status.statistics.cycles < 100) {

@@ -2,11 +2,11 @@
  * @file
  * The simulated plant on the time line of a run.
  */
-#include "plant.h"
+#include "epg/plant.h"
 
 #include <stddef.h>
 
-void epg_host_plant_start(epg_host_plant_run_t *run, const epg_host_plant_t *plant, uint64_t period_ns)
+void epg_plant_start(epg_plant_run_t *run, const epg_plant_t *plant, uint64_t period_ns)
 {
     run->plant = plant;
     run->period_ns = period_ns;
@@ -17,14 +17,14 @@ void epg_host_plant_start(epg_host_plant_run_t *run, const epg_host_plant_t *pla
     }
 }
 
-void epg_host_plant_actuate(const epg_host_plant_run_t *run)
+void epg_plant_actuate(const epg_plant_run_t *run)
 {
     if (run->plant != NULL) {
         run->plant->actuate();
     }
 }
 
-void epg_host_plant_advance(epg_host_plant_run_t *run, uint64_t time_ns)
+void epg_plant_advance(epg_plant_run_t *run, uint64_t time_ns)
 {
     if (run->plant == NULL) {
         return;
@@ -37,7 +37,7 @@ void epg_host_plant_advance(epg_host_plant_run_t *run, uint64_t time_ns)
     }
 }
 
-void epg_host_plant_sense(const epg_host_plant_run_t *run)
+void epg_plant_sense(const epg_plant_run_t *run)
 {
     if (run->plant != NULL) {
         run->plant->sense();

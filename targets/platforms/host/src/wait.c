@@ -1,0 +1,21 @@
+/**
+ * @file
+ * Waiting on the communication side, which is a thread of its own.
+ */
+#include "epg/port_wait.h"
+
+#include <time.h>
+
+#if defined(_WIN32)
+#include <windows.h>
+#endif
+
+void epg_port_wait_for_bytes(void)
+{
+#if defined(_WIN32)
+    Sleep(1);
+#else
+    static const struct timespec NAP = {.tv_nsec = 100000};
+    (void)nanosleep(&NAP, NULL);
+#endif
+}
