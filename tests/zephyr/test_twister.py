@@ -15,6 +15,7 @@ def test_emulated_decoders(tmp_path: Path) -> None:
     skip_if_missing(arm_gcc, lambda: need_twister(workspace(NATIVE)))
     statuses = statuses_of(tmp_path / "twister", NATIVE)
     assert statuses == {
+        ("drivers.pwm.epg_emulated", "native_sim"): "passed",
         ("drivers.sensor.epg_qdec.emulated", "native_sim"): "passed",
         ("drivers.sensor.epg_qdec.emulated.pm", "native_sim"): "passed",
         ("sample.epg.qdec.emulated", "native_sim"): "passed",
