@@ -38,7 +38,10 @@ typedef struct epg_zephyr_pwm {
     uint32_t channel;
 } epg_zephyr_pwm_t;
 
-/** A pin that is read or written; `pin` is its number in the portable code. */
+/**
+ * A pin that is read or written, or has a PWM output of a chip; `pin` is its number in the portable code.  What makes
+ * outputs safe can take it for itself: configure it as an output, whatever it was.
+ */
 typedef struct epg_zephyr_pin {
     uint8_t pin;
     struct gpio_dt_spec gpio;
@@ -50,6 +53,12 @@ typedef struct epg_zephyr_output {
     bool high;
 } epg_zephyr_output_t;
 
+/** A UART with interrupts; `block` is that of its epg_port_uart_t.  Its baud rate is set by the devicetree. */
+typedef struct epg_zephyr_uart {
+    uint8_t block;
+    const struct device *device;
+} epg_zephyr_uart_t;
+
 /** The devices of the target in this image; generated from the node `epg,target` of the devicetree. */
 typedef struct epg_zephyr_hardware {
     size_t decoder_count;
@@ -60,6 +69,8 @@ typedef struct epg_zephyr_hardware {
     const epg_zephyr_pin_t *pins;
     size_t output_count;
     const epg_zephyr_output_t *outputs;
+    size_t uart_count;
+    const epg_zephyr_uart_t *uarts;
 } epg_zephyr_hardware_t;
 
 extern const epg_zephyr_hardware_t epg_zephyr_hardware;
