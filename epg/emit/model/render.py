@@ -114,8 +114,9 @@ def _c_function(model: Model, details: CFunctionExport) -> dict[str, Any]:
     elements = [element.array for element in (*details.inputs, *details.outputs)]
     wanted = {*states, *elements, *([details.parameters] if model.parameters else [])}
     if details.instance_type:
-        # arrays are members of the instance: xx_P is a macro for model_instance->P there
-        members = [name for name, _ in details.memory]
+        # arrays are members of the instance: xx_P is a macro for model_instance->P there.  FMU sources point into a
+        # common memory, which has all of them; an export by EPG's target for 20-sim has those that it needs.
+        members = [name for name, _ in details.memory] or ["s", "R"]
         return {
             "entries": _entries(details),
             "pointers": (),

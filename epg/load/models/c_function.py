@@ -187,6 +187,7 @@ class _Importer:
                 instance_type=self.instance_type,
                 instance_header=self._instance_header(),
                 memory=self._memory(),
+                declared=self._declared(),
                 renames=self._renames(),
             ),
             finish_time=finite(finish),
@@ -277,6 +278,11 @@ class _Importer:
             if self.instance_type and re.search(rf"\}}\s{{0,80}}{self.instance_type}\s*;", code.file.code):
                 return code.file.path.name
         return ""
+
+    def _declared(self) -> bool:
+        header = self._instance_header()
+        found = [code for code in self.linked.headers if header and code.file.path.name == header]
+        return any(self.entries["Calculate"].name in code.identifiers for code in found)
 
     def _member(self, array: str) -> str:
         """The member of the instance behind an array: ``xx_V`` is a macro for ``model_instance->V``."""

@@ -74,6 +74,7 @@ class CFunctionExport:
     instance_type: str  # typedef of the model's memory; empty for exports with global variables
     instance_header: str  # that declares it
     memory: tuple[tuple[str, str], ...]  # its pointers, each with the offset it has in its MEMORY
+    declared: bool  # that header declares the entry points too
     renames: tuple[str, ...]  # global symbols
 
     @property
