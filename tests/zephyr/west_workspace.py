@@ -1,0 +1,41 @@
+"""Workspaces that west has made from a manifest, and builds in them, as somebody makes them for the first time.
+
+>>> # place = fresh_workspace("examples/zephyr_jiwy", tmp_path / "ws")      # west init, west update
+>>> # west(place, "build", "-b", "rpi_pico", "jiwy/app")
+"""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+from tests.emulator.toolchain import ROOT
+
+from .mirror import mirror
+from .workspace import HALS, BuildError, workspace
+
+BOARDS = ("rpi_pico", "nucleo_h743zi")
+assert set(BOARDS) <= set(HALS)
+
+
+def west(folder: Path, *words: str, check: bool = True) -> str:
+    """What west says in a folder.  It knows of no Zephyr but the workspace's.  Raises :class:`BuildError`."""
+    here = workspace(*BOARDS)
+    environment = {**here.environment(), **mirror(here).variables}
+    del environment["ZEPHYR_BASE"]
+    command = [str(here.python), "-m", "west", *words]
+    done = subprocess.run(
+        command, cwd=folder, env=environment, text=True, check=False, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
+    )
+    if check and done.returncode != 0:
+        raise BuildError(f"west {' '.join(words)}\n{done.stdout}")
+    return done.stdout
+
+
+def fresh_workspace(repository: str, folder: Path) -> Path:
+    """A workspace by ``west init`` and ``west update``, whose manifest is that of a folder of this repository."""
+    address = f"https://example.org/{Path(repository).name}"
+    mirror(workspace(*BOARDS)).add(address, ROOT / repository)
+    west(folder.parent, "init", "-m", address, str(folder))
+    west(folder, "update")
+    return folder
