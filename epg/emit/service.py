@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
+from epg.check.names import absolute_topic
 from epg.emit.text import Code, identifier
 from epg.emit.topics import Macro
 from epg.load.middleware import Middleware
@@ -62,6 +63,9 @@ class MiddlewareView:
 
     ``publications`` and ``subscriptions`` are how many topics there are, diagnostics and enabling among them.
 
+    ``longest_topic`` and ``longest_node`` are characters of the longest full name of a topic, and of the node with its
+    namespace, with a serial number in the place of ``$serial``.
+
     ``prefix`` begins the names that the template makes: "middleware", or "console" for one beside a middleware.
     """
 
@@ -72,6 +76,8 @@ class MiddlewareView:
     monitor_count: int
     publications: int
     subscriptions: int
+    longest_topic: int
+    longest_node: int
 
 
 @dataclass(frozen=True)
@@ -124,6 +130,7 @@ def _view(
 ) -> MiddlewareView | None:
     if not middleware.symbol:
         return None
+    topics = (*app.publications, *app.subscriptions)
     return MiddlewareView(
         name=middleware.name,
         symbol=identifier(middleware.symbol),
@@ -132,7 +139,14 @@ def _view(
         monitor_count=monitor_count,
         publications=len(app.publications),
         subscriptions=len(app.subscriptions),
+        longest_topic=max((len(_full(app, topic.name)) for topic in topics), default=0),
+        longest_node=len(_full(app, "~/")) - (1 if app.namespace else 2),
     )
+
+
+def _full(app: Application, topic: str) -> str:
+    """The name of a topic on the network."""
+    return absolute_topic(topic, app.namespace, app.node)
 
 
 def _signals(app: Application, first_slot: int) -> Iterable[SignalView]:

@@ -18,6 +18,7 @@
 #include "epg/node.h"
 #include "epg/port.h"
 #include "micro_ros_entities.h"
+#include "micro_ros_system.h"
 #include "micro_ros_transport.h"
 
 #define MS ((uint64_t)1000000)
@@ -208,12 +209,15 @@ static void poll_running(void)
 
 static void start(const epg_target_t *target, const epg_stream_t *stream)
 {
+    /* Of a run before this one, which may have ended anywhere. */
+    epg_micro_ros_entities_drop(&ros.entities);
     memset(&ros, 0, sizeof ros);
     ros.target = target;
     ros.stream = stream;
     ros.options = target->options;
     ros.node = target->node_state;
     ros.state = WAITING;
+    epg_micro_ros_memory_start(ros.options->memory, ros.options->memory_size);
     ros.usable = epg_micro_ros_transport_start(stream);
     epg_node_start(ros.node, target, send_message);
     ros.entities = (epg_micro_ros_entities_t){.node = ros.node, .options = ros.options};

@@ -22,6 +22,8 @@ typedef struct epg_micro_ros_options {
     epg_micro_ros_type_t *types;       /**< one per publication, then one per subscription */
     size_t received_size;
     unsigned char *received; /**< `received_size` bytes: of the largest message that a subscription takes */
+    size_t memory_size;
+    void *memory; /**< `memory_size` bytes for what rcl allocates */
 } epg_micro_ros_options_t;
 
 extern const epg_middleware_t epg_micro_ros;

@@ -7,7 +7,7 @@
 #include <rcl/error_handling.h>
 #include <rmw_microros/rmw_microros.h>
 
-#include "micro_ros_memory.h"
+#include "micro_ros_system.h"
 
 /* Milliseconds that one entity may take to be made; libmicroros itself has 1000. */
 enum { CREATION_MS = 500 };
@@ -42,8 +42,8 @@ static bool start_context(epg_micro_ros_entities_t *entities, uint32_t client_ke
 bool epg_micro_ros_entities_connect(epg_micro_ros_entities_t *entities, uint32_t client_key)
 {
     const epg_node_t *node = entities->node;
-    entities->session = start_context(entities, client_key);
-    if (entities->session) {
+    entities->session = true; /* before there is one: who is stopped meanwhile gives that back too */
+    if (start_context(entities, client_key)) {
         rmw_context_t *context = rcl_context_get_rmw_context(&entities->context);
         rcl_node_options_t options = rcl_node_get_default_options();
         options.enable_rosout = false;

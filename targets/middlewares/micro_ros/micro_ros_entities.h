@@ -19,7 +19,7 @@ typedef struct epg_micro_ros_entities {
     rcl_node_t rcl_node;
     size_t publishers; /**< that there are */
     size_t subscriptions;
-    bool session; /**< there is a context */
+    bool session; /**< there is a context, or was to be one */
     bool named;   /**< there is a node */
 } epg_micro_ros_entities_t;
 

@@ -2,21 +2,16 @@
  * @file
  * EPG's stream as a custom transport of libmicroros.
  *
- * libmicroros asks for bytes with a time that it is willing to wait.  The stream never waits, so this does: in naps.
+ * libmicroros asks for bytes with a time that it is willing to wait.  The stream never waits, so this does.
  */
-#define _POSIX_C_SOURCE 200809L
-
 #include "micro_ros_transport.h"
-
-#include <time.h>
 
 #include <rmw_microros/rmw_microros.h>
 
 #include "epg/port.h"
+#include "epg/port_wait.h"
 
 #define MS ((uint64_t)1000000)
-
-static const struct timespec NAP = {.tv_nsec = 100000};
 
 static const epg_stream_t *stream;
 static bool heard;
@@ -50,7 +45,7 @@ static size_t read_bytes(struct uxrCustomTransport *transport, uint8_t *data, si
         if (count > 0 || epg_port_time_ns() >= until_ns) {
             return count;
         }
-        (void)nanosleep(&NAP, NULL);
+        epg_port_wait_for_bytes();
     }
 }
 

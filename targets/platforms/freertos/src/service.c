@@ -5,6 +5,7 @@
  * It runs every millisecond and at once when a transport's interrupt asks for it.  Tasks of higher priority go before
  * it; if they keep it waiting longer than EPG_PICO_CORE0_TIMEOUT_MS, core 0 counts as stuck.
  */
+#include "epg/port_wait.h"
 #include "parts.h"
 #include "rtos.h"
 
@@ -37,12 +38,23 @@ void epg_pico_service_wake(void)
     }
 }
 
+/** For a tick, or until a transport has something. */
+static void rest(void)
+{
+    (void)ulTaskNotifyTake(pdTRUE, pdMS_TO_TICKS(1));
+}
+
+void epg_port_wait_for_bytes(void)
+{
+    epg_pico_serve_others(rest);
+}
+
 static void run(void *argument)
 {
     void (*const serve)(void) = *(void (**)(void))argument;
     for (;;) {
         serve();
-        (void)ulTaskNotifyTake(pdTRUE, pdMS_TO_TICKS(1));
+        rest();
     }
 }
 

@@ -84,6 +84,14 @@ bool epg_pico_stack_full(const epg_pico_stack_t *stack);
 extern const epg_pico_stack_t epg_pico_main_stack;
 extern const epg_pico_stack_t epg_pico_control_stack;
 
+/* start.c ------------------------------------------------------------------------------------------------------- */
+
+/**
+ * What `serve` does besides its middleware, which is waiting within it: sends what that has written, calls `rest`, which
+ * returns soon, and serves transports and console.
+ */
+void epg_pico_serve_others(void (*rest)(void));
+
 /* service.c of bare_metal and freertos -------------------------------------------------------------------------- */
 
 /** Bytes of stack that middleware and console take: the largest `stack` of their middleware.yaml. */

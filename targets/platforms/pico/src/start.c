@@ -61,6 +61,19 @@ static void serve(void)
     }
 }
 
+void epg_pico_serve_others(void (*rest)(void))
+{
+    const epg_pico_target_t *pico = running;
+    const epg_transport_t *transport = pico->transport;
+    if (transport != NULL && transport->flush != NULL) {
+        transport->flush(transport->stream.context);
+    }
+    rest();
+    epg_control_alive(pico->target->control);
+    serve_middleware(NULL, transport);
+    serve_middleware(pico->target->console, pico->console_transport);
+}
+
 static bool start_transport(const epg_transport_t *transport, const char *title)
 {
     return transport == NULL || transport->start(transport->stream.context, title);

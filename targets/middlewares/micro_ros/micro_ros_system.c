@@ -1,0 +1,166 @@
+/**
+ * @file
+ * What libmicroros asks of an operating system: memory and, on a microcontroller, the time.
+ *
+ * The memory is a row of blocks, each with its size before it; the first free one that is large enough is taken.  A
+ * connection has a few dozen blocks, and nothing is allocated once it is there.
+ */
+#include "micro_ros_system.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "epg/port.h"
+
+/** Stands before each block; as large as the strictest alignment asks for. */
+typedef union block {
+    struct {
+        size_t size; /* bytes behind this */
+        bool used;
+    } is;
+    max_align_t align;
+} block_t;
+
+static struct {
+    char *begin;
+    char *end;
+    size_t most;
+} arena;
+
+static block_t *behind(block_t *block)
+{
+    return (block_t *)(void *)((char *)(block + 1) + block->is.size);
+}
+
+static bool is_last(block_t *block)
+{
+    return (char *)behind(block) == arena.end;
+}
+
+/** Makes one of `block` and the free ones behind it. */
+static void join_free(block_t *block)
+{
+    while (!is_last(block) && !behind(block)->is.used) {
+        block->is.size += sizeof *block + behind(block)->is.size;
+    }
+}
+
+/** Leaves what `block` has more than `size` bytes to a free one behind it. */
+static void split(block_t *block, size_t size)
+{
+    if (block->is.size - size > sizeof *block) {
+        const size_t rest = block->is.size - size - sizeof *block;
+        block->is.size = size;
+        behind(block)->is.size = rest;
+        behind(block)->is.used = false;
+    }
+}
+
+static void *allocate(size_t size, void *state)
+{
+    (void)state;
+    if (arena.begin == NULL || size > SIZE_MAX - sizeof(block_t)) {
+        return NULL;
+    }
+    size = (size + sizeof(block_t) - 1U) / sizeof(block_t) * sizeof(block_t);
+    for (block_t *block = (block_t *)(void *)arena.begin;; block = behind(block)) {
+        if (!block->is.used) {
+            join_free(block);
+            if (block->is.size >= size) {
+                split(block, size);
+                block->is.used = true;
+                const size_t most = (size_t)((char *)behind(block) - arena.begin);
+                arena.most = most > arena.most ? most : arena.most;
+                return block + 1;
+            }
+        }
+        if (is_last(block)) {
+            return NULL;
+        }
+    }
+}
+
+static void deallocate(void *pointer, void *state)
+{
+    (void)state;
+    if (pointer != NULL) {
+        ((block_t *)pointer - 1)->is.used = false;
+    }
+}
+
+static void *reallocate(void *pointer, size_t size, void *state)
+{
+    void *larger = allocate(size, state);
+    if (larger != NULL && pointer != NULL) {
+        const size_t old = ((block_t *)pointer - 1)->is.size;
+        memcpy(larger, pointer, old < size ? old : size);
+        deallocate(pointer, state);
+    }
+    return larger;
+}
+
+static void *allocate_zeros(size_t count, size_t size, void *state)
+{
+    void *zeros = size == 0 || count <= SIZE_MAX / size ? allocate(count * size, state) : NULL;
+    if (zeros != NULL) {
+        memset(zeros, 0, count * size);
+    }
+    return zeros;
+}
+
+rcutils_allocator_t epg_micro_ros_memory(void)
+{
+    return (rcutils_allocator_t){
+        .allocate = allocate,
+        .deallocate = deallocate,
+        .reallocate = reallocate,
+        .zero_allocate = allocate_zeros,
+    };
+}
+
+void epg_micro_ros_memory_free(void)
+{
+    if (arena.begin == NULL) {
+        return;
+    }
+    block_t *all = (block_t *)(void *)arena.begin;
+    all->is.size = (size_t)(arena.end - arena.begin) - sizeof *all;
+    all->is.used = false;
+}
+
+void epg_micro_ros_memory_start(void *bytes, size_t size)
+{
+    arena.begin = bytes;
+    arena.end = arena.begin + size / sizeof(block_t) * sizeof(block_t);
+    arena.most = 0;
+    epg_micro_ros_memory_free();
+#ifdef EPG_MICRO_ROS_DEFAULT_ALLOCATOR
+    /* Some of rcl allocates by its default allocator whatever it is given. */
+    rcutils_allocator_t ours = epg_micro_ros_memory();
+    (void)rcutils_set_default_allocator(&ours);
+#endif
+}
+
+size_t epg_micro_ros_memory_most(void)
+{
+    return arena.most;
+}
+
+#ifdef EPG_MICRO_ROS_CLOCK
+
+#include <time.h>
+
+int clock_gettime(clockid_t clock, struct timespec *time);
+
+/** A C library for microcontrollers has none.  All clocks are the board's; a clock of the user's goes before this one. */
+__attribute__((weak)) int clock_gettime(clockid_t clock, struct timespec *time)
+{
+    (void)clock;
+    const uint64_t now_ns = epg_port_time_ns();
+    time->tv_sec = (time_t)(now_ns / 1000000000U);
+    time->tv_nsec = (long)(now_ns % 1000000000U);
+    return 0;
+}
+
+#endif
