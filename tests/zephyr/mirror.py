@@ -1,7 +1,8 @@
 """Zephyr and its modules as Git repositories on this computer, for workspaces of west without a network.
 
 A repository holds the files of this computer's workspace, in one commit; Zephyr's manifest names the commits of the
-others, and no module that is not there.  Git is told to look there instead of where manifests lead, so manifests are used as they are.
+others, and no module that is not there.  Git is told to look there instead of where manifests lead, so manifests are
+used as they are.
 
 >>> # there = mirror(workspace("rpi_pico", "nucleo_h743zi"))
 >>> # there.add("https://example.org/robot", ROOT / "examples/zephyr_jiwy")

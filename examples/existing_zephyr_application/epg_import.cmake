@@ -1,0 +1,57 @@
+# Copy this file into your repository and include it before the first epg_ function:
+#
+#   include(epg_import.cmake)
+#
+# It finds EPG, in this order: EPG_PATH (variable or environment: a checkout), EPG_DIR (variable or environment: the
+# folder of EPGConfig.cmake), an installed Python package (the one of Python3_EXECUTABLE, else of python3 or python on
+# the PATH, else of the program epg), CMake's own search.  It works before and after project(), and under toolchain files
+# that confine find_package() to a sysroot, as the Pico SDK's does.  What was found is kept in the cache.
+
+if(COMMAND epg_add_target) # a project around this one has brought EPG
+  return()
+endif()
+
+# What an earlier run has found here gives way to an EPG_PATH or EPG_DIR that is set now.
+if(EPG_DIR AND EPG_DIR STREQUAL EPG_IMPORTED_DIR)
+  unset(EPG_DIR CACHE)
+endif()
+foreach(_epg_path "${EPG_PATH}" "$ENV{EPG_PATH}")
+  if(_epg_path)
+    get_filename_component(_epg_path "${_epg_path}" ABSOLUTE BASE_DIR "${CMAKE_SOURCE_DIR}")
+    if(NOT EXISTS "${_epg_path}/cmake/EPGConfig.cmake")
+      message(FATAL_ERROR "EPG_PATH is not a checkout of EPG: there is no ${_epg_path}/cmake/EPGConfig.cmake")
+    endif()
+    set(EPG_DIR "${_epg_path}/cmake")
+    break()
+  endif()
+endforeach()
+if(NOT EPG_DIR AND DEFINED ENV{EPG_DIR})
+  file(TO_CMAKE_PATH "$ENV{EPG_DIR}" EPG_DIR)
+endif()
+if(EPG_DIR)
+  get_filename_component(EPG_DIR "${EPG_DIR}" ABSOLUTE BASE_DIR "${CMAKE_SOURCE_DIR}")
+  if(NOT EXISTS "${EPG_DIR}/EPGConfig.cmake")
+    message(FATAL_ERROR "EPG_DIR is not the folder of EPGConfig.cmake, which 'python -m epg --cmake-dir' prints: ${EPG_DIR}")
+  endif()
+endif()
+if(NOT EPG_DIR AND EPG_IMPORTED_DIR AND EXISTS "${EPG_IMPORTED_DIR}/EPGConfig.cmake")
+  set(EPG_DIR "${EPG_IMPORTED_DIR}")
+endif()
+if(NOT EPG_DIR)
+  foreach(_epg_command "${Python3_EXECUTABLE};-m;epg" "${Python_EXECUTABLE};-m;epg" "python3;-m;epg" "python;-m;epg" epg)
+    if(NOT _epg_command MATCHES "^;")
+      execute_process(COMMAND ${_epg_command} --cmake-dir
+        OUTPUT_VARIABLE _epg_folder OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE _epg_status)
+      if(_epg_status STREQUAL "0" AND EXISTS "${_epg_folder}/EPGConfig.cmake")
+        set(EPG_DIR "${_epg_folder}")
+        break()
+      endif()
+    endif()
+  endforeach()
+endif()
+find_package(EPG CONFIG QUIET NO_CMAKE_FIND_ROOT_PATH)
+if(NOT EPG_FOUND)
+  message(FATAL_ERROR "EPG was not found.\n"
+    "Install it (pip install epg), or name a checkout: cmake -DEPG_PATH=<folder> ... ${EPG_NOT_FOUND_MESSAGE}")
+endif()
+set(EPG_IMPORTED_DIR "${EPG_DIR}" CACHE INTERNAL "The EPG that epg_import.cmake has found")
