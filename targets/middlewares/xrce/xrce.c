@@ -6,7 +6,8 @@
  * |----------|------------------------------------------------------------------|--------------------------------------|
  * | waiting  | asks for a session, every 0.2 s, later every 0.5 s               | accepted: creating                   |
  * | creating | node, topics, writers and readers, one after another             | all there: running; refused or none  |
- * |          |                                                                  | answered within 2 s: waiting         |
+ * |          |                                                                  | answered within 2 s: waiting, with   |
+ * |          |                                                                  | more patience                        |
  * | running  | topics; a ping every 0.1 s, the time every 10 s                  | the agent does not know us, or is    |
  * |          |                                                                  | silent for 1 s: waiting              |
  *
@@ -25,10 +26,11 @@
 
 #define MS ((uint64_t)1000000)
 
-static const uint64_t FIRST_ATTEMPT_NS = 200 * MS; /* from one request for a session to the next */
-static const uint64_t LAST_ATTEMPT_NS = 500 * MS;
-static const uint64_t REFUSED_NS = 2000 * MS; /* the same after the agent has refused something */
-static const uint64_t ANSWER_NS = 2000 * MS;  /* that the agent has for one answer while creating */
+static const uint64_t FIRST_ATTEMPT_NS = 200 * MS;  /* from one request for a session to the next */
+static const uint64_t LAST_ATTEMPT_NS = 500 * MS;   /* the same after some of them */
+static const uint64_t MOST_PATIENCE_NS = 2000 * MS; /* the same for an agent that has accepted and then was too slow */
+static const uint64_t REFUSED_NS = 2000 * MS;       /* the same after the agent has refused something */
+static const uint64_t ANSWER_NS = 2000 * MS;        /* that the agent has for one answer while creating */
 static const uint64_t PING_NS = 100 * MS;
 static const uint64_t SILENCE_NS = 1000 * MS;   /* of an agent that is lost; ten pings: of ten, noise leaves one */
 static const uint64_t STUCK_NS = 2000 * MS;     /* without progress of a stream, though the agent answers pings */
@@ -64,6 +66,7 @@ static struct {
     uint64_t now_ns;       /* of this poll */
     uint64_t attempt_ns;   /* when a session is asked for next */
     uint64_t interval_ns;  /* from that to the one after it */
+    uint64_t patience_ns;  /* the least of those intervals, FIRST_ATTEMPT_NS ... MOST_PATIENCE_NS */
     uint64_t answer_ns;    /* by when the agent has to answer */
     uint64_t ping_ns;      /* the next */
     uint64_t alive_ns;     /* when the agent has last shown life */
@@ -199,7 +202,7 @@ static void wait_for_agent(uint64_t first_ns)
     client.guard.open = false;
     client.guard.reading = false;
     client.attempt_ns = client.now_ns + first_ns;
-    client.interval_ns = FIRST_ATTEMPT_NS;
+    client.interval_ns = client.patience_ns;
     client.session.info.last_requested_status = UXR_STATUS_NONE;
 }
 
@@ -207,6 +210,17 @@ static void lose_agent(uint64_t first_ns)
 {
     client.status.lost++;
     wait_for_agent(first_ns);
+}
+
+/**
+ * The agent has accepted and not answered since.  One that takes long to make a session is still busy with the requests
+ * that followed the first, each of which ends the session before: it gets more time between two of them.
+ */
+static void lose_slow_agent(void)
+{
+    const uint64_t longer_ns = client.patience_ns * 4;
+    client.patience_ns = longer_ns < MOST_PATIENCE_NS ? longer_ns : MOST_PATIENCE_NS;
+    lose_agent(client.patience_ns);
 }
 
 /**
@@ -232,7 +246,8 @@ static void ask_for_session(void)
     client.sent.since_ns = 0;
     client.received.since_ns = 0;
     client.attempt_ns = client.now_ns + client.interval_ns;
-    client.interval_ns = client.interval_ns * 3 / 2 < LAST_ATTEMPT_NS ? client.interval_ns * 3 / 2 : LAST_ATTEMPT_NS;
+    const uint64_t longest_ns = client.patience_ns > LAST_ATTEMPT_NS ? client.patience_ns : LAST_ATTEMPT_NS;
+    client.interval_ns = client.interval_ns * 3 / 2 < longest_ns ? client.interval_ns * 3 / 2 : longest_ns;
 }
 
 static void poll_waiting(void)
@@ -262,7 +277,10 @@ static bool check_agent(void)
         client.guard.pong = false;
         client.alive_ns = client.now_ns;
     }
-    if (client.guard.unknown || client.now_ns >= client.alive_ns + SILENCE_NS || streams_are_stuck()) {
+    /* while creating, ANSWER_NS says how long */
+    const bool lost = client.status.state == EPG_XRCE_RUNNING &&
+                      (client.now_ns >= client.alive_ns + SILENCE_NS || streams_are_stuck());
+    if (client.guard.unknown || lost) {
         lose_agent(0);
         return false;
     }
@@ -276,6 +294,8 @@ static bool check_agent(void)
 static void start_running(void)
 {
     client.status.state = EPG_XRCE_RUNNING;
+    client.patience_ns = FIRST_ATTEMPT_NS;
+    client.alive_ns = client.now_ns;
     client.status.connections++;
     if (client.status.connections > 1) {
         epg_control_count_reconnect(client.target->control);
@@ -300,7 +320,7 @@ static void poll_creating(void)
     if (progress == EPG_XRCE_COMPLETE) {
         start_running();
     } else if (client.now_ns >= client.answer_ns) {
-        lose_agent(0);
+        lose_slow_agent();
     }
 }
 
@@ -378,6 +398,7 @@ static void start(const epg_target_t *target, const epg_stream_t *stream)
     client.options = target->options;
     client.node = target->node_state;
     client.guard.session = &client.session;
+    client.patience_ns = FIRST_ATTEMPT_NS;
     epg_node_start(client.node, target, send_message);
     epg_xrce_link_start(&client.link, stream, client.options->received, client.options->input_frame);
     start_session();

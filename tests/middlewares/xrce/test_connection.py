@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import random
 import time
+from collections.abc import Hashable
 from pathlib import Path
 
 import pytest
 
 from tests.xrce_agent import Agent, Kind, Link, PtyLink, Status, UdpLink
-from tests.xrce_agent.wire import Id
+from tests.xrce_agent.wire import Header, Id, Submessage
 
 from .board import Board
 
@@ -237,6 +238,28 @@ def test_a_slow_line(robot: Path, agent: Agent, delay: float, sessions: int) -> 
         time.sleep(1.5)
         assert len(board.values("cycles_too", began)) > 60
         assert len(agent.created) <= sessions
+        assert board.stop() == ""
+
+
+class SlowAgent(Agent):
+    """Takes its time for a session, in which all else waits: as one does that deletes the entities of the last."""
+
+    seconds = 1.2
+
+    def _create_client(self, peer: Hashable, header: Header, part: Submessage) -> None:
+        time.sleep(self.seconds)
+        super()._create_client(peer, header, part)
+
+
+def test_an_agent_that_is_slow_to_make_a_session(robot: Path) -> None:
+    """Requests that are sent meanwhile would each end the session before: a board learns to send fewer."""
+    with SlowAgent(UdpLink()) as agent, Board(robot, agent) as board:
+        board.running()
+        check_alive(board, 0.5)
+        sessions = len(agent.created)
+        assert sessions <= 5
+        time.sleep(1.0)
+        assert len(agent.created) == sessions
         assert board.stop() == ""
 
 
