@@ -1,6 +1,6 @@
 /**
  * @file
- * The host's two clocks, and the port layer's time.
+ * The port layer's time: that of the monotonic clock, or simulated.
  */
 #if !defined(_WIN32)
 #define _POSIX_C_SOURCE 200809L
@@ -12,39 +12,10 @@
 #include <stdbool.h>
 #include <time.h>
 
-#if defined(_WIN32)
-#include <windows.h>
-#endif
-
 #include "epg/port.h"
 
 static bool simulated;
 static uint64_t simulated_ns;
-
-#if defined(_WIN32)
-
-uint64_t epg_host_monotonic_ns(void)
-{
-    LARGE_INTEGER frequency;
-    LARGE_INTEGER count;
-    QueryPerformanceFrequency(&frequency);
-    QueryPerformanceCounter(&count);
-    /* Whole seconds and the rest apart: count * 10^9 would overflow within minutes. */
-    const uint64_t ticks = (uint64_t)count.QuadPart;
-    const uint64_t per_second = (uint64_t)frequency.QuadPart;
-    return ticks / per_second * 1000000000U + ticks % per_second * 1000000000U / per_second;
-}
-
-#else
-
-uint64_t epg_host_monotonic_ns(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (uint64_t)now.tv_sec * 1000000000U + (uint64_t)now.tv_nsec;
-}
-
-#endif
 
 void epg_host_clock_simulate(uint64_t time_ns)
 {

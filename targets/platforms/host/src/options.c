@@ -137,9 +137,11 @@ bool epg_host_read_options(int argc, char **argv, bool connected, epg_host_optio
             return false;
         }
     }
-    if (options->help) {
-        return true;
-    }
+    return options->help || epg_host_complete_options(duration, connected, options);
+}
+
+bool epg_host_complete_options(const char *duration, bool connected, epg_host_options_t *options)
+{
     if (!fit_together(options)) {
         return false;
     }

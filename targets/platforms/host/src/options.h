@@ -31,6 +31,9 @@ typedef struct epg_host_options {
  */
 bool epg_host_read_options(int argc, char **argv, bool connected, epg_host_options_t *options);
 
+/** The rest of that, when all options but `duration` (NULL: not given) are in `options`: whether they go together. */
+bool epg_host_complete_options(const char *duration, bool connected, epg_host_options_t *options);
+
 /** Prints how the program is used. */
 void epg_host_print_help(const char *name);
 

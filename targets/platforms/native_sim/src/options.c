@@ -1,0 +1,99 @@
+/**
+ * @file
+ * The command line of an image: EPG's options among those of native_sim, which are written -option=value.
+ */
+#include <stdio.h>
+
+#include <cmdline.h>
+#include <nsi_timer_model.h>
+#include <posix_board_if.h>
+#include <posix_native_task.h>
+#include <zephyr/kernel.h>
+
+#include "parts.h"
+#include "setpoints.h"
+
+BUILD_ASSERT(IS_ENABLED(CONFIG_EXTERNAL_LIBC),
+             "EPG's native_sim reads and writes files of this computer: CONFIG_EXTERNAL_LIBC must be set");
+
+epg_host_options_t epg_native_sim_options;
+epg_host_events_t epg_native_sim_events;
+
+static char *duration;
+static char *agent;
+static char *device;
+static char *console_pty;
+static char *setpoints;
+static char *topics;
+static char *trace;
+static char *statistics;
+
+#define FLAG(member, text)                                                                                             \
+    {                                                                                                                  \
+        .option = #member, .is_switch = true, .type = 'b', .dest = &epg_native_sim_options.member, .descript = (text)  \
+    }
+#define VALUE(text_option, text_value, variable, text)                                                                 \
+    {                                                                                                                  \
+        .option = (text_option), .name = (text_value), .type = 's', .dest = &(variable), .descript = (text)            \
+    }
+
+static void add_options(void)
+{
+    static struct args_struct_t options[] = {
+        VALUE("duration", "SECONDS", duration, "EPG: how long to run, in simulated time unless -realtime is there too"),
+        FLAG(realtime, "EPG: run in real time"),
+        FLAG(console, "EPG: commands from standard input, answers to standard output"),
+        VALUE("console-pty", "PATH", console_pty, "EPG: the same on a terminal with this name"),
+        VALUE("agent", "HOST:PORT", agent, "EPG: where the ROS 2 agent is; default: as the .tcf says"),
+        VALUE("serial-device", "PATH", device, "EPG: the agent is on this terminal"),
+        VALUE("setpoints", "FILE", setpoints, "EPG: CSV with rows time,topic,value: what arrives, and when"),
+        VALUE("topics", "FILE", topics, "EPG: writes what is published, in the same form"),
+        VALUE("trace", "FILE", trace, "EPG: writes all signals, one row per control cycle"),
+        VALUE("statistics", "FILE", statistics, "EPG: writes the run's statistics as JSON"),
+        FLAG(quiet, "EPG: prints no summary"),
+        ARG_TABLE_ENDMARKER,
+    };
+    native_add_command_line_opts(options);
+}
+
+NATIVE_TASK(add_options, PRE_BOOT_1, 10);
+
+/** Without a duration, and in real time, the target is connected to the world. */
+static bool complete(void)
+{
+    epg_host_options_t *options = &epg_native_sim_options;
+    const bool realtime = options->realtime;
+    options->agent = agent;
+    options->device = device;
+    options->console_pty = console_pty;
+    options->setpoints = setpoints;
+    options->topics = topics;
+    options->trace = trace;
+    options->statistics = statistics;
+    options->realtime = realtime || duration == NULL;
+    if (!epg_host_complete_options(duration, true, options)) {
+        return false;
+    }
+    if (realtime || duration != NULL) {
+        hwtimer_set_real_time_mode(realtime);
+    }
+    return true;
+}
+
+static void read_options(void)
+{
+    const epg_host_options_t *options = &epg_native_sim_options;
+    if (!complete()) {
+        posix_exit(WRONG_INPUT);
+    }
+    if (options->setpoints != NULL &&
+        !epg_host_read_setpoints(options->setpoints, epg_native_sim_target->target, false, &epg_native_sim_events)) {
+        posix_exit(WRONG_INPUT);
+    }
+    const int status = epg_native_sim_open_transports();
+    if (status != DONE) {
+        posix_exit(status);
+    }
+}
+
+NATIVE_TASK(read_options, PRE_BOOT_2, 10);

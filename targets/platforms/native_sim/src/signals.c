@@ -1,0 +1,178 @@
+/**
+ * @file
+ * What the plant moves and sees: the devices that Zephyr emulates.
+ *
+ * The generator numbers the peripherals of native_sim from 0 in each class; `unit` or `pin` is enough to name one.
+ */
+#include <stdio.h>
+
+#include <epg/zephyr/pwm_emul.h>
+#include <epg/zephyr/qdec_emul.h>
+#include <zephyr/drivers/gpio/gpio_emul.h>
+#include <zephyr/kernel.h>
+
+#include "epg/plant.h"
+#include "epg/zephyr.h"
+#include "parts.h"
+#include "port.h"
+
+enum { UNITS = UINT8_MAX + 1, PINS = UINT8_MAX + 1 };
+
+/** What drives an input pin. */
+enum { UNDRIVEN, DRIVEN_LOW, DRIVEN_HIGH };
+
+static bool turning;
+static int64_t counts[UNITS]; /* where the shafts are */
+static uint8_t driven[PINS];
+
+/* Devices -------------------------------------------------------------------------------------------------------- */
+
+#define IS_DEVICE(node) || device == DEVICE_DT_GET(node)
+
+static bool is_emulated_decoder(const struct device *device)
+{
+    ARG_UNUSED(device);
+    return false DT_FOREACH_STATUS_OKAY(epg_qdec_emul, IS_DEVICE);
+}
+
+static bool is_emulated_pwm(const struct device *device)
+{
+    ARG_UNUSED(device);
+    return false DT_FOREACH_STATUS_OKAY(epg_pwm_emul, IS_DEVICE);
+}
+
+static bool is_emulated_port(const struct device *device)
+{
+    ARG_UNUSED(device);
+    return false DT_FOREACH_STATUS_OKAY(zephyr_gpio_emul, IS_DEVICE);
+}
+
+static bool complain(const struct device *device, const char *compatible)
+{
+    fprintf(stderr,
+            "error: the plant cannot reach '%s'\nhint: in the devicetree of native_sim it must be compatible with "
+            "\"%s\", as EPG's overlay has it\n",
+            device->name, compatible);
+    return false;
+}
+
+bool epg_native_sim_all_emulated(void)
+{
+    const epg_zephyr_hardware_t *hardware = &epg_zephyr_hardware;
+    bool good = true;
+    for (size_t i = 0; i < hardware->decoder_count; i++) {
+        const struct device *device = hardware->decoders[i].device;
+        good = (is_emulated_decoder(device) || complain(device, "epg,qdec-emul")) && good;
+    }
+    for (size_t i = 0; i < hardware->pwm_count; i++) {
+        const struct device *device = hardware->pwms[i].device;
+        good = (is_emulated_pwm(device) || complain(device, "epg,pwm-emul")) && good;
+    }
+    for (size_t i = 0; i < hardware->pin_count; i++) {
+        const struct device *device = hardware->pins[i].gpio.port;
+        good = (is_emulated_port(device) || complain(device, "zephyr,gpio-emul")) && good;
+    }
+    return good;
+}
+
+static const struct device *decoder_of(uint8_t unit)
+{
+    const epg_zephyr_hardware_t *hardware = &epg_zephyr_hardware;
+    for (size_t i = 0; i < hardware->decoder_count; i++) {
+        if (hardware->decoders[i].unit == unit) {
+            return hardware->decoders[i].device;
+        }
+    }
+    return NULL;
+}
+
+static const struct gpio_dt_spec *gpio_of(uint8_t pin)
+{
+    const epg_zephyr_hardware_t *hardware = &epg_zephyr_hardware;
+    for (size_t i = 0; i < hardware->pin_count; i++) {
+        if (hardware->pins[i].pin == pin) {
+            return &hardware->pins[i].gpio;
+        }
+    }
+    return NULL;
+}
+
+/* Quadrature decoders ---------------------------------------------------------------------------------------------- */
+
+void epg_native_sim_shafts_turn(void)
+{
+    turning = true;
+}
+
+/** Before the decoders run, a shaft is where it is: an incremental encoder does not know where that is. */
+void epg_plant_quadrature_set(uint8_t unit, int64_t count)
+{
+    const struct device *device = decoder_of(unit);
+    /* Modulo 2^32, as the target sees counts; so a plant that has gone astray turns no shaft for ever either. */
+    const int32_t edges = (int32_t)(uint32_t)((uint64_t)count - (uint64_t)counts[unit]);
+    counts[unit] = count;
+    if (turning && device != NULL && edges != 0) {
+        qdec_emul_move(device, edges);
+    }
+}
+
+void epg_plant_quadrature_fail(uint8_t unit, bool failed)
+{
+    const struct device *device = decoder_of(unit);
+    if (device != NULL) {
+        qdec_emul_set_error(device, failed ? -EIO : 0);
+    }
+}
+
+/* PWM ---------------------------------------------------------------------------------------------------------------- */
+
+double epg_plant_pwm_duty(uint8_t unit)
+{
+    const epg_zephyr_hardware_t *hardware = &epg_zephyr_hardware;
+    for (size_t i = 0; i < hardware->pwm_count; i++) {
+        const epg_zephyr_pwm_t *pwm = &hardware->pwms[i];
+        uint32_t period = 0;
+        uint32_t high = 0;
+        if (pwm->unit == unit && pwm_emul_get(pwm->device, pwm->channel, &period, &high) == 0 && period > 0) {
+            return (double)high / (double)period;
+        }
+    }
+    return 0.0;
+}
+
+/* Pins --------------------------------------------------------------------------------------------------------------- */
+
+static bool is_configured(const struct gpio_dt_spec *gpio, gpio_flags_t direction)
+{
+    gpio_flags_t flags = 0;
+    return gpio != NULL && gpio_emul_flags_get(gpio->port, gpio->pin, &flags) == 0 && (flags & direction) != 0;
+}
+
+bool epg_plant_output(uint8_t pin)
+{
+    const struct gpio_dt_spec *gpio = gpio_of(pin);
+    return is_configured(gpio, GPIO_OUTPUT) && gpio_emul_output_get(gpio->port, gpio->pin) > 0;
+}
+
+void epg_plant_input_set(uint8_t pin, bool level)
+{
+    const struct gpio_dt_spec *gpio = gpio_of(pin);
+    driven[pin] = level ? DRIVEN_HIGH : DRIVEN_LOW;
+    if (is_configured(gpio, GPIO_INPUT)) {
+        (void)gpio_emul_input_set(gpio->port, gpio->pin, level ? 1 : 0);
+    }
+}
+
+void epg_native_sim_drive_pins(void)
+{
+    for (unsigned int pin = 0; pin < PINS; pin++) {
+        if (driven[pin] != UNDRIVEN) {
+            epg_plant_input_set((uint8_t)pin, driven[pin] == DRIVEN_HIGH);
+        }
+    }
+}
+
+bool epg_host_is_input(uint8_t pin)
+{
+    return is_configured(gpio_of(pin), GPIO_INPUT);
+}

@@ -1,0 +1,231 @@
+/**
+ * @file
+ * A run: setpoints, plant and recording around the control cycles of the image, in the order and with the functions of
+ * the host.
+ *
+ * Zephyr's clock stands still while the image computes, so that a cycle takes no simulated time unless a `$stall`
+ * event says that one does; in real time the native simulator waits between two ticks of the system clock.
+ */
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <posix_board_if.h>
+#include <posix_native_task.h>
+#include <zephyr/kernel.h>
+
+#include "clock.h"
+#include "epg/plant.h"
+#include "epg/port.h"
+#include "parts.h"
+#include "report.h"
+#include "run.h"
+#include "setpoints.h"
+
+#define NS_PER_US 1000U
+#define LONGEST_WAIT_US 1000000U
+
+static epg_host_run_t run;
+static struct {
+    epg_application_t application; /* the target's, with read_and_stall() in place of read() */
+    FILE *topics;
+    FILE *trace;
+    FILE *statistics;
+    bool prepared;
+    bool begun;           /* the first cycle has been */
+    bool written;         /* the files are complete */
+    uint64_t start_ns;    /* epg_port_time_ns() of the first tick: time 0 of the run */
+    uint64_t tick_ns;     /* of the newest cycle, since time 0 */
+    uint64_t begun_ns;    /* when it began, since time 0 */
+    uint64_t entered_ns;  /* the same, monotonic */
+    uint64_t outside_ns;  /* monotonic time spent within it on what is not the cycle: plant and communication */
+    uint64_t wall_ns;     /* monotonic time 0 */
+    volatile int stopped; /* by the user */
+} simulation;
+
+static uint64_t now_ns(void)
+{
+    return epg_port_time_ns() - simulation.start_ns;
+}
+
+/* Files ---------------------------------------------------------------------------------------------------------- */
+
+/** Opens `path` for writing; NULL when it is NULL. */
+static FILE *open_output(const char *path)
+{
+    FILE *file = path == NULL ? NULL : fopen(path, "wb");
+    if (path != NULL && file == NULL) {
+        fprintf(stderr, "%s: error: cannot write this file: %s\n", path, strerror(errno));
+        posix_exit(FAILED);
+    }
+    return file;
+}
+
+static bool close_output(const char *path, FILE **file)
+{
+    if (*file == NULL) {
+        return true;
+    }
+    const bool failed = ferror(*file) != 0;
+    const bool closed = fclose(*file) == 0;
+    *file = NULL;
+    if (failed || !closed) {
+        fprintf(stderr, "%s: error: cannot write this file: %s\n", path, errno != 0 ? strerror(errno) : "failed");
+    }
+    return !failed && closed;
+}
+
+/** Completes what was recorded; false, with a message, when it cannot be written. */
+static bool close_outputs(void)
+{
+    const epg_host_options_t *options = &epg_native_sim_options;
+    epg_host_trace_end(&run.trace);
+    epg_host_communication_end(&run.communication);
+    epg_native_sim_close_transports();
+    simulation.written = true;
+    errno = 0;
+    const bool topics = close_output(options->topics, &simulation.topics);
+    const bool trace = close_output(options->trace, &simulation.trace);
+    const bool statistics = close_output(options->statistics, &simulation.statistics);
+    return topics && trace && statistics;
+}
+
+/** Whoever ends the program (native_sim's own -stop_at, the application): what was recorded so far is in the files. */
+static void on_exit(void)
+{
+    if (simulation.prepared && !simulation.written) {
+        (void)close_outputs();
+    }
+}
+
+NATIVE_TASK(on_exit, ON_EXIT, 10);
+
+/* Begin and end ---------------------------------------------------------------------------------------------------- */
+
+static void prepare(void)
+{
+    const epg_host_options_t *options = &epg_native_sim_options;
+    const epg_host_target_t *host = epg_native_sim_target;
+    const uint64_t period_ns = host->target->application->period_ns;
+    if (!epg_native_sim_all_emulated()) {
+        posix_exit(FAILED);
+    }
+    simulation.topics = open_output(options->topics);
+    simulation.trace = open_output(options->trace);
+    simulation.statistics = open_output(options->statistics);
+    run = (epg_host_run_t){
+        .host = host, .end_ns = options->duration_ns, .scheduler = options->realtime ? "native_sim" : "simulated"};
+    if (!epg_host_communication_start(&run.communication, host->target, &epg_native_sim_events, run.end_ns,
+                                      simulation.topics) ||
+        !epg_host_trace_start(&run.trace, host, simulation.trace, false, (run.end_ns - 1) / period_ns + 1)) {
+        posix_exit(FAILED);
+    }
+    epg_native_sim_catch_interrupts(&simulation.stopped);
+    simulation.prepared = true;
+}
+
+/** After the last cycle, when the next would have been that of `next_ns`. */
+static void finish(uint64_t next_ns)
+{
+    const epg_host_options_t *options = &epg_native_sim_options;
+    epg_host_interrupted = simulation.stopped;
+    epg_host_run_end(&run, simulation.tick_ns, next_ns);
+    epg_host_communicate_simulated(&run.communication, run.ran_ns);
+    run.wall_time_ns = epg_host_monotonic_ns() - simulation.wall_ns;
+    if (simulation.statistics != NULL) {
+        epg_host_write_statistics(simulation.statistics, &run);
+    }
+    const bool written = close_outputs();
+    if (!options->quiet && !options->console) {
+        epg_host_print_summary(&run);
+    }
+    posix_exit(!written ? FAILED : simulation.stopped ? INTERRUPTED : DONE);
+}
+
+/* Cycles ------------------------------------------------------------------------------------------------------------ */
+
+/** Communication and plant come to the present, the plant driven by the outputs as they are. */
+static void move_on(void)
+{
+    epg_host_communicate_simulated(&run.communication, now_ns());
+    epg_plant_advance(&run.plant, now_ns());
+}
+
+/**
+ * Samples the sensors; then, when a stall is due, time passes before anything is computed from the samples, as if
+ * an interrupt of higher priority had come in between.
+ */
+static void read_and_stall(void)
+{
+    run.host->target->application->read();
+    const uint64_t stall_ns = run.communication.stall_ns;
+    if (stall_ns > 0) {
+        const uint64_t entered_ns = epg_host_monotonic_ns();
+        run.communication.stall_ns = 0;
+        for (uint64_t left_us = stall_ns / NS_PER_US; left_us > 0;) {
+            const uint32_t wait_us = (uint32_t)MIN(left_us, LONGEST_WAIT_US);
+            k_busy_wait(wait_us);
+            left_us -= wait_us;
+        }
+        move_on();
+        simulation.outside_ns += epg_host_monotonic_ns() - entered_ns;
+    }
+}
+
+void epg_native_sim_starting(void)
+{
+    const epg_host_target_t *host = epg_native_sim_target;
+    if (!simulation.prepared) {
+        prepare();
+        /* Plant first: starting the application samples the sensors and starts the decoders where the shafts stand. */
+        epg_plant_start(&run.plant, host->plant, host->target->application->period_ns);
+    } else if (simulation.begun) {
+        epg_plant_actuate(&run.plant); /* the target was stopped meanwhile, with its outputs safe */
+        move_on();
+        epg_plant_sense(&run.plant);
+    }
+}
+
+void epg_native_sim_started(void)
+{
+    const epg_target_t *target = run.host->target;
+    simulation.application = *target->application;
+    simulation.application.read = read_and_stall;
+    target->control->application = &simulation.application;
+    epg_native_sim_shafts_turn();
+    epg_native_sim_drive_pins();
+    epg_plant_actuate(&run.plant);
+    if (!epg_host_check_pins(epg_native_sim_options.setpoints, &epg_native_sim_events)) {
+        posix_exit(WRONG_INPUT);
+    }
+}
+
+void epg_native_sim_before_cycle(uint64_t tick_ns)
+{
+    if (!simulation.begun) {
+        simulation.begun = true;
+        simulation.start_ns = tick_ns;
+        simulation.wall_ns = epg_host_monotonic_ns();
+        run.communication.start_ns = tick_ns;
+    }
+    const uint64_t since_ns = tick_ns - simulation.start_ns;
+    if (since_ns >= run.end_ns || simulation.stopped || epg_native_sim_input_ended()) {
+        finish(since_ns);
+    }
+    epg_native_sim_tell_connection();
+    move_on();
+    epg_plant_sense(&run.plant);
+    simulation.tick_ns = since_ns;
+    simulation.begun_ns = now_ns();
+    simulation.outside_ns = 0;
+    simulation.entered_ns = epg_host_monotonic_ns();
+}
+
+void epg_native_sim_after_cycle(void)
+{
+    const uint64_t spent_ns = epg_host_monotonic_ns() - simulation.entered_ns - simulation.outside_ns;
+    const uint64_t lateness_ns = simulation.begun_ns - simulation.tick_ns;
+    epg_plant_actuate(&run.plant);
+    epg_host_timing_add(&run.timing, lateness_ns, spent_ns);
+    epg_host_trace_add(&run.trace, simulation.tick_ns, lateness_ns, now_ns() - simulation.begun_ns);
+}
