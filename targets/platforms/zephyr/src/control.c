@@ -1,0 +1,185 @@
+/**
+ * @file
+ * The control cycle, in a meta-IRQ thread that the tick's interrupt releases.
+ *
+ * A meta-IRQ thread runs before every other thread, cooperative ones too, as soon as no interrupt is being served.  The
+ * tick repeats by itself, so it can be late but never lost; how many ticks there were is asked of the time of the newest
+ * one.  The tick and the system clock may drift apart by some parts per million (the driver of SysTick loses clocks when
+ * it is set anew), so that time counts from each tick anew.
+ */
+#include <string.h>
+
+#include <zephyr/kernel.h>
+
+#include "epg/port.h"
+#include "parts.h"
+
+BUILD_ASSERT(CONFIG_NUM_METAIRQ_PRIORITIES >= 1,
+             "EPG's control thread goes before all others: CONFIG_NUM_METAIRQ_PRIORITIES must be 1 or more");
+
+#ifdef CONFIG_FPU_SHARING
+#define THREAD_OPTIONS K_FP_REGS
+#else
+#define THREAD_OPTIONS 0
+#endif
+
+/** How long the control thread may take to answer besides two periods. */
+#define ANSWER_US 10000U
+
+static K_THREAD_STACK_DEFINE(stack, CONFIG_EPG_CONTROL_STACK_SIZE);
+static struct k_thread thread;
+static K_SEM_DEFINE(ticks, 0, 1);
+
+static struct {
+    epg_control_t *control;
+    const epg_application_t *application;
+    uint64_t due_ns; /* of the newest tick that was handled */
+    uint64_t period_ns;
+} loop;
+
+static bool running; /* the thread is there */
+static atomic_bool stopping;
+
+/* Holding: asked for by the communication thread, answered after the cycle at hand. */
+static atomic_bool hold_requested;
+static atomic_bool hold_granted;
+static K_SEM_DEFINE(hold_answered, 0, 1);
+
+void epg_zephyr_control_tick(void)
+{
+    k_sem_give(&ticks);
+}
+
+/** Ticks that have passed since `loop.due_ns`, the newest of which was at `newest_ns`. */
+static inline uint32_t pass_ticks(uint64_t newest_ns)
+{
+    const int64_t half = (int64_t)(loop.period_ns / 2U);
+    const int64_t since = (int64_t)(newest_ns - loop.due_ns);
+    if (since < half) {
+        return 0U; /* it was counted together with the one before */
+    }
+    loop.due_ns = newest_ns;
+    if (since < half + (int64_t)loop.period_ns) {
+        return 1U;
+    }
+    return (uint32_t)((uint64_t)(since + half) / loop.period_ns);
+}
+
+/** True while no cycle is to run: the outputs are safe and stay so. */
+static bool held(void)
+{
+    if (!atomic_load(&hold_requested)) {
+        atomic_store(&hold_granted, false);
+        return false;
+    }
+    if (!atomic_load(&hold_granted) && !loop.control->enabled) {
+        atomic_store(&hold_granted, true);
+        k_sem_give(&hold_answered);
+    }
+    return atomic_load(&hold_granted);
+}
+
+static void cycle(void)
+{
+    uint64_t now_ns;
+    const uint32_t passed = pass_ticks(epg_zephyr_tick_newest_ns(&now_ns));
+    if (passed == 0U) {
+        return;
+    }
+    if (held()) {
+        epg_zephyr_watchdog_feed(0);
+        return;
+    }
+    epg_control_cycle(loop.control, loop.due_ns, passed - 1U);
+    epg_zephyr_watchdog_feed(epg_control_silence(loop.control));
+}
+
+static void run(void *first, void *second, void *third)
+{
+    ARG_UNUSED(first);
+    ARG_UNUSED(second);
+    ARG_UNUSED(third);
+    for (;;) {
+        (void)k_sem_take(&ticks, K_FOREVER);
+        if (atomic_load(&stopping)) {
+            loop.application->safe();
+            return;
+        }
+        cycle();
+    }
+}
+
+epg_zephyr_error_t epg_zephyr_control_start(const epg_zephyr_target_t *zephyr, epg_fault_t fault)
+{
+    const epg_application_t *application = zephyr->target->application;
+    memset(&loop, 0, sizeof loop);
+    loop.control = zephyr->target->control;
+    loop.application = application;
+    loop.period_ns = application->period_ns;
+    atomic_store(&stopping, false);
+    atomic_store(&hold_requested, false);
+    atomic_store(&hold_granted, false);
+    k_sem_reset(&ticks);
+
+    epg_zephyr_device_refused = false;
+    epg_control_start(loop.control, application);
+    if (fault != EPG_FAULT_NONE) {
+        epg_control_fault(loop.control, fault, EPG_NO_COMPONENT);
+    }
+    if (epg_zephyr_device_refused) {
+        return EPG_ZEPHYR_ERROR_DEVICE;
+    }
+    epg_zephyr_error_t error = epg_zephyr_watchdog_start(loop.period_ns);
+    if (error == EPG_ZEPHYR_OK) {
+        error = epg_zephyr_tick_start(&zephyr->tick, loop.period_ns);
+    }
+    if (error != EPG_ZEPHYR_OK) {
+        epg_zephyr_watchdog_stop();
+        return error;
+    }
+    uint64_t now_ns;
+    loop.due_ns = epg_zephyr_tick_newest_ns(&now_ns);
+    (void)k_thread_create(&thread, stack, K_THREAD_STACK_SIZEOF(stack), run, NULL, NULL, NULL, K_HIGHEST_THREAD_PRIO,
+                          THREAD_OPTIONS, K_NO_WAIT);
+    (void)k_thread_name_set(&thread, "epg_control");
+    running = true;
+    return EPG_ZEPHYR_OK;
+}
+
+void epg_zephyr_control_stop(void)
+{
+    if (running) {
+        atomic_store(&stopping, true);
+        k_sem_give(&ticks);
+        (void)k_thread_join(&thread, K_FOREVER); /* it goes before this thread, and its cycle ends */
+        epg_zephyr_tick_stop();
+        epg_zephyr_watchdog_stop();
+        running = false;
+    }
+}
+
+bool epg_zephyr_control_hold(void)
+{
+    if (!running) {
+        return true;
+    }
+    k_sem_reset(&hold_answered);
+    atomic_store(&hold_requested, true);
+    const uint64_t timeout_us = 2U * loop.period_ns / 1000U + ANSWER_US;
+    if (k_sem_take(&hold_answered, K_USEC(timeout_us)) == 0) {
+        return true;
+    }
+    atomic_store(&hold_requested, false);
+    return false;
+}
+
+void epg_zephyr_control_release(void)
+{
+    atomic_store(&hold_requested, false);
+}
+
+void epg_zephyr_control_stack(uint32_t *size, uint32_t *used)
+{
+    *size = CONFIG_EPG_CONTROL_STACK_SIZE;
+    *used = running ? epg_zephyr_stack_used(&thread, CONFIG_EPG_CONTROL_STACK_SIZE) : 0U;
+}

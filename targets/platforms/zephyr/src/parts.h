@@ -1,0 +1,128 @@
+/**
+ * @file
+ * What the parts of the port layer ask of each other.
+ */
+#ifndef EPG_ZEPHYR_PARTS_H
+#define EPG_ZEPHYR_PARTS_H
+
+#include "epg/ring.h"
+#include "epg/zephyr.h"
+
+/* port.c and quadrature.c -------------------------------------------------------------------------------------- */
+
+/** A device refused what it was asked for while peripherals were started. */
+extern bool epg_zephyr_device_refused;
+
+/** Whether all devices in epg_zephyr_hardware are there and started. */
+bool epg_zephyr_devices_ready(void);
+
+/** Whether a device is there and started; if not, the log says so. */
+bool epg_zephyr_ready(const struct device *device);
+
+/** The row of the table for a pin of the portable code; NULL: it has none. */
+const epg_zephyr_pin_t *epg_zephyr_pin(uint8_t pin);
+
+/* tick_pico.c, tick_counter.c or tick_timer.c -------------------------------------------------------------------- */
+
+/**
+ * Starts the tick, which calls epg_zephyr_control_tick() from its interrupt every `period_ns`.  Returns EPG_ZEPHYR_OK,
+ * or what is wrong.
+ */
+epg_zephyr_error_t epg_zephyr_tick_start(const epg_zephyr_tick_t *tick, uint64_t period_ns);
+void epg_zephyr_tick_stop(void);
+
+/**
+ * When the newest tick was, in the time base of epg_port_time_ns(), and in `*now_ns` what the time is now: both read at
+ * once.  Before the first tick, when the tick was started.
+ */
+uint64_t epg_zephyr_tick_newest_ns(uint64_t *now_ns);
+
+/* control.c ------------------------------------------------------------------------------------------------------ */
+
+/** `fault`: what ended the run before this one; it is latched. */
+epg_zephyr_error_t epg_zephyr_control_start(const epg_zephyr_target_t *zephyr, epg_fault_t fault);
+void epg_zephyr_control_stop(void);
+
+/** A tick: from its interrupt. */
+void epg_zephyr_control_tick(void);
+
+/**
+ * Runs no cycle until epg_zephyr_control_release(): ticks of this time are not missed.  Waits for the cycle at hand.
+ * False when the target is enabled, or when the control thread does not answer.  From the communication thread.
+ */
+bool epg_zephyr_control_hold(void);
+void epg_zephyr_control_release(void);
+
+/** Bytes of the stack, and how many of them have ever been used; 0 where Zephyr does not count. */
+void epg_zephyr_control_stack(uint32_t *size, uint32_t *used);
+
+/** Bytes that have ever been used of the stack of `thread`, `size` bytes large; 0 where Zephyr does not count. */
+uint32_t epg_zephyr_stack_used(const struct k_thread *thread, size_t size);
+
+/* communication.c ------------------------------------------------------------------------------------------------ */
+
+/** Calls `serve` in a thread, at least once per millisecond. */
+void epg_zephyr_communication_start(void (*serve)(void));
+/** From any thread but that one. */
+void epg_zephyr_communication_stop(void);
+
+/** Asks for `serve` at once; from anywhere. */
+void epg_zephyr_communication_wake(void);
+
+void epg_zephyr_communication_stack(uint32_t *size, uint32_t *used);
+
+/* fatal.c -------------------------------------------------------------------------------------------------------- */
+
+/** What the previous run left behind: EPG_FAULT_NONE, EPG_FAULT_WATCHDOG or EPG_FAULT_PROCESSOR. */
+epg_fault_t epg_zephyr_fault_before_reset(void);
+
+/* watchdog.c ------------------------------------------------------------------------------------------------------ */
+
+#ifdef CONFIG_EPG_WATCHDOG
+epg_zephyr_error_t epg_zephyr_watchdog_start(uint64_t period_ns);
+void epg_zephyr_watchdog_stop(void);
+/** After a cycle in which `silence` is epg_control_silence().  Control thread. */
+void epg_zephyr_watchdog_feed(uint32_t silence);
+/** Whether the watchdog has caused the last reset. */
+bool epg_zephyr_watchdog_has_reset(void);
+#else
+static inline epg_zephyr_error_t epg_zephyr_watchdog_start(uint64_t period_ns)
+{
+    (void)period_ns;
+    return EPG_ZEPHYR_OK;
+}
+
+static inline void epg_zephyr_watchdog_stop(void)
+{
+}
+
+static inline void epg_zephyr_watchdog_feed(uint32_t silence)
+{
+    (void)silence;
+}
+
+static inline bool epg_zephyr_watchdog_has_reset(void)
+{
+    return false;
+}
+#endif
+
+/* serial_lines.c --------------------------------------------------------------------------------------------------- */
+
+/** Two rings, and the device of the UART API whose interrupt moves bytes between it and them. */
+typedef struct epg_zephyr_lines {
+    const struct device *device;
+    epg_ring_t *received;
+    epg_ring_t *sent;
+    atomic_uint *damaged; /**< counts bytes that came with an error; NULL: nobody wants to know */
+    bool back_pressure;   /**< a full ring makes the other end wait; false: what comes then is lost and counted */
+} epg_zephyr_lines_t;
+
+/** Starts with empty rings; false when the device has no interrupts.  `lines` must stay. */
+bool epg_zephyr_lines_start(const epg_zephyr_lines_t *lines);
+
+/** There is something in `lines->sent`, or room in `lines->received` again. */
+void epg_zephyr_lines_send(const epg_zephyr_lines_t *lines);
+void epg_zephyr_lines_receive(const epg_zephyr_lines_t *lines);
+
+#endif

@@ -1,0 +1,163 @@
+/**
+ * @file
+ * Time, PWM and pins.
+ */
+#include "epg/port.h"
+
+#include <zephyr/drivers/pwm.h>
+#include <zephyr/kernel.h>
+
+#include "parts.h"
+
+BUILD_ASSERT(
+    IS_ENABLED(CONFIG_TIMER_HAS_64BIT_CYCLE_COUNTER),
+    "EPG needs a system clock with k_cycle_get_64(); for SysTick set CONFIG_CORTEX_M_SYSTICK_64BIT_CYCLE_COUNTER=y");
+
+bool epg_zephyr_device_refused;
+
+static inline void check(int error)
+{
+    if (error < 0) {
+        epg_zephyr_device_refused = true;
+    }
+}
+
+/* Time ----------------------------------------------------------------------------------------------------------- */
+
+#define NS_PER_S 1000000000U
+#define CLOCK CONFIG_SYS_CLOCK_HW_CYCLES_PER_SEC
+
+/**
+ * A whole number of nanoseconds per clock; else times 2^24, which is a few parts per thousand million off, and needs no
+ * division of 64 bits.
+ */
+static inline uint64_t clocks_to_ns(uint64_t clocks)
+{
+#if NS_PER_S % CLOCK == 0
+    return clocks * (NS_PER_S / CLOCK);
+#else
+    const uint64_t scale = (((uint64_t)NS_PER_S << 24) + CLOCK / 2U) / CLOCK;
+    BUILD_ASSERT(CLOCK > 4000000, "nanoseconds per clock, times 2^24, have 32 bits");
+    return (((clocks >> 32) * scale) << 8) + (((clocks & UINT32_MAX) * scale) >> 24);
+#endif
+}
+
+uint64_t epg_port_time_ns(void)
+{
+    return clocks_to_ns(k_cycle_get_64());
+}
+
+void epg_port_wait_until(uint64_t time_ns)
+{
+#ifdef CONFIG_ARCH_POSIX
+    ARG_UNUSED(time_ns); /* time is simulated */
+#else
+    /* The processor is for others until a tick of the system clock before; the rest is too short for that. */
+    const int64_t left = (int64_t)(time_ns - epg_port_time_ns());
+    const int64_t whole = left > 0 ? (int64_t)k_ns_to_ticks_floor32((uint32_t)MIN(left, UINT32_MAX)) : 0;
+    if (whole > 1) {
+        (void)k_sleep(K_TICKS((k_ticks_t)(whole - 1)));
+    }
+    while (epg_port_time_ns() < time_ns) {
+        arch_nop(); /* time passes, so this ends */
+    }
+#endif
+}
+
+/* PWM ------------------------------------------------------------------------------------------------------------ */
+
+static const epg_zephyr_pwm_t *find_pwm(uint8_t block, uint8_t unit)
+{
+    for (size_t i = 0; i < epg_zephyr_hardware.pwm_count; i++) {
+        const epg_zephyr_pwm_t *pwm = &epg_zephyr_hardware.pwms[i];
+        if (pwm->block == block && pwm->unit == unit) {
+            return pwm;
+        }
+    }
+    return NULL;
+}
+
+/** Sets the high time in clocks of the timer, whose divider is the devicetree's. */
+static int set_level(const epg_port_pwm_t *config, uint32_t level)
+{
+    const epg_zephyr_pwm_t *pwm = find_pwm(config->block, config->unit);
+    if (pwm == NULL) {
+        return -ENODEV;
+    }
+    return pwm_set_cycles(pwm->device, pwm->channel, config->top + 1U, level, PWM_POLARITY_NORMAL);
+}
+
+void epg_port_pwm_start(const epg_port_pwm_t *pwm)
+{
+    check(set_level(pwm, 0));
+}
+
+void epg_port_pwm_write(const epg_port_pwm_t *pwm, uint32_t level)
+{
+    (void)set_level(pwm, level); /* what can be refused was refused at the start */
+}
+
+/* Pins ------------------------------------------------------------------------------------------------------------ */
+
+const epg_zephyr_pin_t *epg_zephyr_pin(uint8_t pin)
+{
+    for (size_t i = 0; i < epg_zephyr_hardware.pin_count; i++) {
+        if (epg_zephyr_hardware.pins[i].pin == pin) {
+            return &epg_zephyr_hardware.pins[i];
+        }
+    }
+    return NULL;
+}
+
+static int start_pin(uint8_t pin, gpio_flags_t flags)
+{
+    const epg_zephyr_pin_t *row = epg_zephyr_pin(pin);
+    return row == NULL ? -ENODEV : gpio_pin_configure_dt(&row->gpio, flags);
+}
+
+void epg_port_output_start(uint8_t pin, bool level)
+{
+    check(start_pin(pin, level ? GPIO_OUTPUT_ACTIVE : GPIO_OUTPUT_INACTIVE));
+}
+
+void epg_port_output_write(uint8_t pin, bool level)
+{
+    const epg_zephyr_pin_t *row = epg_zephyr_pin(pin);
+    if (row != NULL) {
+        (void)gpio_pin_set_dt(&row->gpio, level ? 1 : 0);
+    }
+}
+
+void epg_port_input_start(uint8_t pin, epg_port_pull_t pull)
+{
+    static const gpio_flags_t pulls[] = {
+        [EPG_PULL_NONE] = 0,
+        [EPG_PULL_UP] = GPIO_PULL_UP,
+        [EPG_PULL_DOWN] = GPIO_PULL_DOWN,
+    };
+    check(start_pin(pin, GPIO_INPUT | pulls[pull]));
+}
+
+bool epg_port_input_read(uint8_t pin)
+{
+    const epg_zephyr_pin_t *row = epg_zephyr_pin(pin);
+    return row != NULL && gpio_pin_get_dt(&row->gpio) > 0;
+}
+
+/* All --------------------------------------------------------------------------------------------------------------- */
+
+bool epg_zephyr_devices_ready(void)
+{
+    const epg_zephyr_hardware_t *hardware = &epg_zephyr_hardware;
+    bool ready = true;
+    for (size_t i = 0; i < hardware->decoder_count; i++) {
+        ready = epg_zephyr_ready(hardware->decoders[i].device) && ready;
+    }
+    for (size_t i = 0; i < hardware->pwm_count; i++) {
+        ready = epg_zephyr_ready(hardware->pwms[i].device) && ready;
+    }
+    for (size_t i = 0; i < hardware->pin_count; i++) {
+        ready = epg_zephyr_ready(hardware->pins[i].gpio.port) && ready;
+    }
+    return ready;
+}

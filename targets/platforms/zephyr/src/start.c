@@ -1,0 +1,156 @@
+/**
+ * @file
+ * Starting and stopping a target; what the communication thread does for it.
+ */
+#include <zephyr/kernel.h>
+#include <zephyr/logging/log.h>
+
+#include "epg/port.h"
+#include "parts.h"
+
+LOG_MODULE_REGISTER(epg, CONFIG_EPG_LOG_LEVEL);
+
+/** How often stacks are looked at. */
+#define STACKS_PERIOD_NS 250000000U
+
+static const epg_zephyr_target_t *running;
+static epg_zephyr_error_t error;
+
+bool epg_zephyr_ready(const struct device *device)
+{
+    const bool ready = device_is_ready(device);
+    if (!ready) {
+        LOG_ERR("%s is not ready", device == NULL ? "a device" : device->name);
+    }
+    return ready;
+}
+
+/* Threads of POSIX run on stacks of the host. */
+uint32_t epg_zephyr_stack_used(const struct k_thread *thread, size_t size)
+{
+#if defined(CONFIG_INIT_STACKS) && defined(CONFIG_THREAD_STACK_INFO) && !defined(CONFIG_ARCH_POSIX)
+    size_t unused = 0;
+    return k_thread_stack_space_get(thread, &unused) == 0 ? (uint32_t)(size - unused) : 0U;
+#else
+    ARG_UNUSED(thread);
+    ARG_UNUSED(size);
+    return 0U;
+#endif
+}
+
+static void report_stacks(epg_control_t *control)
+{
+    uint32_t size;
+    uint32_t used;
+    epg_zephyr_control_stack(&size, &used);
+    epg_control_report_stack(control, EPG_STACK_CONTROL, used, size);
+    epg_zephyr_communication_stack(&size, &used);
+    epg_control_report_stack(control, EPG_STACK_COMMUNICATION, used, size);
+}
+
+static void serve_middleware(const epg_middleware_t *middleware, const epg_transport_t *transport)
+{
+    if (transport != NULL && transport->poll != NULL) {
+        transport->poll(transport->stream.context);
+    }
+    if (middleware != NULL) {
+        middleware->poll(epg_port_time_ns());
+    }
+    if (transport != NULL && transport->flush != NULL) {
+        transport->flush(transport->stream.context);
+    }
+}
+
+/** One turn of the communication side. */
+static void serve(void)
+{
+    static uint64_t stacks_ns;
+    const epg_target_t *target = running->target;
+    epg_control_alive(target->control);
+    serve_middleware(target->middleware, running->transport);
+    serve_middleware(target->console, running->console_transport);
+    const uint64_t now_ns = epg_port_time_ns();
+    if (stacks_ns == 0U || now_ns - stacks_ns >= STACKS_PERIOD_NS) {
+        stacks_ns = now_ns;
+        report_stacks(target->control);
+    }
+}
+
+static bool start_transport(const epg_transport_t *transport, const char *title)
+{
+    return transport == NULL || transport->start(transport->stream.context, title);
+}
+
+static void start_middleware(const epg_target_t *target, const epg_middleware_t *middleware,
+                             const epg_transport_t *transport)
+{
+    if (middleware != NULL) {
+        middleware->start(target, transport != NULL ? &transport->stream : NULL);
+    }
+}
+
+static void stop_middleware(const epg_middleware_t *middleware, const epg_transport_t *transport)
+{
+    if (middleware != NULL && middleware->stop != NULL) {
+        middleware->stop();
+        if (transport != NULL && transport->flush != NULL) {
+            transport->flush(transport->stream.context);
+        }
+    }
+}
+
+static epg_zephyr_error_t start(const epg_zephyr_target_t *zephyr)
+{
+    const epg_target_t *target = zephyr->target;
+    if (running != NULL) {
+        return EPG_ZEPHYR_ERROR_RUNNING;
+    }
+    if (!epg_zephyr_devices_ready()) {
+        return EPG_ZEPHYR_ERROR_DEVICE;
+    }
+    if (!start_transport(zephyr->transport, zephyr->transport_title) ||
+        !start_transport(zephyr->console_transport, "EPG console")) {
+        LOG_ERR("a transport does not start");
+        return EPG_ZEPHYR_ERROR_DEVICE;
+    }
+    const epg_zephyr_error_t failed = epg_zephyr_control_start(zephyr, epg_zephyr_fault_before_reset());
+    if (failed != EPG_ZEPHYR_OK) {
+        LOG_ERR("the control loop does not start: %s",
+                failed == EPG_ZEPHYR_ERROR_TICK ? "its tick has another clock than the target was generated for"
+                                                : "a device refuses what is asked of it");
+        return failed;
+    }
+    running = zephyr;
+    start_middleware(target, target->middleware, zephyr->transport);
+    start_middleware(target, target->console, zephyr->console_transport);
+    epg_zephyr_communication_start(serve);
+    return EPG_ZEPHYR_OK;
+}
+
+bool epg_zephyr_start(const epg_zephyr_target_t *zephyr)
+{
+    error = start(zephyr);
+    return error == EPG_ZEPHYR_OK;
+}
+
+void epg_zephyr_stop(void)
+{
+    if (running != NULL) {
+        epg_zephyr_communication_stop();
+        epg_zephyr_control_stop();
+        stop_middleware(running->target->middleware, running->transport);
+        stop_middleware(running->target->console, running->console_transport);
+        running = NULL;
+    }
+}
+
+void epg_zephyr_status(epg_zephyr_status_t *status)
+{
+    *status = (epg_zephyr_status_t){.error = error};
+    epg_zephyr_control_stack(&status->control_stack_size, &status->control_stack_used);
+    epg_zephyr_communication_stack(&status->communication_stack_size, &status->communication_stack_used);
+    const epg_transport_t *transport = running == NULL ? NULL : running->transport;
+    if (transport != NULL && transport->lost != NULL) {
+        status->transport_lost = transport->lost(transport->stream.context);
+    }
+}
