@@ -52,10 +52,10 @@ def run_executable(
 
     Raises UserError when it cannot be started, takes far too long, or fails.
     """
-    command = [str(executable.resolve()), "--quiet", "--duration", repr(duration), "--setpoints", str(setpoints)]
-    for option in ("topics", "trace"):
-        command += [f"--{option}", str(folder / f"{option}.csv")]
-    command += ["--statistics", str(folder / "statistics.json")]
+    # The form -option=value is the only one that Zephyr's native_sim understands.
+    command = [str(executable.resolve()), "--quiet", f"--duration={duration!r}", f"--setpoints={setpoints}"]
+    command += [f"--{option}={folder / f'{option}.csv'}" for option in ("topics", "trace")]
+    command.append(f"--statistics={folder / 'statistics.json'}")
     if realtime:
         command.append("--realtime")
     unit = "s in real time" if realtime else "s of simulated time"
