@@ -90,7 +90,9 @@ static void cycle(void)
         epg_zephyr_watchdog_feed(0);
         return;
     }
+    epg_native_sim_before_cycle(loop.due_ns);
     epg_control_cycle(loop.control, loop.due_ns, passed - 1U);
+    epg_native_sim_after_cycle();
     epg_zephyr_watchdog_feed(epg_control_silence(loop.control));
 }
 
@@ -122,7 +124,9 @@ epg_zephyr_error_t epg_zephyr_control_start(const epg_zephyr_target_t *zephyr, e
     k_sem_reset(&ticks);
 
     epg_zephyr_device_refused = false;
+    epg_native_sim_starting();
     epg_control_start(loop.control, application);
+    epg_native_sim_started();
     if (fault != EPG_FAULT_NONE) {
         epg_control_fault(loop.control, fault, EPG_NO_COMPONENT);
     }

@@ -125,4 +125,27 @@ bool epg_zephyr_lines_start(const epg_zephyr_lines_t *lines);
 void epg_zephyr_lines_send(const epg_zephyr_lines_t *lines);
 void epg_zephyr_lines_receive(const epg_zephyr_lines_t *lines);
 
+/* native_sim: what is simulated around the control cycles ----------------------------------------------------------- */
+
+#ifdef CONFIG_ARCH_POSIX
+#include "epg/native_sim.h"
+#else
+static inline void epg_native_sim_starting(void)
+{
+}
+
+static inline void epg_native_sim_started(void)
+{
+}
+
+static inline void epg_native_sim_before_cycle(uint64_t tick_ns)
+{
+    (void)tick_ns;
+}
+
+static inline void epg_native_sim_after_cycle(void)
+{
+}
+#endif
+
 #endif
