@@ -62,6 +62,11 @@ def check_target(target: Target, diagnostics: Diagnostics) -> bool:
     for written in map_of(node, "names").values():
         if str(written.value) not in soc.pins:
             _no_pin(str(written.value), written.span, target, diagnostics)
+    devicetree = node.get("devicetree")
+    for pins in map_of(devicetree, "nodes").values() if devicetree is not None else ():
+        for pin in pins.elements():
+            if str(pin.value) not in soc.numbers:
+                _no_pin(str(pin.value), pin.span, target, diagnostics)
     for name in board.pins:
         if name not in soc.numbers:
             _no_pin(name, node["pins"].span, target, diagnostics)
@@ -70,7 +75,7 @@ def check_target(target: Target, diagnostics: Diagnostics) -> bool:
             if element.value not in soc.classes:
                 _unknown("class", element, soc.classes, diagnostics)
     tick = target.platform.node.get("tick", "class")
-    if tick is not None:
+    if tick is not None and target.tick is not None:
         resource_class = soc.classes.get(str(tick.value))
         if resource_class is None:
             message = f"{soc.title} implements no class '{tick.value}'"

@@ -12,12 +12,16 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+from jinja2 import Environment
+
 from epg import __version__
 from epg.diagnostics import Diagnostics, UserError
+from epg.emit.claims import board_nodes, claims_of, gpios_of, tick_of
+from epg.emit.cmake import platform_files
 from epg.emit.fingerprint import LITERAL, model_hash
 from epg.emit.service import MiddlewareView, service_of
 from epg.emit.template import environment
-from epg.emit.text import Code, double, identifier
+from epg.emit.text import CMakeCode, Code, DevicetreeCode, Escaped, KconfigCode, double, identifier
 from epg.emit.topics import Topics, topics_of
 from epg.resolve.application import Application, ResolvedComponent, Step, Wire
 from epg.resolve.conversion import folded
@@ -125,6 +129,13 @@ class OutputPin:
     high: Code
 
 
+LANGUAGES: Mapping[str, type[Escaped]] = {
+    ".overlay": DevicetreeCode,
+    ".Kconfig": KconfigCode,
+    ".cmake": CMakeCode,
+}
+"""What templates of platforms are written in, by the ends of the files they become; the others are C."""
+
 OUTPUT_CLASSES = ("digital_output", "pwm")
 """Classes of peripherals whose pins are outputs."""
 
@@ -134,6 +145,7 @@ class Emitter:
 
     def __init__(self, app: Application, roots: Sequence[Path]) -> None:
         self.app = app
+        self.roots = tuple(roots)
         self.prefix = identifier(app.name)
         self.env = environment([TEMPLATES, *roots])
         self.modules: dict[str, Any] = {}
@@ -152,10 +164,15 @@ class Emitter:
             f"{name}_app.c": self.env.get_template("app.c.j2").render(context),
         }
         platform = self.app.target.platform
-        for template in platform.templates:
-            file = template.removesuffix(".j2").replace("NAME", name)
-            result[file] = self.env.get_template(f"platforms/{platform.name}/{template}").render(context)
+        for file, template in platform_files(self.app).items():
+            env = self._environment(file)
+            result[file] = env.get_template(f"platforms/{platform.name}/{template}").render(context)
         return {file: _tidy(text) for file, text in result.items()}
+
+    def _environment(self, file: str) -> Environment:
+        """The one for the language that ``file`` is written in."""
+        language = next((found for suffix, found in LANGUAGES.items() if file.endswith(suffix)), Code)
+        return self.env if language is Code else environment([TEMPLATES, *self.roots], language)
 
     def _context(self) -> dict[str, Any]:
         app = self.app
@@ -178,6 +195,10 @@ class Emitter:
             "outputs": [self._output(wire) for wire in app.outputs if wire.component.name not in publishers],
             "monitor": [self._output(wire) for wire in app.outputs if wire.component.name in publishers],
             "output_pins": self._output_pins(),
+            "claims": claims_of(app),
+            "gpios": gpios_of(app),
+            "tick": tick_of(app),
+            "board_nodes": board_nodes(app),
             "service": service,
             "transport": self._transport(),
             "middleware_code": self._middleware_code(service.middleware),

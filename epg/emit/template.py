@@ -32,14 +32,20 @@ FILTERS: Mapping[type[Escaped], Mapping[str, Callable[..., object]]] = {
         "ns": text.nanoseconds,
         "code": Code,
     },
-    CMakeCode: {"string": text.cmake, "code": CMakeCode},
+    CMakeCode: {"string": text.cmake, "word": lambda value: CMakeCode(text.word(value)), "code": CMakeCode},
     DevicetreeCode: {
         "string": text.devicetree_string,
         "comment": lambda value: DevicetreeCode(text.comment(value)),
         "label": lambda value: DevicetreeCode(text.identifier(value)),
         "code": DevicetreeCode,
     },
-    KconfigCode: {"string": text.kconfig_string, "bool": text.kconfig_bool, "code": KconfigCode},
+    KconfigCode: {
+        "string": text.kconfig_string,
+        "bool": text.kconfig_bool,
+        "symbol": text.kconfig_symbol,
+        "comment": lambda value: KconfigCode(text.comment(value)),
+        "code": KconfigCode,
+    },
     ProjectText: {
         "cmake": lambda value: ProjectText(text.cmake(value)),
         "identifier": lambda value: ProjectText(text.identifier(value)),

@@ -147,6 +147,11 @@ def kconfig_string(text: object) -> KconfigCode:
     return KconfigCode('"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"')
 
 
+def kconfig_symbol(value: object) -> KconfigCode:
+    """Part of a symbol's name: capital letters, digits and ``_``."""
+    return KconfigCode(str(identifier(value)).upper())
+
+
 def kconfig_bool(value: object) -> KconfigCode:
     return KconfigCode("y" if value else "n")
 

@@ -129,7 +129,9 @@ class OnboardPin:
 class Board:
     """A chip on a circuit board; ``names`` and ``prefixes`` are other ways to write its pins.
 
-    ``sdks`` says what SDKs call the board: "pico_sdk" -> "pico2".
+    ``sdks`` says what SDKs call the board: "pico_sdk" -> "pico2".  ``lacks`` are transports of
+    platforms that it has not, and why.  ``devicetree`` are the nodes that the board's
+    devicetree in Zephyr enables, with the pins they have; ``console`` is the one of its console, or empty.
     """
 
     name: str
@@ -141,6 +143,9 @@ class Board:
     onboard: Mapping[str, OnboardPin]
     reserved: Mapping[str, str]
     sdks: Mapping[str, str]
+    lacks: Mapping[str, str]
+    devicetree: Mapping[str, tuple[str, ...]]
+    console: str
     node: Node
     folder: Path
     span: Span
@@ -162,7 +167,8 @@ class Platform:
     Without ``builds`` there is none yet: targets can be checked but not built.
 
     ``middlewares`` names transports; the first of each is the default.  ``tick`` is the class of the peripheral that
-    times the control loop, None where the system software does.  ``shared`` are folders beside this one whose templates
+    times the control loop, None where the system software does, as also on chips without that class where
+    ``tick_is_optional``.  ``shared`` are folders beside this one whose templates
     it uses too.
     """
 
@@ -174,6 +180,7 @@ class Platform:
     classes: tuple[str, ...]
     middlewares: Mapping[str, tuple[str, ...]]
     tick: str | None
+    tick_is_optional: bool
     builds: bool
     templates: tuple[str, ...]
     shared: tuple[str, ...]
@@ -204,6 +211,12 @@ class Target:
     def has_pins(self) -> bool:
         """Whether users name pins; else EPG numbers them."""
         return self.soc.automatic_pins == 0
+
+    @property
+    def tick(self) -> str | None:
+        """The class of the peripheral that times the control loop, None where the system software does."""
+        name = self.platform.tick
+        return None if self.platform.tick_is_optional and name not in self.soc.classes else name
 
     def resource_class(self, name: str) -> ResourceClass | None:
         """How this target implements a class, or None if it does not."""
@@ -236,6 +249,8 @@ def make_board(node: Node, folder: Path) -> Board:
         pin: OnboardPin(text_of(child, "title"), texts_of(child, "classes"))
         for pin, child in map_of(node, "onboard").items()
     }
+    devicetree = node.get("devicetree")
+    nodes = map_of(devicetree, "nodes") if devicetree is not None else {}
     return Board(
         name=text_of(node, "board"),
         summary=text_of(node, "summary"),
@@ -246,6 +261,11 @@ def make_board(node: Node, folder: Path) -> Board:
         onboard=MappingProxyType(onboard),
         reserved=MappingProxyType({pin: str(reason.value) for pin, reason in map_of(node, "reserved").items()}),
         sdks=MappingProxyType({sdk: str(name.value) for sdk, name in map_of(node, "sdks").items()}),
+        lacks=MappingProxyType({name: str(reason.value) for name, reason in map_of(node, "lacks").items()}),
+        devicetree=MappingProxyType(
+            {label: tuple(str(pin.value) for pin in pins.elements()) for label, pins in nodes.items()}
+        ),
+        console=text_of(devicetree, "console") if devicetree is not None else "",
         node=node,
         folder=folder,
         span=node["board"].span,
@@ -268,6 +288,7 @@ def make_platform(node: Node, folder: Path) -> Platform:
         classes=texts_of(node, "classes"),
         middlewares=MappingProxyType(middlewares),
         tick=str(tick.value) if tick is not None else None,
+        tick_is_optional=tick is not None and flag_of(node["tick"], "optional"),
         builds=flag_of(node, "builds"),
         templates=texts_of(node, "templates"),
         shared=texts_of(node, "shared"),

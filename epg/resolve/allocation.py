@@ -8,7 +8,7 @@ and if that is impossible, :mod:`epg.resolve.conflict` says which claims are in 
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from types import MappingProxyType
 
@@ -31,8 +31,9 @@ class Assignment:
 
     ``pins`` maps signals to the chip's numbers of pins, ``block`` and ``unit`` are the numbers of instance and slot
     (unit 0 where all of the instance is taken), ``settings`` holds ``prescaler`` and ``top`` where there is a divider.
-    ``resource`` is what people call it: "PWM slice 1, channel A".  ``frequency`` is what the divider makes, in Hz, and
-    ``asked`` what was asked of it; None without one.
+    ``resource`` is what people call it: "PWM slice 1, channel A", ``instance`` and ``slot`` what the chip's data call
+    its parts.  ``frequency`` is what the divider makes, in Hz, and ``asked`` what was asked of it; None without one.
+    ``attributes`` are those of the claim, in base units.
     """
 
     pins: Mapping[str, int]
@@ -44,6 +45,9 @@ class Assignment:
     asked: Fraction | None = None
     pins_are_real: bool = True
     """False where EPG numbered the pins, as the target has none."""
+    instance: str = ""
+    slot: str = ""
+    attributes: Mapping[str, object] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -240,7 +244,14 @@ def _assignment(placed: _Placed, peripheral: Peripheral, place: Place, target: T
         frequency=frequency,
         asked=asked,
         pins_are_real=target.has_pins,
+        instance=peripheral.instances[instance],
+        slot="" if whole else peripheral.slots[slot],
+        attributes=_attributes(placed.claim),
     )
+
+
+def _attributes(claim: Claim) -> Mapping[str, object]:
+    return MappingProxyType({name: stated.value for name, stated in claim.attributes.items()})
 
 
 def _asked(placed: _Placed) -> Fraction:
@@ -262,4 +273,5 @@ def _pins_only(placed: _Placed, target: Target) -> Assignment:
         settings=MappingProxyType({}),
         resource=f"{'pin' if target.has_pins else 'simulated pin'} {names}",
         pins_are_real=target.has_pins,
+        attributes=_attributes(placed.claim),
     )

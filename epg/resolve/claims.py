@@ -70,11 +70,11 @@ def tick_claims(target: Target, period: Fraction | None, span: Span) -> tuple[Cl
 
     ``period`` in seconds; None, when it is not known yet, still claims the peripheral.
     """
-    if target.platform.tick is None:
+    if target.tick is None:
         return ()
     attributes = {} if period is None else {"period": Stated(period, span)}
     where = target.platform.node["tick"].span
-    return (Claim(*TICK, target.platform.tick, MappingProxyType({}), MappingProxyType(attributes), span, where),)
+    return (Claim(*TICK, target.tick, MappingProxyType({}), MappingProxyType(attributes), span, where),)
 
 
 def _claims(components: Iterable[Component], with_pins: bool) -> Iterable[Claim]:
