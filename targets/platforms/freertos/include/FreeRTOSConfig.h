@@ -43,7 +43,7 @@
 #define configTIMER_TASK_STACK_DEPTH configMINIMAL_STACK_SIZE
 
 /* Hooks and checks */
-#define configUSE_IDLE_HOOK 0
+#define configUSE_IDLE_HOOK 1
 #define configUSE_TICK_HOOK 0
 #define configUSE_MALLOC_FAILED_HOOK 0
 #define configUSE_DAEMON_TASK_STARTUP_HOOK 0
