@@ -1,4 +1,4 @@
-"""Every image that the predefined configurations give: JIWY and RELbot (a model in C++), with the console too."""
+"""Every image that the predefined configurations give: JIWY and RELbot (a model in C++), by middleware."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tests.platforms.pico.images import TARGETS, images, size_of, skip_unless_bu
 pytestmark = pytest.mark.long
 
 
-@pytest.mark.parametrize("middleware", ["none", "console"])
+@pytest.mark.parametrize("middleware", ["none", "console", "xrce", "xrce_console"])
 @pytest.mark.parametrize(("board", "platform"), TARGETS)
 def test_both_robots(board: str, platform: str, middleware: str) -> None:
     skip_unless_buildable(platform)
