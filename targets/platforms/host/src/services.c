@@ -16,29 +16,10 @@
 
 enum { LONGEST_SLEEP_NS = 1000 * 1000 };
 
-/** One that needs no stream can wait for its own connection. */
-static bool connects_itself(const epg_target_t *target)
-{
-    return target->middleware != NULL && target->middleware->wait != NULL;
-}
-
-bool epg_host_is_connected(const epg_host_target_t *host)
-{
-    return host->agent != NULL || connects_itself(host->target);
-}
-
-const epg_middleware_t *epg_host_console(const epg_host_target_t *host)
-{
-    if (host->target->console != NULL || epg_host_is_connected(host)) {
-        return host->target->console;
-    }
-    return host->target->middleware;
-}
-
 /** The target's middleware, if it is not the one on the terminal. */
 static const epg_middleware_t *connected(const epg_host_services_t *services)
 {
-    return services->link != NULL || connects_itself(services->target) ? services->target->middleware : NULL;
+    return services->link != NULL || epg_host_connects_itself(services->target) ? services->target->middleware : NULL;
 }
 
 /** What is on the terminal. */

@@ -25,6 +25,9 @@ typedef struct epg_host_services {
     epg_host_terminal_t *terminal; /**< NULL: there is none */
 } epg_host_services_t;
 
+/** Whether the target's middleware makes its connection itself. */
+bool epg_host_connects_itself(const epg_target_t *target);
+
 /** Whether the target's middleware has a connection, and needs no terminal. */
 bool epg_host_is_connected(const epg_host_target_t *host);
 

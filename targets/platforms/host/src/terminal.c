@@ -3,6 +3,7 @@
  * Streams to whoever sits at the computer.
  */
 #if defined(__linux__)
+#undef _XOPEN_SOURCE /* a build may ask for an older one */
 #define _XOPEN_SOURCE 700
 #endif
 

@@ -14,6 +14,7 @@
 
 #include "epg/host.h"
 #include "epg/transport.h"
+#include "epg/zephyr.h"
 
 /** The target of this image, its plant and what can be recorded; generated. */
 extern const epg_host_target_t *const epg_native_sim_target;
