@@ -9,12 +9,41 @@
 
 #include "micro_ros_system.h"
 
+#ifdef EPG_MICRO_ROS_TIMEOUTS
+
 /* Milliseconds that one entity may take to be made; libmicroros itself has 1000. */
 enum { CREATION_MS = 500 };
 
 /* Of a reliable publication: a negative time is none at all.  With 0 the client library waits to the end of the
    millisecond. */
 enum { PUBLISH_MS = -1 };
+
+static void set_context_timeouts(rmw_context_t *context)
+{
+    (void)rmw_uros_set_context_entity_creation_session_timeout(context, CREATION_MS);
+    (void)rmw_uros_set_context_entity_destroy_session_timeout(context, 0);
+}
+
+static bool set_publisher_timeout(const rcl_publisher_t *publisher)
+{
+    return rmw_uros_set_publisher_session_timeout(rcl_publisher_get_rmw_handle(publisher), PUBLISH_MS) == RMW_RET_OK;
+}
+
+#else
+
+/* Galactic: all are those that libmicroros was built with. */
+static void set_context_timeouts(const rmw_context_t *context)
+{
+    (void)context;
+}
+
+static bool set_publisher_timeout(const rcl_publisher_t *publisher)
+{
+    (void)publisher;
+    return true;
+}
+
+#endif
 
 /** Of what is given back: an error says only that the agent has not confirmed, which nobody waits for. */
 static void ignore(rcl_ret_t result)
@@ -49,8 +78,7 @@ bool epg_micro_ros_entities_connect(epg_micro_ros_entities_t *entities, uint32_t
         options.enable_rosout = false;
         options.allocator = epg_micro_ros_memory();
         entities->rcl_node = rcl_get_zero_initialized_node();
-        (void)rmw_uros_set_context_entity_creation_session_timeout(context, CREATION_MS);
-        (void)rmw_uros_set_context_entity_destroy_session_timeout(context, 0);
+        set_context_timeouts(context);
         entities->named = rcl_node_init(&entities->rcl_node, node->name, node->name_space, &entities->context,
                                         &options) == RCL_RET_OK;
     }
@@ -80,7 +108,7 @@ static bool make_publisher(epg_micro_ros_entities_t *entities, size_t index)
     return epg_node_topic(entities->node, topic, name, sizeof name) > 0 &&
            epg_micro_ros_type_make(type, topic->message) &&
            rcl_publisher_init(publisher, &entities->rcl_node, &type->support, name, &options) == RCL_RET_OK &&
-           rmw_uros_set_publisher_session_timeout(rcl_publisher_get_rmw_handle(publisher), PUBLISH_MS) == RMW_RET_OK;
+           set_publisher_timeout(publisher);
 }
 
 static bool make_subscription(epg_micro_ros_entities_t *entities, size_t index)

@@ -11,6 +11,11 @@
 #error "libmicroros was built for a transport of its own: rebuild it with -DRMW_UXRCE_TRANSPORT=custom"
 #endif
 
+/* A ping has a frame on its stack, and middleware.yaml says how large that stack is. */
+#if UXR_CONFIG_CUSTOM_TRANSPORT_MTU > 2048
+#error "libmicroros was built for frames of more than 2048 bytes: rebuild it with -DUCLIENT_CUSTOM_TRANSPORT_MTU=1536"
+#endif
+
 /** Bytes around a message in a frame: header of the frame, of the submessage, and whose it is. */
 #define EPG_MICRO_ROS_OVERHEAD 16
 

@@ -36,11 +36,13 @@ def image(platform: str, executable: str) -> Path:
 class Jiwy:
     """A Pico that has started, its console open, connected to its agent."""
 
-    def __init__(self, platform: str, executable: str = "jiwy_firmware", seed: int = 3) -> None:
+    def __init__(
+        self, platform: str, executable: str = "jiwy_firmware", seed: int = 3, elf: Path | None = None
+    ) -> None:
         self.platform = platform
         self._reconnects = 0
         self._since = 0
-        self.pico = Emulator(image(platform, executable), usb={"seed": seed, "open": False})
+        self.pico = Emulator(elf or image(platform, executable), usb={"seed": seed, "open": False})
         connect(self.pico, {"pan": 0.12, "tilt": 0.12})
         for name, symbol in SPANS.items():
             self.pico.call("watch_span", name=name, core=1, **{"from": symbol, "to": "return"})

@@ -1,0 +1,39 @@
+"""JIWY's firmware with the middleware ``micro_ros``, built with a libmicroros of the user's, for FreeRTOS on a Pico."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from tests.emulator.build import build
+from tests.platforms.pico.images import PROJECT, skip_unless_buildable, skip_unless_emulated
+from tests.platforms.pico.xrce.board import Jiwy
+
+VARIABLE = "EPG_TEST_MICRO_ROS_PICO"
+"""Names that library: MICRO_ROS_PATH is for this computer's."""
+FIRMWARE = "jiwy_firmware"
+
+
+def library() -> str:
+    """The user's libmicroros for Cortex-M0+, or a skip."""
+    folder = os.environ.get(VARIABLE)
+    if not folder:
+        pytest.skip(f"{VARIABLE} does not name a libmicroros for Cortex-M0+: docs/micro-ros.md says what one has")
+    return folder
+
+
+def firmware(board: str = "pico") -> Path:
+    skip_unless_buildable("freertos")
+    variables = {"PLATFORM": "freertos", "MIDDLEWARE": "micro_ros_console", "MICRO_ROS_PATH": library()}
+    return build(PROJECT, board=board, targets=[FIRMWARE], variables=variables) / f"{FIRMWARE}.elf"
+
+
+class MicroRosJiwy(Jiwy):
+    """As a Pico with ``xrce``: the same agent, the same topics."""
+
+    def __init__(self, seed: int = 3) -> None:
+        library()
+        skip_unless_emulated("freertos")
+        super().__init__("freertos", seed=seed, elf=firmware())

@@ -1,0 +1,67 @@
+"""What an agent and a cable can do to JIWY's firmware with micro-ROS; its stack; a Pico 2."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+
+from tests.platforms.pico.images import binutils
+from tests.platforms.pico.stacks.workload import COMMANDS
+from tests.platforms.pico.xrce.board import CONSOLE_PORT
+from tests.platforms.pico.xrce.scenarios import SCENARIOS, SILENCE, assert_is_back, hold, restart
+
+from .firmware import MicroRosJiwy, firmware
+
+pytestmark = pytest.mark.long
+
+
+def test_all_that_happens_to_xrce() -> None:
+    with MicroRosJiwy() as jiwy:
+        jiwy.home()
+        for scenario in SCENARIOS.values():
+            hold(jiwy)
+            scenario(jiwy)
+            assert_is_back(jiwy)
+
+
+def test_restarts() -> None:
+    with MicroRosJiwy() as jiwy:
+        jiwy.home()
+        hold(jiwy)
+        most = jiwy.pico.word("arena", offset=8)
+        restart(jiwy, times=50)
+        assert jiwy.pico.word("arena", offset=8) == most
+        assert_is_back(jiwy)
+
+
+@pytest.mark.parametrize("seed", [3, 4])
+def test_a_quarter_is_left_of_the_stack(seed: int) -> None:
+    """The console does all it can while the node is made, lost and looked for."""
+    draw = random.Random(seed)
+    with MicroRosJiwy(seed) as jiwy:
+        jiwy.agent.run(300)
+        text = "".join(f"{draw.choice(COMMANDS)}\n" for _ in range(400))
+        jiwy.pico.call("usb_flood", text=text, port=CONSOLE_PORT)
+        jiwy.agent.run(300)
+        for _ in range(4):
+            jiwy.agent.restart()
+            jiwy.agent.run(150)
+        jiwy.agent.freeze()
+        jiwy.agent.run(SILENCE + 500)
+        jiwy.agent.thaw()
+        jiwy.agent.run(400)
+        jiwy.pico.call("usb_flood", on=False, port=CONSOLE_PORT)
+        jiwy.agent.run(500)
+        jiwy.pico.send("\nwatch off\n", port=CONSOLE_PORT)
+        jiwy.agent.run(300)
+        stats = jiwy.stats()
+        used, size = int(stats["communication_stack_used"]), int(stats["communication_stack_size"])
+        assert used > 3500, "the work is as hard as it was when the size was chosen"
+        assert used * 5 <= size * 4
+        assert (stats["missed"], stats["overruns"]) == ("0", "0")
+
+
+def test_a_pico_2_can_have_the_same_library() -> None:
+    """Linked, not run."""
+    assert " clock_gettime" in binutils("nm", str(firmware("pico2")))
