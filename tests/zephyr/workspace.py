@@ -52,7 +52,28 @@ class Workspace:
         if "ZEPHYR_TOOLCHAIN_VARIANT" not in environment:
             environment["ZEPHYR_TOOLCHAIN_VARIANT"] = "gnuarmemb"
             environment["GNUARMEMB_TOOLCHAIN_PATH"] = str(arm_gcc().parent.parent)
+            # Debian's picolibc keeps errno per thread
+            environment["ZEPHYR_TOOLCHAIN_SUPPORTS_THREAD_LOCAL_STORAGE"] = "y"
         return environment
+
+
+def c_library() -> dict[str, str]:
+    """CMake settings for a complete C library, which targets need.  Raises :class:`Missing`.
+
+    Toolchains that Zephyr knows have one: its own SDK picolibc, Arm's newlib.  Debian's newlib is built without the
+    locks that Zephyr's part of it is for; its picolibc, a package of its own, serves.
+    """
+    if os.environ.get("ZEPHYR_TOOLCHAIN_VARIANT", "gnuarmemb") != "gnuarmemb":
+        return {}
+    compiler = str(arm_gcc())
+    source = "#include <newlib.h>\n#ifndef _RETARGETABLE_LOCKING\n#error\n#endif\n"
+    command = [compiler, "-x", "c", "-fsyntax-only", "-"]
+    if subprocess.run(command, input=source, text=True, capture_output=True, check=False).returncode == 0:
+        return {}
+    command = [compiler, "-print-file-name=picolibc.specs"]
+    if not Path(subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()).is_absolute():
+        raise Missing("a C library that Zephyr can use is not installed: apt install picolibc-arm-none-eabi")
+    return {"TOOLCHAIN_HAS_PICOLIBC": "ON"}
 
 
 def need_twister(here: Workspace) -> None:
