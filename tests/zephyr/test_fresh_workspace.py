@@ -11,8 +11,8 @@ import pytest
 
 from tests.emulator.toolchain import ROOT, arm_gcc, skip_if_missing
 
-from .west_workspace import BOARDS, fresh_workspace, west
-from .workspace import workspace
+from .west_workspace import BOARDS, fresh_workspace, west, west_build
+from .workspace import c_library, workspace
 
 pytestmark = pytest.mark.long
 
@@ -20,7 +20,7 @@ pytestmark = pytest.mark.long
 @pytest.fixture(scope="module")
 def place(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     """The workspace of ``examples/zephyr_jiwy``; half a gigabyte, so it does not stay."""
-    skip_if_missing(partial(workspace, *BOARDS), arm_gcc)
+    skip_if_missing(partial(workspace, *BOARDS), arm_gcc, c_library)
     folder = tmp_path_factory.mktemp("fresh") / "my workspace"
     yield fresh_workspace("examples/zephyr_jiwy", folder)
     shutil.rmtree(folder)
@@ -36,7 +36,7 @@ def test_all_comes_from_the_manifest(place: Path) -> None:
 @pytest.mark.parametrize("board", BOARDS)
 def test_jiwy(board: str, place: Path) -> None:
     """As the README says it; EPG is the workspace's own, which west is asked for."""
-    output = west(place, "build", "-b", board, "-d", f"build/{board}", "jiwy/app")
+    output = west_build(place, "-b", board, "-d", f"build/{board}", "jiwy/app")
     assert "warning: " not in output
     build = place / "build" / board
     assert (build / "zephyr/zephyr.elf").stat().st_size > 100_000

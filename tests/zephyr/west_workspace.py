@@ -1,7 +1,7 @@
 """Workspaces that west has made from a manifest, and builds in them, as somebody makes them for the first time.
 
 >>> # place = fresh_workspace("examples/zephyr_jiwy", tmp_path / "ws")      # west init, west update
->>> # west(place, "build", "-b", "rpi_pico", "jiwy/app")
+>>> # west_build(place, "-b", "rpi_pico", "jiwy/app")
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from pathlib import Path
 from tests.emulator.toolchain import ROOT
 
 from .mirror import mirror
-from .workspace import HALS, BuildError, workspace
+from .workspace import HALS, BuildError, c_library, workspace
 
 BOARDS = ("rpi_pico", "nucleo_h743zi")
 assert set(BOARDS) <= set(HALS)
@@ -30,6 +30,12 @@ def west(folder: Path, *words: str, check: bool = True) -> str:
     if check and done.returncode != 0:
         raise BuildError(f"west {' '.join(words)}\n{done.stdout}")
     return done.stdout
+
+
+def west_build(folder: Path, *words: str) -> str:
+    """``west build``, with a C library where the compiler needs to be told of one.  Raises :class:`BuildError`."""
+    settings = [f"-D{name}={value}" for name, value in c_library().items()]
+    return west(folder, "build", *words, *(["--", *settings] if settings else []))
 
 
 def fresh_workspace(repository: str, folder: Path) -> Path:
