@@ -16,7 +16,7 @@ from epg.check.compose import (
     typed_parameters,
 )
 from epg.check.merge import apply_settings, merge_chain
-from epg.check.middleware import check_offer, offered
+from epg.check.middleware import check_offer, offered, unoffered_hint
 from epg.check.names import identifier_problem, normal_namespace
 from epg.check.schema import extended_from, load_schema, validate
 from epg.check.topics import Use, check_names
@@ -261,7 +261,7 @@ def _communication(
     if target and name not in possible:
         assert middleware is not None
         message = f"{target.platform.name} has no middleware '{name}'"
-        hint = did_you_mean(name, possible, "it has")
+        hint = unoffered_hint(name, possible, catalog)
         diagnostics.error("unknown-middleware", middleware.span, message, hint=hint, notes=extended_from(middleware))
     elif target and transport is not None and not _is_reported(str(transport.value), root, components):
         known = _transports(name, possible, components)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from epg.check.compose import parameter_problems
 from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.load.catalog import Catalog
@@ -54,6 +56,14 @@ def offered(target: Target, catalog: Catalog) -> dict[str, tuple[str, ...]]:
         if middleware is not None and target.platform.name in middleware.platforms:
             result[name] = middleware.platforms[target.platform.name]
     return result
+
+
+def unoffered_hint(name: str, possible: Iterable[str], catalog: Catalog) -> str:
+    """What to write instead of a middleware that is not among the ``possible`` ones of a target."""
+    middleware = catalog.find_middleware(name) if name in catalog.names("middleware") else None
+    if middleware is None or not middleware.platforms:
+        return did_you_mean(name, possible, "it has")
+    return f"it has: {', '.join(sorted(possible))}; '{name}' runs on: {', '.join(sorted(middleware.platforms))}"
 
 
 def check_offer(target: Target, middleware: Middleware, diagnostics: Diagnostics) -> None:
