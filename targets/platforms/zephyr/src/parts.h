@@ -114,16 +114,19 @@ typedef struct epg_zephyr_lines {
     const struct device *device;
     epg_ring_t *received;
     epg_ring_t *sent;
-    atomic_uint *damaged; /**< counts bytes that came with an error; NULL: nobody wants to know */
+    atomic_uint *damaged; /**< counts errors of what comes; NULL: there are none */
     bool back_pressure;   /**< a full ring makes the other end wait; false: what comes then is lost and counted */
+    atomic_bool full;     /**< it waits */
 } epg_zephyr_lines_t;
 
-/** Starts with empty rings; false when the device has no interrupts.  `lines` must stay. */
-bool epg_zephyr_lines_start(const epg_zephyr_lines_t *lines);
+/** Starts with empty rings; false when the device has no interrupts.  `lines` must stay.  A second call starts anew. */
+bool epg_zephyr_lines_start(epg_zephyr_lines_t *lines);
 
-/** There is something in `lines->sent`, or room in `lines->received` again. */
+/** There is something in `lines->sent`: it is taken out and sent. */
 void epg_zephyr_lines_send(const epg_zephyr_lines_t *lines);
-void epg_zephyr_lines_receive(const epg_zephyr_lines_t *lines);
+
+/** There may be room in `lines->received` again. */
+void epg_zephyr_lines_go_on(epg_zephyr_lines_t *lines);
 
 /* native_sim: what is simulated around the control cycles ----------------------------------------------------------- */
 

@@ -1,0 +1,46 @@
+/**
+ * @file
+ * UARTs.  Their baud rates and pins are the devicetree's.
+ */
+#include <zephyr/drivers/uart.h>
+#include <zephyr/kernel.h>
+
+#include "epg/port_uart.h"
+#include "parts.h"
+
+/** UARTs of one target. */
+#define UARTS 4U
+
+static epg_zephyr_lines_t lines[UARTS];
+
+/** The row of the table; `UARTS` when there is none. */
+static size_t find(const epg_port_uart_t *port)
+{
+    for (size_t i = 0; i < epg_zephyr_hardware.uart_count && i < UARTS; i++) {
+        if (epg_zephyr_hardware.uarts[i].block == port->block) {
+            return i;
+        }
+    }
+    return UARTS;
+}
+
+bool epg_port_uart_start(const epg_port_uart_t *port)
+{
+    const size_t row = find(port);
+    if (row == UARTS || !epg_zephyr_ready(epg_zephyr_hardware.uarts[row].device)) {
+        return false;
+    }
+    lines[row].device = epg_zephyr_hardware.uarts[row].device;
+    lines[row].received = &port->lines->received;
+    lines[row].sent = &port->lines->sent;
+    lines[row].damaged = &port->lines->damaged;
+    return epg_zephyr_lines_start(&lines[row]);
+}
+
+void epg_port_uart_send(const epg_port_uart_t *port)
+{
+    const size_t row = find(port);
+    if (row < UARTS && lines[row].device != NULL) {
+        epg_zephyr_lines_send(&lines[row]);
+    }
+}

@@ -1,0 +1,118 @@
+/**
+ * @file
+ * The transport `usb`: serial ports over USB (CDC ACM).  Nothing here waits for the host.
+ *
+ * What a port is for stands in the property label of its node, which USB shows as the name of the interface.
+ */
+#include "usb.h"
+
+#include <zephyr/devicetree.h>
+#include <zephyr/drivers/uart.h>
+#include <zephyr/kernel.h>
+
+#include "parts.h"
+
+typedef struct port {
+    epg_ring_t received;
+    epg_ring_t sent;
+    epg_zephyr_lines_t lines;
+    bool open; /* at the last poll */
+} port_t;
+
+static bool is_open(const port_t *port)
+{
+    uint32_t dtr = 0;
+    return uart_line_ctrl_get(port->lines.device, UART_LINE_CTRL_DTR, &dtr) == 0 && dtr != 0U;
+}
+
+static bool start(void *context, const char *title)
+{
+    port_t *port = context;
+    ARG_UNUSED(title);
+    port->open = false;
+    return epg_zephyr_ready(port->lines.device) && epg_zephyr_usb_device_start() &&
+           epg_zephyr_lines_start(&port->lines);
+}
+
+/**
+ * Who opens the port next gets nothing that was meant for who has closed it, but for what is in Zephyr's own buffer
+ * (tx-fifo-size of the node).
+ */
+static void drop(port_t *port)
+{
+    unsigned char byte;
+    while (epg_ring_take(&port->received, &byte)) {
+    }
+    const unsigned int key = irq_lock(); /* it is the other side that takes out of this ring */
+    port->sent.taken_at = port->sent.put_at;
+    atomic_store(&port->sent.taken, atomic_load(&port->sent.put));
+    irq_unlock(key);
+}
+
+static void poll(void *context)
+{
+    port_t *port = context;
+    const bool open = is_open(port);
+    if (port->open && !open) {
+        drop(port);
+    }
+    port->open = open;
+    epg_zephyr_lines_go_on(&port->lines);
+}
+
+static void flush(void *context)
+{
+    const port_t *port = context;
+    epg_zephyr_lines_send(&port->lines);
+}
+
+/* Somebody has opened the port: terminals and agents set DTR. */
+static bool connected(void *context)
+{
+    const port_t *port = context;
+    return port->open;
+}
+
+static size_t read(void *context, void *data, size_t size)
+{
+    port_t *port = context;
+    const size_t count = epg_ring_read(&port->received, data, size);
+    epg_zephyr_lines_go_on(&port->lines);
+    return count;
+}
+
+static size_t write(void *context, const void *data, size_t size)
+{
+    port_t *port = context;
+    return port->open ? epg_ring_write(&port->sent, data, size) : 0U;
+}
+
+static size_t writable(void *context)
+{
+    const port_t *port = context;
+    return port->open ? epg_ring_room(&port->sent) : 0U;
+}
+
+#define PORT_DEFINE(name, node)                                                                                        \
+    static unsigned char name##_received[CONFIG_EPG_USB_RECEIVE_SIZE];                                                 \
+    static unsigned char name##_sent[CONFIG_EPG_USB_SEND_SIZE];                                                        \
+    static port_t name##_port = {                                                                                      \
+        .received = {.bytes = name##_received, .size = sizeof name##_received},                                        \
+        .sent = {.bytes = name##_sent, .size = sizeof name##_sent},                                                    \
+        .lines = {.device = DEVICE_DT_GET(node),                                                                       \
+                  .received = &name##_port.received,                                                                   \
+                  .sent = &name##_port.sent,                                                                           \
+                  .back_pressure = true},                                                                              \
+    };                                                                                                                 \
+    const epg_transport_t epg_zephyr_##name = {                                                                        \
+        .start = start,                                                                                                \
+        .poll = poll,                                                                                                  \
+        .flush = flush,                                                                                                \
+        .stream =                                                                                                      \
+            {.connected = connected, .read = read, .write = write, .writable = writable, .context = &name##_port},     \
+    }
+
+PORT_DEFINE(usb, DT_NODELABEL(epg_usb));
+#if DT_NODE_HAS_STATUS_OKAY(DT_NODELABEL(epg_usb_second))
+PORT_DEFINE(usb_second, DT_NODELABEL(epg_usb_second));
+#endif
