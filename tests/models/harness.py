@@ -99,6 +99,7 @@ def build(
         "-w",
         *options,
         *(f"-I{directory}" for directory in made.include_dirs),
+        *(f"-I{output}/{directory}" for directory in made.generated_include_dirs),
         f"-I{output}",
         f"-I{output}/{name}_headers",
     ]

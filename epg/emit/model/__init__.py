@@ -14,7 +14,9 @@ Names of generated files and symbols begin with the name of the library:
 ``<name>_copies/<file>``
     a copy of one of the model's files with other parameter values
 ``<name>_headers/``
-    headers the model includes under a name of another case
+    headers the model includes under a name of another case, and those of FMI
+``<name>_fmu/``
+    the sources of an FMU that is an archive
 """
 
 from __future__ import annotations

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from epg.emit.model.copies import copies, copy_name
-from epg.load.models.details import CFunctionExport, CppClassExport, HandWritten
+from epg.emit.model.fmu_code import fmu_folder
+from epg.load.models.details import CFunctionExport, CppClassExport, FmuExport, HandWritten
 from epg.load.models.model import Model
 
 
@@ -16,8 +17,9 @@ class ModelBuild:
     """Files are relative to the folder of the generated files unless they are paths.
 
     ``generated`` is compiled with the project's options.  ``exported_generated`` and ``exported`` are the model's own
-    code: without warnings, as C11 or C++17, with ``-ffp-contract=off``, with ``include_dirs`` as their private include
-    path, followed by the generated folder and its ``<name>_headers``, and with ``forced_header`` included first.
+    code: without warnings, as C11 or C++17, with ``-ffp-contract=off``, with ``include_dirs`` (and, in the generated
+    folder, ``generated_include_dirs``) as their private include path, followed by the generated folder and its
+    ``<name>_headers``, and with ``forced_header`` included first.
     """
 
     generated: tuple[str, ...]
@@ -26,6 +28,7 @@ class ModelBuild:
     include_dirs: tuple[Path, ...]
     forced_header: str | None
     language: str  # "c" or "c++"
+    generated_include_dirs: tuple[str, ...] = ()
 
 
 def model_build(model: Model, name: str, parameters: Mapping[str, float] | None = None) -> ModelBuild:
@@ -36,8 +39,16 @@ def model_build(model: Model, name: str, parameters: Mapping[str, float] | None 
     exported: tuple[Path, ...] = ()
     directories: tuple[Path, ...] = ()
     forced: str | None = None
+    generated_directories: tuple[str, ...] = ()
     details = model.details
-    if isinstance(details, CFunctionExport):
+    if isinstance(details, FmuExport):
+        folder = fmu_folder(name)
+        own += [f"{folder}/{unit}" for unit in details.packed_units]
+        generated_directories = tuple(f"{folder}/{place}" for place in details.packed_include_dirs)
+        if not details.packed:
+            exported, directories = details.units, details.include_dirs
+        forced = f"{name}_names.h"
+    elif isinstance(details, CFunctionExport):
         units = [code.file.path for code in details.linked.units]
         exported = tuple(path for path in units if copy_name(name, path) not in edited)
         own += sorted(edited)
@@ -51,4 +62,5 @@ def model_build(model: Model, name: str, parameters: Mapping[str, float] | None 
         if model.language == "c":
             exported = details.sources
             forced = f"{name}_names.h"
-    return ModelBuild((f"{name}.c",), tuple(own), exported, directories, forced, model.language)
+    generated = (f"{name}.c",)
+    return ModelBuild(generated, tuple(own), exported, directories, forced, model.language, generated_directories)

@@ -12,10 +12,11 @@ from typing import Any
 import jinja2
 
 from epg.emit.model.copies import copies, copy_name
+from epg.emit.model.fmu_code import fmu_code, fmu_files
 from epg.emit.model.tokens_code import helper_texts, tokens_code
 from epg.emit.template import environment
 from epg.emit.text import Code, comment
-from epg.load.models.details import CFunctionExport, CppClassExport, HandWritten, TokensExport
+from epg.load.models.details import CFunctionExport, CppClassExport, FmuExport, HandWritten, TokensExport
 from epg.load.models.link import Linked
 from epg.load.models.model import Model, Parameter, Port
 
@@ -29,6 +30,7 @@ def render(model: Model, name: str, values: Mapping[str, float], instances: int)
         "parameters": list(zip(parameter_constants(name, model.parameters), model.parameters)),
         "e": model.details,
         "hand_written": isinstance(model.details, HandWritten),
+        "fmu": isinstance(model.details, FmuExport),
         "about": _about(model),
     }
     env = _environment()
@@ -47,6 +49,11 @@ def render(model: Model, name: str, values: Mapping[str, float], instances: int)
     elif isinstance(details, TokensExport):
         context = common | tokens_code(model, details, values) | {"helpers": helper_texts(details.functions)}
         files[f"{name}_export.c"] = env.get_template("tokens.c.j2").render(context)
+    elif isinstance(details, FmuExport):
+        context = common | fmu_code(model, details, name, values, instances)
+        files[f"{name}_export.c"] = env.get_template("fmu.c.j2").render(context)
+        files[f"{name}_names.h"] = env.get_template("fmu_names.h.j2").render(context)
+        files |= fmu_files(details, name)
     elif isinstance(details, HandWritten):
         context = common | {
             "values": [values.get(parameter.name, parameter.value) for parameter in model.parameters],
@@ -62,7 +69,7 @@ def render(model: Model, name: str, values: Mapping[str, float], instances: int)
 
 
 _PUBLIC = """t inputs inputs_t outputs outputs_t parameter parameter_t instance init step terminate stopped finite
-get_parameter set_parameter""".split()
+get_parameter set_parameter heap_used""".split()
 """What follows ``<name>_`` in the names of types and functions of a library."""
 
 
@@ -70,7 +77,8 @@ def parameter_constants(name: str, parameters: Sequence[Parameter]) -> list[str]
     """Enumerators: ``PAN_PID1_KP``.  Parameters that differ in case only keep theirs: ``PAN_Kp``, ``PAN_KP``."""
     upper = [f"{name}_{parameter.identifier}".upper() for parameter in parameters]
     reserved = {
-        f"{name}_{word}".upper() for word in ("h", "step_size", "instances", "parameters", "export_h", "names_h")
+        f"{name}_{word}".upper()
+        for word in ("h", "step_size", "instances", "parameters", "heap_size", "export_h", "names_h")
     }
     reserved |= {f"{name}_{word}" for word in _PUBLIC}  # a name in capitals: PAN_step() and parameters "step", "STEP"
     result: dict[str, None] = {}  # in order
@@ -93,6 +101,8 @@ def _environment() -> jinja2.Environment:
 
 
 def _about(model: Model) -> str:
+    if isinstance(model.details, FmuExport):
+        return f"Made by {model.details.tool}." if model.details.tool else "An FMU for co-simulation."
     if not model.method:
         return "A model written by hand."
     methods = {"RungeKutta2": "Runge Kutta 2", "RungeKutta4": "Runge Kutta 4"}

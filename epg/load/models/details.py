@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 from pathlib import Path
 
 from epg.load.models.link import Linked
@@ -133,4 +134,59 @@ class HandWritten:
         return bool(self.instance)
 
 
-Details = CFunctionExport | CppClassExport | TokensExport | HandWritten
+@dataclass(frozen=True)
+class FmuPorts:
+    """Ports of one type of FMI, "Real" or "Float64": value references, and positions among all inputs or outputs.
+
+    An array has one reference and several positions.
+    """
+
+    type: str
+    references: tuple[int, ...]
+    positions: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class FmuParameter:
+    """``tunable`` parameters change while the model runs, others before it starts."""
+
+    type: str
+    reference: int
+    tunable: bool
+
+
+@dataclass(frozen=True)
+class FmuExport:
+    """The sources of an FMU behind the functions of FMI 2.0 or 3.0.
+
+    Names of files inside an archive (``packed``, with their texts) begin with ``sources/``; they are empty for a
+    folder, and ``units`` and ``include_dirs`` exist for a folder only.
+    """
+
+    standard: int  # 2 or 3
+    tool: str  # that made it
+    guid: str  # FMI 3.0: instantiation token
+    instance_name: str
+    linked: Linked
+    units: tuple[Path, ...]
+    include_dirs: tuple[Path, ...]
+    packed: tuple[tuple[str, str], ...]
+    packed_units: tuple[str, ...]
+    packed_include_dirs: tuple[str, ...]
+    headers: tuple[str, ...]  # of the standard, that the FMU does not bring
+    definitions: tuple[tuple[str, str], ...]
+    renames: tuple[str, ...]  # global symbols but FMI's functions
+    prefixes: tuple[str, ...]  # that the sources themselves put before the names of FMI's functions
+    plain_names: bool  # no header puts a prefix before these names
+    inputs: tuple[FmuPorts, ...]
+    outputs: tuple[FmuPorts, ...]
+    parameters: tuple[FmuParameter, ...]
+    states: tuple[int, ...]  # value references of continuous states
+    step_argument: Fraction  # of DoStep, in seconds
+    endless: bool  # an end of the experiment is given, far away: without it the FMU takes its own
+    terminated: bool  # fmi2GetBooleanStatus exists
+    heap: int  # bytes of each instance; 0: the FMU allocates nothing
+    instantiable: bool
+
+
+Details = CFunctionExport | CppClassExport | TokensExport | HandWritten | FmuExport

@@ -34,7 +34,7 @@ _CALLED = re.compile(r"(?<!\w)([A-Za-z_]\w{0,255})\s{0,80}\(", re.ASCII)
 _LONGEST_TYPEDEF = 2000
 _LONGEST_HEAD = 2000
 
-_HEAP = words("malloc calloc realloc free strdup aligned_alloc")
+HEAP = words("malloc calloc realloc free strdup aligned_alloc")
 _FILES = words(
     """
     fopen freopen fclose fread fwrite fscanf fgets fputs fputc fgetc getc putc fprintf fflush fseek ftell rewind
@@ -53,7 +53,7 @@ _LIBRARY = words(
     rand srand qsort bsearch exit abort assert defined offsetof va_start va_end va_arg static_assert
     """
 )
-_LIBRARY_ALL = _LIBRARY | {f"{name}f" for name in _LIBRARY} | _HEAP | _FILES | _PRINTS | _CLOCKS
+_LIBRARY_ALL = _LIBRARY | {f"{name}f" for name in _LIBRARY} | HEAP | _FILES | _PRINTS | _CLOCKS
 
 
 def check_method(method: str, diagnostics: Diagnostics, code: Code, start: int) -> None:
@@ -88,12 +88,24 @@ _LOOP_HINT = "break the loop in 20-sim, for example with a delay or a state"
 _CONSTRAINT_HINT = "replace constraint() by an explicit equation in 20-sim"
 
 
-def check_features(linked: Linked, roots: Sequence[Function], method_class: str, diagnostics: Diagnostics) -> None:
-    """Reports everything in the code reachable from ``roots`` that cannot run, or that a user should know of."""
+def check_features(
+    linked: Linked,
+    roots: Sequence[Function],
+    method_class: str,
+    diagnostics: Diagnostics,
+    *,
+    foreign: bool = False,
+    allowed: frozenset[str] = frozenset(),
+) -> None:
+    """Reports everything in the code reachable from ``roots`` that cannot run, or that a user should know of.
+
+    ``foreign`` code is of no known shape: which of its functions exist and are declared is left to the compiler.  It
+    may call what is ``allowed``.
+    """
     reachable = linked.reachable(roots)
     _check_directives(linked, reachable, diagnostics)
     _check_solver_arrays(linked, diagnostics)
-    known = _known_names(linked)
+    known = _known_names(linked) | allowed
     stubs = {
         function.name: (code, function)
         for code, function in reachable
@@ -105,7 +117,10 @@ def check_features(linked: Linked, roots: Sequence[Function], method_class: str,
     declarations = _Declarations(linked)
     for code, function in reachable:
         for name, start in code.calls(function):
-            _check_declared(name, start, code, declarations, told, diagnostics)
+            if not foreign:
+                _check_declared(name, start, code, declarations, told, diagnostics)
+            elif name not in _LIBRARY_ALL and name not in stubs:
+                continue
             _check_call(name, start, code, stubs, known, told, diagnostics)
         if function.owner and not _may_allocate(function):
             for match in re.finditer(r"\bnew\b", code.body(function)):
@@ -205,7 +220,7 @@ def _check_call(
         return
     if name in known or name in told:
         return
-    if name in _HEAP:
+    if name in HEAP:
         diagnostics.error("model-heap", span, f"the model calls {name}()", hint=_HEAP_HINT)
     elif name in _FILES:
         message = f"the model calls {name}(): there are no files on a target"

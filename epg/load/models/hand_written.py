@@ -1,4 +1,4 @@
-"""``model.yaml``: a controller written by hand, with its ports, step size and functions.
+"""``model.yaml`` of a controller written by hand: its ports, step size and functions.
 
 The whole file is checked here, by the same rules as ``schemas/model.schema.json`` states for editors.
 """
@@ -8,25 +8,21 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
-from fractions import Fraction
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.load.models import details
-from epg.load.models.assignments import is_step
 from epg.load.models.c_code import parse_code
+from epg.load.models.fmu_settings import FmuSettings
 from epg.load.models.folders import source_files
 from epg.load.models.identifiers import is_reserved, one_line, to_identifier
 from epg.load.models.model import Model, Parameter, Port
+from epg.load.models.model_yaml import ModelYaml
 from epg.load.models.ports import check_identifiers
 from epg.load.models.source_file import is_includable, read_source
 from epg.load.text_file import is_file, is_folder
 from epg.load.yaml_file import load_yaml
-from epg.quantity import QuantityError, parse_quantity
 from epg.source import Node, Span
-
-FILE_NAME = "model.yaml"
-VERSION = 1
 
 _KEYS = {
     "version": "number",
@@ -61,29 +57,15 @@ def load_hand_written(path: Path, diagnostics: Diagnostics) -> Model | None:
     node = load_yaml(path, diagnostics)
     if node is None:
         return None
-    reader = _Reader(path, node, diagnostics)
+    reader = FmuSettings(path, node, diagnostics) if "fmu" in node else _Reader(path, node, diagnostics)
     model = reader.load()
     return model if diagnostics.error_count == before else None
 
 
-class _Reader:
-    def __init__(self, path: Path, node: Node, diagnostics: Diagnostics) -> None:
-        self.path = path
-        self.node = node
-        self.diagnostics = diagnostics
-
+class _Reader(ModelYaml):
     def load(self) -> Model | None:
-        if not self.node.is_mapping:
-            self._error(
-                "wrong-type", self.node.span, "a model.yaml is a map (key: value)", "it begins with 'version: 1'"
-            )
+        if not self._begin(tuple(_KEYS), _REQUIRED):
             return None
-        if not self._version():
-            return None
-        self._known_keys(self.node, tuple(_KEYS), "")
-        for key in _REQUIRED:
-            if key not in self.node:
-                self._error("missing-key", Span(str(self.path), 1, 1, 2), f"'{key}' is missing", "")
         language = self._choice("language", ("c", "c++"), "c")
         style = self._choice("style", ("struct", "arrays"), "struct")
         step = self._step()
@@ -132,44 +114,6 @@ class _Reader:
         )
 
     # single keys ----------------------------------------------------------------------------------------------------
-
-    def _version(self) -> bool:
-        node = self.node.get("version")
-        if node is None or (node.value == VERSION and not isinstance(node.value, bool)):
-            return True
-        if isinstance(node.value, int) and not isinstance(node.value, bool) and node.value > VERSION:
-            message = f"version {node.value} is newer than this EPG, which reads version {VERSION}"
-            self._error("newer-version", node.span, message, "install a newer EPG")
-        else:
-            self._error("wrong-value", node.span, f"expected version {VERSION}", f"write 'version: {VERSION}'")
-        return False
-
-    def _step(self) -> Fraction | None:
-        node = self.node.get("step")
-        if node is None:
-            return None
-        try:
-            value = parse_quantity(node.value, "time")
-        except QuantityError as problem:
-            self._error(
-                "wrong-unit" if "unit" in str(problem) else "wrong-quantity", node.span, str(problem), problem.hint
-            )
-            return None
-        step = Fraction(value)
-        if not is_step(step):
-            words = "must be more than 0" if step <= 0 else "must be from 1 ns to 1000000 s"
-            self._error("out-of-range", node.span, f"the step {words}", "write for example '1 ms'")
-            return None
-        return step
-
-    def _text(self, key: str) -> str:
-        node = self.node.get(key)
-        if node is None:
-            return ""
-        if not isinstance(node.value, str) or not node.value.strip():
-            self._error("wrong-type", node.span, f"'{key}' must be text", "")
-            return ""
-        return node.value
 
     def _choice(self, key: str, choices: tuple[str, ...], default: str) -> str:
         node = self.node.get(key)
@@ -389,12 +333,3 @@ class _Reader:
             if file is not None:
                 names |= {include.name for include in parse_code(file).includes if include.system}
         return tuple(sorted(names))
-
-    def _known_keys(self, node: Node, keys: tuple[str, ...], where: str) -> None:
-        for key, _ in node.items():
-            if key not in keys:
-                hint = did_you_mean(key, keys, "known keys")
-                self._error("unknown-key", node.key_span(key), f"unknown key '{key}'{where}", hint)
-
-    def _error(self, id: str, span: Span, message: str, hint: str) -> None:
-        self.diagnostics.error(id, span, message, hint=hint)

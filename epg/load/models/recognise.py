@@ -9,9 +9,12 @@ from pathlib import Path
 from epg.diagnostics import Diagnostics
 from epg.load.models import c_function, cpp_class, hand_written
 from epg.load.models.c_code import Code, parse_code
+from epg.load.models.fmu import load_fmu
+from epg.load.models.fmu_files import DESCRIPTION, SUFFIX, is_fmu_folder
 from epg.load.models.folders import source_files
 from epg.load.models.link import is_program
 from epg.load.models.model import Model
+from epg.load.models.model_yaml import FILE_NAME
 from epg.load.models.source_file import read_any_text, read_source
 from epg.load.models.tokens import is_tokens_file, load_tokens
 from epg.load.models.tokens_model import load_tokens_model
@@ -19,7 +22,7 @@ from epg.source import Span
 
 LOOKED_FOR = (
     "a model is a folder with an export of 20-sim (xxsubmod.c and the files beside it, <Submodel>.cpp with common/, "
-    "or tokens.xml) or with a model.yaml"
+    "or tokens.xml), with an FMU, or with a model.yaml"
 )
 _MAX_FILES = 400
 _Loader = Callable[[Diagnostics], "Model | None"]
@@ -79,8 +82,8 @@ def _is_searched(entry: Path) -> bool:
 
 
 def _candidates(folders: list[Path]) -> list[Candidate]:
-    """Models in ``folders``, of the first kind of which there is any: written by hand, sources, tokens."""
-    for find in (_hand_written, _sources, _tokens):
+    """Models in ``folders``, of the first kind of which there is any: written by hand, FMUs, sources, tokens."""
+    for find in (_hand_written, _fmus, _sources, _tokens):
         found = [candidate for folder in folders for candidate in find(folder)]
         if found:
             return found
@@ -88,12 +91,22 @@ def _candidates(folders: list[Path]) -> list[Candidate]:
 
 
 def _hand_written(folder: Path) -> list[Candidate]:
-    path = folder / hand_written.FILE_NAME
+    path = folder / FILE_NAME
     return [_hand_written_candidate(path)] if path.is_file() else []
 
 
 def _hand_written_candidate(path: Path) -> Candidate:
     return Candidate(path, lambda diagnostics: hand_written.load_hand_written(path, diagnostics))
+
+
+def _fmus(folder: Path) -> list[Candidate]:
+    if is_fmu_folder(folder):
+        return [_fmu_candidate(folder, folder / DESCRIPTION)]
+    return [_fmu_candidate(file, file) for file in source_files(folder, (SUFFIX,), 0)]
+
+
+def _fmu_candidate(path: Path, file: Path) -> Candidate:
+    return Candidate(file, lambda diagnostics: load_fmu(path, diagnostics))
 
 
 def _sources(folder: Path) -> list[Candidate]:
@@ -135,6 +148,10 @@ def _tokens_candidate(path: Path) -> Candidate:
 
 def _load_file(path: Path, whole: Span, diagnostics: Diagnostics) -> Model | None:
     suffix = path.suffix.lower()
+    if suffix == SUFFIX:
+        return load_fmu(path, diagnostics)
+    if path.name == DESCRIPTION and is_fmu_folder(path.parent):
+        return load_fmu(path.parent, diagnostics)
     if suffix == ".xml":
         return _tokens_candidate(path).load(diagnostics)
     if suffix in (".yaml", ".yml"):
@@ -149,7 +166,7 @@ def _load_file(path: Path, whole: Span, diagnostics: Diagnostics) -> Model | Non
     elif suffix not in (".h", ".hpp") and read_any_text(path, diagnostics, whole) is None:
         return None
     message = f"'{path.name}' is no model"
-    hint = "name the folder, or the submodel's file (xxsubmod.c, <Submodel>.cpp, tokens.xml, model.yaml)"
+    hint = "name the folder, or the submodel's file (xxsubmod.c, <Submodel>.cpp, tokens.xml, model.yaml, <name>.fmu)"
     diagnostics.error("model-not-recognised", whole, message, hint=hint)
     return None
 
@@ -163,10 +180,8 @@ def _near(path: Path) -> str:
 
 
 def _found(path: Path) -> str:
-    names = [entry.name for entry in source_files(path, (".c", ".cpp", ".xml", ".h", ".emx", ".fmu"), 1)]
+    names = [entry.name for entry in source_files(path, (".c", ".cpp", ".xml", ".h", ".emx"), 1)]
     if any(name.lower().endswith(".emx") for name in names):
         menu = "Tools > Real Time Toolbox > C-Code Generation"
         return f"; generate code from the .emx in 20-sim ({menu}) and name that folder"
-    if any(name.lower().endswith(".fmu") for name in names):
-        return "; unpack the .fmu (it is a zip file) and name its folder 'sources'"
     return f"; found were {', '.join(names[:6])}" if names else ""

@@ -25,15 +25,17 @@ _BLANKED = re.compile(
 STRING = re.compile(r'"((?:\\.|[^"\\\n])*)(?:"|\\?(?=\n|\Z))')
 """A string, or what stands between an opening quote and the end of its line."""
 _DIRECTIVE = re.compile(r"^[ \t]*#(?:\\\r?\n|[^\n])*", re.MULTILINE)
+_LONGEST_SHOWN = 1000
 _NOT_NEWLINE = re.compile(r"[^\n]")
 
 
 @dataclass(frozen=True)
 class SourceFile:
-    """One file of C or C++."""
+    """One file of C or C++.  ``inside`` an archive, its positions carry the text of their line."""
 
     path: Path
     text: str
+    inside: bool = False
 
     @cached_property
     def without_comments(self) -> str:
@@ -54,7 +56,11 @@ class SourceFile:
         line = bisect.bisect_right(self._line_starts, start)
         column = start - self._line_starts[line - 1] + 1
         length = max(1, (end if end is not None else start + 1) - start)
-        return Span(str(self.path), line, column, column + length)
+        shown = None
+        if self.inside:
+            at = self._line_starts[line - 1]
+            shown = self.text[at : at + _LONGEST_SHOWN].split("\n", 1)[0]
+        return Span(str(self.path), line, column, column + length, shown)
 
 
 def read_source(path: Path, diagnostics: Diagnostics, wanted_by: Span | None = None) -> SourceFile | None:

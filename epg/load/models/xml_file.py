@@ -10,10 +10,12 @@ from pathlib import Path
 from xml.parsers import expat
 
 from epg.diagnostics import Diagnostics
-from epg.load.models.source_file import MAX_BYTES
+from epg.load.models.source_file import MAX_BYTES, decode
 from epg.source import Span
 
 MAX_DEPTH = 64
+MAX_ELEMENTS = 250_000
+_IGNORED = "it is ignored; export the model again"
 
 
 @dataclass
@@ -49,7 +51,7 @@ def load_xml(path: Path, diagnostics: Diagnostics, *, required: bool = True) -> 
     Files that only add to what the sources say (``required`` false) give warnings instead of errors.
     """
     report = diagnostics.error if required else diagnostics.warning
-    hint = "" if required else "it is ignored; export the model again"
+    hint = "" if required else _IGNORED
     try:
         with path.open("rb") as file:
             data = file.read(MAX_BYTES + 1)
@@ -61,25 +63,39 @@ def load_xml(path: Path, diagnostics: Diagnostics, *, required: bool = True) -> 
         message = f"'{path.name}' is larger than {MAX_BYTES >> 20} MiB"
         report("model-unreadable", Span(str(path)), message, hint=hint or "is this the right file?")
         return None
-    builder = _Builder(str(path))
+    return parse_xml(data, Span(str(path)), diagnostics, required=required)
+
+
+def parse_xml(
+    data: bytes, whole: Span, diagnostics: Diagnostics, *, required: bool = True, hint: str = "", shown: bool = False
+) -> Element | None:
+    """The root of the document ``data``, which ``whole`` names; as :func:`load_xml`.
+
+    With ``shown``, positions carry the text of their line: the document is inside an archive.
+    """
+    report = diagnostics.error if required else diagnostics.warning
+    hint = hint or ("export the model again" if required else _IGNORED)
+    builder = _Builder(whole.file, decode(data).split("\n") if shown else None)
     try:
         builder.parser.Parse(data, True)
     except expat.ExpatError as error:
-        span = Span(str(path), error.lineno, error.offset + 1, error.offset + 2)
-        report("model-xml", span, f"XML: {expat.ErrorString(error.code)}", hint=hint or "export the model again")
+        span = builder.at(error.lineno, error.offset + 1, 1)
+        report("model-xml", span, f"XML: {expat.ErrorString(error.code)}", hint=hint)
         return None
     except _Refused as error:
-        report("model-xml", builder.span(1), str(error), hint=hint or "export the model again")
+        report("model-xml", builder.span(1), str(error), hint=hint)
         return None
     except (ValueError, LookupError) as error:
-        report("model-xml", Span(str(path), 1, 1, 2), f"XML: {error}", hint=hint or "export the model again")
+        report("model-xml", builder.at(1, 1, 1), f"XML: {error}", hint=hint)
         return None
     return builder.root
 
 
 class _Builder:
-    def __init__(self, file: str) -> None:
+    def __init__(self, file: str, lines: list[str] | None = None) -> None:
         self.file = file
+        self.lines = lines
+        self.count = 0
         self.root: Element | None = None
         self.stack: list[Element] = []
         self.texts: list[list[str]] = []
@@ -91,12 +107,18 @@ class _Builder:
         self.parser.StartDoctypeDeclHandler = self._doctype
 
     def span(self, length: int) -> Span:
-        line, column = self.parser.CurrentLineNumber, self.parser.CurrentColumnNumber + 1
-        return Span(self.file, line, column, column + length)
+        return self.at(self.parser.CurrentLineNumber, self.parser.CurrentColumnNumber + 1, length)
+
+    def at(self, line: int, column: int, length: int) -> Span:
+        text = self.lines[line - 1] if self.lines is not None and 0 < line <= len(self.lines) else None
+        return Span(self.file, line, column, column + length, text)
 
     def _start(self, name: str, attributes: dict[str, str]) -> None:
         if len(self.stack) >= MAX_DEPTH:
             raise _Refused(f"XML: elements nested deeper than {MAX_DEPTH} levels")
+        self.count += 1
+        if self.count > MAX_ELEMENTS:
+            raise _Refused(f"XML: more than {MAX_ELEMENTS} elements")
         element = Element(name, attributes, self.span(len(name) + 1))
         if self.stack:
             self.stack[-1].children.append(element)

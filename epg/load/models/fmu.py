@@ -1,0 +1,253 @@
+"""Source-code FMUs of FMI 2.0 and 3.0 for co-simulation: a ``.fmu``, or the folder it is unpacked to.
+
+>>> # model = load_fmu(Path("servo.fmu"), diagnostics)
+>>> # model.origin, [port.name for port in model.inputs]  ->  'FMI 2.0 FMU', ['setpoint', 'position']
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from fractions import Fraction
+from pathlib import Path
+
+from epg.diagnostics import Diagnostics
+from epg.load.models.assignments import number
+from epg.load.models.details import FmuExport, FmuParameter, FmuPorts
+from epg.load.models.fmu_description import TYPES_2, TYPES_3, Description, Variable, read_description
+from epg.load.models.fmu_features import check_fmu, uses_heap
+from epg.load.models.fmu_files import DESCRIPTION, FmuFiles, read_fmu_files
+from epg.load.models.fmu_sources import FMI_HEADERS, FmuSources, find_sources
+from epg.load.models.identifiers import one_line, to_identifier, unique_identifiers
+from epg.load.models.link import Linked
+from epg.load.models.model import Model, Parameter, Port
+from epg.load.models.ports import check_identifiers
+from epg.load.models.xml_file import parse_xml
+from epg.source import Span
+
+HEAP = 16 << 10
+"""Bytes of heap of each instance, where nothing else is said: 20-sim's FMUs take what their variables need."""
+
+_HINT = "export the FMU again"
+_TYPES = {**TYPES_2, **TYPES_3}
+
+
+def load_fmu(
+    path: Path,
+    diagnostics: Diagnostics,
+    *,
+    step: Fraction | None = None,
+    step_span: Span | None = None,
+    heap: int | None = None,
+    beside: Path | None = None,
+) -> Model | None:
+    """The model in the FMU at ``path``, or None after reporting why there is none.
+
+    ``step`` (in seconds, written at ``step_span``) and ``heap`` (in bytes) replace what the FMU says and EPG's default;
+    ``beside`` is the model.yaml that says so.
+    """
+    before = diagnostics.error_count
+    files = read_fmu_files(path, diagnostics)
+    if files is None:
+        return None
+    whole = Span(str(files.path(DESCRIPTION)))
+    root = parse_xml(files.contents[DESCRIPTION], whole, diagnostics, hint=_HINT, shown=files.archive)
+    description = read_description(root, diagnostics) if root is not None else None
+    if description is None:
+        return None
+    step = _step(description, step, step_span, diagnostics)
+    sources = find_sources(files, description, diagnostics)
+    if sources is None or step is None:
+        return None
+    check_fmu(sources.linked, description.standard, diagnostics)
+    inputs, outputs = (_ports(description, direction, diagnostics) for direction in ("input", "output"))
+    parameters, places = _parameters(description)
+    if diagnostics.error_count > before:
+        return None
+    states = {variable.reference for variable in description.variables if variable.state}
+    needed = uses_heap(sources.codes.values())
+    read = {files.path(name) for name in (*sources.units, *sources.headers)} if not files.archive else set()
+    return Model(
+        name=description.name,
+        origin=f"FMI {description.version} FMU",
+        language="c",
+        version="",
+        method="",
+        step=step,
+        inputs=inputs,
+        outputs=outputs,
+        parameters=parameters,
+        directory=beside.parent if beside is not None else path,
+        files=tuple(sorted({*files.inputs, *read, *([beside] if beside is not None else [])})),
+        span=description.span,
+        details=FmuExport(
+            standard=description.standard,
+            tool=description.tool,
+            guid=description.guid,
+            instance_name=_ascii(description.name),
+            linked=sources.linked,
+            units=tuple(files.path(name) for name in sources.units),
+            include_dirs=tuple(files.path(name) for name in sources.include_dirs),
+            packed=_packed(files, sources),
+            packed_units=sources.units if files.archive else (),
+            packed_include_dirs=sources.include_dirs if files.archive else (),
+            headers=_lacking(description.standard, sources),
+            definitions=sources.definitions,
+            renames=_renames(sources.linked),
+            prefixes=_prefixes(sources.linked),
+            plain_names=not _names_by_header(description.standard, sources),
+            inputs=_groups(description, "input"),
+            outputs=_groups(description, "output"),
+            parameters=places,
+            states=tuple(sorted(states)),
+            step_argument=_step_argument(description, step),
+            endless=description.is_20sim,
+            terminated="fmi2GetBooleanStatus" in {f.name for _, f in sources.linked.functions()},
+            heap=(HEAP if heap is None else heap) if needed else 0,
+            instantiable=not description.once,
+        ),
+    )
+
+
+def _step(
+    description: Description, wanted: Fraction | None, wanted_span: Span | None, diagnostics: Diagnostics
+) -> Fraction | None:
+    """The time between two calls, after checking that the FMU can keep to it."""
+    step = wanted or description.step
+    if step is None:
+        message = "the FMU does not say its step: there is no stepSize in its DefaultExperiment"
+        hint = "write a model.yaml with 'version: 1', 'fmu: <its file or folder>' and 'step: 1 ms', and name that"
+        diagnostics.error("fmu-step", description.step_span, message, hint=hint)
+        return None
+    base = description.internal_step or (description.step if description.is_20sim else None)
+    if base is not None and (step / base).denominator != 1:
+        message = f"the step {float(step):g} s is no multiple of the FMU's internal step, {float(base):g} s"
+        span = wanted_span or description.step_span
+        diagnostics.error("fmu-step", span, message, hint="export it with the step that the target has")
+        return None
+    return step
+
+
+def _step_argument(description: Description, step: Fraction) -> Fraction:
+    """The step that is passed to DoStep.
+
+    20-sim's FMUs step until the sum of their steps has reached the end of the one asked for: a sum that is off by a
+    rounding error makes one too many or too few.  Half a step less, there is no doubt.
+    """
+    return step - description.step / 2 if description.is_20sim and description.step is not None else step
+
+
+# ports and parameters ------------------------------------------------------------------------------------------------
+
+
+def _ports(description: Description, direction: str, diagnostics: Diagnostics) -> tuple[Port, ...]:
+    ports: list[Port] = []
+    for variable in description.variables:
+        if variable.causality != direction:
+            continue
+        for name in variable.element_names():
+            port = Port(
+                name,
+                to_identifier(name.rstrip("]") if variable.dimensions else name),
+                direction,
+                "" if variable.unit == "1" else variable.unit,
+                _TYPES[variable.type],
+                len(ports),
+                variable.span,
+                variable.description,
+            )
+            ports.append(port)
+    check_identifiers(ports, diagnostics)
+    return tuple(ports)
+
+
+def _groups(description: Description, direction: str) -> tuple[FmuPorts, ...]:
+    """The ports by type, as FMI's functions get and set them; arrays count as many values."""
+    groups: dict[str, tuple[list[int], list[int]]] = {}
+    position = 0
+    for variable in description.variables:
+        if variable.causality == direction:
+            references, positions = groups.setdefault(variable.type, ([], []))
+            references.append(variable.reference)
+            positions.extend(range(position, position + variable.count))
+            position += variable.count
+    return tuple(FmuPorts(kind, tuple(of), tuple(at)) for kind, (of, at) in sorted(groups.items()))
+
+
+def _parameters(description: Description) -> tuple[tuple[Parameter, ...], tuple[FmuParameter, ...]]:
+    """Scalar parameters with a start value: text has none that EPG could set, arrays keep theirs."""
+    chosen: list[tuple[Variable, float]] = []
+    for variable in description.variables:
+        if variable.causality == "parameter" and not variable.dimensions:
+            value = number(variable.start)
+            if value is not None:
+                chosen.append((variable, value))
+    names: dict[str, int] = {}
+    titles = []
+    for variable, _ in chosen:
+        names[variable.name] = names.get(variable.name, 0) + 1
+        titles.append(variable.name if names[variable.name] == 1 else f"{variable.name}#{names[variable.name]}")
+    parameters = []
+    for index, ((variable, value), title, identifier) in enumerate(
+        zip(chosen, titles, unique_identifiers(titles), strict=True)
+    ):
+        unit = "" if variable.unit == "1" else variable.unit
+        parameters.append(Parameter(title, identifier, value, unit, index, variable.span))
+    places = [FmuParameter(v.type, v.reference, v.variability == "tunable") for v, _ in chosen]
+    return tuple(parameters), tuple(places)
+
+
+# sources -------------------------------------------------------------------------------------------------------------
+
+
+def _packed(files: FmuFiles, sources: FmuSources) -> tuple[tuple[str, str], ...]:
+    """The files of an archive that are compiled, which the emitter unpacks."""
+    if not files.archive:
+        return ()
+    names = sorted({*sources.units, *sources.headers})
+    return tuple((name, sources.codes[name].file.text) for name in names)
+
+
+def _lacking(standard: int, sources: FmuSources) -> tuple[str, ...]:
+    """The headers of the standard, where the FMU leaves them to the importer."""
+    return tuple(name for name in FMI_HEADERS[standard] if name not in sources.own_headers)
+
+
+def _prefixes(linked: Linked) -> tuple[str, ...]:
+    """What the FMU's sources put before FMI's function names, where they insist on it."""
+    found = {
+        macro.value
+        for code in linked.all
+        for macro in code.macros
+        if macro.name in ("FMI2_FUNCTION_PREFIX", "FMI3_FUNCTION_PREFIX") and macro.value.isidentifier()
+    }
+    return tuple(sorted(name for name in found if name.isascii()))
+
+
+def _names_by_header(standard: int, sources: FmuSources) -> bool:
+    """Whether the header that gives FMI's functions their prefix is included where they are defined."""
+    header = FMI_HEADERS[standard][2]
+    if header in sources.own_headers:
+        return True
+    return any(include.name.endswith(header) for code in sources.codes.values() for include in code.includes)
+
+
+def _renames(linked: Linked) -> tuple[str, ...]:
+    """Global symbols of the FMU but for the standard's functions, whose names are made by a prefix."""
+    names: set[str] = set()
+    for code in linked.all:
+        names |= {function.name for function in code.functions if not function.static}
+        names |= {variable.name for variable in code.variables if not variable.static and _is_defined(variable.type)}
+    macros = linked.macro_names()
+    return tuple(sorted(name for name in _identifiers(names - macros) if not name.startswith(("fmi2", "fmi3"))))
+
+
+def _is_defined(type: str) -> bool:
+    return type not in ("extern", "struct", "union", "enum")
+
+
+def _identifiers(names: Iterable[str]) -> list[str]:
+    return [name for name in names if name.isascii() and name.isidentifier() and name not in ("main", "defined")]
+
+
+def _ascii(text: str) -> str:
+    return one_line(text).encode("ascii", "replace").decode("ascii") or "model"

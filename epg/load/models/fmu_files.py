@@ -1,0 +1,201 @@
+"""The files of an FMU: an unpacked folder, or a ``.fmu``, which is a zip archive.
+
+An archive is read and never unpacked here.  It may come from anybody: names that lead out of it, links, encrypted or
+doubled entries, and contents that grow beyond any model's size are refused before anything of it is used.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import stat
+import struct
+import zipfile
+import zlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from epg.diagnostics import Diagnostics
+from epg.load.models.source_file import MAX_BYTES
+from epg.source import Span
+
+DESCRIPTION = "modelDescription.xml"
+SOURCES = "sources"
+SUFFIX = ".fmu"
+
+MAX_ARCHIVE = 512 << 20  # bytes; binaries of many platforms and tables of data make some FMUs large
+MAX_ENTRIES = 20_000
+MAX_DIRECTORY = 8 << 20  # bytes of the zip's own list of files
+MAX_UNPACKED = 64 << 20  # bytes of the description and the sources together
+MAX_DEPTH = 8  # folders below sources/
+
+_END = struct.Struct("<4s4H2LH")  # end of central directory record: APPNOTE.TXT 6.3.10, section 4.3.16
+_END64_LOCATOR = b"PK\x06\x07"  # section 4.3.15
+_BAD_NAME = re.compile(r'[\\:*?"<>|]')  # what no Windows file is called either
+_RESERVED = re.compile(r"(?i)(con|prn|aux|nul|com\d|lpt\d)(\..*)?$")
+
+
+@dataclass(frozen=True)
+class FmuFiles:
+    """Description and sources of an FMU: names with ``/``, relative to its top.
+
+    ``root`` is the folder or the archive; ``binaries`` names the platforms for which there are any.
+    """
+
+    root: Path
+    archive: bool
+    contents: Mapping[str, bytes]
+    binaries: tuple[str, ...]
+
+    def path(self, name: str) -> Path:
+        """Where the file is; inside an archive only a name for people."""
+        return self.root / name
+
+    @property
+    def inputs(self) -> tuple[Path, ...]:
+        """The archive, or the description: what makes another model when it changes, beside the sources used."""
+        return (self.root,) if self.archive else (self.path(DESCRIPTION),)
+
+
+class _Refused(Exception):
+    def __init__(self, message: str, hint: str = "export the FMU again") -> None:
+        super().__init__(message)
+        self.hint = hint
+
+
+def is_fmu_folder(folder: Path) -> bool:
+    """Whether a folder is an unpacked FMU: its description names the standard's version."""
+    try:
+        with (folder / DESCRIPTION).open("rb") as file:
+            head = file.read(1 << 16)
+    except (OSError, ValueError):
+        return False
+    if head.startswith((b"\xff\xfe", b"\xfe\xff")):
+        head = head.replace(b"\0", b"")
+    return re.search(rb"<fmiModelDescription\b[^>]*\bfmiVersion\b", head) is not None
+
+
+def read_fmu_files(path: Path, diagnostics: Diagnostics) -> FmuFiles | None:
+    """The files of the FMU at ``path``, or None after reporting why they cannot be read."""
+    try:
+        return _folder(path) if path.is_dir() else _archive(path)
+    except _Refused as problem:
+        diagnostics.error("fmu-unreadable", Span(str(path)), str(problem), hint=problem.hint)
+    except OSError as error:
+        message = f"cannot read '{path.name}': {error.strerror or error}"
+        diagnostics.error("model-unreadable", Span(str(path)), message, hint="check the file's permissions")
+    return None
+
+
+# a folder ------------------------------------------------------------------------------------------------------------
+
+
+def _folder(root: Path) -> FmuFiles:
+    names = [DESCRIPTION]
+    for folder, folders, files in os.walk(root / SOURCES):
+        inside = Path(folder).relative_to(root)
+        folders[:] = sorted(name for name in folders if not name.startswith(".") and len(inside.parts) <= MAX_DEPTH)
+        names += [(inside / name).as_posix() for name in sorted(files) if not name.startswith(".")]
+        if len(names) > MAX_ENTRIES:
+            raise _Refused(f"there are more than {MAX_ENTRIES} files in '{SOURCES}'", "is this the right folder?")
+    contents: dict[str, bytes] = {}
+    total = 0
+    for name in names:
+        path = root / name
+        if not path.is_file() or path.stat().st_size > MAX_BYTES:
+            continue  # no source: one that is named all the same is reported where it is named
+        contents[name] = path.read_bytes()
+        total += len(contents[name])
+        if total > MAX_UNPACKED:
+            raise _Refused(f"'{SOURCES}' holds more than {MAX_UNPACKED >> 20} MiB", "is this the right folder?")
+    if DESCRIPTION not in contents:
+        raise _Refused(f"'{DESCRIPTION}' is larger than {MAX_BYTES >> 20} MiB", "is this the right file?")
+    binaries = root / "binaries"
+    platforms = sorted(entry.name for entry in binaries.iterdir()) if binaries.is_dir() else []
+    return FmuFiles(root, False, contents, tuple(platforms))
+
+
+# an archive ----------------------------------------------------------------------------------------------------------
+
+
+def _archive(path: Path) -> FmuFiles:
+    _check_directory(path)
+    try:
+        with zipfile.ZipFile(path) as archive:
+            wanted, platforms = _entries(archive)
+            contents: dict[str, bytes] = {}
+            left = MAX_UNPACKED
+            for name, entry in sorted(wanted.items()):
+                with archive.open(entry) as file:
+                    data = file.read(min(left, MAX_BYTES) + 1)  # what the entry says of its size may be a lie
+                if len(data) > MAX_BYTES:
+                    raise _Refused(f"'{name}' in it is larger than {MAX_BYTES >> 20} MiB", "is this the right file?")
+                left -= len(data)
+                if left < 0:
+                    raise _Refused(f"its sources are larger than {MAX_UNPACKED >> 20} MiB", "is this the right file?")
+                contents[name] = data
+    except (zipfile.BadZipFile, zlib.error, EOFError, struct.error, OverflowError, ValueError) as error:
+        text = str(error).split("\n", 1)[0][:120]
+        raise _Refused(f"'{path.name}' is damaged: {text or 'it ends too early'}") from error
+    except (NotImplementedError, RuntimeError) as error:
+        raise _Refused(
+            f"'{path.name}' is packed in a way that FMUs are not", "pack it with the method deflate"
+        ) from error
+    if DESCRIPTION not in contents:
+        raise _Refused(
+            f"there is no '{DESCRIPTION}' at the top of '{path.name}'", "an FMU is a zip file with that file"
+        )
+    return FmuFiles(path, True, contents, tuple(sorted(platforms)))
+
+
+def _check_directory(path: Path) -> None:
+    """Refuses what would cost memory and time before the first entry is looked at."""
+    size = path.stat().st_size
+    if size > MAX_ARCHIVE:
+        raise _Refused(f"'{path.name}' is larger than {MAX_ARCHIVE >> 20} MiB", "is this the right file?")
+    with path.open("rb") as file:
+        file.seek(max(0, size - (1 << 16) - _END.size - 20))
+        tail = file.read()
+    at = len(tail) - _END.size
+    if at < 0 or tail[at : at + 4] != b"PK\5\6" or tail[-2:] != b"\0\0":
+        at = tail.rfind(b"PK\5\6")
+    if at < 0 or len(tail) - at < _END.size:
+        raise _Refused(f"'{path.name}' is no zip archive", "an FMU is a zip file with 'modelDescription.xml' in it")
+    _, _, _, _, count, directory, _, _ = _END.unpack_from(tail, at)
+    if tail[max(0, at - 20) : at][:4] == _END64_LOCATOR or count > MAX_ENTRIES or directory > MAX_DIRECTORY:
+        raise _Refused(f"'{path.name}' holds more than {MAX_ENTRIES} files", "is this the right file?")
+
+
+def _entries(archive: zipfile.ZipFile) -> tuple[dict[str, zipfile.ZipInfo], set[str]]:
+    """Description and sources, and the platforms with binaries, after looking at every name."""
+    wanted: dict[str, zipfile.ZipInfo] = {}
+    platforms: set[str] = set()
+    seen: dict[str, str] = {}
+    for entry in archive.infolist():
+        name = entry.orig_filename
+        parts = name.rstrip("/").split("/")
+        if parts[0] == "binaries" and len(parts) > 1:
+            platforms.add("".join(char for char in parts[1][:40] if char.isprintable()))
+        if name.endswith("/") or (name != DESCRIPTION and parts[0] != SOURCES) or len(parts) > MAX_DEPTH:
+            continue  # no part of the model: nothing of it is read
+        shown = "".join(char if char.isprintable() else "?" for char in name[:80])
+        if not _may_be_unpacked(name, parts):
+            raise _Refused(f"it holds a file called '{shown}', which cannot be unpacked")
+        if stat.S_ISLNK(entry.external_attr >> 16):
+            raise _Refused(f"'{shown}' in it is a link")
+        if seen.setdefault(name.casefold(), name) != name or name in wanted:
+            raise _Refused(f"it holds '{shown}' twice")
+        if entry.flag_bits & 0x1:
+            raise _Refused(f"'{shown}' in it is encrypted", "pack it without a password")
+        wanted[name] = entry
+    return wanted, platforms
+
+
+def _may_be_unpacked(name: str, parts: list[str]) -> bool:
+    """Whether a name is one of a file inside the folder it is unpacked to, on every system."""
+    if not name.isprintable() or _BAD_NAME.search(name):
+        return False
+    return all(
+        part not in ("", ".", "..") and part == part.rstrip(". ") and not _RESERVED.match(part) for part in parts
+    )

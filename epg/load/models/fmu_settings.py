@@ -1,0 +1,59 @@
+"""``model.yaml`` of an FMU: its file, and what is said of it that it does not say itself.
+
+>>> # version: 1
+>>> # fmu: servo.fmu
+>>> # step: 1 ms
+>>> # heap: 4 KiB
+"""
+
+from __future__ import annotations
+
+import re
+
+from epg.load.models.fmu import load_fmu
+from epg.load.models.fmu_files import SUFFIX, is_fmu_folder
+from epg.load.models.model import Model
+from epg.load.models.model_yaml import ModelYaml
+from epg.load.text_file import is_file
+
+_KEYS = ("version", "description", "fmu", "step", "heap")
+_SIZE = re.compile(r"\s*(\d{1,9})\s*(B|KiB|MiB)\s*", re.ASCII)
+_UNITS = {"B": 1, "KiB": 1 << 10, "MiB": 1 << 20}
+_LARGEST_HEAP = 64 << 20
+
+
+class FmuSettings(ModelYaml):
+    """Reads a ``model.yaml`` with the key ``fmu``."""
+
+    def load(self) -> Model | None:
+        if not self._begin(_KEYS, ("version",)):
+            return None
+        before = self.diagnostics.error_count
+        step = self._step()
+        heap = self._heap()
+        name = self._text("fmu")
+        if not name:
+            return None
+        path = self.path.parent / name
+        if not (is_file(path) and path.suffix.lower() == SUFFIX) and not is_fmu_folder(path):
+            message = f"'{name}' is neither an .fmu nor the folder of one"
+            hint = "name the file, or the folder with its modelDescription.xml, relative to this file"
+            self._error("file-not-found", self.node["fmu"].span, message, hint)
+        if self.diagnostics.error_count > before:
+            return None
+        node = self.node.get("step")
+        span = node.span if node is not None else None
+        return load_fmu(path, self.diagnostics, step=step, step_span=span, heap=heap, beside=self.path)
+
+    def _heap(self) -> int | None:
+        """Bytes; None when nothing is said."""
+        node = self.node.get("heap")
+        if node is None:
+            return None
+        match = _SIZE.fullmatch(node.value) if isinstance(node.value, str) else None
+        size = int(match[1]) * _UNITS[match[2]] if match else 0
+        if match is None:
+            self._error("wrong-unit", node.span, "'heap' is a size in B, KiB or MiB", "write for example '4 KiB'")
+        elif not 64 <= size <= _LARGEST_HEAP:
+            self._error("out-of-range", node.span, "the heap must be from 64 B to 64 MiB", "write for example '4 KiB'")
+        return size

@@ -1,0 +1,250 @@
+"""Which files of an FMU are compiled, with which definitions, and what they include.
+
+FMI 2.0 lists the files in its description or, in FMUs of older tools, not at all: then it is every C file.  FMI 3.0 has
+``sources/buildDescription.xml``, with preprocessor definitions and include folders.
+"""
+
+from __future__ import annotations
+
+import posixpath
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from epg.diagnostics import Diagnostics
+from epg.load.models.c_code import Code, Include, parse_code
+from epg.load.models.fmu_description import Description
+from epg.load.models.fmu_files import SOURCES, FmuFiles
+from epg.load.models.identifiers import one_line, words
+from epg.load.models.link import Linked
+from epg.load.models.source_file import SourceFile, decode
+from epg.load.models.xml_file import Element, parse_xml
+from epg.source import Span
+
+BUILD = f"{SOURCES}/buildDescription.xml"
+MAX_SOURCES = 2000
+FMI_HEADERS = {
+    2: ("fmi2TypesPlatform.h", "fmi2FunctionTypes.h", "fmi2Functions.h"),
+    3: ("fmi3PlatformTypes.h", "fmi3FunctionTypes.h", "fmi3Functions.h"),
+}
+_C_HEADERS = {
+    f"{name}.h"
+    for name in words("""
+    assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdalign stdarg stdatomic
+    stdbool stddef stdint stdio stdlib stdnoreturn string tgmath threads time uchar wchar wctype
+""")
+}
+_PREFIX = re.compile(r"FMI[23]_(?:OVERRIDE_|ACTUAL_)?FUNCTION_PREFIX")
+_IDENTIFIER = re.compile(r"[A-Za-z_]\w*", re.ASCII)
+_INACTIVE = re.compile(r"^[ \t]*#[ \t]*(if|endif)\w*", re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class FmuSources:
+    """What is compiled: ``units``, with ``headers`` (whatever they include), by names inside the FMU.
+
+    ``include_dirs`` are names of folders inside the FMU, ``definitions`` macros with their values.  ``own_headers`` are
+    those of the standard that the FMU brings itself.
+    """
+
+    units: tuple[str, ...]
+    headers: tuple[str, ...]
+    include_dirs: tuple[str, ...]
+    definitions: tuple[tuple[str, str], ...]
+    codes: dict[str, Code] = field(repr=False)
+    own_headers: frozenset[str]
+
+    @property
+    def linked(self) -> Linked:
+        """The parsed files, for the checks that exports of 20-sim get."""
+        units, headers = ([self.codes[name] for name in names] for names in (self.units, self.headers))
+        return Linked(tuple(units), tuple(headers), (), ())
+
+
+@dataclass(frozen=True)
+class _Listed:
+    files: tuple[tuple[str, Span], ...]
+    include_dirs: tuple[str, ...] = ()
+    definitions: tuple[tuple[str, str], ...] = ()
+
+
+def find_sources(files: FmuFiles, description: Description, diagnostics: Diagnostics) -> FmuSources | None:
+    """The sources of the FMU, or None after reporting why it cannot be compiled."""
+    before = diagnostics.error_count
+    present = [name for name in files.contents if name.startswith(f"{SOURCES}/") and name != BUILD]
+    if not any(name.endswith((".c", ".h")) for name in present):
+        _no_sources(files, present, description, diagnostics)
+        return None
+    listed = _listed(files, description, diagnostics)
+    if listed is None or diagnostics.error_count > before:
+        return None
+    include_dirs = tuple(dict.fromkeys((SOURCES, *listed.include_dirs)))
+    reader = _Reader(files, include_dirs, diagnostics)
+    units = []
+    for name, span in listed.files:
+        place = _inside(name)
+        if place not in files.contents:
+            message = f"'{one_line(name)[:80]}' is named as a source, but the FMU does not hold it"
+            diagnostics.error("fmu-file-missing", span, message, hint="export the FMU again, with its sources")
+        elif not place.lower().endswith(".c"):
+            message = f"'{one_line(name)[:80]}' is no file of C: EPG compiles FMUs in C"
+            diagnostics.error("fmu-language", span, message, hint="export the FMU as C code")
+        elif reader.read(place):
+            units.append(place)
+    if diagnostics.error_count > before:
+        return None
+    own = reader.own(FMI_HEADERS[description.standard])
+    reader.follow([*units, *own.values()])
+    if diagnostics.error_count > before:
+        return None
+    main = {2: "fmi2DoStep", 3: "fmi3DoStep"}[description.standard]
+    if not any(main in code.identifiers for code in reader.codes.values()):
+        message = f"none of the FMU's sources has the function {main}"
+        hint = "export it for co-simulation, with all its sources"
+        diagnostics.error("fmu-file-missing", description.span, message, hint=hint)
+        return None
+    headers = tuple(sorted(reader.codes.keys() - set(units)))
+    return FmuSources(
+        tuple(dict.fromkeys(units)), headers, include_dirs, listed.definitions, reader.codes, frozenset(own)
+    )
+
+
+def _no_sources(files: FmuFiles, present: list[str], description: Description, diagnostics: Diagnostics) -> None:
+    hint = "export it as a source code FMU, with C code in 'sources'"
+    if any(Path(name).suffix.lower() in (".cpp", ".cc", ".cxx") for name in present):
+        message = "the FMU's sources are C++: EPG compiles FMUs in C"
+        diagnostics.error("fmu-language", description.span, message, hint=hint)
+        return
+    compiled = f": it is compiled for {', '.join(files.binaries[:6])} only" if files.binaries else ""
+    diagnostics.error("fmu-no-sources", description.span, f"the FMU has no sources{compiled}", hint=hint)
+
+
+def _listed(files: FmuFiles, description: Description, diagnostics: Diagnostics) -> _Listed | None:
+    if description.standard == 3 and BUILD in files.contents:
+        whole = Span(str(files.path(BUILD)))
+        root = parse_xml(files.contents[BUILD], whole, diagnostics, hint="export the FMU again", shown=files.archive)
+        return _configuration(root, description, diagnostics) if root is not None else None
+    if description.sources:
+        return _Listed(description.sources)
+    found = [name for name in sorted(files.contents) if re.fullmatch(rf"{SOURCES}/[^/]+\.[cC]", name)]
+    return _Listed(tuple((name[len(SOURCES) + 1 :], description.span) for name in found[:MAX_SOURCES]))
+
+
+def _configuration(root: Element, description: Description, diagnostics: Diagnostics) -> _Listed | None:
+    """The build configuration for this interface; of several, the first that is for no certain platform."""
+    fitting = [
+        child
+        for child in root.children
+        if child.name == "BuildConfiguration" and child.attributes.get("modelIdentifier") == description.identifier
+    ]
+    fitting.sort(key=lambda child: "platform" in child.attributes)
+    if not fitting:
+        message = f"there is no build configuration for '{one_line(description.identifier)[:60]}'"
+        diagnostics.error("fmu-file-missing", root.span, message, hint="export the FMU again, with its sources")
+        return None
+    chosen = fitting[0]
+    listed: list[tuple[str, Span]] = []
+    folders: list[str] = []
+    definitions: dict[str, str] = {}
+    for part in chosen.children:
+        if part.name == "Library" and part.attributes.get("name") != "m":
+            message = f"the FMU needs the library '{one_line(part.attributes.get('name', ''))[:60]}'"
+            diagnostics.error("fmu-library", part.span, message, hint="export it with the sources of all it needs")
+        if part.name != "SourceFileSet":
+            continue
+        language = part.attributes.get("language", "C")
+        if re.match(r"(?i)c\+\+|cpp|fortran|ada", language):
+            message = f"a part of the FMU is written in {one_line(language)[:20]}: EPG compiles FMUs in C"
+            diagnostics.error("fmu-language", part.span, message, hint="export the FMU as C code")
+        for item in part.children:
+            name = item.attributes.get("name", "")
+            if item.name == "SourceFile":
+                listed.append((name, item.span))
+            elif item.name == "IncludeDirectory":
+                folders.append(_inside(name))
+            elif item.name == "PreprocessorDefinition" and not _PREFIX.fullmatch(name):
+                _define(name, item, definitions, diagnostics)
+    return _Listed(tuple(listed[:MAX_SOURCES]), tuple(folders), tuple(definitions.items()))
+
+
+def _define(name: str, item: Element, definitions: dict[str, str], diagnostics: Diagnostics) -> None:
+    """Adds a definition.  All files of the FMU get all of them: two values of one name are an error."""
+    value = item.attributes.get("value", "")
+    if not _IDENTIFIER.fullmatch(name) or not value.isprintable() or value.endswith("\\") or "/*" in value:
+        message = f"'{one_line(name)[:40]}={one_line(value)[:40]}' is no definition of C"
+        diagnostics.error("fmu-definition", item.span, message, hint="export the FMU again")
+    elif definitions.setdefault(name, value) != value:
+        message = f"'{name}' has two values, '{definitions[name][:40]}' and '{value[:40]}'"
+        diagnostics.error("fmu-definition", item.span, message, hint="EPG compiles all files of an FMU alike")
+
+
+def _inside(name: str) -> str:
+    """The place inside the FMU of a file named relative to ``sources``."""
+    return posixpath.normpath(posixpath.join(SOURCES, name.replace("\\", "/")))
+
+
+class _Reader:
+    """Parses files and follows what they include."""
+
+    def __init__(self, files: FmuFiles, include_dirs: Iterable[str], diagnostics: Diagnostics) -> None:
+        self.files = files
+        self.include_dirs = tuple(include_dirs)
+        self.diagnostics = diagnostics
+        self.codes: dict[str, Code] = {}
+
+    def own(self, headers: Iterable[str]) -> dict[str, str]:
+        """Those of the standard's headers that the FMU has where EPG's own code will find them."""
+        found = {}
+        for header in headers:
+            places = [f"{folder}/{header}" for folder in self.include_dirs]
+            place = next((place for place in places if place in self.files.contents), None)
+            if place is not None and self.read(place):
+                found[header] = place
+        return found
+
+    def read(self, name: str) -> bool:
+        if name in self.codes:
+            return True
+        data = self.files.contents[name]
+        if b"\0" in data and not data.startswith((b"\xff\xfe", b"\xfe\xff")):
+            place = Span(str(self.files.path(name)))
+            message = f"'{posixpath.basename(name)}' is no text"
+            self.diagnostics.error("model-unreadable", place, message, hint="export the FMU again")
+            return False
+        self.codes[name] = parse_code(SourceFile(self.files.path(name), decode(data), self.files.archive))
+        return True
+
+    def follow(self, units: list[str]) -> None:
+        waiting = list(units)
+        while waiting:
+            name = waiting.pop()
+            code = self.codes[name]
+            for include in code.includes:
+                found = self._find(name, include)
+                if found is None:
+                    self._missing(code, include)
+                elif found not in self.codes and self.read(found):
+                    waiting.append(found)
+
+    def _find(self, name: str, include: Include) -> str | None:
+        wanted = include.name.replace("\\", "/")
+        folders = self.include_dirs if include.system else (posixpath.dirname(name), *self.include_dirs)
+        for folder in folders:
+            place = posixpath.normpath(posixpath.join(folder, wanted))
+            if place in self.files.contents:
+                return place
+        return None
+
+    def _missing(self, code: Code, include: Include) -> None:
+        """Reports a header that is not there, unless it may stand in code for another system."""
+        basename = posixpath.basename(include.name)
+        if include.system or basename in _C_HEADERS or any(basename in headers for headers in FMI_HEADERS.values()):
+            return
+        before = [match[1] for match in _INACTIVE.finditer(code.file.without_comments, 0, include.start)]
+        guards = 1 if code.file.path.suffix.lower() == ".h" else 0
+        if before.count("if") - before.count("endif") > guards:
+            return
+        span = code.file.span(include.start, include.start + len(include.name))
+        message = f"'{one_line(include.name)[:80]}' is not among the FMU's sources"
+        self.diagnostics.error("fmu-file-missing", span, message, hint="export the FMU again, with all its sources")

@@ -1,0 +1,298 @@
+"""The library of an FMU gives what calls of the standard's functions give, bit for bit, from memory of fixed size."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from epg.emit.model import emit_model, model_build
+from tests.models.fmus import FMU2, FMU3, changed, pack, run_fmu2, run_fmu3
+from tests.models.harness import Library, build, loaded, run, run_program, run_wrapper
+
+STEPS = 300
+RUN = {FMU2: run_fmu2, FMU3: run_fmu3}
+
+
+@pytest.mark.parametrize("folder", [FMU2, FMU3], ids=["fmi2", "fmi3"])
+def test_gives_its_own_numbers(folder: Path, tmp_path: Path) -> None:
+    """From the folder and from the archive."""
+    # the last line is after the end: EPG passes the inputs once more, which these FMUs then do not look at
+    expected = RUN[folder](tmp_path / "direct", STEPS)
+    assert len(set(expected.splitlines())) > STEPS / 2
+    sanitize = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+    library = build(loaded(folder), "pan", tmp_path, options=sanitize)
+    assert run_wrapper(library, STEPS, options=sanitize) == expected
+    archive = pack(folder, tmp_path / "packed.fmu", {"binaries/win64/x.dll": b"MZ", "resources/a.txt": b"?"})
+    assert run_wrapper(build(loaded(archive), "tilt", tmp_path), STEPS) == expected
+
+
+def test_an_archive_is_unpacked_the_same_each_time(tmp_path: Path) -> None:
+    model = loaded(pack(FMU2, tmp_path / "a.fmu", {"resources/a.txt": b"?"}))
+    files = emit_model(model, "pan")
+    assert files == emit_model(loaded(pack(FMU2, tmp_path / "b.fmu")), "pan")
+    unpacked = {name for name in files if name.startswith("pan_fmu/")}
+    assert unpacked == {f"pan_fmu/sources/{name}" for name in ("servo.c", "law.c", "law.h")}
+    assert files["pan_fmu/sources/law.c"] == (FMU2 / "sources/law.c").read_text()
+    made = model_build(model, "pan")
+    assert made.exported == () and made.include_dirs == () and made.generated_include_dirs == ("pan_fmu/sources",)
+    assert set(made.exported_generated) == {"pan_export.c", "pan_fmu/sources/servo.c", "pan_fmu/sources/law.c"}
+
+
+def program(body: str, libraries: list[Library], folder: Path) -> list[list[float]]:
+    """Lines of numbers of a program in which ``in`` and ``out`` are of the first library, ``a`` is its instance 0."""
+    name = libraries[0].name
+    includes = "".join(f'#include "{library.name}.h"\n' for library in libraries)
+    text = f"""{includes}#include <stdio.h>
+static {name}_inputs_t in;
+static {name}_outputs_t out;
+int main(void)
+{{
+    {name}_t *a = {name}_instance(0);
+    {body}
+    (void)a;
+    return 0;
+}}
+"""
+    output = run_program(folder, text, libraries)
+    return [[float(word) for word in line.split()] for line in output.splitlines()]
+
+
+SERVO = """
+    in.plant_setpoint = 0.5; in.plant_position = 0.1; in.enable = 1.0;
+"""
+SHOW = 'printf("%.17g %.17g %.17g\\n", out.duty, out.steps, out.saturated);'
+
+
+def test_starting_again_is_starting_afresh(tmp_path: Path) -> None:
+    """Twenty times, within a heap that holds one instance."""
+    library = build(loaded(FMU2), "pan", tmp_path)
+    body = f"""{SERVO}
+    for (int i = 0; i < 20; i++) {{
+        pan_init(a, &in, &out);
+        {SHOW}
+        pan_set_parameter(a, PAN_PI_KP, 1.0 + i);
+        for (int k = 0; k < 10; k++) {{ pan_step(a, &in, &out); }}
+        if (i % 2) {{ pan_terminate(a, &in, &out); }}
+        printf("%lu %d\\n", pan_heap_used(a), pan_finite(a));
+    }}
+"""
+    rows = program(body, [library], tmp_path / "run")
+    starts, ends = rows[::2], rows[1::2]
+    assert starts == [[0.5, 0, 0]] * 20
+    assert len({tuple(end) for end in ends}) == 1 and ends[0][1] == 1
+    assert 200 < ends[0][0] < 600
+
+
+def test_parameters(tmp_path: Path) -> None:
+    """From the start, while running, and one that is fixed."""
+    model = loaded(FMU2)
+    body = f"""{SERVO}
+    pan_init(a, &in, &out);
+    pan_step(a, &in, &out);
+    {SHOW}
+    pan_set_parameter(a, PAN_PI_KP, 0.0);
+    pan_set_parameter(a, PAN_TABLE_SIZE, 1.0);
+    pan_set_parameter(a, (pan_parameter_t)77, 1.0);
+    pan_step(a, &in, &out);
+    {SHOW}
+    printf("%g %g %g %g\\n", pan_get_parameter(a, PAN_PI_KP), pan_get_parameter(a, PAN_PI_KI),
+           pan_get_parameter(a, PAN_TABLE_SIZE), pan_get_parameter(a, (pan_parameter_t)77));
+"""
+    first, second, values = program(body, [build(model, "pan", tmp_path / "a")], tmp_path / "ra")
+    ki = 0.5 * 0.001
+    assert first[0] == pytest.approx(0.4 / 4 * (2.0 + ki), rel=1e-12)
+    assert second[0] == pytest.approx(0.4 / 4 * ki + 0.8 / 4 * ki, rel=1e-12)
+    assert values == [0, 0.5, 4, 0]
+    other = build(model, "pan", tmp_path / "b", {"table size": 1.0, "PI.kp": 0.25})
+    first, _, values = program(body, [other], tmp_path / "rb")
+    assert first[0] == pytest.approx(0.4 * (0.25 + ki), rel=1e-12)
+    assert values == [0, 0.5, 1, 0]
+
+
+def test_a_heap_that_is_too_small_is_seen(tmp_path: Path) -> None:
+    folder = tmp_path / "model"
+    folder.mkdir()
+    (folder / "model.yaml").write_text("version: 1\nfmu: ../servo.fmu\nheap: 192 B\n")
+    pack(FMU2, tmp_path / "servo.fmu")
+    body = f"""{SERVO}
+    pan_init(a, &in, &out);
+    printf("%d %lu %u %d\\n", pan_finite(a), pan_heap_used(a), PAN_HEAP_SIZE, pan_stopped(a));
+    pan_step(a, &in, &out);
+    pan_set_parameter(a, PAN_PI_KP, 9.0);
+    {SHOW}
+    pan_terminate(a, &in, &out);
+    printf("%d %g\\n", pan_finite(a), pan_get_parameter(a, PAN_PI_KP));
+"""
+    first, outputs, last = program(body, [build(loaded(folder), "pan", tmp_path)], tmp_path / "run")
+    assert first[0] == 0 and first[2] == 192 < first[1] and first[3] == 0
+    assert outputs == [0, 0, 0] and last == [0, 0]
+
+
+def test_memory_in_a_step_is_refused_and_seen(tmp_path: Path) -> None:
+    """What the check of the sources cannot see, here a call through a pointer, fails while it runs."""
+    folder = changed(
+        FMU2,
+        tmp_path / "fmu",
+        "sources/servo.c",
+        ("static double limit", "static void *(*volatile take)(size_t) = malloc;\nstatic double limit"),
+        (
+            "    if (self->integers[0] == 1008) {",
+            "    if (self->integers[0] == 6 && take(8) == NULL) { return fmi2OK; }\n"
+            "    if (self->integers[0] == 1008) {",
+        ),
+    )
+    body = f"""{SERVO}
+    pan_init(a, &in, &out);
+    pan_step(a, &in, &out);
+    printf("%d\\n", pan_finite(a));
+    in.mode = 6.0;
+    pan_step(a, &in, &out);
+    printf("%d\\n", pan_finite(a));
+    pan_init(a, &in, &out);
+    printf("%d\\n", pan_finite(a));
+"""
+    assert program(body, [build(loaded(folder), "pan", tmp_path)], tmp_path / "run") == [[1], [0], [1]]
+
+
+def test_errors_and_stopping(tmp_path: Path) -> None:
+    """An FMU that fails or stops is called no more until it starts again."""
+    body = f"""{SERVO}
+    for (int mode = 1007; mode <= 1008; mode++) {{
+        in.mode = 0.0;
+        pan_init(a, &in, &out);
+        pan_step(a, &in, &out);
+        in.mode = mode;
+        pan_step(a, &in, &out);
+        printf("%d %d\\n", pan_finite(a), pan_stopped(a));
+        in.mode = 0.0;
+        pan_step(a, &in, &out);
+        printf("%g\\n", out.steps);
+    }}
+    pan_init(a, &in, &out);
+    printf("%d %d\\n", pan_finite(a), pan_stopped(a));
+"""
+    rows = program(body, [build(loaded(FMU2), "pan", tmp_path)], tmp_path / "run")
+    assert rows == [[0, 0], [1], [1, 1], [1], [1, 0]]
+
+
+def test_states_that_are_not_finite_are_found(tmp_path: Path) -> None:
+    """The limiter hides it from the output."""
+    body = f"""{SERVO}
+    pan_init(a, &in, &out);
+    pan_step(a, &in, &out);
+    printf("%d\\n", pan_finite(a));
+    pan_set_parameter(a, PAN_PI_KI, 1e308);
+    in.plant_setpoint = 1e300;
+    pan_step(a, &in, &out);
+    printf("%d %g\\n", pan_finite(a), out.duty);
+"""
+    first, second = program(body, [build(loaded(FMU2), "pan", tmp_path)], tmp_path / "run")
+    assert first == [1] and second == [0, 1]
+
+
+def test_two_instances_and_two_fmus_at_once(tmp_path: Path) -> None:
+    """Of the same sources, whose names are all the same."""
+    servo, axes = loaded(FMU2), loaded(FMU3)
+    libraries = [
+        build(servo, "pan", tmp_path, instances=2),
+        build(servo, "tilt", tmp_path),
+        build(axes, "axes", tmp_path, instances=2),
+    ]
+    body = f"""{SERVO}
+    static pan_inputs_t in2 = {{-0.5, 0.1, 1.0, 0.0}};
+    static tilt_inputs_t tin = {{0.5, 0.1, 1.0, 0.0}};
+    static axes_inputs_t ain = {{1.0, 2.0, 3.0, 0.5, 7.0, 0.0}};
+    pan_outputs_t out2; tilt_outputs_t tout; axes_outputs_t aout;
+    pan_t *b = pan_instance(1);
+    tilt_t *t = tilt_instance(0);
+    pan_init(a, &in, &out); pan_init(b, &in2, &out2); tilt_init(t, &tin, &tout);
+    axes_init(axes_instance(0), &ain, &aout); axes_init(axes_instance(1), &ain, &aout);
+    tilt_set_parameter(t, TILT_PI_KP, 1.0);
+    for (int k = 0; k < 50; k++) {{
+        pan_step(a, &in, &out); pan_step(b, &in2, &out2); tilt_step(t, &tin, &tout);
+        if (k < 10) {{ axes_step(axes_instance(1), &ain, &aout); }}
+    }}
+    printf("%.17g\\n%.17g\\n%.17g %.17g\\n%g\\n", out.duty, out2.duty, tout.duty, tout.steps, aout.count);
+    axes_step(axes_instance(0), &ain, &aout);
+    printf("%g\\n", aout.count);
+    return pan_instance(2) != 0 || PAN_INSTANCES != 2u;
+"""
+    together = program(body, libraries, tmp_path / "run")
+    alone = []
+    for setpoint, kp in ((0.5, 2.0), (-0.5, 2.0), (0.5, 1.0)):
+        text = f"""{SERVO} in.plant_setpoint = {setpoint};
+    tilt_init(a, &in, &out); tilt_set_parameter(a, TILT_PI_KP, {kp});
+    for (int k = 0; k < 50; k++) {{ tilt_step(a, &in, &out); }}
+    printf("%.17g %.17g\\n", out.duty, out.steps);
+"""
+        alone.append(program(text, [libraries[1]], tmp_path / f"alone{setpoint}{kp}")[0])
+    assert together[:3] == [alone[0][:1], alone[1][:1], alone[2]]
+    assert together[3:] == [[10], [1]]
+    assert alone[0] != alone[2]
+
+
+def test_fmi3_stops_and_fails(tmp_path: Path) -> None:
+    body = """
+    in.gain = 1.0;
+    pan_init(a, &in, &out);
+    in.mask = 1000.0;
+    pan_step(a, &in, &out);
+    printf("%d %d %g\\n", pan_finite(a), pan_stopped(a), out.count);
+    in.mask = -5.0;
+    pan_init(a, &in, &out);
+    in.gain = 99.0;
+    pan_step(a, &in, &out);
+    printf("%d %d %g\\n", pan_finite(a), pan_stopped(a), out.count);
+"""
+    rows = program(body, [build(loaded(FMU3), "pan", tmp_path)], tmp_path / "run")
+    assert rows == [[1, 1, 1], [0, 0, 0]]
+
+
+@pytest.mark.parametrize("cpu", ["cortex-m0plus", "cortex-m33"])
+def test_links_for_microcontrollers(cpu: str, tmp_path: Path) -> None:
+    """Without a heap of the C library: nothing in the image asks for memory."""
+    compiler = shutil.which("arm-none-eabi-gcc")
+    if compiler is None:
+        pytest.skip("arm-none-eabi-gcc is missing: apt-get install gcc-arm-none-eabi libnewlib-arm-none-eabi")
+    flags = [f"-mcpu={cpu}", "-mthumb", "-Os", "-std=c11", "-ffunction-sections", "-ffp-contract=off"]
+    objects = []
+    for name, model in (("pan", loaded(FMU2)), ("axes", loaded(pack(FMU3, tmp_path / "a.fmu")))):
+        output = tmp_path / name
+        for file, text in emit_model(model, name).items():
+            (output / file).parent.mkdir(parents=True, exist_ok=True)
+            (output / file).write_text(text)
+        made = model_build(model, name)
+        folders = [*made.include_dirs, *(output / place for place in made.generated_include_dirs)]
+        own = ["-w", "-include", str(output / f"{name}_names.h"), *(f"-I{folder}" for folder in folders)]
+        own += [f"-I{output}", f"-I{output}/{name}_headers"]
+        sources = [(output / file, ["-Wall", "-Wextra", "-Wconversion", "-Werror"]) for file in made.generated]
+        sources += [(output / file, own) for file in made.exported_generated] + [(file, own) for file in made.exported]
+        for source, options in sources:
+            objects.append(output / f"{len(objects)}.o")
+            run([compiler, *flags, *options, f"-I{output}", "-c", str(source), "-o", str(objects[-1])])
+    main = tmp_path / "main.c"
+    main.write_text("""
+#include "pan/pan.h"
+#include "axes/axes.h"
+int main(void)
+{
+    static pan_inputs_t in;
+    static pan_outputs_t out;
+    static axes_inputs_t axes_in;
+    static axes_outputs_t axes_out;
+    pan_init(pan_instance(0), &in, &out);
+    axes_init(axes_instance(0), &axes_in, &axes_out);
+    pan_step(pan_instance(0), &in, &out);
+    axes_step(axes_instance(0), &axes_in, &axes_out);
+    return pan_finite(pan_instance(0)) && axes_finite(axes_instance(0)) ? 0 : 1;
+}
+""")
+    image, map_file = tmp_path / "image.elf", tmp_path / "image.map"
+    linking = ["--specs=nosys.specs", "-Wl,--gc-sections,--no-warn-rwx-segments", f"-Wl,-Map={map_file}"]
+    run([compiler, *flags, str(main), *map(str, objects), "-lm", *linking, "-o", str(image)])
+    symbols = run(["arm-none-eabi-nm", str(image)])
+    names = {line.split()[-1] for line in symbols.splitlines()}
+    assert "pan_private_fmi2DoStep" in names and "axes_private_fmi3DoStep" in names
+    assert not names & {"malloc", "_malloc_r", "calloc", "_sbrk", "strdup"}

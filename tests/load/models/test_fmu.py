@@ -1,0 +1,331 @@
+"""FMUs: what is read of them, from folders and archives, and what is said of those that cannot be used."""
+
+from __future__ import annotations
+
+import io
+import json
+import struct
+import time
+import tracemalloc
+import zipfile
+from collections.abc import Callable
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+import yaml
+
+from tests.models.fmus import FMU2, FMU3, changed, pack
+from tests.models.harness import load, loaded
+
+SCHEMA = Path(__file__).resolve().parents[3] / "schemas" / "model.schema.json"
+
+
+def only_error(path: Path) -> tuple[str, str]:
+    model, diagnostics = load(path)
+    assert model is None
+    errors = [item for item in diagnostics if item.severity == "error"]
+    assert len(errors) == 1, [item.message for item in errors]
+    assert errors[0].hint or errors[0].id == "wrong-type"
+    return errors[0].id, errors[0].message
+
+
+@pytest.mark.parametrize("archive", [False, True], ids=["folder", "archive"])
+def test_reads_everything(archive: bool, tmp_path: Path) -> None:
+    model = loaded(pack(FMU2, tmp_path / "servo.fmu") if archive else FMU2)
+    assert (model.name, model.origin, model.language) == ('Servo "1"', "FMI 2.0 FMU", "c")
+    assert model.step == Fraction(1, 1000) and model.instantiable
+    assert [(p.name, p.identifier, p.unit, p.type, p.index) for p in model.inputs] == [
+        ("plant.setpoint", "plant_setpoint", "rad", "real", 0),  # the unit of its declared type
+        ("plant.position", "plant_position", "rad", "real", 1),
+        ("enable", "enable", "", "boolean", 2),
+        ("mode", "mode", "", "integer", 3),
+    ]
+    assert model.inputs[1].description == "measured"
+    assert [(p.name, p.unit, p.type) for p in model.outputs] == [
+        ("duty", "", "real"),
+        ("steps", "", "integer"),
+        ("saturated", "", "boolean"),
+    ]
+    assert [(p.name, p.identifier, p.value, p.unit) for p in model.parameters] == [
+        ("PI.kp", "PI_kp", 2.0, ""),
+        ("PI.ki", "PI_ki", 0.5, "1/s"),
+        ("table size", "table_size", 4.0, ""),
+    ]
+    line = model.inputs[0].span.line
+    assert 'name="plant.setpoint"' in (FMU2 / "modelDescription.xml").read_text().splitlines()[line - 1]
+    names = {path.name for path in model.files}
+    assert names == ({"servo.fmu"} if archive else {"modelDescription.xml", "servo.c", "law.c", "law.h"})
+
+
+def test_reads_fmi_3(tmp_path: Path) -> None:
+    model = loaded(FMU3)
+    assert (model.name, model.origin, model.step) == ("Axes", "FMI 3.0 FMU", Fraction(1, 500))
+    assert [(p.name, p.identifier, p.unit, p.type) for p in model.inputs] == [
+        ("setpoint[1]", "setpoint_1", "rad", "real"),
+        ("setpoint[2]", "setpoint_2", "rad", "real"),
+        ("setpoint[3]", "setpoint_3", "rad", "real"),
+        ("gain", "gain", "", "real"),
+        ("mask", "mask", "", "integer"),
+        ("hold", "hold", "", "boolean"),
+    ]
+    assert [(p.name, p.value) for p in model.parameters] == [("slope", 0.25), ("offset", -1.0)]
+    assert {path.name for path in model.files} == {"modelDescription.xml", "all.c", "axes.c", "axes.h"}
+
+
+def test_where_an_fmu_is_found(tmp_path: Path) -> None:
+    folder = tmp_path / "model"
+    pack(FMU2, folder / "servo.fmu")
+    assert loaded(folder).origin == loaded(folder / "servo.fmu").origin == "FMI 2.0 FMU"
+    assert loaded(FMU2 / "modelDescription.xml").origin == "FMI 2.0 FMU"
+    pack(FMU3, folder / "axes.fmu")
+    id, message = only_error(folder)
+    assert id == "model-ambiguous" and "2 models" in message
+    assert only_error(FMU2 / "sources/servo.c")[0] == "model-not-recognised"
+
+
+def test_a_matrix_has_its_elements_as_ports(tmp_path: Path) -> None:
+    folder = changed(
+        FMU3,
+        tmp_path / "fmu",
+        "modelDescription.xml",
+        (
+            'causality="output"><Dimension start="3"/>',
+            'causality="output"><Dimension start="2"/><Dimension start="3"/>',
+        ),
+    )
+    names = [port.name for port in loaded(folder).outputs]
+    assert names[:6] == ["duty[1,1]", "duty[1,2]", "duty[1,3]", "duty[2,1]", "duty[2,2]", "duty[2,3]"]
+
+
+def test_one_instance_only(tmp_path: Path) -> None:
+    flag = 'canBeInstantiatedOnlyOncePerProcess="true"'
+    change = ('canHandleVariableCommunicationStepSize="true"', flag)
+    assert not loaded(changed(FMU2, tmp_path / "fmu", "modelDescription.xml", change)).instantiable
+
+
+@pytest.mark.parametrize(
+    ("text", "id"),
+    [
+        ('void *p = fopen(self->name, "r");', "model-file-use"),
+        ("free(self->law.errors);", "model-heap"),
+        ("self->law.errors = self->functions->allocateMemory(1, 8);", "model-heap"),
+    ],
+)
+def test_what_cannot_run_in_a_step(text: str, id: str, tmp_path: Path) -> None:
+    change = ("    double error =", f"    {text}\n    double error =")
+    path = changed(FMU2, tmp_path / "fmu", "sources/servo.c", change)
+    found, _ = only_error(path)
+    assert found == id
+    _, diagnostics = load(pack(path, tmp_path / "a.fmu"))
+    assert diagnostics.items[0].span.text is not None and text[:8] in diagnostics.items[0].span.text
+
+
+def test_files_when_it_starts(tmp_path: Path) -> None:
+    change = ("    self->functions = functions;", '    self->functions = functions; fopen("x", "r");')
+    assert only_error(changed(FMU2, tmp_path / "fmu", "sources/servo.c", change))[0] == "model-file-use"
+
+
+def test_sources_that_nobody_lists(tmp_path: Path) -> None:
+    """FMUs of older tools: every C file."""
+    folder = tmp_path / "fmu"
+    text = (FMU2 / "modelDescription.xml").read_text()
+    start, end = text.index("<SourceFiles>"), text.index("</SourceFiles>") + len("</SourceFiles>")
+    changed(FMU2, folder, "modelDescription.xml", (text[start:end], ""))
+    (folder / "sources/notes.txt").write_text("no source")
+    assert {path.name for path in loaded(folder).files} == {"modelDescription.xml", "servo.c", "law.c", "law.h"}
+
+
+def test_headers_of_other_systems_may_be_missing(tmp_path: Path) -> None:
+    other = '#ifdef _WIN32\n#include "windows_only.h"\n#endif\n#include "law.h"'
+    loaded(changed(FMU2, tmp_path / "fmu", "sources/servo.c", ('#include "law.h"', other)))
+
+
+# model.yaml ----------------------------------------------------------------------------------------------------------
+
+
+def settings(folder: Path, **document: object) -> Path:
+    folder.mkdir(exist_ok=True)
+    (folder / "model.yaml").write_text(yaml.safe_dump({"version": 1, **document}))
+    return folder
+
+
+def test_model_yaml_says_what_the_fmu_does_not(tmp_path: Path) -> None:
+    pack(FMU2, tmp_path / "model/servo.fmu")
+    folder = settings(tmp_path / "model", fmu="servo.fmu", step="2 ms", heap="2 KiB")
+    model = loaded(folder)
+    assert model.step == Fraction(1, 500) and model.details.heap == 2048  # type: ignore[union-attr]
+    assert {path.name for path in model.files} == {"model.yaml", "servo.fmu"}
+    assert model.directory == folder
+    settings(tmp_path / "model", fmu=".")
+    assert only_error(folder)[0] == "file-not-found"
+
+
+WRONG = [
+    ({"fmu": "a.fmu"}, "file-not-found"),
+    ({"fmu": ""}, "wrong-type"),
+    ({"fmu": ["servo.fmu"]}, "wrong-type"),
+    ({"heap": 2048}, "wrong-unit"),
+    ({"heap": "2 kB"}, "wrong-unit"),
+    ({"heap": "1 B"}, "out-of-range"),
+    ({"heap": "65 MiB"}, "out-of-range"),
+    ({"step": "1"}, "wrong-unit"),
+    ({"step": "0 s"}, "out-of-range"),
+    ({"sources": ["a.c"]}, "unknown-key"),
+    ({"version": 2}, "newer-version"),
+]
+
+
+@pytest.mark.parametrize(("change", "id"), WRONG, ids=[f"{next(iter(c))}-{n}" for n, (c, _) in enumerate(WRONG)])
+def test_wrong_model_yaml(change: dict[str, object], id: str, tmp_path: Path) -> None:
+    from jsonschema import Draft202012Validator
+
+    pack(FMU2, tmp_path / "model/servo.fmu")
+    document = {"fmu": "servo.fmu", **change}
+    assert only_error(settings(tmp_path / "model", **document))[0] == id
+    validator = Draft202012Validator(json.loads(SCHEMA.read_text()))
+    assert not list(validator.iter_errors({"version": 1, "fmu": "servo.fmu", "step": "1 ms", "heap": "4 KiB"}))
+    seen = bool(list(validator.iter_errors({"version": 1, **document})))
+    assert seen or id in ("file-not-found", "out-of-range")
+
+
+def test_the_step_must_suit_20sim(tmp_path: Path) -> None:
+    """Its FMUs take whole steps of their own."""
+    folder = changed(
+        FMU2, tmp_path / "fmu", "modelDescription.xml", ('generationTool="tests"', 'generationTool="20-sim"')
+    )
+    assert loaded(folder).details.step_argument == Fraction(1, 2000)  # type: ignore[union-attr]
+    model = loaded(settings(tmp_path / "model", fmu="../fmu", step="3 ms"))
+    assert model.details.step_argument == Fraction(5, 2000)  # type: ignore[union-attr]
+    assert only_error(settings(tmp_path / "model", fmu="../fmu", step="1.5 ms"))[0] == "fmu-step"
+
+
+# hostile archives ----------------------------------------------------------------------------------------------------
+
+DESCRIPTION = (FMU2 / "modelDescription.xml").read_bytes()
+
+
+def archive(*entries: tuple[str | zipfile.ZipInfo, bytes]) -> bytes:
+    data = io.BytesIO()
+    with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as packed:
+        for entry, content in entries:
+            packed.writestr(entry, content)
+    return data.getvalue()
+
+
+def with_source(name: str | zipfile.ZipInfo, content: bytes = b"int x;") -> bytes:
+    sources = [(f"sources/{path.name}", path.read_bytes()) for path in sorted((FMU2 / "sources").iterdir())]
+    return archive(("modelDescription.xml", DESCRIPTION), *sources, (name, content))
+
+
+def link_to(name: str) -> zipfile.ZipInfo:
+    entry = zipfile.ZipInfo(name)
+    entry.create_system = 3
+    entry.external_attr = 0o120777 << 16
+    return entry
+
+
+def edited(data: bytes, old: bytes, new: bytes) -> bytes:
+    assert len(old) == len(new) and old in data
+    return data.replace(old, new)
+
+
+def encrypted(data: bytes) -> bytes:
+    """The flag of encryption in every entry of the list of files."""
+    at = data.find(b"PK\1\2")
+    while at >= 0:
+        data = data[: at + 8] + struct.pack("<H", struct.unpack_from("<H", data, at + 8)[0] | 1) + data[at + 10 :]
+        at = data.find(b"PK\1\2", at + 4)
+    return data
+
+
+def bomb() -> bytes:
+    return archive(
+        ("modelDescription.xml", DESCRIPTION), *((f"sources/{n}.c", bytes(1) * (15 << 20)) for n in range(20))
+    )
+
+
+def lying_bomb() -> bytes:
+    """The list of files says that 40 MiB are 6 bytes."""
+    data = archive(("modelDescription.xml", DESCRIPTION), ("sources/a.c", b"\n" * (40 << 20)))
+    return data.replace(struct.pack("<L", 40 << 20), struct.pack("<L", 6))
+
+
+def entity_bomb() -> bytes:
+    levels = "".join(f'<!ENTITY a{n} "{f"&a{n - 1};" * 10}">' for n in range(1, 9))
+    text = f'<!DOCTYPE x [<!ENTITY a0 "lol">{levels}]><fmiModelDescription fmiVersion="2.0">&a8;</fmiModelDescription>'
+    return archive(("modelDescription.xml", text.encode()))
+
+
+def external_entity() -> bytes:
+    text = (
+        '<!DOCTYPE x [<!ENTITY a SYSTEM "file:///etc/passwd">]><fmiModelDescription fmiVersion="2.0" modelName="&a;"/>'
+    )
+    return archive(("modelDescription.xml", text.encode()))
+
+
+def huge_directory() -> bytes:
+    return archive(*((f"r/{n}", b"") for n in range(20_001)))
+
+
+def binary_source() -> bytes:
+    """A listed source that is no text."""
+    sources = {path.name: path.read_bytes() for path in (FMU2 / "sources").iterdir()}
+    sources["law.c"] = b"\0\1\2"
+    return archive(("modelDescription.xml", DESCRIPTION), *((f"sources/{name}", d) for name, d in sources.items()))
+
+
+HOSTILE: dict[str, tuple[Callable[[], bytes], str]] = {
+    "up": (lambda: with_source("sources/../../../evil.c"), "fmu-unreadable"),
+    "up-hidden": (lambda: with_source("sources/a/../../evil.c"), "fmu-unreadable"),
+    "backslash": (lambda: with_source("sources/..\\..\\evil.c"), "fmu-unreadable"),
+    "drive": (lambda: with_source("sources/C:/evil.c"), "fmu-unreadable"),
+    "empty-part": (lambda: with_source("sources//etc/evil.c"), "fmu-unreadable"),
+    "device": (lambda: with_source("sources/con.c"), "fmu-unreadable"),
+    "control": (lambda: with_source("sources/a\x1b[2Jb.c"), "fmu-unreadable"),
+    "nul": (lambda: edited(with_source("sources/evilXc.c"), b"evilXc", b"evil\0c"), "fmu-unreadable"),
+    "trailing-dot": (lambda: with_source("sources/evil.c."), "fmu-unreadable"),
+    "link": (lambda: with_source(link_to("sources/x.c"), b"/etc/passwd"), "fmu-unreadable"),
+    "twice-by-case": (lambda: with_source("sources/LAW.c"), "fmu-unreadable"),
+    "encrypted": (lambda: encrypted(with_source("sources/x.c")), "fmu-unreadable"),
+    "bomb": (bomb, "fmu-unreadable"),
+    "lying-bomb": (lying_bomb, "fmu-unreadable"),
+    "entity-bomb": (entity_bomb, "model-xml"),
+    "external-entity": (external_entity, "model-xml"),
+    "many-files": (huge_directory, "fmu-unreadable"),
+    "no-zip": (lambda: b"MZ" * 1000, "fmu-unreadable"),
+    "empty": (lambda: b"", "fmu-unreadable"),
+    "truncated": (lambda: with_source("sources/x.c")[:-30], "fmu-unreadable"),
+    "cut-content": (
+        lambda: (data := with_source("sources/x.c"))[:60] + bytes(300) + data[360:],
+        "fmu-unreadable",
+    ),
+    "binary-source": (binary_source, "model-unreadable"),
+    "no-description": (lambda: archive(("sources/a.c", b"")), "fmu-unreadable"),
+    "method": (lambda: edited(with_source("sources/x.c"), b"\x08\x00", b"\x63\x00"), "fmu-unreadable"),
+}
+
+
+@pytest.mark.parametrize("kind", sorted(HOSTILE))
+def test_hostile_archives(kind: str, tmp_path: Path) -> None:
+    """One error each, in little time and memory, and nothing is written."""
+    make, id = HOSTILE[kind]
+    folder = tmp_path / "a" / "b"
+    folder.mkdir(parents=True)
+    path = folder / "servo.fmu"
+    path.write_bytes(make())
+    before = sorted(tmp_path.rglob("*"))
+    tracemalloc.start()
+    start = time.monotonic()
+    assert only_error(path)[0] == id
+    assert time.monotonic() - start < 10
+    assert tracemalloc.get_traced_memory()[1] < 200 << 20
+    tracemalloc.stop()
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_what_is_no_part_of_the_model_does_not_matter(tmp_path: Path) -> None:
+    """Nothing else is ever unpacked, whatever it is called."""
+    path = tmp_path / "servo.fmu"
+    path.write_bytes(with_source("resources/../../evil?.txt"))
+    loaded(path)

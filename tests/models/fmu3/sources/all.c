@@ -1,0 +1,2 @@
+/* As many FMUs do: one file that includes the others. */
+#include "axes.c"

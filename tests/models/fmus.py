@@ -1,0 +1,170 @@
+"""Sample FMUs for tests, and programs that call their functions as the standard says: what EPG's library is compared
+with."""
+
+from __future__ import annotations
+
+import shutil
+import zipfile
+from collections.abc import Mapping
+from pathlib import Path
+
+from epg.emit.model.fmi_headers import fmi_headers
+from tests.models.harness import MODELS, SIGNAL, compile_file, link, run
+
+FMU2 = MODELS / "fmu2"
+FMU3 = MODELS / "fmu3"
+
+
+def pack(folder: Path, archive: Path, more: Mapping[str, bytes] | None = None) -> Path:
+    """The folder as an ``.fmu``, with ``more`` files in it."""
+    archive.parent.mkdir(parents=True, exist_ok=True)
+    with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as packed:
+        for path in sorted(folder.rglob("*")):
+            if path.is_file():
+                packed.write(path, path.relative_to(folder).as_posix())
+        for name, data in (more or {}).items():
+            packed.writestr(name, data)
+    return archive
+
+
+def changed(folder: Path, target: Path, file: str, *changes: tuple[str, str]) -> Path:
+    """A copy of an FMU with another text in one of its files."""
+    shutil.copytree(folder, target)
+    path = target / file
+    text = path.read_text(encoding="utf-8")
+    for old, new in changes:
+        assert old in text, old
+        text = text.replace(old, new)
+    path.write_text(text, encoding="utf-8")
+    return target
+
+
+def _main(start: str, take: str, step: str, show: str, end: str, steps: int) -> str:
+    return f"""
+int main(void)
+{{
+    {take}
+    {start}
+    {show}
+    for (int k = 0; k < {steps}; k++) {{
+        double t = k * STEP;
+        double h = (k + 1) * STEP - t;
+        {take}
+        if (h <= 0.0) {{ return 2; }}
+        {step}
+        {show}
+    }}
+    {end}
+    {show}
+    return 0;
+}}
+"""
+
+
+def run_fmu2(work: Path, steps: int) -> str:
+    """What ``fmu2`` gives with the inputs of ``wrapper_driver``: its ports in the order of its description."""
+    set_all = """
+    reals[0] = signal(); reals[1] = signal(); enable = signal() > 0.5;
+    { double m = signal(); mode = m < -2147483648.0 ? -2147483647 - 1 : (int)m; }"""
+    text = f"""#define FMI2_FUNCTION_PREFIX Servo_
+#include "fmi2Functions.h"
+#include <stdlib.h>
+#define STEP 0.001
+{SIGNAL}
+static double reals[2];
+static int enable, mode;
+static fmi2Component c;
+static void logger(fmi2ComponentEnvironment e, fmi2String n, fmi2Status s, fmi2String g, fmi2String m, ...) {{ }}
+static void set(void)
+{{
+    static const fmi2ValueReference inputs[2] = {{0, 1}};
+    static const fmi2ValueReference zero = 0;
+    fmi2SetReal(c, inputs, 2, reals);
+    fmi2SetBoolean(c, &zero, 1, &enable);
+    fmi2SetInteger(c, &zero, 1, &mode);
+}}
+static void put(void)
+{{
+    static const fmi2ValueReference one = 1, two = 2;
+    double duty; int count, saturated;
+    fmi2GetReal(c, &two, 1, &duty);
+    fmi2GetInteger(c, &one, 1, &count);
+    fmi2GetBoolean(c, &one, 1, &saturated);
+    show(duty); show(count); show(saturated); puts("");
+}}
+""" + _main(
+        """static const fmi2CallbackFunctions callbacks = {logger, calloc, free, NULL, NULL};
+    c = fmi2Instantiate("a", fmi2CoSimulation, "{6f1c9a0e-servo}", "file:///", &callbacks, 0, 0);
+    fmi2SetupExperiment(c, 0, 0.0, 0.0, 0, 0.0);
+    fmi2EnterInitializationMode(c);
+    set();
+    fmi2ExitInitializationMode(c);""",
+        set_all,
+        "set(); if (fmi2DoStep(c, t, h, 1) != fmi2OK) { return 1; }",
+        "put();",
+        "fmi2Terminate(c);",
+        steps,
+    )
+    return _run(text, 2, [FMU2 / "sources/servo.c", FMU2 / "sources/law.c"], [FMU2 / "sources"], work, [])
+
+
+def run_fmu3(work: Path, steps: int) -> str:
+    """What ``fmu3`` gives, as :func:`run_fmu2`."""
+    take = """
+    for (int i = 0; i < 3; i++) { setpoints[i] = signal(); }
+    gain = (float)signal();
+    { double m = signal(); mask = m <= 0.0 ? 0 : (uint8_t)m; }
+    hold = signal() > 0.5;"""
+    text = f"""#define FMI3_FUNCTION_PREFIX Axes_
+#include "fmi3Functions.h"
+#include <stdlib.h>
+#define STEP 0.002
+{SIGNAL}
+static double setpoints[3];
+static float gain;
+static uint8_t mask;
+static bool hold;
+static fmi3Instance c;
+static void set(void)
+{{
+    static const fmi3ValueReference one = 1, two = 2, three = 3, four = 4;
+    fmi3SetFloat64(c, &one, 1, setpoints, 3);
+    fmi3SetFloat32(c, &two, 1, &gain, 1);
+    fmi3SetUInt8(c, &three, 1, &mask, 1);
+    fmi3SetBoolean(c, &four, 1, &hold, 1);
+}}
+static void put(void)
+{{
+    static const fmi3ValueReference five = 5, six = 6, seven = 7;
+    double duty[3]; int64_t count; bool held;
+    fmi3GetFloat64(c, &five, 1, duty, 3);
+    fmi3GetInt64(c, &six, 1, &count, 1);
+    fmi3GetBoolean(c, &seven, 1, &held, 1);
+    show(duty[0]); show(duty[1]); show(duty[2]); show((double)count); show(held); puts("");
+}}
+""" + _main(
+        """c = fmi3InstantiateCoSimulation("a", "{axes-1}", NULL, 0, 0, 0, 0, NULL, 0, NULL, NULL, NULL);
+    fmi3EnterInitializationMode(c, 0, 0.0, 0.0, 0, 0.0);
+    set();
+    fmi3ExitInitializationMode(c);""",
+        take,
+        """bool a, b, d; double last;
+        set(); if (fmi3DoStep(c, t, h, 1, &a, &b, &d, &last) != fmi3OK) { return 1; }""",
+        "put();",
+        "fmi3Terminate(c);",
+        steps,
+    )
+    folders = [FMU3 / "sources", FMU3 / "sources/include"]
+    options = ["-DAXES=3", "-DFMI3_FUNCTION_PREFIX=Axes_"]
+    return _run(text.split("\n", 1)[1], 3, [FMU3 / "sources/all.c"], folders, work, options)
+
+
+def _run(text: str, standard: int, sources: list[Path], folders: list[Path], work: Path, options: list[str]) -> str:
+    work.mkdir(parents=True, exist_ok=True)
+    for name, header in fmi_headers(standard).items():
+        (work / name).write_text(header)
+    (work / "direct.c").write_text(text, encoding="utf-8")
+    flags = ["-w", "-D_DEFAULT_SOURCE", *options, f"-I{work}", *(f"-I{folder}" for folder in folders)]
+    files = [work / "direct.c", *sources]
+    objects = [compile_file(path, work / f"direct_{index}.o", flags, "c") for index, path in enumerate(files)]
+    return run([str(link(objects, work / "direct", False))])
