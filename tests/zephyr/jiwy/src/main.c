@@ -1,0 +1,146 @@
+/*
+ * Copyright (c) The EPG contributors
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ */
+
+/* A whole target in Zephyr: JIWY's controller, whose shafts the test turns where they are emulated. */
+
+#include <stdint.h>
+
+#include <zephyr/kernel.h>
+#include <zephyr/ztest.h>
+
+#include "jiwy.h"
+
+#define SECONDS 3
+#define CYCLES_PER_SECOND 1000
+
+static epg_status_t status_after(k_timeout_t time)
+{
+	epg_status_t status = {0};
+
+	k_sleep(time);
+	zassert_true(jiwy_status(&status), "there was no cycle");
+
+	return status;
+}
+
+/* The period of JIWY is 1 ms: as many cycles as that makes, each at its tick. */
+ZTEST(jiwy, test_cycles)
+{
+	const epg_status_t first = status_after(K_MSEC(10));
+	const epg_status_t second = status_after(K_SECONDS(SECONDS));
+
+	zassert_within(second.statistics.cycles - first.statistics.cycles,
+		       SECONDS * CYCLES_PER_SECOND, 1);
+	zassert_equal(second.statistics.missed, 0);
+	zassert_equal(second.statistics.overruns, 0);
+	zassert_true(second.enabled, "disabled by fault %d of component %d", second.fault,
+		     second.fault_component);
+}
+
+#if DT_HAS_COMPAT_STATUS_OKAY(epg_qdec_emul)
+
+#include <math.h>
+
+#include <zephyr/drivers/gpio.h>
+#include <zephyr/drivers/gpio/gpio_emul.h>
+
+#include <epg/zephyr/pwm_emul.h>
+#include <epg/zephyr/qdec_emul.h>
+
+#define TARGET      DT_NODELABEL(epg_jiwy)
+/* In the order of the components' names: encoder_pan and pwm_pan are the first of their kind. */
+#define ENCODER_PAN DEVICE_DT_GET(DT_PHANDLE_BY_IDX(TARGET, decoders, 0))
+#define PWM_PAN     DEVICE_DT_GET(DT_PWMS_CTLR_BY_IDX(TARGET, 0))
+#define CHANNEL_PAN DT_PWMS_CHANNEL_BY_IDX(TARGET, 0)
+
+#define RAD_PER_COUNT (3.14159265358979323846 / 1112)
+
+static uint32_t high_time(void)
+{
+	uint32_t period = 0;
+	uint32_t high = 0;
+
+	zassert_ok(pwm_emul_get(PWM_PAN, CHANNEL_PAN, &period, &high));
+	zassert_equal(period, 6250, "20 kHz of 125 MHz are 6250 clocks, not %u", period);
+
+	return high;
+}
+
+/* Direction pins of the target that are high now. */
+static unsigned int pins_high(void)
+{
+	static const struct gpio_dt_spec pins[] = {
+		DT_FOREACH_PROP_ELEM_SEP(TARGET, gpios, GPIO_DT_SPEC_GET_BY_IDX, (,))};
+	unsigned int count = 0;
+
+	ARRAY_FOR_EACH(pins, i) {
+		count += gpio_emul_output_get(pins[i].port, pins[i].pin) > 0 ? 1 : 0;
+	}
+
+	return count;
+}
+
+ZTEST(jiwy, test_encoder)
+{
+	const double before = jiwy_inputs.position_pan;
+
+	qdec_emul_move(ENCODER_PAN, 100);
+	(void)status_after(K_MSEC(3));
+	zassert_true(fabs(jiwy_inputs.position_pan - before - 100 * RAD_PER_COUNT) < 1e-9);
+	qdec_emul_move(ENCODER_PAN, -150);
+	(void)status_after(K_MSEC(3));
+	zassert_true(fabs(jiwy_inputs.position_pan - before + 50 * RAD_PER_COUNT) < 1e-9);
+}
+
+/* Homing drives both axes; disabled, nothing does. */
+ZTEST(jiwy, test_outputs)
+{
+	zassert_true(status_after(K_MSEC(3)).enabled);
+	zexpect_within(high_time(), 6250 / 20, 5);
+	zexpect_equal(pins_high(), 2);
+	jiwy_enable(false);
+	zassert_false(status_after(K_MSEC(3)).enabled);
+	zexpect_equal(high_time(), 0);
+	zexpect_equal(pins_high(), 0);
+	jiwy_enable(true);
+	zassert_true(status_after(K_MSEC(3)).enabled);
+	zexpect_not_equal(high_time(), 0);
+}
+
+/* A decoder that says that it has stopped disables the target, and latches. */
+ZTEST(jiwy, test_decoder_fails)
+{
+	epg_status_t status;
+
+	qdec_emul_set_error(ENCODER_PAN, -EIO);
+	status = status_after(K_MSEC(3));
+	zexpect_false(status.enabled);
+	zexpect_equal(status.fault, EPG_FAULT_SENSOR);
+	zexpect_equal(high_time(), 0);
+	qdec_emul_set_error(ENCODER_PAN, 0);
+	zexpect_false(status_after(K_MSEC(3)).enabled);
+	jiwy_enable(true);
+	zexpect_true(status_after(K_MSEC(3)).enabled);
+}
+
+#endif
+
+/* Each test on a target that has just been started. */
+static void before(void *fixture)
+{
+	ARG_UNUSED(fixture);
+
+	zassert_true(jiwy_start());
+}
+
+static void after(void *fixture)
+{
+	ARG_UNUSED(fixture);
+
+	jiwy_stop();
+}
+
+ZTEST_SUITE(jiwy, NULL, NULL, before, after, NULL);
