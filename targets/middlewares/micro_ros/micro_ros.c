@@ -217,8 +217,8 @@ static void start(const epg_target_t *target, const epg_stream_t *stream)
     ros.options = target->options;
     ros.node = target->node_state;
     ros.state = WAITING;
-    epg_micro_ros_memory_start(ros.options->memory, ros.options->memory_size);
-    ros.usable = epg_micro_ros_transport_start(stream);
+    ros.usable = epg_micro_ros_memory_start(ros.options->memory, ros.options->memory_size) &&
+                 epg_micro_ros_transport_start(stream);
     epg_node_start(ros.node, target, send_message);
     ros.entities = (epg_micro_ros_entities_t){.node = ros.node, .options = ros.options};
 }

@@ -7,7 +7,6 @@
  */
 #include "micro_ros_system.h"
 
-#include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -129,7 +128,7 @@ void epg_micro_ros_memory_free(void)
     all->is.used = false;
 }
 
-void epg_micro_ros_memory_start(void *bytes, size_t size)
+bool epg_micro_ros_memory_start(void *bytes, size_t size)
 {
     arena.begin = bytes;
     arena.end = arena.begin + size / sizeof(block_t) * sizeof(block_t);
@@ -138,7 +137,9 @@ void epg_micro_ros_memory_start(void *bytes, size_t size)
 #ifdef EPG_MICRO_ROS_DEFAULT_ALLOCATOR
     /* Some of rcl allocates by its default allocator whatever it is given. */
     rcutils_allocator_t ours = epg_micro_ros_memory();
-    (void)rcutils_set_default_allocator(&ours);
+    return rcutils_set_default_allocator(&ours);
+#else
+    return true;
 #endif
 }
 

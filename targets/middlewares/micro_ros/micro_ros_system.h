@@ -11,6 +11,7 @@
 #ifndef EPG_MICRO_ROS_SYSTEM_H
 #define EPG_MICRO_ROS_SYSTEM_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include <rcutils/allocator.h>
@@ -24,8 +25,8 @@
 /** Alignment of that memory. */
 #define EPG_MICRO_ROS_ALIGNED _Alignas(max_align_t)
 
-/** Takes `memory` for all that is allocated from now on. */
-void epg_micro_ros_memory_start(void *memory, size_t size);
+/** Takes `memory` for all that is allocated from now on; false: libmicroros has refused it. */
+bool epg_micro_ros_memory_start(void *memory, size_t size);
 
 /** Allocates from it; NULL when it is full.  The same functions are rcl's default ones, where it lets them be set. */
 rcutils_allocator_t epg_micro_ros_memory(void);

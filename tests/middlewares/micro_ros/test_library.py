@@ -35,6 +35,9 @@ def changed_library(folder: Path, name: str, value: str) -> Path:
         ("RMW_UXRCE_MAX_SUBSCRIPTIONS", "4", "rebuild it with -DRMW_UXRCE_MAX_SUBSCRIPTIONS=5"),
         ("RMW_UXRCE_MAX_TOPICS", "11", "components and communication make 12 topics"),
         ("RMW_UXRCE_MAX_HISTORY", "4", "rebuild libmicroros with -DRMW_UXRCE_MAX_HISTORY=5"),
+        # /lab/robot_$serial and /lab/robot_$serial/enable, with rt and a terminating zero
+        ("RMW_UXRCE_NODE_NAME_MAX_LENGTH", "27", "rebuild it with -DRMW_UXRCE_NODE_NAME_MAX_LENGTH=28"),
+        ("RMW_UXRCE_TOPIC_NAME_MAX_LENGTH", "36", "rebuild it with -DRMW_UXRCE_TOPIC_NAME_MAX_LENGTH=37"),
         ("UXR_CONFIG_CUSTOM_TRANSPORT_MTU", "512", "-DUCLIENT_CUSTOM_TRANSPORT_MTU=1536"),
     ],
 )
