@@ -14,7 +14,7 @@ from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
-DATA = ("cmake", "targets", "schemas", "docs/errors.md")
+DATA = ("cmake", "targets", "schemas", "integration", "docs/errors.md")
 
 
 class EpgBuildHook(BuildHookInterface):

@@ -22,6 +22,7 @@ COMMANDS = {
     "generate-model": "write the library of one model (CMake calls this)",
     "bind": "write bindings for the ports whose names match",
     "ports": "list the ports and parameters of a model",
+    "exported": "check an export of 20-sim and say what comes next (EPG's target for 20-sim calls this)",
     "targets": "list targets, component kinds and predefined .tcf files",
     "explain": "show the way of a model port to its pin",
     "simulate": "run a host executable through a scenario and judge the result",
@@ -54,10 +55,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         options = parser.parse_args(arguments)
     except SystemExit as stop:
         return int(stop.code or 0)
-    if options.cmake_dir:
+    if options.cmake_dir or options.twenty_sim_dir:
         from epg.data import data_folder
 
-        print(data_folder("cmake").as_posix())
+        folder = data_folder("cmake") if options.cmake_dir else data_folder("integration") / "20-sim" / "EPG"
+        print(folder.as_posix() if options.cmake_dir else folder)
         return EXIT_OK
     if not options.command:
         parser.print_help()
@@ -75,6 +77,9 @@ def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="epg", description="Turns a controller modelled in 20-sim into firmware.")
     parser.add_argument("--version", action="version", version=f"epg {epg.__version__}")
     parser.add_argument("--cmake-dir", action="store_true", help="print the folder of EPGConfig.cmake and exit")
+    parser.add_argument(
+        "--20-sim-dir", action="store_true", dest="twenty_sim_dir", help="print the folder to add to 20-sim and exit"
+    )
     subparsers = parser.add_subparsers(dest="command", metavar="COMMAND")
     chosen = _command(arguments)
     for name, summary in COMMANDS.items():

@@ -11,7 +11,7 @@ import pytest
 
 from tests.cmake.project import ROOT, Project
 
-TREES = ("cmake", "targets", "schemas")
+TREES = ("cmake", "targets", "schemas", "integration")
 
 
 @pytest.fixture(scope="module")

@@ -26,6 +26,7 @@ from tests.models.harness import (
     run_wrapper,
     values,
 )
+from tests.twenty_sim.generate import write_by_template
 
 STEPS = 400
 
@@ -108,6 +109,7 @@ KINDS: dict[str, Callable[[Export, Path], Path]] = {
     "c": Export.write,
     "c++": Export.write_cpp,
     "tokens": Export.write_tokens,
+    "template": write_by_template,
 }
 
 
@@ -315,7 +317,7 @@ int main(void)
 """
 
 
-@pytest.mark.parametrize("kind", ["c++", "tokens"])
+@pytest.mark.parametrize("kind", ["c++", "tokens", "template"])
 def test_instances_are_independent(kind: str, tmp_path: Path) -> None:
     model = loaded(KINDS[kind](Export(), tmp_path / "model"))
     rows = run_program(tmp_path / "run", INSTANCES, [build(model, "pan", tmp_path, instances=3)]).splitlines()
