@@ -15,6 +15,7 @@ from .board import Jiwy
 from .scenarios import SCENARIOS, assert_is_back, hold, restart
 
 RESTARTS = 20
+ON_FREERTOS = ("cable",)
 
 
 @pytest.fixture(scope="module", params=PLATFORMS)
@@ -25,20 +26,16 @@ def board(request: pytest.FixtureRequest) -> Iterator[Jiwy]:
         yield made
 
 
-@pytest.fixture
-def jiwy(board: Jiwy) -> Jiwy:
+def test_restarts(board: Jiwy) -> None:
     hold(board)
-    return board
-
-
-def test_restarts(jiwy: Jiwy) -> None:
-    restart(jiwy, RESTARTS)
-    assert_is_back(jiwy)
+    restart(board, RESTARTS)
+    assert_is_back(board)
 
 
 @pytest.mark.parametrize("scenario", SCENARIOS)
-def test_it_comes_back(jiwy: Jiwy, scenario: str) -> None:
-    if jiwy.platform == "freertos" and scenario in ("garbage", "damage", "flood"):
+def test_it_comes_back(board: Jiwy, scenario: str) -> None:
+    if board.platform == "freertos" and scenario not in ON_FREERTOS:
         return  # in the long tests
-    SCENARIOS[scenario](jiwy)
-    assert_is_back(jiwy)
+    hold(board)
+    SCENARIOS[scenario](board)
+    assert_is_back(board)

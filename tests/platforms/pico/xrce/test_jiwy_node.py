@@ -61,7 +61,7 @@ def test_it_tracks(jiwy: Jiwy) -> None:
     assert len(pan) == len(tilt) == pytest.approx(2 / PERIOD, abs=2)
     gaps = [later.time - sooner.time for sooner, later in itertools.pairwise(pan)]
     assert max(gaps) < PERIOD + 0.004, "a millisecond of the service, and packets of USB"
-    stats = assert_undisturbed(jiwy, still=False)
+    stats = assert_undisturbed(jiwy)
     jiwy.agent.run(300)
     assert jiwy.position("pan") == pytest.approx(jiwy.angle("pan"), abs=PAN.rad_per_count)
     assert jiwy.position("tilt") == pytest.approx(jiwy.angle("tilt"), abs=TILT.rad_per_count)
