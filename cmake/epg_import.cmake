@@ -3,12 +3,23 @@
 #   include(epg_import.cmake)
 #
 # It finds EPG, in this order: EPG_PATH (variable or environment: a checkout), EPG_DIR (variable or environment: the
-# folder of EPGConfig.cmake), an installed Python package (the one of Python3_EXECUTABLE, else of python3 or python on
-# the PATH, else of the program epg), CMake's own search.  It works before and after project(), and under toolchain files
-# that confine find_package() to a sysroot, as the Pico SDK's does.  What was found is kept in the cache.
+# folder of EPGConfig.cmake), the project epg of the west workspace (when west configures), an installed Python package
+# (the one of Python3_EXECUTABLE, else of python3 or python on the PATH, else of the program epg), CMake's own search.
+# It works before and after project(), and under toolchain files that confine find_package() to a sysroot, as the Pico
+# SDK's does.  What was found is kept in the cache.
 
 if(COMMAND epg_add_target) # a project around this one has brought EPG
   return()
+endif()
+
+# An image of Zephyr's sysbuild gets what was given on the command line in a file.
+if(SYSBUILD AND EXISTS "${SYSBUILD_CACHE}")
+  file(STRINGS "${SYSBUILD_CACHE}" _epg_lines REGEX "^(EPG_PATH|EPG_DIR|WEST_PYTHON|Python3_EXECUTABLE):" ENCODING UTF-8)
+  foreach(_epg_line IN LISTS _epg_lines)
+    if(_epg_line MATCHES "^([^:]+):[^=]*=(.+)$")
+      set(${CMAKE_MATCH_1} "${CMAKE_MATCH_2}")
+    endif()
+  endforeach()
 endif()
 
 # What an earlier run has found here gives way to an EPG_PATH or EPG_DIR that is set now.
@@ -36,6 +47,13 @@ if(EPG_DIR)
 endif()
 if(NOT EPG_DIR AND EPG_IMPORTED_DIR AND EXISTS "${EPG_IMPORTED_DIR}/EPGConfig.cmake")
   set(EPG_DIR "${EPG_IMPORTED_DIR}")
+endif()
+if(NOT EPG_DIR AND WEST_PYTHON)
+  execute_process(COMMAND "${WEST_PYTHON}" -m west list -f "{abspath}" epg WORKING_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}"
+    OUTPUT_VARIABLE _epg_folder OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE _epg_status)
+  if(_epg_status STREQUAL "0" AND EXISTS "${_epg_folder}/cmake/EPGConfig.cmake")
+    file(TO_CMAKE_PATH "${_epg_folder}/cmake" EPG_DIR)
+  endif()
 endif()
 if(NOT EPG_DIR)
   foreach(_epg_command "${Python3_EXECUTABLE};-m;epg" "${Python_EXECUTABLE};-m;epg" "python3;-m;epg" "python;-m;epg" epg)

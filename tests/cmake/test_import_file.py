@@ -167,3 +167,39 @@ def test_a_wrong_dir_is_named(user: User) -> None:
     checkout = user.checkout("checkout")
     message = user.configure(f"-DEPG_DIR={checkout}", check=False)
     assert "EPG_DIR is not the folder of EPGConfig.cmake, which 'python -m epg --cmake-dir' prints:" in message
+
+
+# Zephyr ---------------------------------------------------------------------------------------------------------------
+
+
+def test_west_is_asked_for_the_workspaces_epg(user: User) -> None:
+    """When west configures; what it said is kept, and `pip`'s goes after it. The real west: tests/zephyr."""
+    workspace, installed = user.checkout("workspace/epg"), user.checkout("installed")
+    user.program("python3", installed, "-m epg --cmake-dir")
+    west = user.programs / "west_python"
+    west.write_text(
+        f'#!/bin/sh\necho west >>"{user.folder}/asked"\n'
+        f'[ "$*" = "-m west list -f {{abspath}} epg" ] && printf "%s\\n" "{workspace}"\n'
+    )
+    west.chmod(0o755)
+    assert f"EPG of {workspace}/cmake\n" in user.configure(f"-DWEST_PYTHON={west}")
+    assert f"EPG of {workspace}/cmake\n" in user.configure()
+    assert user.asked == ["west"]
+    path = user.checkout("path")
+    assert f"EPG of {path}/cmake\n" in user.configure(f"-DEPG_PATH={path}")
+
+
+def test_a_workspace_without_epg(user: User) -> None:
+    installed = user.checkout("installed")
+    user.program("python3", installed, "-m epg --cmake-dir")
+    user.program("west_python", installed, "no such project")
+    assert f"EPG of {installed}/cmake\n" in user.configure(f"-DWEST_PYTHON={user.programs / 'west_python'}")
+
+
+def test_an_image_of_sysbuild(user: User) -> None:
+    """What was given to sysbuild is in a file; an image is told where that is."""
+    checkout = user.checkout("some where")
+    cache = user.folder / "sysbuild_cache.txt"
+    cache.write_text(f"BOARD:STRING=rpi_pico\nEPG_PATH:UNINITIALIZED={checkout}\nOTHER_EPG_PATH:PATH=/nowhere\n")
+    output = user.configure("-DSYSBUILD:BOOL=True", f"-DSYSBUILD_CACHE:FILEPATH={cache}")
+    assert f"EPG of {checkout}/cmake\n" in output
