@@ -27,7 +27,7 @@ const SRAM_END = 0x20042000;
 const BOOT2_COPY = 0x20041f00;
 const BOOT2_SIZE = 256;
 const ROM_END = 0x4000;
-const DPRAM = 0x50100;
+const DPRAM = 0x50100000; // four times 4 kB: its aliases neither set nor clear bits (raspberrypi/pico-feedback 75)
 const XIP_CONTROL = 0x14000;
 const XIP_SRAM = 0x15000000;
 const XIP_SRAM_SIZE = 16 * 1024;
@@ -320,7 +320,7 @@ export class Machine {
         if (peripheral !== undefined) {
             return peripheral.readUint32(address & 0xfff);
         }
-        if (address >>> 12 === DPRAM) {
+        if (address >>> 14 === DPRAM >>> 14) {
             return this.chip.usbDPRAMView.getUint32(address & 0xffc, true);
         }
         if (address - XIP_SRAM >= 0 && address - XIP_SRAM < XIP_SRAM_SIZE) {
@@ -337,7 +337,7 @@ export class Machine {
         if (peripheral !== undefined) {
             BasePeripheral.prototype.writeUint32Atomic.call(
                 peripheral, address & 0xfff, replicate(value, size), (address & 0x3000) >> 12);
-        } else if (address >>> 12 === DPRAM) {
+        } else if (address >>> 14 === DPRAM >>> 14) {
             this.writeBufferMemory(address & 0xfff, value, size);
         } else if (address >>> 26 === 4 && core.opcodePC < ROM_END) {
             this.programFlash(address & 0xffffff, value, size);
