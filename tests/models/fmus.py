@@ -4,6 +4,7 @@ with."""
 from __future__ import annotations
 
 import shutil
+import xml.etree.ElementTree as ElementTree
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
@@ -159,12 +160,91 @@ static void put(void)
     return _run(text.split("\n", 1)[1], 3, [FMU3 / "sources/all.c"], folders, work, options)
 
 
+_GET_2 = {"Real": "fmi2Real", "Integer": "fmi2Integer", "Enumeration": "fmi2Integer", "Boolean": "fmi2Boolean"}
+
+
+def run_any(folder: Path, work: Path, step: float, steps: int) -> str:
+    """What an FMU of scalar variables gives that leaves the prefix of FMI's functions to the importer."""
+    root = ElementTree.parse(folder / "modelDescription.xml").getroot()
+    standard = int(root.attrib["fmiVersion"][0])
+    fmi = f"fmi{standard}"
+    ports: dict[str, list[tuple[str, str, str]]] = {"input": [], "output": []}  # function, C type, reference
+    for variable in root.find("ModelVariables") or ():
+        of = ports.get(variable.attrib.get("causality", ""))
+        if of is not None:
+            kind = next(child.tag for child in variable if child.tag in _GET_2) if standard == 2 else variable.tag
+            function = {"Enumeration": "Integer" if standard == 2 else "Int64"}.get(kind, kind)
+            c = _GET_2[kind] if standard == 2 else f"fmi3{function}"
+            of.append((function, c, variable.attrib["valueReference"]))
+    take = keep = show = ""
+    count = ", 1" if standard == 3 else ""
+    for index, (function, c, reference) in enumerate(ports["input"]):
+        low, high = {"fmi2Integer": ("-2147483648.0", "2147483647.0")}.get(c, ("-1e30", "1e30"))
+        clamped = f"v > {high} ? {high} : v < {low} ? {low} : v"
+        value = "v > 0.5" if function == "Boolean" else f"({c})({clamped})"
+        take += f"{{ double v = signal(); in{index} = {value}; }}\n"
+        keep += f"{{ {fmi}ValueReference r = {reference}; {fmi}Set{function}(c, &r, 1, &in{index}{count}); }}\n"
+    for function, c, reference in ports["output"]:
+        show += f"{{ {fmi}ValueReference r = {reference}; {c} v; {fmi}Get{function}(c, &r, 1, &v{count}); show(v); }}\n"
+    variables = "".join(f"static {c} in{index};\n" for index, (_, c, _) in enumerate(ports["input"]))
+    guid = root.attrib["guid" if standard == 2 else "instantiationToken"]
+    if standard == 2:
+        start = f"""static const fmi2CallbackFunctions callbacks = {{logger, calloc, free, NULL, NULL}};
+    c = fmi2Instantiate("a", fmi2CoSimulation, "{guid}", "file:///", &callbacks, 0, 0);
+    if (c == NULL || fmi2SetupExperiment(c, 0, 0.0, 0.0, 0, 0.0) > fmi2Warning) {{ return 3; }}
+    fmi2EnterInitializationMode(c); {keep} fmi2ExitInitializationMode(c);"""
+        do = "if (fmi2DoStep(c, t, h, 1) != fmi2OK) { return 1; }"
+        log = "fmi2ComponentEnvironment e, fmi2String n, fmi2Status s, fmi2String g, fmi2String m, ..."
+    else:
+        start = f"""c = fmi3InstantiateCoSimulation("a", "{guid}", NULL, 0, 0, 0, 0, NULL, 0, NULL, logger, NULL);
+    if (c == NULL) {{ return 3; }}
+    fmi3EnterInitializationMode(c, 0, 0.0, 0.0, 0, 0.0); {keep} fmi3ExitInitializationMode(c);"""
+        do = """bool a, b, d; double last;
+        if (fmi3DoStep(c, t, h, 1, &a, &b, &d, &last) != fmi3OK) { return 1; }"""
+        log = "fmi3InstanceEnvironment e, fmi3Status s, fmi3String g, fmi3String m"
+    text = f"""#include "{fmi}Functions.h"
+#include <stdlib.h>
+#define STEP {step!r}
+{SIGNAL}
+{variables}
+static {"fmi2Component" if standard == 2 else "fmi3Instance"} c;
+static void logger({log}) {{ }}
+"""
+    text += _main(start, f"(void)signal; {take}", f"{keep} {do}", f'{show} puts("");', f"{fmi}Terminate(c);", steps)
+    sources, folders, options = _sources(folder, root, standard)
+    return _run(
+        text,
+        standard,
+        sources,
+        folders,
+        work,
+        ["-DFMI_COSIMULATION", f"-DFMI{standard}_FUNCTION_PREFIX=direct_", *options],
+    )
+
+
+def _sources(folder: Path, root: ElementTree.Element, standard: int) -> tuple[list[Path], list[Path], list[str]]:
+    """Files to compile, include folders and options as the FMU's own lists say."""
+    inside = folder / "sources"
+    build = inside / "buildDescription.xml"
+    if standard == 3 and build.is_file():
+        configuration = ElementTree.parse(build).getroot().find("BuildConfiguration")
+        assert configuration is not None
+        files = [inside / file.attrib["name"] for file in configuration.iter("SourceFile")]
+        folders = [inside, *(inside / place.attrib["name"] for place in configuration.iter("IncludeDirectory"))]
+        given = configuration.iter("PreprocessorDefinition")
+        return files, folders, [f"-D{item.attrib['name']}={item.attrib.get('value', '')}" for item in given]
+    listed = root.find("CoSimulation/SourceFiles")
+    files = [inside / file.attrib["name"] for file in listed] if listed is not None else sorted(inside.glob("*.c"))
+    return files, [inside], []
+
+
 def _run(text: str, standard: int, sources: list[Path], folders: list[Path], work: Path, options: list[str]) -> str:
-    work.mkdir(parents=True, exist_ok=True)
+    own = work / "standard"  # searched last: an FMU's own headers go first
+    own.mkdir(parents=True, exist_ok=True)
     for name, header in fmi_headers(standard).items():
-        (work / name).write_text(header)
+        (own / name).write_text(header)
     (work / "direct.c").write_text(text, encoding="utf-8")
-    flags = ["-w", "-D_DEFAULT_SOURCE", *options, f"-I{work}", *(f"-I{folder}" for folder in folders)]
+    flags = ["-w", "-D_DEFAULT_SOURCE", *options, *(f"-I{folder}" for folder in [*folders, own])]
     files = [work / "direct.c", *sources]
     objects = [compile_file(path, work / f"direct_{index}.o", flags, "c") for index, path in enumerate(files)]
     return run([str(link(objects, work / "direct", False))])

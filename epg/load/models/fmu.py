@@ -38,12 +38,13 @@ def load_fmu(
     step: Fraction | None = None,
     step_span: Span | None = None,
     heap: int | None = None,
+    definitions: tuple[tuple[str, str], ...] = (),
     beside: Path | None = None,
 ) -> Model | None:
     """The model in the FMU at ``path``, or None after reporting why there is none.
 
-    ``step`` (in seconds, written at ``step_span``) and ``heap`` (in bytes) replace what the FMU says and EPG's default;
-    ``beside`` is the model.yaml that says so.
+    ``step`` (in seconds, written at ``step_span``) and ``heap`` (in bytes) replace what the FMU says and EPG's default,
+    ``definitions`` are macros for its sources; ``beside`` is the model.yaml that says so.
     """
     before = diagnostics.error_count
     files = read_fmu_files(path, diagnostics)
@@ -91,7 +92,7 @@ def load_fmu(
             packed_units=sources.units if files.archive else (),
             packed_include_dirs=sources.include_dirs if files.archive else (),
             headers=_lacking(description.standard, sources),
-            definitions=sources.definitions,
+            definitions=tuple({**dict(sources.definitions), **dict(definitions)}.items()),
             renames=_renames(sources.linked),
             prefixes=_prefixes(sources.linked),
             plain_names=not _names_by_header(description.standard, sources),

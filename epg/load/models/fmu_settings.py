@@ -4,6 +4,7 @@
 >>> # fmu: servo.fmu
 >>> # step: 1 ms
 >>> # heap: 4 KiB
+>>> # definitions: {FMI_COSIMULATION: 1}
 """
 
 from __future__ import annotations
@@ -12,11 +13,12 @@ import re
 
 from epg.load.models.fmu import load_fmu
 from epg.load.models.fmu_files import SUFFIX, is_fmu_folder
+from epg.load.models.fmu_sources import is_definition, is_identifier
 from epg.load.models.model import Model
 from epg.load.models.model_yaml import ModelYaml
 from epg.load.text_file import is_file
 
-_KEYS = ("version", "description", "fmu", "step", "heap")
+_KEYS = ("version", "description", "fmu", "step", "heap", "definitions")
 _SIZE = re.compile(r"\s*(\d{1,9})\s*(B|KiB|MiB)\s*", re.ASCII)
 _UNITS = {"B": 1, "KiB": 1 << 10, "MiB": 1 << 20}
 _LARGEST_HEAP = 64 << 20
@@ -31,6 +33,7 @@ class FmuSettings(ModelYaml):
         before = self.diagnostics.error_count
         step = self._step()
         heap = self._heap()
+        definitions = self._definitions()
         name = self._text("fmu")
         if not name:
             return None
@@ -43,7 +46,37 @@ class FmuSettings(ModelYaml):
             return None
         node = self.node.get("step")
         span = node.span if node is not None else None
-        return load_fmu(path, self.diagnostics, step=step, step_span=span, heap=heap, beside=self.path)
+        return load_fmu(
+            path,
+            self.diagnostics,
+            step=step,
+            step_span=span,
+            heap=heap,
+            definitions=definitions,
+            beside=self.path,
+        )
+
+    def _definitions(self) -> tuple[tuple[str, str], ...]:
+        """Macros for the FMU's sources."""
+        node = self.node.get("definitions")
+        if node is None:
+            return ()
+        if not node.is_mapping:
+            hint = "write for example {FMI_COSIMULATION: 1}"
+            self._error("wrong-type", node.span, "'definitions' is a map of macros and their values", hint)
+            return ()
+        found = []
+        for name, value in node.items():
+            text = "" if value.value is None else str(value.value)
+            if not is_identifier(name):
+                self._error("invalid-name", node.key_span(name), f"'{name}' is no C identifier", "it names a macro")
+            elif not isinstance(value.value, (str, int, float, type(None))) or isinstance(value.value, bool):
+                self._error("wrong-type", value.span, f"'{name}' must be a number or text", "put it into quotes")
+            elif not is_definition(text):
+                self._error("wrong-value", value.span, f"'{name}' cannot have this value", "it stands on one line of C")
+            else:
+                found.append((name, text))
+        return tuple(found)
 
     def _heap(self) -> int | None:
         """Bytes; None when nothing is said."""

@@ -171,12 +171,21 @@ def _configuration(root: Element, description: Description, diagnostics: Diagnos
 def _define(name: str, item: Element, definitions: dict[str, str], diagnostics: Diagnostics) -> None:
     """Adds a definition.  All files of the FMU get all of them: two values of one name are an error."""
     value = item.attributes.get("value", "")
-    if not _IDENTIFIER.fullmatch(name) or not value.isprintable() or value.endswith("\\") or "/*" in value:
+    if not is_identifier(name) or not is_definition(value):
         message = f"'{one_line(name)[:40]}={one_line(value)[:40]}' is no definition of C"
         diagnostics.error("fmu-definition", item.span, message, hint="export the FMU again")
     elif definitions.setdefault(name, value) != value:
         message = f"'{name}' has two values, '{definitions[name][:40]}' and '{value[:40]}'"
         diagnostics.error("fmu-definition", item.span, message, hint="EPG compiles all files of an FMU alike")
+
+
+def is_identifier(name: str) -> bool:
+    return _IDENTIFIER.fullmatch(name) is not None
+
+
+def is_definition(value: str) -> bool:
+    """Whether a macro can have this value: it ends with its line and opens no comment."""
+    return value.isprintable() and not value.endswith("\\") and "/*" not in value
 
 
 def _inside(name: str) -> str:

@@ -152,9 +152,10 @@ def settings(folder: Path, **document: object) -> Path:
 
 def test_model_yaml_says_what_the_fmu_does_not(tmp_path: Path) -> None:
     pack(FMU2, tmp_path / "model/servo.fmu")
-    folder = settings(tmp_path / "model", fmu="servo.fmu", step="2 ms", heap="2 KiB")
+    folder = settings(tmp_path / "model", fmu="servo.fmu", step="2 ms", heap="2 KiB", definitions={"A": 1, "B": None})
     model = loaded(folder)
     assert model.step == Fraction(1, 500) and model.details.heap == 2048  # type: ignore[union-attr]
+    assert model.details.definitions == (("A", "1"), ("B", ""))  # type: ignore[union-attr]
     assert {path.name for path in model.files} == {"model.yaml", "servo.fmu"}
     assert model.directory == folder
     settings(tmp_path / "model", fmu=".")
@@ -170,6 +171,10 @@ WRONG = [
     ({"heap": "1 B"}, "out-of-range"),
     ({"heap": "65 MiB"}, "out-of-range"),
     ({"step": "1"}, "wrong-unit"),
+    ({"definitions": ["A"]}, "wrong-type"),
+    ({"definitions": {"A B": 1}}, "invalid-name"),
+    ({"definitions": {"A": [1]}}, "wrong-type"),
+    ({"definitions": {"A": "1 /* x"}}, "wrong-value"),
     ({"step": "0 s"}, "out-of-range"),
     ({"sources": ["a.c"]}, "unknown-key"),
     ({"version": 2}, "newer-version"),
@@ -186,7 +191,7 @@ def test_wrong_model_yaml(change: dict[str, object], id: str, tmp_path: Path) ->
     validator = Draft202012Validator(json.loads(SCHEMA.read_text()))
     assert not list(validator.iter_errors({"version": 1, "fmu": "servo.fmu", "step": "1 ms", "heap": "4 KiB"}))
     seen = bool(list(validator.iter_errors({"version": 1, **document})))
-    assert seen or id in ("file-not-found", "out-of-range")
+    assert seen or id in ("file-not-found", "out-of-range", "wrong-value")
 
 
 def test_the_step_must_suit_20sim(tmp_path: Path) -> None:
