@@ -33,7 +33,7 @@ static const uint64_t STUCK_NS = 2000 * MS; /* the same, until the session is gi
 /* The client library asks what the agent has missed only if it was not called for 100 ms. */
 static const uint64_t REST_NS = 105 * MS;
 
-enum { ANSWER_MS = 20, FRAMES_PER_POLL = 32 };
+enum { ANSWER_MS = 50, FRAMES_PER_POLL = 32 };
 
 static const char WAITING[] = "waiting";
 static const char CREATING[] = "creating";

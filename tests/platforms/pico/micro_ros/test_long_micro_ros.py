@@ -6,12 +6,13 @@ import random
 
 import pytest
 
-from tests.platforms.pico.images import binutils
+from tests.platforms.pico.images import binutils, skip_unless_emulated
 from tests.platforms.pico.stacks.workload import COMMANDS
+from tests.platforms.pico.uart.test_node import check_serial_line, node_image
 from tests.platforms.pico.xrce.board import CONSOLE_PORT
 from tests.platforms.pico.xrce.scenarios import SCENARIOS, SILENCE, assert_is_back, hold, restart
 
-from .firmware import MicroRosJiwy, firmware
+from .firmware import MicroRosJiwy, firmware, library
 
 pytestmark = pytest.mark.long
 
@@ -33,6 +34,11 @@ def test_restarts() -> None:
         restart(jiwy, times=50)
         assert jiwy.pico.word("arena", offset=8) == most
         assert_is_back(jiwy)
+
+
+def test_a_serial_line() -> None:
+    skip_unless_emulated("freertos")
+    check_serial_line(node_image("freertos", MIDDLEWARE="micro_ros", MICRO_ROS_PATH=library()))
 
 
 @pytest.mark.parametrize("seed", [3, 4])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from tests.emulator.build import build
@@ -19,8 +21,19 @@ HOMED = 900
 @pytest.mark.parametrize("platform", PLATFORMS)
 def test_jiwy_on_a_serial_line(platform: str) -> None:
     skip_unless_emulated(platform)
-    folder = build("tests/platforms/pico/uart/project", targets=["node_firmware"], variables={"PLATFORM": platform})
-    with Emulator(folder / "node_firmware.elf", usb={"seed": 3}) as pico:
+    check_serial_line(node_image(platform))
+
+
+def node_image(platform: str, **variables: str) -> Path:
+    settings = {"PLATFORM": platform, **variables}
+    return (
+        build("tests/platforms/pico/uart/project", targets=["node_firmware"], variables=settings) / "node_firmware.elf"
+    )
+
+
+def check_serial_line(elf: Path) -> None:
+    """JIWY holds a position that came over the line, and is found by an agent that has been away."""
+    with Emulator(elf, usb={"seed": 3}) as pico:
         connect(pico, {"pan": 0.12, "tilt": 0.12})
         pico.run(milliseconds=50)
         with BoardAgent(pico, UartLink(pico, uart=0, baud=BAUD)) as agent:
