@@ -1,13 +1,16 @@
 """What communication takes on a Pico: size of JIWY's images by middleware, and the stack of the communication side.
 
 All four targets with no middleware, the console, xrce, and xrce with the console beside it, which is the predefined
-one.  Stacks are those of RP2040 images that ran in EPG's emulator, with an agent and a person at the other ends.
+one; on FreeRTOS also micro_ros with the console, if EPG_TEST_MICRO_ROS_PICO names a libmicroros.  Stacks are those of
+RP2040 images that ran in EPG's emulator, with an agent and a person at the other ends.
 """
 
 from __future__ import annotations
 
+import os
 import re
 import sys
+from pathlib import Path
 
 from measure import ROOT
 from report import Table, arguments, command_line, show
@@ -17,9 +20,18 @@ sys.path.insert(0, str(ROOT))
 from tests.emulator.emulator import Emulator
 from tests.emulator.toolchain import Missing, arm_gcc, node, pico_sdk, rp2040js
 from tests.platforms.pico.images import freertos_kernel, images, size_of
+from tests.platforms.pico.micro_ros.firmware import VARIABLE
+from tests.platforms.pico.micro_ros.firmware import firmware as micro_ros_firmware
 from tests.platforms.pico.xrce.agent import BoardAgent
 
-MIDDLEWARES = {"none": "none", "console": "console", "xrce": "xrce", "xrce_console": "xrce and console"}
+MICRO_ROS = "micro_ros_console"
+MIDDLEWARES = {
+    "none": "none",
+    "console": "console",
+    "xrce": "xrce",
+    "xrce_console": "xrce and console",
+    MICRO_ROS: "micro_ros and console",
+}
 TARGETS = {
     ("pico", "bare_metal"): "Pico, bare metal",
     ("pico", "freertos"): "Pico, FreeRTOS",
@@ -38,7 +50,8 @@ def main() -> None:
             need()
     except Missing as missing:
         raise SystemExit(str(missing)) from None
-    rows = [row(*target, middleware) for target in list(TARGETS)[: options.targets] for middleware in MIDDLEWARES]
+    chosen = list(TARGETS)[: options.targets]
+    rows = [row(*target, middleware) for target in chosen for middleware in MIDDLEWARES if possible(target, middleware)]
     head = ["image", "middleware", "text", "data", "bss", "of RAM", "stack used", "stack"]
     notes = [
         "Bytes. Executables of EPG's own, which run from RAM: text, data and bss all take it; of RAM: without the two "
@@ -49,8 +62,18 @@ def main() -> None:
     show("pico_communication", [table], options.write, command_line("pico_communication"))
 
 
+def possible(target: tuple[str, str], middleware: str) -> bool:
+    return middleware != MICRO_ROS or (target[1] == "freertos" and VARIABLE in os.environ)
+
+
+def firmware(board: str, platform: str, middleware: str) -> Path:
+    if middleware == MICRO_ROS:
+        return micro_ros_firmware(board)
+    return images(board, platform, "jiwy_firmware", middleware=middleware) / "jiwy_firmware.elf"
+
+
 def row(board: str, platform: str, middleware: str) -> list[str]:
-    elf = images(board, platform, "jiwy_firmware", middleware=middleware) / "jiwy_firmware.elf"
+    elf = firmware(board, platform, middleware)
     size = size_of(elf)
     share = 100 * (size.text + size.data + size.bss) / RAM[board]
     used, reserved = stack(platform, middleware) if board == "pico" and "console" in middleware else ("", "")
@@ -61,7 +84,7 @@ def row(board: str, platform: str, middleware: str) -> list[str]:
 
 def stack(platform: str, middleware: str) -> tuple[str, str]:
     """Bytes used and reserved, as the firmware counts them."""
-    elf = images("pico", platform, "jiwy_firmware", middleware=middleware) / "jiwy_firmware.elf"
+    elf = firmware("pico", platform, middleware)
     with Emulator(elf, usb={"seed": 3, "open": middleware == "console"}) as pico:
         pico.run(milliseconds=50)
         if middleware == "console":

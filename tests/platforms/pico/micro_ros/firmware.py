@@ -24,16 +24,16 @@ def library() -> str:
     return folder
 
 
-def firmware(board: str = "pico") -> Path:
+def firmware(board: str = "pico", executable: str = FIRMWARE) -> Path:
     skip_unless_buildable("freertos")
     variables = {"PLATFORM": "freertos", "MIDDLEWARE": "micro_ros_console", "MICRO_ROS_PATH": library()}
-    return build(PROJECT, board=board, targets=[FIRMWARE], variables=variables) / f"{FIRMWARE}.elf"
+    return build(PROJECT, board=board, targets=[executable], variables=variables) / f"{executable}.elf"
 
 
 class MicroRosJiwy(Jiwy):
     """As a Pico with ``xrce``: the same agent, the same topics."""
 
-    def __init__(self, seed: int = 3) -> None:
+    def __init__(self, seed: int = 3, executable: str = FIRMWARE) -> None:
         library()
         skip_unless_emulated("freertos")
-        super().__init__("freertos", seed=seed, elf=firmware())
+        super().__init__("freertos", seed=seed, elf=firmware(executable=executable))

@@ -8,6 +8,7 @@ import pytest
 
 from tests.platforms.pico.images import binutils, skip_unless_emulated
 from tests.platforms.pico.stacks.workload import COMMANDS
+from tests.platforms.pico.test_faults import START, STOP, order
 from tests.platforms.pico.uart.test_node import check_serial_line, node_image
 from tests.platforms.pico.xrce.board import CONSOLE_PORT
 from tests.platforms.pico.xrce.scenarios import SCENARIOS, SILENCE, assert_is_back, hold, restart
@@ -39,6 +40,20 @@ def test_restarts() -> None:
 def test_a_serial_line() -> None:
     skip_unless_emulated("freertos")
     check_serial_line(node_image("freertos", MIDDLEWARE="micro_ros", MICRO_ROS_PATH=library()))
+
+
+def test_it_is_stopped_and_started_wherever_it_waits() -> None:
+    """By a task of the user's, which deletes EPG's: libmicroros has all its places again, each time."""
+    with MicroRosJiwy(executable="user_jiwy") as jiwy:
+        for milliseconds in (1, 4, 7, 9, 11, 13, 15, 17, 19, 22, 60):
+            jiwy.agent.kill()
+            jiwy.agent.run(3)
+            jiwy.agent.start()
+            jiwy.agent.run(milliseconds)
+            order(jiwy.pico, STOP, milliseconds=5)
+            order(jiwy.pico, START, milliseconds=5)
+            jiwy.agent.wait_for("rt/pan_publisher", milliseconds=1500)
+        assert jiwy.faults() == []
 
 
 @pytest.mark.parametrize("seed", [3, 4])
