@@ -42,6 +42,7 @@ _FILES = words(
     """
 )
 _PRINTS = words("printf puts putchar")
+_TERMINAL = re.compile(r"f(?:printf|puts|putc|flush)\s{0,80}\([^;]{0,200}?\bstd(?:err|out)\b")
 _CLOCKS = words("time clock difftime gettimeofday clock_gettime")
 _LIBRARY = words(
     """
@@ -222,12 +223,12 @@ def _check_call(
         return
     if name in HEAP:
         diagnostics.error("model-heap", span, f"the model calls {name}()", hint=_HEAP_HINT)
-    elif name in _FILES:
+    elif name in _FILES and not _TERMINAL.match(code.file.code, start):
         message = f"the model calls {name}(): there are no files on a target"
         diagnostics.error(
             "model-file-use", span, message, hint="replace tables in files by equations or parameters in 20-sim"
         )
-    elif name in _PRINTS:
+    elif name in _PRINTS or name in _FILES:
         message = f"the model calls {name}(): its output goes nowhere on a target"
         diagnostics.warning("model-prints", span, message, hint="remove it, or bind an output port to a topic")
     elif name in ("rand", "srand"):

@@ -1,6 +1,7 @@
 """What an FMU does that a target cannot: found in the code behind the functions EPG calls.
 
-An FMU may allocate memory while it starts: it gets that from an array of fixed size.  In a step it may not.
+FMUs get memory from an array of fixed size.  They may take some while they start, and for a while in a step: memory
+that a step takes and keeps would run out.
 """
 
 from __future__ import annotations
@@ -15,7 +16,8 @@ from epg.load.models.link import Linked
 
 #: the heap that EPG gives to FMUs; their callbacks (FMI 2.0.4, 2.1.5) lead to the same
 PROVIDED = frozenset(("malloc", "calloc", "realloc", "free", "strdup"))
-_CALLBACK = re.compile(r"\ballocateMemory\s*\)?\s*\(")
+_TAKES = re.compile(r"\b(malloc|calloc|realloc|strdup|allocateMemory)\s*\)?\s*\(")
+_GIVES_BACK = re.compile(r"\b(?:free|freeMemory)\s*\)?\s*\(")
 _START = """Instantiate InstantiateCoSimulation SetupExperiment EnterInitializationMode ExitInitializationMode
 Terminate FreeInstance""".split()
 _RUN = (
@@ -27,17 +29,17 @@ SetFloat64 SetFloat32""".split()
 
 def check_fmu(linked: Linked, standard: int, diagnostics: Diagnostics) -> None:
     """Reports what cannot run, and what a user should know of."""
-    before = diagnostics.error_count
     running = _named(linked, standard, _RUN)
-    check_features(linked, running, "", diagnostics, foreign=True)
+    starting = _named(linked, standard, _START)
+    check_features(linked, [*starting, *running], "", diagnostics, foreign=True, allowed=PROVIDED)
     for code, function in linked.reachable(running):
-        for match in _CALLBACK.finditer(code.body(function)):
-            start = function.body_start + match.start()
-            span = code.file.span(start, start + len("allocateMemory"))
-            message = "memory is allocated while the model runs"
-            diagnostics.error("model-heap", span, message, hint="allocate it in fmi2Instantiate, or use arrays")
-    if diagnostics.error_count == before:
-        check_features(linked, _named(linked, standard, _START), "", diagnostics, foreign=True, allowed=PROVIDED)
+        body = code.body(function)
+        taken = _TAKES.search(body)
+        if taken is not None and not _GIVES_BACK.search(body):
+            start = function.body_start + taken.start(1)
+            message = f"'{function.name}' takes memory while the model runs, and does not give it back"
+            hint = f"take it in fmi{standard}Instantiate{'CoSimulation' if standard == 3 else ''}, or use an array"
+            diagnostics.error("model-heap", code.file.span(start, start + len(taken[1])), message, hint=hint)
 
 
 def uses_heap(codes: Iterable[Code]) -> bool:

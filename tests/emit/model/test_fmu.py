@@ -40,7 +40,7 @@ def test_an_archive_is_unpacked_the_same_each_time(tmp_path: Path) -> None:
     assert set(made.exported_generated) == {"pan_export.c", "pan_fmu/sources/servo.c", "pan_fmu/sources/law.c"}
 
 
-def program(body: str, libraries: list[Library], folder: Path) -> list[list[float]]:
+def program(body: str, libraries: list[Library], folder: Path, options: tuple[str, ...] = ()) -> list[list[float]]:
     """Lines of numbers of a program in which ``in`` and ``out`` are of the first library, ``a`` is its instance 0."""
     name = libraries[0].name
     includes = "".join(f'#include "{library.name}.h"\n' for library in libraries)
@@ -55,7 +55,7 @@ int main(void)
     return 0;
 }}
 """
-    output = run_program(folder, text, libraries)
+    output = run_program(folder, text, libraries, options)
     return [[float(word) for word in line.split()] for line in output.splitlines()]
 
 
@@ -130,30 +130,47 @@ def test_a_heap_that_is_too_small_is_seen(tmp_path: Path) -> None:
     assert outputs == [0, 0, 0] and last == [0, 0]
 
 
-def test_memory_in_a_step_is_refused_and_seen(tmp_path: Path) -> None:
-    """What the check of the sources cannot see, here a call through a pointer, fails while it runs."""
+def test_memory_in_a_step(tmp_path: Path) -> None:
+    """What is given back can be taken for ever, in whatever order.  What is not is refused at the end, and seen.
+
+    The check of the sources does not see the call through a pointer.
+    """
+    in_step = """
+    if (self->integers[0] == 5) {
+        char *a = malloc(30);
+        char *b = strdup("a temporary text");
+        a = realloc(a, 60);
+        strcpy(a + 20, b);
+        free(b);
+        free(a);
+    }
+    if (self->integers[0] == 6 && take(800) == NULL) {
+        return fmi2OK;
+    }
+    if (self->integers[0] == 1008) {"""
     folder = changed(
         FMU2,
         tmp_path / "fmu",
         "sources/servo.c",
         ("static double limit", "static void *(*volatile take)(size_t) = malloc;\nstatic double limit"),
-        (
-            "    if (self->integers[0] == 1008) {",
-            "    if (self->integers[0] == 6 && take(8) == NULL) { return fmi2OK; }\n"
-            "    if (self->integers[0] == 1008) {",
-        ),
+        ("    if (self->integers[0] == 1008) {", in_step.lstrip("\n")),
     )
     body = f"""{SERVO}
     pan_init(a, &in, &out);
-    pan_step(a, &in, &out);
-    printf("%d\\n", pan_finite(a));
+    for (int k = 0; k < 5000; k++) {{ in.mode = k % 2 ? 5.0 : 0.0; pan_step(a, &in, &out); }}
+    unsigned long used = pan_heap_used(a);
+    printf("%d %d\\n", pan_finite(a), used < 800u);
     in.mode = 6.0;
-    pan_step(a, &in, &out);
-    printf("%d\\n", pan_finite(a));
+    int k = 0;
+    while (k < 1000 && pan_finite(a)) {{ pan_step(a, &in, &out); k++; }}
+    printf("%d %d\\n", k, pan_heap_used(a) > PAN_HEAP_SIZE);
     pan_init(a, &in, &out);
-    printf("%d\\n", pan_finite(a));
+    printf("%d %d\\n", pan_finite(a), pan_heap_used(a) < 800u);
 """
-    assert program(body, [build(loaded(folder), "pan", tmp_path)], tmp_path / "run") == [[1], [0], [1]]
+    sanitize = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
+    library = build(loaded(folder), "pan", tmp_path, options=sanitize)
+    rows = program(body, [library], tmp_path / "run", sanitize)
+    assert rows == [[1, 1], [20, 1], [1, 1]]
 
 
 def test_errors_and_stopping(tmp_path: Path) -> None:

@@ -108,7 +108,7 @@ def test_one_instance_only(tmp_path: Path) -> None:
     ("text", "id"),
     [
         ('void *p = fopen(self->name, "r");', "model-file-use"),
-        ("free(self->law.errors);", "model-heap"),
+        ("self->law.errors = malloc(8);", "model-heap"),
         ("self->law.errors = self->functions->allocateMemory(1, 8);", "model-heap"),
     ],
 )
