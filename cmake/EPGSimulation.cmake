@@ -1,7 +1,8 @@
 # epg_add_simulation(<name> EXECUTABLE <executable> SCENARIO <file> [OUTPUT <folder>] [REALTIME])
 #
-# A target that builds a host executable, runs it through a scenario, prints a table and leaves <name>.csv and <name>.png
-# in <folder> (default: the build folder).  It fails when the scenario's limits do not hold.
+# A target that builds a host executable, or Zephyr's application `app` for native_sim, runs it through a scenario, prints
+# a table and leaves <name>.csv and <name>.png in <folder> (default: the build folder).  It fails when the scenario's
+# limits do not hold.
 
 function(epg_add_simulation name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "REALTIME" "EXECUTABLE;SCENARIO;OUTPUT" "")
@@ -12,6 +13,17 @@ function(epg_add_simulation name)
   get_target_property(failed "${arg_EXECUTABLE}" EPG_FAILED)
   if(failed)
     return()
+  endif()
+  set(program "$<TARGET_FILE:${arg_EXECUTABLE}>")
+  set(built "${arg_EXECUTABLE}")
+  get_target_property(type "${arg_EXECUTABLE}" TYPE)
+  if(NOT type STREQUAL "EXECUTABLE")
+    # Zephyr's `app` is a library, of which native_sim makes a program of this computer.
+    if(NOT TARGET native_runner_executable)
+      message(FATAL_ERROR "epg_add_simulation(${name}): '${arg_EXECUTABLE}' is no program of this computer; of Zephyr's boards only native_sim is one")
+    endif()
+    set(program "${APPLICATION_BINARY_DIR}/zephyr/${KERNEL_EXE_NAME}")
+    set(built native_runner_executable)
   endif()
   if(NOT arg_OUTPUT)
     set(arg_OUTPUT "${CMAKE_CURRENT_BINARY_DIR}")
@@ -25,8 +37,8 @@ function(epg_add_simulation name)
     set(realtime --realtime)
   endif()
   add_custom_target(${name}
-    COMMAND "${python}" "${folder}/__main__.py" simulate "$<TARGET_FILE:${arg_EXECUTABLE}>"
+    COMMAND "${python}" "${folder}/__main__.py" simulate "${program}"
       --scenario "${scenario}" --output "${arg_OUTPUT}" ${realtime}
-    DEPENDS ${arg_EXECUTABLE} "${scenario}"
+    DEPENDS ${built} "${scenario}"
     USES_TERMINAL VERBATIM)
 endfunction()

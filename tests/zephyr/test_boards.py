@@ -9,7 +9,7 @@ import pytest
 from tests.emulator.toolchain import arm_gcc, skip_if_missing
 
 from .twister import statuses_of
-from .workspace import need_twister, workspace
+from .workspace import c_library, need_twister, workspace
 
 pytestmark = pytest.mark.long
 
@@ -17,9 +17,9 @@ pytestmark = pytest.mark.long
 def test_boards(tmp_path: Path) -> None:
     """Real boards' builds; a warning is an error."""
     boards = ("rpi_pico", "rpi_pico2/rp2350a/m33", "nucleo_h743zi")
-    skip_if_missing(arm_gcc, lambda: need_twister(workspace(*boards)))
+    skip_if_missing(arm_gcc, c_library, lambda: need_twister(workspace(*boards)))
     statuses = statuses_of(tmp_path / "twister", *boards)
-    tests = ("drivers.sensor.epg_qdec.build", "sample.epg.qdec")
+    tests = ("drivers.sensor.epg_qdec.build", "epg.jiwy.build", "sample.epg.qdec")
     expected = {(test, board.split("/")[0]) for test in tests for board in boards}
     assert {key for key, status in statuses.items() if status in ("passed", "not run")} == expected
     assert set(statuses) == expected

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from tests.emulator.toolchain import ROOT
 
-from .workspace import run, workspace
+from .workspace import c_library, run, workspace
 
 FOLDERS = ["tests/zephyr", "zephyr_module/samples"]
 
@@ -20,6 +20,7 @@ def statuses_of(output: Path, *boards: str) -> dict[tuple[str, str], str]:
     here = workspace(*boards)
     command = [str(here.python), str(here.base / "scripts" / "twister"), "--jobs", "2", "--outdir", str(output)]
     command += [f"--extra-args=ZEPHYR_MODULES={';'.join(str(module) for module in here.modules)}"]
+    command += [f"--extra-args={name}={value}" for name, value in c_library().items()]
     for folder in FOLDERS:
         command += ["--testsuite-root", str(ROOT / folder)]
     for board in boards:

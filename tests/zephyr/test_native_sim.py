@@ -1,0 +1,235 @@
+"""JIWY in Zephyr on this computer: the host's numbers in simulated time; an agent and a console in real time."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from epg.simulate import simulate
+from tests.emulator.toolchain import ROOT, Missing, arm_gcc, skip_if_missing
+from tests.middlewares.client import Host, Lines, values
+from tests.xrce_agent import Agent, PtyLink, UdpLink, float64, read_float64
+from tests.xrce_agent.bare import libraries
+
+from .workspace import NATIVE, build, workspace
+
+PATIENCE = 30.0
+SOURCE = ROOT / "tests" / "zephyr" / "native_sim"
+TRACKING = ROOT / "examples" / "jiwy" / "tracking.yaml"
+MEASURED = ("wall_time", "computation_min", "computation_mean", "computation_max")
+"""What a real clock measures."""
+
+EVENTS = """time,topic,value
+0,pan_subscriber,0
+4.5,pan_subscriber,0.5
+4.5,tilt_subscriber,0.2
+4.75,$stall,0.0034
+5,pan_subscriber,nan
+5.2503,tilt_subscriber,0.3
+5.5,$enable,0
+5.6,$enable,1
+5.7,$stall,0.02
+5.999,$stall,0.0057
+"""
+
+
+@pytest.fixture(scope="module")
+def image() -> Path:
+    skip_if_missing(arm_gcc, libraries, lambda: workspace(NATIVE))
+    return build(SOURCE, NATIVE) / "zephyr" / "zephyr.exe"
+
+
+@pytest.fixture(scope="module")
+def host(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The same target on the platform host."""
+
+    def needs() -> None:
+        if not shutil.which("ninja"):
+            raise Missing("ninja is missing: apt install ninja-build")
+
+    skip_if_missing(libraries, needs)
+    folder = tmp_path_factory.mktemp("host")
+    python = f"-DPython3_EXECUTABLE={sys.executable}"
+    for command in (
+        ["cmake", "-S", str(SOURCE / "host"), "-B", str(folder), "-G", "Ninja", python],
+        ["cmake", "--build", str(folder)],
+    ):
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stdout + done.stderr
+    return folder / "jiwy_host"
+
+
+@pytest.fixture
+def agent() -> Iterator[Agent]:
+    with Agent(UdpLink()) as made:
+        yield made
+
+
+def run(program: Path, *options: str, cwd: Path | None = None) -> tuple[int, str]:
+    """Exit status, and what it wrote to stderr."""
+    done = subprocess.run([program, *options], capture_output=True, text=True, check=False, timeout=PATIENCE, cwd=cwd)
+    return done.returncode, done.stderr
+
+
+def statistics(path: Path) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads(path.read_text())
+    return {name: value for name, value in found.items() if name not in MEASURED}
+
+
+# Simulated time -------------------------------------------------------------------------------------------------------
+
+
+def test_a_scenario_has_the_hosts_numbers(image: Path, host: Path, tmp_path: Path) -> None:
+    """To the bit, over homing and the whole profile."""
+    results = [simulate(program, TRACKING, tmp_path / program.name) for program in (host, image)]
+    assert all(result.passed for result in results)
+    assert results[0].windows == results[1].windows
+    one, other = tmp_path / host.name, tmp_path / image.name
+    for name in ("trace.csv", "topics.csv", "tracking.csv"):
+        assert (one / name).read_bytes() == (other / name).read_bytes(), name
+    assert statistics(one / "statistics.json") == statistics(other / "statistics.json")
+
+
+def test_stalls_and_events_have_the_hosts_numbers(image: Path, host: Path, tmp_path: Path) -> None:
+    setpoints = tmp_path / "in.csv"
+    setpoints.write_text(EVENTS)
+    for program in (host, image):
+        folder = tmp_path / program.name
+        folder.mkdir()
+        files = [f"--{name}={folder / name}" for name in ("trace", "topics", "statistics")]
+        assert run(program, "--duration=6", "--quiet", f"--setpoints={setpoints}", *files) == (0, "")
+    for name in ("trace", "topics"):
+        assert (tmp_path / host.name / name).read_bytes() == (tmp_path / image.name / name).read_bytes(), name
+    found = statistics(tmp_path / image.name / "statistics")
+    assert found == statistics(tmp_path / host.name / "statistics")
+    assert found["missed"] > 0 and found["overruns"] > 0 and found["setpoints_dropped"] == 1
+
+
+@pytest.mark.parametrize(
+    ("options", "status", "message"),
+    [
+        (["--duration=fast"], 2, "error: --duration 'fast' is no time in seconds above 0\n"),
+        (["--agent=127.0.0.1:8888", "--duration=1"], 2, "error: --agent without --realtime\n"),
+        (["--console", "--duration=1"], 2, "error: --console without --realtime\n"),
+        (["--realtime", "--agent=127.0.0.1"], 2, "error: --agent '127.0.0.1' is no HOST:PORT\n"),
+        (["--realtime", "--agent=no.such.host.invalid:1"], 1, "error: there is no host 'no.such.host.invalid'"),
+        (["--duration=1", "--trace=/no/such/folder/t"], 1, "/no/such/folder/t: error: cannot write this file: "),
+        (["--duration=1", "--setpoints=wrong.csv"], 2, "wrong.csv:2: error: unknown topic 'roll'\n"),
+        (["--duration=1", "--setpoints=pin.csv"], 2, "pin.csv:2: error: pin 0 is no digital input of this target\n"),
+    ],
+)
+def test_mistakes(image: Path, tmp_path: Path, options: list[str], status: int, message: str) -> None:
+    (tmp_path / "wrong.csv").write_text("time,topic,value\n0,roll,1\n")
+    (tmp_path / "pin.csv").write_text("time,topic,value\n0,$pin:0,1\n")
+    found, errors = run(image, *options, cwd=tmp_path)
+    assert found == status and errors.startswith(message), errors
+
+
+# Real time ------------------------------------------------------------------------------------------------------------
+
+
+def follow(agent: Agent, seconds: float) -> float:
+    """Pan goes to and fro by 0.4 rad in 4 s; the largest distance between setpoint and position, in rad."""
+    largest = 0.0
+    began = time.monotonic()
+    while (now := time.monotonic() - began) < seconds:
+        setpoint = 0.5 + 0.4 * math.sin(2 * math.pi * now / 4)
+        agent.topics.publish("rt/pan_subscriber", float64(setpoint), reliable=False)
+        positions = agent.topics.samples("rt/pan_publisher", began)
+        if now > 0.5 and positions:
+            largest = max(largest, abs(read_float64(positions[-1].data) - setpoint))
+        time.sleep(0.01)
+    return largest
+
+
+def test_a_node_over_udp(image: Path, agent: Agent) -> None:
+    """It follows what comes from the agent, also one that has been restarted, and says whether there is one."""
+    command = [str(image), "--realtime", f"--agent={agent.address}"]
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
+        try:
+            assert process.stderr is not None
+            assert process.stderr.readline() == f"jiwy: connected to the agent at {agent.address}\n"
+            agent.topics.publish("rt/pan_subscriber", float64(0.5), reliable=False)
+            time.sleep(3.5)  # both axes find their end stops
+            assert follow(agent, 2.5) < 0.12
+            agent.kill()
+            assert process.stderr.readline() == f"jiwy: lost the agent at {agent.address}\n"
+            agent.start()
+            assert process.stderr.readline() == f"jiwy: connected to the agent at {agent.address}\n"
+            agent.topics.wait_for_reader("rt/pan_subscriber")
+            assert follow(agent, 1.5) < 0.12
+            process.terminate()
+            assert process.wait(PATIENCE) == 130
+        finally:
+            process.kill()
+
+
+def test_a_node_over_a_terminal(image: Path, tmp_path: Path) -> None:
+    with Agent(PtyLink(tmp_path / "line")) as agent:
+        command = [str(image), "--realtime", "--quiet", f"--serial-device={agent.address}"]
+        with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
+            try:
+                agent.topics.wait_for_reader("rt/pan_subscriber")
+                before = len(agent.topics.samples("rt/pan_publisher", 0.0))
+                agent.topics.wait_for_sample("rt/pan_publisher")
+                time.sleep(1.0)
+                count = len(agent.topics.samples("rt/pan_publisher", 0.0)) - before
+                assert 20 <= count <= 40, "every 33 ms of real time"
+                process.terminate()
+                assert process.communicate(timeout=PATIENCE)[1] == ""
+            finally:
+                process.kill()
+
+
+def test_console_on_standard_input_and_output(image: Path) -> None:
+    with Host(image, "--quiet") as console:
+        assert console.ask("pan_subscriber=0.1 tilt_subscriber=-2.5e-3") == ["ok setpoint"]
+        assert console.ask("watch setpoint_pan setpoint_tilt") == ["ok watch"]
+        console.lines.clear()
+        time.sleep(0.2)
+        console.receive(1)
+        assert values(console.until("watch ")[-1]) == {"inputs.setpoint_pan": 0.1, "inputs.setpoint_tilt": -0.0025}
+        assert console.close() == (0, "")
+
+
+def test_console_on_a_terminal_and_an_interrupt(image: Path, tmp_path: Path) -> None:
+    name, trace = tmp_path / "console", tmp_path / "trace.csv"
+    command = [str(image), "--realtime", "--quiet", "--duration=60", f"--console-pty={name}", f"--trace={trace}"]
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
+        try:
+            end = time.monotonic() + PATIENCE
+            while not name.exists() and time.monotonic() < end:
+                time.sleep(0.02)
+            file = os.open(name, os.O_RDWR | os.O_NOCTTY)
+            console = Lines(file, file)
+            console.until("ready ")
+            assert console.ask("disable") == ["ok disable"]
+            time.sleep(0.2)
+            os.close(file)
+            process.send_signal(signal.SIGINT)
+            assert process.communicate(timeout=PATIENCE)[1] == ""
+            assert process.returncode == 130
+        finally:
+            process.kill()
+    assert not name.is_symlink()
+    rows = trace.read_text().splitlines()
+    assert rows[0].startswith("time,") and len({row.count(",") for row in rows}) == 1 and len(rows) > 100
+
+
+def test_the_simulators_own_end(image: Path, tmp_path: Path) -> None:
+    """native_sim has an option of its own for when to end; what was recorded up to there is in the file."""
+    trace = tmp_path / "trace.csv"
+    assert run(image, "--no-rt", "-stop_at=2", "--duration=9", f"--trace={trace}")[0] == 0
+    rows = trace.read_text().splitlines()
+    assert 1900 < len(rows) <= 2001 and len({row.count(",") for row in rows}) == 1
