@@ -1,4 +1,4 @@
-# epg_add_model(<name> MODEL <folder> [INSTANCES <n>])
+# epg_add_model(<name> MODEL <folder or file> [INSTANCES <n>])
 #
 # The library EPG::<name> with the code of one model and a typed header <name>.h.  The model's own files are compiled as
 # they are; several models, and the same one twice under two names, go together in one executable.
@@ -64,4 +64,7 @@ function(_epg_model_library name output)
   add_library(${name} STATIC ${generated} ${objects})
   target_include_directories(${name} PUBLIC "${output}")
   _epg_exact_arithmetic(${name})
+  if(UNIX)
+    target_link_libraries(${name} PUBLIC m) # models compute sines; toolchains for microcontrollers link it anyway
+  endif()
 endfunction()
