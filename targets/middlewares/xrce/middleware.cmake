@@ -36,6 +36,9 @@ function(_epg_middleware_xrce library)
   if(CMAKE_C_COMPILER_ID MATCHES "GNU|Clang")
     target_compile_options(epg_micro_xrce_dds_client PRIVATE -w -ffunction-sections -fdata-sections)
   endif()
+  if(TARGET zephyr_interface)
+    target_link_libraries(epg_micro_xrce_dds_client PRIVATE zephyr_interface) # the processor's flags
+  endif()
   target_link_libraries(${library} PRIVATE epg_micro_xrce_dds_client)
   target_link_libraries(epg_micro_xrce_dds_client PRIVATE ${library}) # its clock is xrce_clock.c
 endfunction()
