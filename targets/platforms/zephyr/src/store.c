@@ -1,0 +1,215 @@
+/**
+ * @file
+ * A small store in the flash partition storage_partition: records one after the other in up to two pages, of which the
+ * valid one with the highest number counts.
+ *
+ * A record's data are written before its head, which has the checksum: the power may fail at any moment, and what is
+ * found afterwards is either all new or all old.  A partition of one page is the exception, when it is full and erased:
+ * then nothing may be left.
+ */
+#include <string.h>
+
+#include <zephyr/drivers/flash.h>
+#include <zephyr/kernel.h>
+#include <zephyr/storage/flash_map.h>
+
+#include "epg/port.h"
+#include "parts.h"
+
+#define PARTITION storage_partition
+#define MAGIC 0x53475045U /* "EPGS" */
+#define PAGES 2U
+/** The largest unit in which flash is written. */
+#define ALIGN_MAX 64U
+
+typedef struct head {
+    uint32_t magic;
+    uint32_t number; /* of the write; never 0 */
+    uint32_t size;
+    uint32_t check; /* of number, size and data */
+} head_t;
+
+static struct {
+    const struct flash_area *area;
+    uint32_t page_size;
+    uint32_t page_count;
+    uint32_t align;
+} flash;
+
+/** The newest record, and where the next one goes. */
+typedef struct place {
+    bool found;
+    head_t head;
+    uint32_t at;   /* of the head */
+    uint32_t page; /* of the newest record; 0 if there is none */
+    uint32_t end;  /* of that page's records, from its beginning */
+} place_t;
+
+static bool open_partition(void)
+{
+    struct flash_pages_info first;
+    if (flash.area != NULL) {
+        return true;
+    }
+    const struct flash_area *area;
+    if (flash_area_open(FIXED_PARTITION_ID(PARTITION), &area) < 0 ||
+        flash_get_page_info_by_offs(area->fa_dev, area->fa_off, &first) < 0) {
+        return false;
+    }
+    flash.page_size = (uint32_t)first.size;
+    flash.page_count = MIN((uint32_t)(area->fa_size / first.size), PAGES);
+    flash.align = MAX(flash_area_align(area), 4U);
+    if (flash.page_count == 0U || flash.align > ALIGN_MAX) {
+        return false;
+    }
+    flash.area = area;
+    return true;
+}
+
+static uint32_t head_size(void)
+{
+    return (uint32_t)ROUND_UP(sizeof(head_t), flash.align);
+}
+
+static uint32_t record_size(uint32_t size)
+{
+    return head_size() + (uint32_t)ROUND_UP(size, flash.align);
+}
+
+/** Adler-32 (RFC 1950, section 8.2).  Goes on from `sum`, at first 1. */
+static uint32_t check(uint32_t sum, const void *data, size_t size)
+{
+    const uint8_t *bytes = data;
+    uint32_t first = sum & 0xFFFFU;
+    uint32_t second = sum >> 16;
+    for (size_t i = 0; i < size; i++) {
+        first = (first + bytes[i]) % 65521U;
+        second = (second + first) % 65521U;
+    }
+    return second << 16 | first;
+}
+
+static uint32_t check_of_head(const head_t *head)
+{
+    return check(check(1U, &head->number, sizeof head->number), &head->size, sizeof head->size);
+}
+
+/** Whether the data after a head are what it says. */
+static bool valid(const head_t *head, uint32_t at)
+{
+    uint8_t piece[ALIGN_MAX];
+    uint32_t sum = check_of_head(head);
+    for (uint32_t done = 0; done < head->size; done += sizeof piece) {
+        const size_t size = MIN(sizeof piece, head->size - done);
+        if (flash_area_read(flash.area, (off_t)(at + head_size() + done), piece, size) < 0) {
+            return false;
+        }
+        sum = check(sum, piece, size);
+    }
+    return sum == head->check;
+}
+
+/** Follows the records of a page; those that are newer than what was found before count. */
+static void scan(uint32_t page, place_t *place)
+{
+    const uint32_t begin = page * flash.page_size;
+    uint32_t end = 0;
+    bool newest = false;
+    while (end + head_size() <= flash.page_size) {
+        head_t head;
+        if (flash_area_read(flash.area, (off_t)(begin + end), &head, sizeof head) < 0 || head.magic != MAGIC ||
+            head.size > flash.page_size - head_size() - end) {
+            break;
+        }
+        if ((!place->found || (int32_t)(head.number - place->head.number) > 0) && valid(&head, begin + end)) {
+            *place = (place_t){.found = true, .head = head, .at = begin + end, .page = page};
+            newest = true;
+        }
+        end += record_size(head.size);
+    }
+    if (newest || (page == 0U && !place->found)) {
+        place->end = end;
+    }
+}
+
+static place_t find(void)
+{
+    place_t place = {0};
+    for (uint32_t page = 0; page < flash.page_count; page++) {
+        scan(page, &place);
+    }
+    return place;
+}
+
+static bool erased(uint32_t at, uint32_t size)
+{
+    uint8_t piece[ALIGN_MAX];
+    const uint8_t empty = flash_area_erased_val(flash.area);
+    for (uint32_t done = 0; done < size; done += sizeof piece) {
+        const size_t count = MIN(sizeof piece, size - done);
+        if (flash_area_read(flash.area, (off_t)(at + done), piece, count) < 0) {
+            return false;
+        }
+        for (size_t i = 0; i < count; i++) {
+            if (piece[i] != empty) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+/** Writes `size` bytes in units of flash, the rest of the last one as if erased. */
+static bool program(uint32_t at, const void *data, size_t size)
+{
+    uint8_t unit[ALIGN_MAX];
+    const uint8_t *bytes = data;
+    for (size_t done = 0; done < size; done += flash.align) {
+        const size_t part = MIN(flash.align, size - done);
+        memset(unit, flash_area_erased_val(flash.area), sizeof unit);
+        memcpy(unit, bytes + done, part);
+        if (flash_area_write(flash.area, (off_t)(at + done), unit, flash.align) < 0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool write(const void *data, size_t size)
+{
+    const place_t place = find();
+    const uint32_t needed = record_size((uint32_t)size);
+    uint32_t at = place.page * flash.page_size + place.end;
+    if (needed > flash.page_size - place.end || !erased(at, needed)) {
+        at = place.found ? (place.page + 1U) % flash.page_count * flash.page_size : 0U;
+        if (flash_area_erase(flash.area, (off_t)at, flash.page_size) < 0) {
+            return false;
+        }
+    }
+    head_t head = {.magic = MAGIC, .number = place.head.number + 1U, .size = (uint32_t)size};
+    head.check = check(check_of_head(&head), data, size);
+    return program(at + head_size(), data, size) && program(at, &head, sizeof head) && valid(&head, at);
+}
+
+size_t epg_port_store_read(void *data, size_t size)
+{
+    if (!open_partition()) {
+        return 0;
+    }
+    const place_t place = find();
+    const size_t count = MIN(place.head.size, size);
+    if (!place.found || flash_area_read(flash.area, (off_t)(place.at + head_size()), data, count) < 0) {
+        return 0;
+    }
+    return count;
+}
+
+bool epg_port_store_write(const void *data, size_t size)
+{
+    if (!open_partition() || size > flash.page_size - head_size() - ALIGN_MAX || !epg_zephyr_control_hold()) {
+        return false;
+    }
+    const bool written = write(data, size);
+    epg_zephyr_control_release();
+    return written;
+}
