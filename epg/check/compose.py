@@ -15,7 +15,7 @@ from epg.load.middleware import Middleware
 from epg.quantity import QuantityError, parse_quantity, parse_ratio
 from epg.source import Node, Span
 
-COMMON_PARAMETERS = ("kind", "scale", "offset", "unit", "limits")
+COMMON_PARAMETERS = ("kind", "node", "scale", "offset", "unit", "limits")
 """Keys that every component has besides ``pins`` and the parameters of its kind."""
 
 _WORDS = {
@@ -32,6 +32,13 @@ _NAME = {
 }
 MOST_NAMES = 32
 """Most names of a list; epg/message.h has room for as many joints."""
+_NODE = {
+    "type": "string",
+    "pattern": "^[A-Za-z_][A-Za-z0-9_]*$",
+    "x-message": "is no label of a devicetree node: use letters, digits and '_', no digit first",
+    "description": "label of a devicetree node that is used instead of pins (Zephyr)",
+    "examples": ["qdec0"],
+}
 _PIN = {"type": ["integer", "string"], "minimum": 0, "description": "number or name of a pin"}
 
 
@@ -49,6 +56,8 @@ def component_schema(kind: Kind, with_pins: bool) -> dict[str, Any]:
             "examples": [{pin: number for number, pin in enumerate(kind.pins)}],
         }
         required += ["pins"] if with_pins else []
+    if kind.claims:
+        properties["node"] = _NODE
     for parameter in kind.parameters:
         properties[parameter.name] = _parameter_schema(parameter)
     for use in kind.uses:

@@ -15,8 +15,9 @@ from epg.check.compose import (
     typed_options,
     typed_parameters,
 )
+from epg.check.devicetree import check_node
 from epg.check.merge import apply_settings, merge_chain
-from epg.check.middleware import check_offer, offered, unoffered_hint
+from epg.check.middleware import check_lack, check_offer, offered, unoffered_hint
 from epg.check.names import identifier_problem, normal_namespace
 from epg.check.schema import extended_from, load_schema, validate
 from epg.check.topics import Use, check_names
@@ -187,7 +188,10 @@ def _components(root: Node, target: Target | None, catalog: Catalog, diagnostics
         kind = catalog.kind(str(kind_node.value), kind_node.span, diagnostics)
         if kind is None:
             continue
-        with_pins = target is not None and target.has_pins
+        named = node.get("node")
+        if named is not None:
+            check_node(kind, node, named, target, diagnostics)
+        with_pins = target is not None and target.has_pins and named is None
         if not validate(node, component_schema(kind, with_pins=with_pins), diagnostics):
             continue
         parameters = typed_parameters(kind, node, diagnostics)
@@ -283,7 +287,11 @@ def _communication(
     options = typed_options(found, node, diagnostics)
     written = middleware or node or root
     chosen = str(transport.value) if transport else next(iter(possible[name]), None)
+    check_lack(target, chosen, transport or middleware or node or root["target"], diagnostics)
     beside = _console(console, found, possible, target, catalog, diagnostics)
+    if beside is not None and console is not None:
+        own = target.platform.middlewares.get(beside.name, ()) if target else ()
+        check_lack(target, next(iter(own), None), console, diagnostics)
     beside_node = console if beside is not None and console is not None and console.is_mapping else None
     return Communication(
         middleware=found,

@@ -126,7 +126,8 @@ def _relations(kind: Kind) -> Schema:
 def _pins_needed(kind: Kind) -> Schema:
     if not kind.pins:
         return {}
-    return {"required": ["pins"], "properties": {"pins": {"required": list(kind.pins)}}}
+    wired: Schema = {"required": ["pins"], "properties": {"pins": {"required": list(kind.pins)}}}
+    return {"anyOf": [wired, {"required": ["node"]}]} if len(kind.claims) == 1 else wired
 
 
 def _middlewares(targets: Iterable[Target], catalog: Catalog, named: bool) -> list[Schema]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from epg.check.compose import parameter_problems
+from epg.check.schema import extended_from
 from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.load.catalog import Catalog
 from epg.load.hardware import Target
@@ -80,3 +81,11 @@ def check_offer(target: Target, middleware: Middleware, diagnostics: Diagnostics
 
 def _unfinished(node: Node) -> bool:
     return "builds" in node and node["builds"].value is False
+
+
+def check_lack(target: Target | None, transport: str | None, where: Node, diagnostics: Diagnostics) -> None:
+    """Reports a transport that the target's platform has on other boards."""
+    if target is not None and transport is not None and transport in target.board.lacks:
+        message = f"{target.board.name} has no transport '{transport}': {target.board.lacks[transport]}"
+        hint = "name a component that carries bytes, such as a uart, in 'transport', or write 'middleware: none'"
+        diagnostics.error("unknown-transport", where.span, message, hint=hint, notes=extended_from(where))

@@ -43,6 +43,7 @@ class ClaimView:
     settings: Mapping[str, int]
     frequency: Fraction | None
     attributes: Mapping[str, object] = field(default_factory=dict)
+    node: str = ""
 
 
 def claims_of(app: Application) -> list[ClaimView]:
@@ -72,15 +73,16 @@ class GpioView:
     component: str
     role: str
     pin: PinView
+    node: str = ""
 
 
 def gpios_of(app: Application) -> list[GpioView]:
     """The pins of all components that are digital inputs or outputs, or PWM outputs where pins are real."""
     classes = ("digital_input", "digital_output", *(("pwm",) if app.target.has_pins else ()))
     return [
-        GpioView(claim.component, claim.roles[signal], pin)
+        GpioView(claim.component, claim.roles[signal], pin, claim.node)
         for claim in claims_of(app)
-        if claim.resource_class in classes
+        if claim.resource_class in classes and not (claim.resource_class == "pwm" and claim.node)
         for signal, pin in sorted(claim.pins.items())
     ]
 
@@ -114,4 +116,5 @@ def _view(app: Application, component: str, name: str, resource_class: str, labe
         settings=found.settings,
         frequency=found.frequency,
         attributes=found.attributes,
+        node=found.node,
     )

@@ -168,7 +168,8 @@ class Platform:
 
     ``middlewares`` names transports; the first of each is the default.  ``tick`` is the class of the peripheral that
     times the control loop, None where the system software does, as also on chips without that class where
-    ``tick_is_optional``.  ``shared`` are folders beside this one whose templates
+    ``tick_is_optional``.  With ``has_nodes`` a component can name a node of a devicetree instead of pins.  ``shared``
+    are folders beside this one whose templates
     it uses too.
     """
 
@@ -181,6 +182,7 @@ class Platform:
     middlewares: Mapping[str, tuple[str, ...]]
     tick: str | None
     tick_is_optional: bool
+    has_nodes: bool
     builds: bool
     templates: tuple[str, ...]
     shared: tuple[str, ...]
@@ -289,6 +291,7 @@ def make_platform(node: Node, folder: Path) -> Platform:
         middlewares=MappingProxyType(middlewares),
         tick=str(tick.value) if tick is not None else None,
         tick_is_optional=tick is not None and flag_of(node["tick"], "optional"),
+        has_nodes=flag_of(node, "nodes"),
         builds=flag_of(node, "builds"),
         templates=texts_of(node, "templates"),
         shared=texts_of(node, "shared"),

@@ -22,6 +22,12 @@ from epg.resolve.search import WHOLE, Demand, Place, find_places
 
 __all__ = ["Assignment", "allocate"]
 
+NODES = 255
+"""``block`` of the first that a devicetree node describes, and those before it; chips have fewer instances."""
+
+NODE_STEPS = 0xFFFF
+"""Steps of a duty cycle where a devicetree node makes the PWM: its clock is not known here."""
+
 _MANY = 12  # digits, to tell apart values that are close to each other
 
 
@@ -48,6 +54,8 @@ class Assignment:
     instance: str = ""
     slot: str = ""
     attributes: Mapping[str, object] = field(default_factory=dict)
+    node: str = ""
+    """The devicetree node that is used instead of pins and a peripheral."""
 
 
 @dataclass(frozen=True)
@@ -67,9 +75,10 @@ def allocate(claims: Sequence[Claim], target: Target, diagnostics: Diagnostics) 
     The same claims get the same hardware in every run.
     """
     errors = diagnostics.error_count
+    named = [claim for claim in claims if claim.node]
     pins = Pins(target, claims, diagnostics)
-    checked = _check(claims, pins, target, diagnostics)
-    result: dict[ClaimKey, Assignment] = {}
+    checked = _check([claim for claim in claims if not claim.node], pins, target, diagnostics)
+    result = _nodes(named, target, diagnostics)
     for name, peripheral in target.soc.peripherals.items():
         wanted = [placed for placed in checked if placed.resource_class.peripheral == name]
         candidates = [_candidate(placed, peripheral) for placed in wanted]
@@ -85,6 +94,34 @@ def allocate(claims: Sequence[Claim], target: Target, diagnostics: Diagnostics) 
     if diagnostics.error_count > errors:
         return None
     return MappingProxyType({claim.key: result[claim.key] for claim in claims})
+
+
+def _nodes(claims: Sequence[Claim], target: Target, diagnostics: Diagnostics) -> dict[ClaimKey, Assignment]:
+    """What devicetree nodes describe: nothing of the chip is taken; numbers in C count down from the last one."""
+    result = {}
+    number = NODES
+    for place, claim in enumerate(claims):
+        found = _class(claim, target, diagnostics)
+        if found is None:
+            continue
+        signals = list(found.signals)
+        divided = found.divider_from is not None
+        result[claim.key] = Assignment(
+            pins=MappingProxyType({signal: number - index for index, signal in enumerate(signals)}),
+            block=NODES - place,
+            unit=0,
+            settings=MappingProxyType({"prescaler": 1, "top": NODE_STEPS - 1} if divided else {}),
+            resource=f"devicetree node {claim.node}",
+            pins_are_real=False,
+            attributes=_attributes(claim),
+            node=claim.node,
+        )
+        number -= len(signals)
+        if number < len(target.soc.pins):
+            message = f"{target.name} has no numbers left for {claim.user} and its node"
+            diagnostics.error("too-many", claim.span, message, hint="remove components that name a 'node'")
+            break
+    return result
 
 
 def _check(claims: Sequence[Claim], pins: Pins, target: Target, diagnostics: Diagnostics) -> list[_Placed]:
@@ -121,7 +158,8 @@ def _class(claim: Claim, target: Target, diagnostics: Diagnostics) -> ResourceCl
         diagnostics.error("unknown-class", claim.span, message, hint=hint, notes=notes)
         return None
     unknown = [signal for signal in claim.signals if signal not in found.signals]
-    missing = [signal for signal in found.signals if signal not in claim.signals] if target.has_pins else []
+    with_pins = target.has_pins and not claim.node
+    missing = [signal for signal in found.signals if signal not in claim.signals] if with_pins else []
     for signal in unknown:
         hint = did_you_mean(signal, found.signals, "signals")
         message = f"{found.a_title} has no signal '{signal}'"

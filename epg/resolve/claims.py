@@ -49,6 +49,8 @@ class Claim:
     span: Span
     stated_in: Span = field(default_factory=lambda: Span(""))
     """Where a kind or platform makes the claim: for mistakes in its file."""
+    node: str = ""
+    """The devicetree node that is claimed in place of pins and a peripheral; empty: none is named."""
 
     @property
     def key(self) -> ClaimKey:
@@ -62,7 +64,8 @@ class Claim:
 
 def component_claims(configuration: Configuration) -> tuple[Claim, ...]:
     """The claims of all components, in the order they are written."""
-    return tuple(_claims(configuration.components.values(), configuration.target.has_pins))
+    target = configuration.target
+    return tuple(_claims(configuration.components.values(), target.has_pins, target.platform.has_nodes))
 
 
 def tick_claims(target: Target, period: Fraction | None, span: Span) -> tuple[Claim, ...]:
@@ -77,10 +80,12 @@ def tick_claims(target: Target, period: Fraction | None, span: Span) -> tuple[Cl
     return (Claim(*TICK, target.tick, MappingProxyType({}), MappingProxyType(attributes), span, where),)
 
 
-def _claims(components: Iterable[Component], with_pins: bool) -> Iterable[Claim]:
+def _claims(components: Iterable[Component], with_pins: bool, with_nodes: bool) -> Iterable[Claim]:
     for component in components:
         for claim in component.kind.claims:
-            signals = {signal: _pin(component, pin) for signal, pin in claim.signals.items()} if with_pins else {}
+            node = component.node.get("node") if with_nodes else None
+            written = with_pins and node is None
+            signals = {signal: _pin(component, pin) for signal, pin in claim.signals.items()} if written else {}
             yield Claim(
                 component=component.name,
                 name=claim.name,
@@ -89,6 +94,7 @@ def _claims(components: Iterable[Component], with_pins: bool) -> Iterable[Claim]
                 attributes=MappingProxyType(_attributes(component, claim)),
                 span=component.span,
                 stated_in=claim.span,
+                node=str(node.value) if node is not None else "",
             )
 
 

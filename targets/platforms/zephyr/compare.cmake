@@ -2,7 +2,7 @@
 # overlay and prj.conf go over EPG's, and may say something that the target cannot work with.
 #
 # <name>_zephyr.cmake lists the needs: EPG_ZEPHYR_CONFIG of <symbol>|<value>|<for what>, EPG_ZEPHYR_PROPERTIES of
-# <label>|<property>|<value>|<for what>.
+# <label>|<property>|<value>|<for what>, EPG_ZEPHYR_NODES of <label>|<who names it>, EPG_ZEPHYR_UARTS of labels.
 
 function(_epg_zephyr_compare name output)
   include("${output}/${name}_zephyr.cmake")
@@ -43,6 +43,20 @@ function(_epg_zephyr_compare name output)
       elseif(NOT found STREQUAL wanted)
         string(APPEND differences "\n  the devicetree's &${label} has ${property} = <${found}>, and ${purpose} needs <${wanted}>")
       endif()
+    endif()
+  endforeach()
+  foreach(need IN LISTS EPG_ZEPHYR_NODES)
+    string(REPLACE "|" ";" need "${need}")
+    list(GET need 0 label)
+    list(GET need 1 purpose)
+    dt_nodelabel(node NODELABEL "${label}")
+    if(node)
+      dt_node_has_status(okay PATH "${node}" STATUS okay)
+    endif()
+    if(NOT node)
+      string(APPEND differences "\n  the devicetree has no node with the label ${label}, which ${purpose} names")
+    elseif(NOT okay)
+      string(APPEND differences "\n  the devicetree's &${label}, which ${purpose} names, is disabled")
     endif()
   endforeach()
   _epg_zephyr_compare_console(differences)

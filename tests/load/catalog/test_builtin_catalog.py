@@ -23,7 +23,7 @@ from epg.source import Span
 
 TARGETS = data_folder("targets")
 BOARDS = ("rpi_pico", "rpi_pico2")
-PLATFORMS = ("bare_metal", "freertos")
+PLATFORMS = ("bare_metal", "freertos", "zephyr")
 
 
 def builtin() -> tuple[Catalog, Diagnostics]:
@@ -41,9 +41,10 @@ def test_everything_is_right() -> None:
     assert {name for sort in FOLDERS for name in catalog.names(sort)} == folders - {"pico"}, "pico: shared by platforms"
 
 
-def test_the_targets_of_the_thesis_and_the_host() -> None:
+def test_the_targets_of_the_thesis_and_those_without_a_board() -> None:
     catalog, _ = builtin()
-    assert catalog.target_names() == sorted(["host", *(f"{board}_{name}" for board in BOARDS for name in PLATFORMS)])
+    others = ["host", "native_sim", "nucleo_h743zi_zephyr", "mps2_an385_zephyr"]
+    assert catalog.target_names() == sorted([*others, *(f"{board}_{name}" for board in BOARDS for name in PLATFORMS)])
     assert all(catalog.find_target(name).platform.builds for name in catalog.target_names())
 
 
@@ -128,7 +129,7 @@ def test_predefined_configurations(name: str) -> None:
     settings = settings_node([(text, Span("settings")) for text in texts], problems)
     assert check_configuration(chain, settings, catalog, problems) is not None
     assert [(p.span, p.message) for p in problems] == []
-    assert missing == (name in ("jiwy.tcf", "rpi_pico_jiwy.tcf", "relbot.tcf", "rpi_pico_relbot.tcf"))
+    assert missing == (name in ("jiwy.tcf", "rpi_pico_jiwy.tcf", "nucleo_h743zi_jiwy.tcf", "relbot.tcf", "rpi_pico_relbot.tcf"))
 
 
 @pytest.mark.parametrize("robot", ["host_jiwy", "rpi_pico_bare_metal_jiwy", "rpi_pico2_freertos_jiwy"])

@@ -77,14 +77,18 @@ static const epg_zephyr_pwm_t *find_pwm(uint8_t block, uint8_t unit)
     return NULL;
 }
 
-/** Sets the high time in clocks of the timer, whose divider is the devicetree's. */
+/** Sets the high time, as a level out of `top + 1`. */
 static int set_level(const epg_port_pwm_t *config, uint32_t level)
 {
     const epg_zephyr_pwm_t *pwm = find_pwm(config->block, config->unit);
     if (pwm == NULL) {
         return -ENODEV;
     }
-    return pwm_set_cycles(pwm->device, pwm->channel, config->top + 1U, level, PWM_POLARITY_NORMAL);
+    if (pwm->period_ns == 0) {
+        return pwm_set_cycles(pwm->device, pwm->channel, config->top + 1U, level, pwm->flags);
+    }
+    const uint32_t pulse = (uint32_t)((uint64_t)pwm->period_ns * level / (config->top + 1U));
+    return pwm_set(pwm->device, pwm->channel, pwm->period_ns, pulse, pwm->flags);
 }
 
 void epg_port_pwm_start(const epg_port_pwm_t *pwm)

@@ -14,6 +14,7 @@
 
 #include <zephyr/device.h>
 #include <zephyr/drivers/gpio.h>
+#include <zephyr/drivers/pwm.h>
 
 #include "epg/middleware.h"
 #include "epg/target.h"
@@ -30,12 +31,18 @@ typedef struct epg_zephyr_decoder {
     const struct device *device;
 } epg_zephyr_decoder_t;
 
-/** A channel of a PWM device; `block` and `unit` are those of its epg_port_pwm_t. */
+/**
+ * A channel of a PWM device; `block` and `unit` are those of its epg_port_pwm_t.  Where `period_ns` is 0 the devicetree
+ * divides the clock so that levels are clocks of the device; else the device is the application's own, and levels are
+ * shares of that period.
+ */
 typedef struct epg_zephyr_pwm {
     uint8_t block;
     uint8_t unit;
     const struct device *device;
     uint32_t channel;
+    uint32_t period_ns;
+    pwm_flags_t flags;
 } epg_zephyr_pwm_t;
 
 /**

@@ -1,0 +1,32 @@
+"""Components that name a node of a devicetree: ``encoder: {kind: quadrature_encoder, node: qdec0, ...}``."""
+
+from __future__ import annotations
+
+from epg.check.schema import extended_from
+from epg.diagnostics import Diagnostics
+from epg.load.hardware import Target
+from epg.load.kind import Kind
+from epg.source import Node
+
+
+def check_node(kind: Kind, component: Node, node: Node, target: Target | None, diagnostics: Diagnostics) -> None:
+    """Reports a ``node`` of a component that cannot have one.
+
+    A node stands for the pins and the peripheral of one claim, on platforms that read a devicetree.  Targets without
+    pins ignore it, as they ignore pins.
+    """
+    notes = extended_from(node)
+    instead = "write 'pins' instead ('node: null' if another file has written it)"
+    span = component.key_span("node")
+    if not kind.claims:
+        return  # the schema has no such key then
+    if len(kind.claims) > 1:
+        message = f"'node' stands for one peripheral, and a {kind.name} has {len(kind.claims)}"
+        diagnostics.error("node-not-possible", span, message, hint=instead, notes=notes)
+    elif target is not None and target.has_pins and not target.platform.has_nodes:
+        message = f"'node' names a node of a devicetree, which {target.name} has not"
+        diagnostics.error("node-not-possible", span, message, hint=instead, notes=notes)
+    elif "pins" in component:
+        message = "a component has either 'pins' or 'node'"
+        hint = "remove one of them ('pins: null' if another file has written it)"
+        diagnostics.error("exactly-one", span, message, hint=hint, notes=notes)
