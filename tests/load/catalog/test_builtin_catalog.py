@@ -129,7 +129,9 @@ def test_predefined_configurations(name: str) -> None:
     settings = settings_node([(text, Span("settings")) for text in texts], problems)
     assert check_configuration(chain, settings, catalog, problems) is not None
     assert [(p.span, p.message) for p in problems] == []
-    assert missing == (name in ("jiwy.tcf", "rpi_pico_jiwy.tcf", "nucleo_h743zi_jiwy.tcf", "relbot.tcf", "rpi_pico_relbot.tcf"))
+    assert missing == (
+        name in ("jiwy.tcf", "rpi_pico_jiwy.tcf", "nucleo_h743zi_jiwy.tcf", "relbot.tcf", "rpi_pico_relbot.tcf")
+    )
 
 
 @pytest.mark.parametrize("robot", ["host_jiwy", "rpi_pico_bare_metal_jiwy", "rpi_pico2_freertos_jiwy"])
