@@ -19,7 +19,8 @@ static void on_interrupt(int number)
 
 void epg_native_sim_catch_interrupts(volatile int *flag)
 {
-    struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = (int)SA_RESETHAND};
+    /* Restarted: the simulator's threads wait for each other by semaphores, and do not expect less than that. */
+    struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = (int)(SA_RESETHAND | SA_RESTART)};
     interrupted = flag;
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, NULL);

@@ -1,0 +1,56 @@
+"""JIWY's target on a Cortex-M3 that QEMU emulates, with emulated peripherals."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import threading
+from pathlib import Path
+
+from tests.emulator.toolchain import Missing, arm_gcc, skip_if_missing
+
+from .workspace import build, c_library, workspace
+
+BOARD = "mps2/an385"
+PATIENCE = 120.0
+"""Seconds for 3 simulated ones, on a machine that does other things too."""
+
+END = re.compile(r"PROJECT EXECUTION (\w+)")
+
+
+def qemu() -> str:
+    program = shutil.which("qemu-system-arm")
+    if program is None:
+        raise Missing("qemu-system-arm is not installed: apt install qemu-system-arm")
+    return program
+
+
+def console_of(image: Path) -> str:
+    """What the image says up to the end of its tests.  Time is what instructions take, so that no load matters."""
+    command = [qemu(), "-machine", "mps2-an385", "-nographic", "-vga", "none", "-nic", "none", "-kernel", str(image)]
+    command += ["-icount", "shift=4,align=off,sleep=off", "-rtc", "clock=vm"]
+    lines: list[str] = []
+    with subprocess.Popen(
+        command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    ) as process:
+        assert process.stdout is not None
+        timer = threading.Timer(PATIENCE, process.kill)
+        timer.start()
+        for line in process.stdout:
+            lines.append(line)
+            if END.search(line):
+                break
+        timer.cancel()
+        process.kill()
+    return "".join(lines)
+
+
+def test_jiwy_in_qemu() -> None:
+    """Cycles are counted and none overruns; the emulated encoder is read; outputs, faults, stop and start."""
+    skip_if_missing(arm_gcc, c_library, qemu, lambda: workspace(BOARD))
+    said = console_of(build("tests/zephyr/jiwy", BOARD, settings=c_library()) / "zephyr" / "zephyr.elf")
+    end = END.search(said)
+    assert end is not None and end[1] == "SUCCESSFUL", said
+    passed = set(re.findall(r"PASS - \[jiwy\.(\w+)\]", said))
+    assert passed == {"test_cycles", "test_decoder_fails", "test_encoder", "test_outputs"}, said
