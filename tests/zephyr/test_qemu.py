@@ -48,7 +48,7 @@ def console_of(image: Path) -> str:
 
 def test_jiwy_in_qemu() -> None:
     """Cycles are counted and none overruns; the emulated encoder is read; outputs, faults, stop and start."""
-    skip_if_missing(arm_gcc, c_library, qemu, lambda: workspace(BOARD))
+    skip_if_missing(lambda: workspace(BOARD), arm_gcc, c_library, qemu)
     said = console_of(build("tests/zephyr/jiwy", BOARD, settings=c_library()) / "zephyr" / "zephyr.elf")
     end = END.search(said)
     assert end is not None and end[1] == "SUCCESSFUL", said

@@ -12,7 +12,7 @@ from .workspace import NATIVE, c_library, need_twister, workspace
 
 def test_native_sim(tmp_path: Path) -> None:
     """The drivers' semantics, the sample, and JIWY's target, which is test_qemu.py's too."""
-    skip_if_missing(arm_gcc, c_library, lambda: need_twister(workspace(NATIVE)))
+    skip_if_missing(arm_gcc, lambda: need_twister(workspace(NATIVE)), c_library)
     statuses = statuses_of(tmp_path / "twister", NATIVE)
     assert statuses == {
         ("drivers.pwm.epg_emulated", "native_sim"): "passed",
