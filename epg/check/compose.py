@@ -9,7 +9,8 @@ from types import MappingProxyType
 from typing import Any
 
 from epg.check.schema import extended_from, load_schema, validate
-from epg.diagnostics import Diagnostics, Note
+from epg.diagnostics import Diagnostics, Note, did_you_mean
+from epg.load.items import map_of, texts_of
 from epg.load.kind import Kind, KindParameter, make_parameter
 from epg.load.middleware import Middleware
 from epg.quantity import QuantityError, parse_quantity, parse_ratio
@@ -141,6 +142,9 @@ def parameter_problems(name: str, node: Node, span: Span, diagnostics: Diagnosti
         for child, described in node["properties"].items():
             parameter_problems(child, described, node["properties"].key_span(child), diagnostics)
     errors = diagnostics.error_count
+    _alias_problems(node, diagnostics)
+    if diagnostics.error_count > errors:
+        return
     parameter = make_parameter(name, node, span)
     for bound in parameter.bounds.values():
         try:
@@ -154,8 +158,22 @@ def parameter_problems(name: str, node: Node, span: Span, diagnostics: Diagnosti
             _typed(parameter, parameter.default, diagnostics)
 
 
+def _alias_problems(node: Node, diagnostics: Diagnostics) -> None:
+    """Each alias is another way to write one value of the parameter's enum, which has texts."""
+    values = texts_of(node, "enum") if "type" in node and node["type"].value == "string" else ()
+    for alias, meant in map_of(node, "aliases").items():
+        if alias in values:
+            message = f"'{alias}' is a value of 'enum' itself"
+            diagnostics.error("wrong-value", node["aliases"].key_span(alias), message)
+        if meant.value not in values:
+            message = f"'enum' has no text '{meant.value}'"
+            diagnostics.error("unknown-name", meant.span, message, hint=did_you_mean(str(meant.value), values))
+
+
 def _parameter_schema(parameter: KindParameter) -> dict[str, Any]:
     schema: dict[str, Any] = {"description": _description(parameter), **parameter.keywords}
+    if parameter.aliases:
+        schema["enum"] = [*schema["enum"], *parameter.aliases]
     if parameter.default is not None:
         schema["default"] = parameter.default.plain()
     if parameter.type == "quantity":
@@ -224,7 +242,7 @@ def _value(parameter: KindParameter, written: object) -> Fraction | float | int 
             raise QuantityError(f"'{written}' is no whole number")
         return int(written)
     assert isinstance(written, (str, bool))
-    return written
+    return parameter.aliases.get(written, written) if isinstance(written, str) else written
 
 
 def _check_bounds(parameter: KindParameter, value: object, node: Node, diagnostics: Diagnostics) -> None:

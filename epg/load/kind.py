@@ -29,6 +29,7 @@ class KindParameter:
     default: Node | None
     bounds: Mapping[str, Node]
     keywords: Mapping[str, Any]  # enum, pattern, minLength, examples: as in JSON Schema
+    aliases: Mapping[str, str]  # other ways to write values of enum, and those values
     properties: tuple[KindParameter, ...]
     span: Span
 
@@ -231,6 +232,7 @@ def make_parameter(name: str, node: Node, span: Span) -> KindParameter:
         default=node.get("default"),
         bounds=MappingProxyType({key: node[key] for key in _BOUNDS if key in node}),
         keywords=MappingProxyType(keywords),
+        aliases=MappingProxyType({alias: str(child.value) for alias, child in map_of(node, "aliases").items()}),
         properties=make_parameters(node.get("properties")),
         span=span,
     )
