@@ -36,6 +36,22 @@ def check_board(node: Node, diagnostics: Diagnostics) -> None:
             message = f"pin {name} is in '{seen[name][0]}' and in '{section}'"
             diagnostics.error("wrong-value", span, message, hint="keep one of the two", notes=[first])
         seen.setdefault(name, (section, span))
+    if "layout" in node:
+        _layout(node["layout"], {name for section, name, _ in groups if section == "pins"}, diagnostics)
+
+
+def _layout(layout: Node, pins: set[str], diagnostics: Diagnostics) -> None:
+    """Each contact is a pin of the board, once, or a supply."""
+    supplies = map_of(layout, "supplies")
+    seen: dict[str, Span] = {}
+    for contact in (child for row in layout["rows"].elements() for child in row["contacts"].elements()):
+        name = str(contact.value)
+        if name not in pins and name not in supplies:
+            _unknown("contact", contact, [*supplies, *sorted(pins)], diagnostics)
+        elif name in pins and name in seen:
+            first = Note("first here", seen[name])
+            diagnostics.error("wrong-value", contact.span, f"pin {name} has two contacts", notes=[first])
+        seen.setdefault(name, contact.span)
 
 
 def check_platform(node: Node, diagnostics: Diagnostics) -> None:

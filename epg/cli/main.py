@@ -25,6 +25,7 @@ COMMANDS = {
     "exported": "check an export of 20-sim and say what comes next (EPG's target for 20-sim calls this)",
     "targets": "list targets, component kinds and predefined .tcf files",
     "explain": "show the way of a model port to its pin",
+    "graph": "draw the application, the control cycle or the wiring of the board, as SVG",
     "simulate": "run a host executable through a scenario and judge the result",
     "launch": "write a ROS 2 launch file, or systemd units, for the agents of targets",
     "record": "record what a target says and hears on ROS 2",

@@ -15,6 +15,7 @@ from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
 
+from epg.load.headers import Layout, make_layout
 from epg.load.items import flag_of, integer_range, map_of, pin_names, text_of, texts_of
 from epg.quantity import parse_quantity
 from epg.source import Node, Span
@@ -131,7 +132,8 @@ class Board:
 
     ``sdks`` says what SDKs call the board: "pico_sdk" -> "pico2".  ``lacks`` are transports of
     platforms that it has not, and why.  ``devicetree`` are the nodes that the board's
-    devicetree in Zephyr enables, with the pins they have; ``console`` is the one of its console, or empty.
+    devicetree in Zephyr enables, with the pins they have; ``console`` is the one of its console, or empty.  ``layout`` says
+    where its pins are.
     """
 
     name: str
@@ -146,6 +148,7 @@ class Board:
     lacks: Mapping[str, str]
     devicetree: Mapping[str, tuple[str, ...]]
     console: str
+    layout: Layout | None
     node: Node
     folder: Path
     span: Span
@@ -268,6 +271,7 @@ def make_board(node: Node, folder: Path) -> Board:
             {label: tuple(str(pin.value) for pin in pins.elements()) for label, pins in nodes.items()}
         ),
         console=text_of(devicetree, "console") if devicetree is not None else "",
+        layout=make_layout(node, pin_names(node.get("pins"))),
         node=node,
         folder=folder,
         span=node["board"].span,

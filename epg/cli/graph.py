@@ -1,0 +1,86 @@
+"""``epg graph``: pictures of a target."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from epg.cli.arguments import request_of
+from epg.cli.report import to_json
+from epg.diagnostics import Diagnostics
+from epg.project import Request
+
+PICTURES = ("application", "schedule", "wiring")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("tcf", metavar="TARGET.tcf", help="target configuration: a file, or one of EPG's by name")
+    what = (
+        "application: from topics and pins to the model and back; schedule: of one control cycle; wiring: of the board"
+    )
+    parser.add_argument("--what", choices=PICTURES, default="application", help=what)
+    parser.add_argument("--model", type=Path, metavar="FOLDER", help="folder of the model; the wiring needs none")
+    parser.add_argument("--bindings", type=Path, metavar="FILE", help="bindings of the model's ports")
+    parser.add_argument("--output", "-o", type=Path, metavar="FILE.svg", help="the file to write; default: print it")
+    parser.add_argument(
+        "--set", action="append", default=[], dest="settings", metavar="KEY.KEY=VALUE", help="as 'check'"
+    )
+    parser.add_argument("--name", default="", help="what the picture calls the target; default: the .tcf's name")
+    parser.set_defaults(node=None, namespace=None, plant=None, plant_bindings=None, caller=None, beside=Path())
+
+
+def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
+    if options.what != "wiring" and (options.model is None or options.bindings is None):
+        sys.stderr.write(f"epg graph: --what {options.what} needs --model FOLDER and --bindings FILE\n")
+        return 2
+    request = request_of(options, options.name or "target")
+    title = options.name or Path(options.tcf).stem
+    text = (
+        _wiring(request, title, diagnostics)
+        if options.what == "wiring"
+        else _flow(options, request, title, diagnostics)
+    )
+    if options.output is not None:
+        from epg.emit.writer import write_outputs
+
+        write_outputs(options.output.parent, {options.output.name: text})
+    elif options.json:
+        sys.stdout.write(to_json({"what": options.what, "svg": text}))
+    else:
+        sys.stdout.write(text)
+    return 0
+
+
+def _wiring(request: Request, title: str, diagnostics: Diagnostics) -> str:
+    """The wiring, which the ``.tcf`` alone decides."""
+    from epg.graph.wiring import draw_wiring
+    from epg.project import load_configuration, make_catalog
+    from epg.resolve.resolve import allocate_hardware
+
+    configuration = load_configuration(request, make_catalog(request.roots, diagnostics), diagnostics)
+    diagnostics.stop_if_errors()
+    assert configuration is not None
+    assignments = allocate_hardware(configuration, configuration.control.period, diagnostics)
+    target = configuration.target
+    if target.board.layout is None:
+        message = f"EPG does not know where the pins of {target.board.summary} are"
+        hint = "its board.yaml needs a 'layout': docs/adding-a-board.md" if target.has_pins else "it has no pins"
+        diagnostics.error("no-layout", configuration.root["target"].span, message, hint=hint)
+    diagnostics.stop_if_errors()
+    assert assignments is not None
+    return draw_wiring(target, configuration.components, assignments, title)
+
+
+def _flow(options: argparse.Namespace, request: Request, title: str, diagnostics: Diagnostics) -> str:
+    from epg.emit.application import application_topics
+    from epg.graph.application import draw_application
+    from epg.graph.schedule import draw_schedule
+    from epg.project import load_application
+
+    app = load_application(request, diagnostics)
+    diagnostics.stop_if_errors()
+    assert app is not None
+    if options.what == "schedule":
+        return draw_schedule(app, title)
+    return draw_application(app, application_topics(app, request.roots), title)

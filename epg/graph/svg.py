@@ -1,0 +1,152 @@
+"""A small writer of SVG: rectangles, lines and text, which is measured so that nothing overlaps.
+
+>>> picture = Picture("Pan", "One box.")
+>>> picture.box(0, 0, 80, 24, "box")
+>>> picture.text(40, 16, "pan", anchor="middle")
+>>> picture.render().startswith('<svg xmlns="http://www.w3.org/2000/svg"')
+True
+
+All text is of one width per character: a browser's monospaced fonts are at most 0.62 of their size wide.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from xml.sax.saxutils import escape
+
+CHARACTER = 0.62
+"""Width of a character, of the font's size."""
+
+_MARGIN = 16
+_COLOURS = (  # light, dark: of Okabe and Ito (2008), darkened or lightened to a contrast of 4.5 to the background
+    ("#0060a0", "#6cb8f0"),
+    ("#b04a00", "#f0a060"),
+    ("#007050", "#40c8a0"),
+    ("#a03080", "#e890c8"),
+    ("#706000", "#d8c840"),
+    ("#5048c0", "#a8a0ff"),
+    ("#a02020", "#ff8a80"),
+    ("#006878", "#50c8d8"),
+)
+WIRES = len(_COLOURS)
+"""How many colours there are: classes ``w0``, ``w1``, ..."""
+
+_STYLE = """
+text { font-family: ui-monospace, 'DejaVu Sans Mono', Menlo, Consolas, monospace; fill: #1f2328; }
+.back { fill: #ffffff; }
+.box { fill: #f6f8fa; stroke: #59636e; stroke-width: 1.2; }
+.model { fill: #ddf4ff; stroke: #0969da; stroke-width: 1.6; }
+.board { fill: #dafbe1; stroke: #1a7f37; stroke-width: 1.6; }
+.plain { fill: none; stroke: #59636e; stroke-dasharray: 4 3; }
+.contact { fill: #ffffff; stroke: #1f2328; stroke-width: 1.2; }
+.ground { fill: #1f2328; stroke: #1f2328; }
+.supply { fill: #d1242f; stroke: #1f2328; }
+.other { fill: #bf8700; stroke: #1f2328; }
+.line { fill: none; stroke: #1f2328; stroke-width: 1.4; }
+.earth { fill: none; stroke: #1f2328; stroke-width: 1.6; stroke-dasharray: 6 3; }
+.faint { fill: #59636e; }
+.bold { font-weight: bold; }
+"""
+_DARK = """
+text { fill: #f0f6fc; }
+.back { fill: #0d1117; }
+.box { fill: #1a212b; stroke: #9198a1; }
+.model { fill: #0c2d4a; stroke: #58a6ff; }
+.board { fill: #0f2f1c; stroke: #3fb950; }
+.plain { stroke: #9198a1; }
+.contact { fill: #0d1117; stroke: #f0f6fc; }
+.ground { fill: #f0f6fc; stroke: #f0f6fc; }
+.supply { fill: #ff7b72; stroke: #f0f6fc; }
+.other { fill: #d29922; stroke: #f0f6fc; }
+.line, .earth { stroke: #f0f6fc; }
+.faint { fill: #9198a1; }
+"""
+
+
+def width(text: str, size: float = 12) -> float:
+    """The most room that ``text`` takes, in pixels."""
+    return len(text) * CHARACTER * size
+
+
+class Picture:
+    """Shapes in pixels, from wherever they are: the picture is as large as they need."""
+
+    def __init__(self, title: str, description: str) -> None:
+        self.title = title
+        self.description = description
+        self._shapes: list[str] = []
+        self._left = self._top = float("inf")
+        self._right = self._bottom = float("-inf")
+
+    def box(self, x: float, y: float, wide: float, high: float, style: str, title: str = "", round: float = 4) -> None:
+        """A rectangle; ``title`` is what a pointer over it shows."""
+        self._reach(x, y, x + wide, y + high)
+        self._shapes.append(
+            f'<rect x="{_n(x)}" y="{_n(y)}" width="{_n(wide)}" height="{_n(high)}" rx="{_n(round)}" class="{style}"'
+            + (f"><title>{escape(title)}</title></rect>" if title else "/>")
+        )
+
+    def line(self, points: Sequence[tuple[float, float]], style: str = "line", title: str = "") -> None:
+        """A line through ``points``."""
+        for x, y in points:
+            self._reach(x, y, x, y)
+        path = " ".join(f"{_n(x)},{_n(y)}" for x, y in points)
+        self._shapes.append(
+            f'<polyline points="{path}" class="{style}"'
+            + (f"><title>{escape(title)}</title></polyline>" if title else "/>")
+        )
+
+    def arrow(self, points: Sequence[tuple[float, float]], style: str = "line", title: str = "") -> None:
+        """A line with a head at its end; its last part is horizontal or vertical."""
+        self.line(points, style, title)
+        (x0, y0), (x, y) = points[-2:]
+        dx, dy = (x > x0) - (x < x0), (y > y0) - (y < y0)
+        wings = [(x - 6 * dx - 3.5 * dy, y - 6 * dy - 3.5 * dx), (x, y), (x - 6 * dx + 3.5 * dy, y - 6 * dy + 3.5 * dx)]
+        self.line(wings, style.replace("earth", "line"))
+
+    def text(self, x: float, y: float, text: str, anchor: str = "start", size: float = 12, style: str = "") -> None:
+        """``text`` with its base line at ``y``; ``anchor`` says what of it is at ``x``: start, middle or end."""
+        if not text:
+            return
+        wide = width(text, size)
+        left = x - {"start": 0, "middle": wide / 2, "end": wide}[anchor]
+        self._reach(left, y - size, left + wide, y + 0.3 * size)
+        attributes = f' class="{style}"' if style else ""
+        attributes += f' text-anchor="{anchor}"' if anchor != "start" else ""
+        self._shapes.append(f'<text x="{_n(x)}" y="{_n(y)}" font-size="{_n(size)}"{attributes}>{escape(text)}</text>')
+
+    def render(self) -> str:
+        """The whole file."""
+        x, y = self._left - _MARGIN, self._top - _MARGIN
+        wide, high = self._right - x + _MARGIN, self._bottom - y + _MARGIN
+        style, dark = _STYLE, _DARK
+        for index, (light, night) in enumerate(_COLOURS):
+            style += (
+                f".w{index} {{ fill: none; stroke: {light}; stroke-width: 2.2; }}\n.t{index} {{ fill: {light}; }}\n"
+            )
+            dark += f".w{index} {{ stroke: {night}; }}\n.t{index} {{ fill: {night}; }}\n"
+        lines = [
+            f'<svg xmlns="http://www.w3.org/2000/svg" width="{_n(wide)}" height="{_n(high)}" '
+            f'viewBox="{_n(x)} {_n(y)} {_n(wide)} {_n(high)}" role="img" aria-labelledby="title description">',
+            f'<title id="title">{escape(self.title)}</title>',
+            f'<desc id="description">{escape(self.description)}</desc>',
+            f"<style>{style}@media (prefers-color-scheme: dark) {{{dark}}}\n</style>",
+            f'<rect x="{_n(x)}" y="{_n(y)}" width="{_n(wide)}" height="{_n(high)}" class="back"/>',
+            *self._shapes,
+            "</svg>",
+        ]
+        return "\n".join(lines) + "\n"
+
+    @property
+    def bottom(self) -> float:
+        """The lowest edge of what is drawn so far."""
+        return self._bottom
+
+    def _reach(self, left: float, top: float, right: float, bottom: float) -> None:
+        self._left, self._top = min(self._left, left), min(self._top, top)
+        self._right, self._bottom = max(self._right, right), max(self._bottom, bottom)
+
+
+def _n(value: float) -> str:
+    """A coordinate: at most one digit behind the point, the same on every computer."""
+    return f"{value:.1f}".removesuffix(".0")

@@ -1,0 +1,300 @@
+"""The wiring of a board: its contacts where they are on the table, and what is soldered to them.
+
+A wire leaves its contact, changes its height in a lane of its own and arrives at its component.  Contacts stand on a
+grid, the terminals of components between its lines: wires cross, but never lie on each other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from epg.check.configuration import Component
+from epg.graph.svg import WIRES, Picture, width
+from epg.load.hardware import Target
+from epg.load.headers import Contact, Layout
+from epg.resolve.allocation import Assignment
+from epg.resolve.claims import ClaimKey
+
+PITCH = 22.0
+_INSIDE = 92.0  # from a contact to the middle of the board
+_LANE = 9.0
+_SMALL = 10.5
+_RESISTOR = "10 kΩ to ground"
+
+
+@dataclass(frozen=True)
+class Terminal:
+    """A wire of a component: to ``contact``, the ``row_index``-th of a side from the top."""
+
+    component: str
+    signal: str
+    contact: Contact
+    place: int
+    resource: str
+    colour: int
+
+
+@dataclass(frozen=True)
+class _Part:
+    """What is drawn of a component on one side of the board."""
+
+    component: Component
+    terminals: tuple[Terminal, ...]
+    colour: int
+    divided: bool
+
+    @property
+    def kind(self) -> str:
+        return self.component.kind.name + (" (part)" if self.divided else "")
+
+
+def terminals(
+    target: Target, components: Mapping[str, Component], assignments: Mapping[ClaimKey, Assignment]
+) -> dict[str, list[Terminal]]:
+    """The wires on each side of the board, from the top down."""
+    layout = target.board.layout
+    assert layout is not None
+    places = {side: _places(layout, side) for side in ("left", "right")}
+    sides: dict[str, list[Terminal]] = {"left": [], "right": []}
+    with_pins = [name for name, component in components.items() if component.kind.pins]
+    for name in with_pins:
+        for claim in components[name].kind.claims:
+            found = assignments.get((name, claim.name))
+            if found is None or not found.pins_are_real:
+                continue
+            for signal, pin in claim.signals.items():
+                if signal not in found.pins:
+                    continue
+                chip_pin = target.soc.pins[found.pins[signal]]
+                for side, contacts in places.items():
+                    for place, contact in contacts.items():
+                        if contact.pin == chip_pin:
+                            colour = with_pins.index(name) % WIRES
+                            sides[side].append(Terminal(name, pin, contact, place, found.resource, colour))
+    return {side: sorted(found, key=lambda terminal: terminal.place) for side, found in sides.items()}
+
+
+def elsewhere(
+    target: Target, components: Mapping[str, Component], assignments: Mapping[ClaimKey, Assignment]
+) -> list[str]:
+    """What nobody solders: wires to pins that are on the board itself, or that the layout does not show."""
+    layout = target.board.layout
+    assert layout is not None
+    shown = {contact.pin for row in layout.rows for contact in row.contacts}
+    result = []
+    for name, component in components.items():
+        for claim in component.kind.claims:
+            found = assignments.get((name, claim.name))
+            for signal, pin in claim.signals.items() if found is not None and found.pins_are_real else ():
+                chip_pin = target.soc.pins[found.pins[signal]] if found is not None and signal in found.pins else ""
+                if chip_pin and chip_pin not in shown:
+                    onboard = target.board.onboard.get(chip_pin)
+                    what = onboard.title if onboard is not None else "see the board's pinout"
+                    result.append(f"{name} {pin}: {pin_title(target, chip_pin)}, {what}")
+    return result
+
+
+def pin_title(target: Target, pin: str) -> str:
+    """How the board calls a pin of its chip: ``GP10``."""
+    prefix = target.board.prefixes[0] if target.board.prefixes and pin.isdigit() else ""
+    return prefix + pin
+
+
+def _places(layout: Layout, side: str) -> dict[int, Contact]:
+    """The contacts of a side by their line of the grid; rows follow each other with a gap for their title."""
+    result: dict[int, Contact] = {}
+    line = 0
+    for row in layout.rows:
+        if row.side == side:
+            result |= {line + index: contact for index, contact in enumerate(row.contacts)}
+            line += len(row.contacts) + 2
+    return result
+
+
+def draw_wiring(
+    target: Target, components: Mapping[str, Component], assignments: Mapping[ClaimKey, Assignment], title: str
+) -> str:
+    """The picture as SVG.  ``target`` has a board with a layout."""
+    board = target.board
+    layout = board.layout
+    assert layout is not None
+    sides = terminals(target, components, assignments)
+    others = elsewhere(target, components, assignments)
+    picture = Picture(f"{title}: wiring of {board.summary}", _description(target, layout, sides, others))
+    lines = 1 + max((max(_places(layout, side), default=0) for side in sides), default=0)
+    high = lines * PITCH
+    picture.box(-_INSIDE, -PITCH * 2, 2 * _INSIDE, high + PITCH * 2.5, "board", round=8)
+    wide = width(layout.top, 12) + 20
+    picture.box(-wide / 2, -PITCH * 2 - 8, wide, 26, "box")
+    picture.text(0, -PITCH * 2 + 9, layout.top, "middle")
+    picture.text(0, -PITCH * 2 - 28, title, "middle", 15, "bold")
+    picture.text(0, -PITCH + 8, board.summary, "middle", 12, "bold")
+    for side, found in sides.items():
+        _contacts(picture, target, layout, side, {terminal.place for terminal in found})
+        other = {terminal.component for name, there in sides.items() if name != side for terminal in there}
+        _side(picture, layout, side, _parts(components, found, other))
+    used = {terminal.component for found in sides.values() for terminal in found}
+    _notes(picture, layout, others, any(drives(components[name]) for name in used))
+    return picture.render()
+
+
+def _contacts(picture: Picture, target: Target, layout: Layout, side: str, used: set[int]) -> None:
+    sign = -1 if side == "left" else 1
+    anchor = "start" if side == "left" else "end"
+    for place, contact in _places(layout, side).items():
+        y = place * PITCH
+        role = layout.role(contact)
+        name = pin_title(target, contact.pin) if contact.pin else contact.name
+        note = layout.supplies[contact.name].title if not contact.pin else ""
+        style = "contact" if role == "pin" else role
+        x = sign * _INSIDE
+        picture.box(x - 5, y - 5, 10, 10, style, f"contact {contact.number}: {name}{': ' if note else ''}{note}", 5)
+        picture.text(x - sign * 12, y + 4, str(contact.number), anchor, _SMALL, "faint")
+        weight = "bold" if place in used or role in ("ground", "supply") else ""
+        picture.text(x - sign * 34, y + 4, name, anchor, 11, weight)
+    line = 0
+    for row in layout.rows:
+        if row.side == side:
+            picture.text(sign * (_INSIDE - 12), line * PITCH - 14, row.title, anchor, 11, "bold")
+            line += len(row.contacts) + 2
+
+
+def _parts(components: Mapping[str, Component], found: Sequence[Terminal], other: set[str]) -> list[_Part]:
+    """The components of a side, ordered by the middle of their wires; those in ``other`` have more opposite."""
+    groups: dict[str, list[Terminal]] = {}
+    for terminal in found:
+        groups.setdefault(terminal.component, []).append(terminal)
+
+    def middle(name: str) -> float:
+        return sum(terminal.place for terminal in groups[name]) / len(groups[name])
+
+    return [
+        _Part(components[name], tuple(groups[name]), groups[name][0].colour, name in other)
+        for name in sorted(groups, key=middle)
+    ]
+
+
+def drives(component: Component) -> bool:
+    """Whether the board drives the wires of a component: they then need a resistor for the time before it does."""
+    return any(port.actuator for port in component.kind.ports)
+
+
+def _side(picture: Picture, layout: Layout, side: str, parts: Sequence[_Part]) -> None:
+    if not parts:
+        return
+    sign = -1 if side == "left" else 1
+    places = _places(layout, side)
+    grounds = _grounds([place for place, contact in places.items() if layout.role(contact) == "ground"], parts)
+    labels = max(width(f"{t.component} {t.signal}", _SMALL) for part in parts for t in part.terminals)
+    count = sum(len(part.terminals) + 1 for part in parts)
+    near = _INSIDE + 14 + labels + 10  # the first lane
+    edge = near + count * _LANE + 10  # where components begin
+    wide = 24 + max(
+        max(width(part.component.name), width(part.kind, _SMALL), width(_RESISTOR, _SMALL)) for part in parts
+    )
+    wires: list[_Wire] = []
+    for part, first, ground in zip(parts, _lines(parts, max(places)), grounds, strict=True):
+        rows = len(part.terminals) + 1
+        top = first * PITCH - 32
+        high = rows * PITCH + (54 if drives(part.component) else 38)
+        x = edge if sign > 0 else -edge - wide
+        picture.box(x, top, wide, high, "box", part.component.kind.summary)
+        tx = x + 12 if sign > 0 else x + wide - 12
+        anchor = "start" if sign > 0 else "end"
+        picture.text(tx, top + 15, part.component.name, anchor, 12, f"bold t{part.colour}")
+        picture.text(tx, top + 29, part.kind, anchor, _SMALL, "faint")
+        for index, terminal in enumerate(part.terminals):
+            y = (first + index + 0.5) * PITCH
+            picture.text(tx, y + 4, terminal.signal, anchor, 11)
+            what = f"{terminal.component} {terminal.signal}"
+            wires.append(_Wire(terminal.place, y, what, f"{what}: {terminal.resource}", f"w{part.colour}"))
+        y = (first + rows - 0.5) * PITCH
+        picture.text(tx, y + 4, "GND", anchor, 11)
+        if ground is not None:
+            wires.append(_Wire(ground, y, "", f"ground of {part.component.name}", "earth"))
+        if drives(part.component):
+            picture.text(tx, top + high - 9, _RESISTOR, anchor, _SMALL, "faint")
+    _wires(picture, sign, near, edge, wires)
+
+
+def _lines(parts: Sequence[_Part], last: int) -> list[int]:
+    """The line of the grid below which each component's first terminal is: near its contacts, one below the other."""
+    firsts: list[int] = []
+    free = -len(parts) * 8
+    for part in parts:
+        rows = len(part.terminals) + 1
+        middle = sum(terminal.place for terminal in part.terminals) / len(part.terminals)
+        first = max(free + 2, round(middle - rows / 2))
+        firsts.append(first)
+        free = first + rows + 1
+    below = max(0, free - 1 - last)  # lines that stick out below the board: half of them shall do so above it
+    return [first - below // 2 for first in firsts]
+
+
+def _grounds(grounds: Sequence[int], parts: Sequence[_Part]) -> list[int | None]:
+    """A ground for each component: one of its own from the top down if there are enough, else the nearest."""
+    result: list[int | None] = []
+    own = len(grounds) >= len(parts)
+    start = 0
+    for index, part in enumerate(parts):
+        middle = sum(terminal.place for terminal in part.terminals) / len(part.terminals)
+        end = len(grounds) - (len(parts) - index - 1) if own else len(grounds)
+        choice = range(start, end) if own else range(len(grounds))
+        chosen = min(choice, key=lambda at: abs(grounds[at] - middle), default=None)
+        result.append(None if chosen is None else grounds[chosen])
+        start = 0 if chosen is None else chosen + 1
+    return result
+
+
+@dataclass(frozen=True)
+class _Wire:
+    """From the contact at line ``place`` of the grid to the height ``y`` of a terminal."""
+
+    place: int
+    y: float
+    label: str
+    title: str
+    style: str
+
+
+def _wires(picture: Picture, sign: int, near: float, edge: float, wires: Sequence[_Wire]) -> None:
+    """Lanes in the order in which the fewest wires cross: of those that go down, the topmost is the farthest."""
+    down = sorted((wire for wire in wires if wire.y > wire.place * PITCH), key=lambda wire: (-wire.place, -wire.y))
+    up = sorted((wire for wire in wires if wire.y <= wire.place * PITCH), key=lambda wire: (wire.place, wire.y))
+    for lane, wire in enumerate([*down, *up]):
+        x, y = sign * (near + lane * _LANE), wire.place * PITCH
+        picture.line([(sign * (_INSIDE + 5), y), (x, y), (x, wire.y), (sign * edge, wire.y)], wire.style, wire.title)
+        anchor = "start" if sign > 0 else "end"
+        picture.text(sign * (_INSIDE + 12), y - 5, wire.label, anchor, _SMALL, wire.style.replace("w", "t"))
+
+
+def _notes(picture: Picture, layout: Layout, others: Sequence[str], driven: bool) -> None:
+    """Below everything: what the board's supplies are, and what holds for all wires."""
+    rows: dict[str, list[int]] = {}
+    for contact in (contact for row in layout.rows for contact in row.contacts):
+        if layout.role(contact) in ("supply", "ground"):
+            rows.setdefault(contact.name, []).append(contact.number)
+    texts = [(f"{name} ({', '.join(map(str, sorted(rows[name])))}): {layout.supplies[name].title}") for name in rows]
+    general = [*others, *layout.notes, "Seen from above. Dashed: grounds, which are all connected."]
+    if driven:
+        general.append(f"{_RESISTOR}: from each wire of the component, which floats until the firmware runs.")
+    x = -max(width(text, 11) for text in [*texts, *general]) / 2
+    y = picture.bottom + 34
+    for name, text in zip(rows, texts, strict=True):
+        picture.box(x - 16, y - 9, 10, 10, layout.supplies[name].role, round=5)
+        picture.text(x, y, text, size=11)
+        y += 18
+    for text in general:
+        picture.text(x, y, text, size=11, style="faint")
+        y += 18
+
+
+def _description(target: Target, layout: Layout, sides: Mapping[str, Sequence[Terminal]], others: Sequence[str]) -> str:
+    wires = [
+        f"{t.component} {t.signal} to contact {t.contact.number} ({pin_title(target, t.contact.pin)})"
+        for found in sides.values()
+        for t in found
+    ]
+    told = "; ".join([*wires, *others]) or "no wires"
+    return f"{target.board.summary} seen from above, {layout.top} at the top: {told}."

@@ -1,0 +1,76 @@
+"""Where the pins of a board are: its rows of contacts, for pictures of its wiring."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from epg.load.items import map_of, text_of, texts_of
+from epg.source import Node
+
+
+@dataclass(frozen=True)
+class Contact:
+    """One contact of a row.  ``pin`` is the chip's name, empty for ground, supplies and the like."""
+
+    number: int
+    name: str
+    pin: str
+
+
+@dataclass(frozen=True)
+class Row:
+    """Contacts along the ``side`` ("left" or "right") of a board, from the top down."""
+
+    side: str
+    title: str
+    contacts: tuple[Contact, ...]
+
+
+@dataclass(frozen=True)
+class Supply:
+    """What contacts that are no pins have in common: ``role`` is "ground", "supply" or "other"."""
+
+    role: str
+    title: str
+
+
+@dataclass(frozen=True)
+class Layout:
+    """A board as it lies on the table, seen from above: ``top`` is what is at its upper edge."""
+
+    top: str
+    rows: tuple[Row, ...]
+    supplies: Mapping[str, Supply]
+    notes: tuple[str, ...]  # what holds for all pins
+
+    def role(self, contact: Contact) -> str:
+        """ "pin", or what the contact is instead."""
+        return "pin" if contact.pin else self.supplies[contact.name].role
+
+
+def make_layout(node: Node, pins: tuple[str, ...]) -> Layout | None:
+    """The layout in a checked ``board.yaml``; None when it tells none."""
+    layout = node.get("layout")
+    if layout is None:
+        return None
+    rows = tuple(_row(child, pins) for child in layout["rows"].elements())
+    supplies = {
+        name: Supply(text_of(child, "role"), text_of(child, "title"))
+        for name, child in map_of(layout, "supplies").items()
+    }
+    return Layout(text_of(layout, "top"), rows, MappingProxyType(supplies), texts_of(layout, "notes"))
+
+
+def _row(node: Node, pins: tuple[str, ...]) -> Row:
+    first, step = _whole(node["first"]), _whole(node["step"]) if "step" in node else 1
+    names = [str(child.value) for child in node["contacts"].elements()]
+    contacts = tuple(
+        Contact(first + index * step, name, name if name in pins else "") for index, name in enumerate(names)
+    )
+    return Row(text_of(node, "side"), text_of(node, "title"), contacts)
+
+
+def _whole(node: Node) -> int:
+    return node.value if isinstance(node.value, int) else 0
