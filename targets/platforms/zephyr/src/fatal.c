@@ -46,13 +46,14 @@ void epg_zephyr_safe_state(void)
 
 epg_fault_t epg_zephyr_fault_before_reset(void)
 {
-    static epg_fault_t fault = EPG_FAULT_NONE;
-    if (fault_word == FAULT_MAGIC) {
-        fault = EPG_FAULT_PROCESSOR;
-    } else if (fault == EPG_FAULT_NONE && epg_zephyr_watchdog_has_reset()) {
-        fault = EPG_FAULT_WATCHDOG;
+    static bool asked;
+    static epg_fault_t fault;
+    if (!asked) {
+        const bool watchdog = epg_zephyr_watchdog_has_reset();
+        fault = fault_word == FAULT_MAGIC ? EPG_FAULT_PROCESSOR : watchdog ? EPG_FAULT_WATCHDOG : EPG_FAULT_NONE;
+        remember(0);
+        asked = true;
     }
-    remember(0);
     return fault;
 }
 

@@ -83,7 +83,9 @@ epg_zephyr_error_t epg_zephyr_watchdog_start(uint64_t period_ns);
 void epg_zephyr_watchdog_stop(void);
 /** After a cycle in which `silence` is epg_control_silence().  Control thread. */
 void epg_zephyr_watchdog_feed(uint32_t silence);
-/** Whether the watchdog has caused the last reset. */
+/** Gives more time, while flash is written.  Communication thread. */
+void epg_zephyr_watchdog_relax(bool relaxed);
+/** Whether the watchdog has caused the last reset; what tells that may be gone after the first call. */
 bool epg_zephyr_watchdog_has_reset(void);
 #else
 static inline epg_zephyr_error_t epg_zephyr_watchdog_start(uint64_t period_ns)
@@ -99,6 +101,11 @@ static inline void epg_zephyr_watchdog_stop(void)
 static inline void epg_zephyr_watchdog_feed(uint32_t silence)
 {
     (void)silence;
+}
+
+static inline void epg_zephyr_watchdog_relax(bool relaxed)
+{
+    (void)relaxed;
 }
 
 static inline bool epg_zephyr_watchdog_has_reset(void)

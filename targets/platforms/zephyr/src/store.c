@@ -17,6 +17,11 @@
 #include "parts.h"
 
 #define PARTITION storage_partition
+
+#if defined(CONFIG_SETTINGS_NVS) || defined(CONFIG_SETTINGS_ZMS) || defined(CONFIG_SETTINGS_FCB)
+#error "storage_partition holds the settings of the application: set CONFIG_EPG_STORE=n"
+#endif
+
 #define MAGIC 0x53475045U /* "EPGS" */
 #define PAGES 2U
 /** The largest unit in which flash is written. */
@@ -209,7 +214,9 @@ bool epg_port_store_write(const void *data, size_t size)
     if (!open_partition() || size > flash.page_size - head_size() - ALIGN_MAX || !epg_zephyr_control_hold()) {
         return false;
     }
+    epg_zephyr_watchdog_relax(true);
     const bool written = write(data, size);
+    epg_zephyr_watchdog_relax(false);
     epg_zephyr_control_release();
     return written;
 }
