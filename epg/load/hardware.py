@@ -132,8 +132,8 @@ class Board:
 
     ``sdks`` says what SDKs call the board: "pico_sdk" -> "pico2".  ``lacks`` are transports of
     platforms that it has not, and why.  ``devicetree`` are the nodes that the board's
-    devicetree in Zephyr enables, with the pins they have; ``console`` is the one of its console, or empty.  ``layout`` says
-    where its pins are.
+    devicetree in Zephyr enables, with the pins they have; ``console`` is the one of its console, or empty.
+    ``layout`` says where its pins are.
     """
 
     name: str
