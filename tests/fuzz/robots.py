@@ -81,11 +81,12 @@ def components(draw: st.DrawFn, name: str, topic: str) -> Component:
                 "digital_input",
                 "digital_output",
                 "constant",
-                "ros_subscriber",
-                "ros_publisher",
+                *ROS_KINDS,
             ]
         )
     )
+    if kind in ROS_KINDS:
+        return draw(ros_components(name, kind, topic))
     text: dict[str, Any] = {"kind": kind}
     flags = st.booleans()
 
@@ -94,7 +95,7 @@ def components(draw: st.DrawFn, name: str, topic: str) -> Component:
             text[key] = draw(strategy)
 
     ends: tuple[tuple[str, str, str], ...]
-    maybe("invert", flags) if kind not in ("constant", "ros_subscriber", "ros_publisher") else None
+    maybe("invert", flags) if kind != "constant" else None
     if kind == "quadrature_encoder":
         if draw(flags):
             text["counts_per_revolution"] = draw(positive)
@@ -117,21 +118,100 @@ def components(draw: st.DrawFn, name: str, topic: str) -> Component:
     elif kind == "digital_output":
         maybe("safe", flags)
         ends = ((name, "sink", "boolean"),)
-    elif kind == "constant":
+    else:
         text["value"] = draw(numbers)
         ends = ((name, "source", ""),)
-    else:
-        text["topic"] = topic
-        maybe("qos", st.sampled_from(("reliable", "best_effort")))
-        if kind == "ros_subscriber":
-            maybe("initial", numbers)
-            maybe("rate_limit", positive)
-            maybe("timeout", st.sampled_from(("0 s", "0.5 s", "20 ms", "1 min")))
-            maybe("on_timeout", st.sampled_from(("hold", "zero", "disable")))
-        ends = ((name, "source" if kind == "ros_subscriber" else "sink", ""),)
     if kind not in ("digital_input", "digital_output"):
         _conversion(draw, text)
     return Component(name, text, ends)
+
+
+ROS_KINDS = (
+    "ros_subscriber",
+    "ros_publisher",
+    "ros_array_subscriber",
+    "ros_array_publisher",
+    "ros_joint_state_subscriber",
+    "ros_joint_state_publisher",
+    "ros_twist_subscriber",
+    "ros_twist_publisher",
+    "ros_echo",
+)
+MESSAGES = ("Float64", "Float32", "Int32", "Bool")
+JOINT = {"position": "rad", "velocity": "rad/s", "effort": "N.m"}
+
+
+@st.composite
+def ros_components(draw: st.DrawFn, name: str, kind: str, topic: str) -> Component:
+    """A topic; ``topic`` is its name, or the begin of its names."""
+    text: dict[str, Any] = {"kind": kind}
+    flags = st.booleans()
+
+    def maybe(key: str, strategy: st.SearchStrategy[Any]) -> None:
+        if draw(flags):
+            text[key] = draw(strategy)
+
+    qos = st.sampled_from(("reliable", "best_effort"))
+    maybe("qos", qos)
+    maybe("depth", st.integers(1, 1000))
+    if kind in ("ros_subscriber", "ros_publisher", "ros_echo"):
+        maybe("type", st.sampled_from(MESSAGES).flatmap(lambda m: st.sampled_from((m.lower(), f"std_msgs/msg/{m}"))))
+    if kind == "ros_echo":
+        text |= {"from": topic, "to": f"{topic}/echoed_back"}
+        maybe("qos_from", qos)
+        maybe("qos_to", qos)
+        return Component(name, text, ())
+    text["topic"] = topic
+    direction = "source" if kind.endswith("subscriber") else "sink"
+    if direction == "source":
+        maybe("initial", numbers)
+        maybe("rate_limit", positive)
+        maybe("timeout", st.sampled_from(("0 s", "0.5 s", "20 ms", "1 min")))
+        maybe("on_timeout", st.sampled_from(("hold", "zero", "disable")))
+    elif draw(flags):
+        maybe("every", st.integers(1, 1_000_000))
+    else:
+        maybe("on_change", flags)
+    _conversion(draw, text)
+    parts: list[tuple[str, str]] = [("", "")]
+    if "array" in kind:
+        text["values"] = draw(st.lists(names, min_size=1, max_size=5, unique_by=str.casefold))
+        parts = [(value, "") for value in text["values"]]
+    elif "joint" in kind:
+        text["joints"] = draw(st.lists(names, min_size=1, max_size=4, unique_by=str.casefold))
+        parts = [(f"{joint}.{part}", unit) for joint in text["joints"] for part, unit in JOINT.items()]
+    elif "twist" in kind:
+        maybe("stamped", flags)
+        parts = [(f"{sort}_{axis}", unit) for sort, unit in (("linear", "m/s"), ("angular", "rad/s")) for axis in "xyz"]
+    if kind == "ros_joint_state_publisher" or (kind == "ros_twist_publisher" and "stamped" in text):
+        maybe("frame", st.sampled_from(("base_link", "", '"', "\\", "%s */ ~")))
+    ends = [(f"{name}.{part}" if part else name, direction, unit) for part, unit in parts]
+    return Component(name, text, tuple(ends))
+
+
+@st.composite
+def communications(draw: st.DrawFn) -> dict[str, Any]:
+    """How a host communicates."""
+    middleware = draw(st.sampled_from(("none", "files", "console", "dds", "xrce")))
+    text: dict[str, Any] = {"middleware": middleware}
+
+    def maybe(key: str, strategy: st.SearchStrategy[Any]) -> None:
+        if draw(st.booleans()):
+            text[key] = draw(strategy)
+
+    maybe("period", st.sampled_from(("33 ms", "1 ms", "1 s")))
+    if middleware in ("dds", "xrce"):
+        maybe("console", st.booleans())
+        maybe("diagnostics", st.sampled_from(("0 s", "1 s", "100 ms")))
+        maybe("domain", st.integers(0, 232))
+    if middleware == "xrce":
+        text["transport"] = draw(st.sampled_from(("udp", "serial")))
+        maybe("agent", st.sampled_from(("127.0.0.1:8888", "robot.local:1", "[::1]:65535")))
+        maybe("device", st.sampled_from(("/dev/ttyUSB0", "", '/dev/"\\')))
+        maybe("baud_rate", st.sampled_from((9600, 921600)))
+        maybe("mtu", st.integers(384, 4096))
+        maybe("history", st.sampled_from((2, 4, 8, 16)))
+    return text
 
 
 def _conversion(draw: st.DrawFn, text: dict[str, Any]) -> None:
@@ -175,13 +255,15 @@ def robots(draw: st.DrawFn, most: int = 8) -> Robot:
     }
     if draw(st.booleans()):
         tcf["namespace"] = draw(topics)
+    if draw(st.booleans()):
+        tcf["communication"] = draw(communications())
     bindings: dict[str, Any] = {"version": 1, "model": "Random"}
     bindings["inputs"] = {name: _end(draw, end, "from") for name, end in inputs.items()}
     bindings["outputs"] = {
         name: [_end(draw, end, "to") for end in ends] if ends else "unconnected" for name, ends in outputs.items()
     }
     described = {
-        name: {"description": draw(descriptions), **({"unit": "rad"} if end[2] == "rad" else {})}
+        name: {"description": draw(descriptions), **({"unit": end[2]} if end[2] not in ("", "boolean") else {})}
         for name, end in inputs.items()
     }
     model = {
