@@ -48,3 +48,35 @@ def test_jiwy(board: str, place: Path) -> None:
 
 def test_west_epg(place: Path) -> None:
     assert west(place, "epg", "--cmake-dir").strip() == f"{place}/epg/cmake"
+
+
+def test_two_boards_in_one_build(place: Path) -> None:
+    """sysbuild: each image has its own target, on its own board."""
+    example = "epg/examples/zephyr_two_boards"
+    output = west_build(place, "--sysbuild", "-b", "rpi_pico", "-d", "build/two", example)
+    assert "warning: " not in output
+    for image, board in (("zephyr_two_boards", "rpi_pico"), ("tilt", "nucleo_h743zi")):
+        folder = place / "build/two" / image / "zephyr"
+        assert f'CONFIG_BOARD="{board}"' in (folder / ".config").read_text(encoding="utf-8")
+        assert b"epg_control" in (folder / "zephyr.elf").read_bytes()
+
+
+def test_an_existing_application(place: Path) -> None:
+    """Its lamp and its decoder are there beside the controller, and prj.conf goes before EPG's defaults."""
+    output = west_build(place, "-b", "rpi_pico", "-d", "build/existing", "epg/examples/existing_zephyr_application")
+    assert "warning: " not in output
+    build = place / "build/existing/zephyr"
+    assert "CONFIG_MAIN_STACK_SIZE=2048" in (build / ".config").read_text(encoding="utf-8").splitlines()
+    tree = (build / "zephyr.dts").read_text(encoding="utf-8")
+    assert "lamp = &lamp;" in tree
+    assert tree.count('compatible = "epg,pico-pio-qdec"') == 1, "the controller takes the application's decoder"
+    assert "decoders = < &turntable >;" in tree
+
+
+def test_a_new_project(place: Path) -> None:
+    """`epg new`, then `west build` as its README says it."""
+    model = str(place / "epg/examples/jiwy/model")
+    west(place, "epg", "new", "--target", "rpi_pico_zephyr_jiwy", "--model", model, "my robot")
+    assert "\nwest build -b rpi_pico\n" in (place / "my robot/README.md").read_text(encoding="utf-8")
+    assert "warning: " not in west_build(place / "my robot", "-b", "rpi_pico")
+    assert (place / "my robot/build/zephyr/zephyr.uf2").is_file()
