@@ -210,6 +210,20 @@ def test_console_on_standard_input_and_output(image: Path) -> None:
         assert console.close() == (0, "")
 
 
+def test_what_is_saved_is_there_at_the_next_start(image: Path, tmp_path: Path) -> None:
+    store = f"--store={tmp_path / 'store'}"
+    with Host(image, "--quiet", store) as console:
+        assert console.ask("set Pan\\PID\\kp=0.1") == ["ok set"]
+        assert console.ask("disable")[-1] == "ok disable"
+        assert console.ask("save") == ["ok save values=1"]
+        assert console.close() == (0, "")
+    with Host(image, "--quiet", store) as console:
+        assert console.ask("get Pan\\PID\\kp") == ["parameter Pan\\PID\\kp=0.1 generated=2.6", "ok get"]
+    with Host(image, "--quiet") as console:
+        console.ask("disable")
+        assert console.ask("save") == ["error save nothing can be stored here"]
+
+
 def test_console_on_a_terminal_and_an_interrupt(image: Path, tmp_path: Path) -> None:
     name, trace = tmp_path / "console", tmp_path / "trace.csv"
     command = [str(image), "--realtime", "--quiet", "--duration=60", f"--console-pty={name}", f"--trace={trace}"]

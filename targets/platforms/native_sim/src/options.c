@@ -11,7 +11,9 @@
 #include <zephyr/kernel.h>
 
 #include "parts.h"
+#include "serial.h"
 #include "setpoints.h"
+#include "store.h"
 
 BUILD_ASSERT(IS_ENABLED(CONFIG_EXTERNAL_LIBC),
              "EPG's native_sim reads and writes files of this computer: CONFIG_EXTERNAL_LIBC must be set");
@@ -23,6 +25,10 @@ static char *duration;
 static char *agent;
 static char *device;
 static char *console_pty;
+#ifndef CONFIG_EPG_STORE
+static char *store;
+#endif
+static char *serial;
 static char *setpoints;
 static char *topics;
 static char *trace;
@@ -46,6 +52,10 @@ static void add_options(void)
         VALUE("console-pty", "PATH", console_pty, "EPG: the same on a terminal with this name"),
         VALUE("agent", "HOST:PORT", agent, "EPG: where the ROS 2 agent is; default: as the .tcf says"),
         VALUE("serial-device", "PATH", device, "EPG: the agent is on this terminal"),
+#ifndef CONFIG_EPG_STORE
+        VALUE("store", "FILE", store, "EPG: where the console's 'save' keeps parameters"),
+#endif
+        VALUE("serial", "WORD", serial, "EPG: what '$serial' stands for in names of node and namespace; default: host"),
         VALUE("setpoints", "FILE", setpoints, "EPG: CSV with rows time,topic,value: what arrives, and when"),
         VALUE("topics", "FILE", topics, "EPG: writes what is published, in the same form"),
         VALUE("trace", "FILE", trace, "EPG: writes all signals, one row per control cycle"),
@@ -89,6 +99,12 @@ static void read_options(void)
     if (options->setpoints != NULL &&
         !epg_host_read_setpoints(options->setpoints, epg_native_sim_target->target, false, &epg_native_sim_events)) {
         posix_exit(WRONG_INPUT);
+    }
+#ifndef CONFIG_EPG_STORE
+    epg_host_store_open(store);
+#endif
+    if (serial != NULL) {
+        epg_host_serial_set(serial);
     }
     const int status = epg_native_sim_open_transports();
     if (status != DONE) {
