@@ -21,7 +21,7 @@ pytestmark = pytest.mark.long
 def place(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     """The workspace of ``examples/zephyr_jiwy``; half a gigabyte, so it does not stay."""
     skip_if_missing(partial(workspace, *BOARDS), arm_gcc, c_library)
-    folder = tmp_path_factory.mktemp("fresh") / "my workspace"
+    folder = tmp_path_factory.mktemp("fresh") / "workspace"
     yield fresh_workspace("examples/zephyr_jiwy", folder)
     shutil.rmtree(folder)
 
@@ -76,7 +76,7 @@ def test_an_existing_application(place: Path) -> None:
 def test_a_new_project(place: Path) -> None:
     """`epg new`, then `west build` as its README says it."""
     model = str(place / "epg/examples/jiwy/model")
-    west(place, "epg", "new", "--target", "rpi_pico_zephyr_jiwy", "--model", model, "my robot")
-    assert "\nwest build -b rpi_pico\n" in (place / "my robot/README.md").read_text(encoding="utf-8")
-    assert "warning: " not in west_build(place / "my robot", "-b", "rpi_pico")
-    assert (place / "my robot/build/zephyr/zephyr.uf2").is_file()
+    west(place, "epg", "new", "--target", "rpi_pico_zephyr_jiwy", "--model", model, "robot")
+    assert "\nwest build -b rpi_pico\n" in (place / "robot/README.md").read_text(encoding="utf-8")
+    assert "warning: " not in west_build(place / "robot", "-b", "rpi_pico")
+    assert (place / "robot/build/zephyr/zephyr.uf2").is_file()
