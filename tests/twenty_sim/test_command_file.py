@@ -1,0 +1,83 @@
+"""The command file that 20-sim starts after an export, run by Wine's command interpreter."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.twenty_sim.generate import FOLDER
+
+pytestmark = pytest.mark.long
+NAME = "open_in_epg.cmd"
+needs_wine = pytest.mark.skipif(
+    shutil.which("wine") is None, reason="Wine is not installed: apt-get install --no-install-recommends wine wine64"
+)
+
+
+def windows(path: Path) -> str:
+    return "Z:" + str(path).replace("/", "\\")
+
+
+class Computer:
+    """Windows, with programs that note what they are called with."""
+
+    def __init__(self, folder: Path) -> None:
+        self.notes = folder / "notes.txt"
+        self.programs = folder / "my programs"
+        self.programs.mkdir(parents=True)
+        self.export = folder / "My (x86) exports & more" / "Servo (1)"
+        self.export.mkdir(parents=True)
+        shutil.copy(FOLDER / NAME, self.export)
+        self.environment = {**os.environ, "WINEPREFIX": str(folder / "wine"), "WINEDEBUG": "-all"}
+        self.environment.pop("XXSIM_SCRIPT_MODE", None)
+
+    def install(self, program: str, first_words: str) -> None:
+        """A program that does something only when its first arguments are ``first_words``."""
+        checks = "".join(f'if not "%{i}"=="{word}" exit /b 1\r\n' for i, word in enumerate(first_words.split(), 1))
+        text = f"@echo off\r\n{checks}echo {program} %*>> {windows(self.notes)}\r\nexit /b 0\r\n"
+        (self.programs / f"{program}.bat").write_bytes(text.encode())
+
+    def run(self, *arguments: str, script: bool = False) -> subprocess.CompletedProcess[str]:
+        environment = {**self.environment, "WINEPATH": windows(self.programs)}
+        if script:
+            environment["XXSIM_SCRIPT_MODE"] = "1"
+        command = ["wine", "cmd", "/c", NAME, *arguments]
+        return subprocess.run(
+            command, cwd=self.export, env=environment, capture_output=True, text=True, timeout=300, check=False
+        )
+
+    def noted(self) -> list[str]:
+        """What programs were started for, without the questions whether they are there."""
+        text = self.notes.read_text() if self.notes.exists() else ""
+        return [line.strip() for line in text.splitlines() if "--version" not in line]
+
+
+@pytest.fixture
+def computer(tmp_path: Path) -> Iterator[Computer]:
+    made = Computer(tmp_path)
+    yield made
+    subprocess.run(["wineserver", "-k"], env=made.environment, check=False)
+
+
+@needs_wine
+def test_epg_is_started_for_the_folder_of_the_export(computer: Computer) -> None:
+    done = computer.run(script=True)
+    assert done.returncode == 4 and "EPG is not installed" in done.stdout
+    there = f'exported "{windows(computer.export)}\\."'
+    computer.install("py", "-3 -m epg")
+    assert computer.run(script=True).returncode == 0
+    assert computer.noted() == [f"py -3 -m epg {there}"]
+    computer.install("epg", "")
+    assert computer.run("window").returncode == 0
+    assert computer.noted()[1:] == [f"epg {there}"]
+    assert computer.run().returncode == 0  # opens a window, and does not wait for it
+    end = time.monotonic() + 60
+    while len(computer.noted()) < 3 and time.monotonic() < end:
+        time.sleep(0.2)
+    assert computer.noted()[2:] == [f"epg {there}"]
