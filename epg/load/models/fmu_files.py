@@ -32,7 +32,7 @@ MAX_DEPTH = 8  # folders below sources/
 
 _END = struct.Struct("<4s4H2LH")  # end of central directory record: APPNOTE.TXT 6.3.10, section 4.3.16
 _END64_LOCATOR = b"PK\x06\x07"  # section 4.3.15
-_BAD_NAME = re.compile(r'[\\:*?"<>|]')  # what no Windows file is called either
+_BAD_NAME = re.compile(r'[\\:*?"<>|;$\[\]]')  # what no Windows file is called either, or CMake cannot have in lists
 _RESERVED = re.compile(r"(?i)(con|prn|aux|nul|com\d|lpt\d)(\..*)?$")
 
 
@@ -189,6 +189,10 @@ def _entries(archive: zipfile.ZipFile) -> tuple[dict[str, zipfile.ZipInfo], set[
         if entry.flag_bits & 0x1:
             raise _Refused(f"'{shown}' in it is encrypted", "pack it without a password")
         wanted[name] = entry
+    folders = {"/".join(name.split("/")[:depth]) for name in wanted for depth in range(1, name.count("/") + 1)}
+    for name in sorted(wanted):
+        if name in folders:
+            raise _Refused(f"'{name}' in it is a file and a folder")
     return wanted, platforms
 
 
@@ -197,5 +201,6 @@ def _may_be_unpacked(name: str, parts: list[str]) -> bool:
     if not name.isprintable() or _BAD_NAME.search(name):
         return False
     return all(
-        part not in ("", ".", "..") and part == part.rstrip(". ") and not _RESERVED.match(part) for part in parts
+        part not in ("", ".", "..") and part == part.rstrip(". ") and not _RESERVED.match(part) and len(part) <= 100
+        for part in parts
     )

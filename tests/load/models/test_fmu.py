@@ -11,6 +11,7 @@ import zipfile
 from collections.abc import Callable
 from fractions import Fraction
 from pathlib import Path
+from random import Random
 
 import pytest
 import yaml
@@ -286,6 +287,9 @@ HOSTILE: dict[str, tuple[Callable[[], bytes], str]] = {
     "backslash": (lambda: with_source("sources/..\\..\\evil.c"), "fmu-unreadable"),
     "drive": (lambda: with_source("sources/C:/evil.c"), "fmu-unreadable"),
     "empty-part": (lambda: with_source("sources//etc/evil.c"), "fmu-unreadable"),
+    "list": (lambda: with_source("sources/a;b.c"), "fmu-unreadable"),
+    "long": (lambda: with_source(f"sources/{'a' * 300}.c"), "fmu-unreadable"),
+    "file-and-folder": (lambda: with_source("sources/law.h/x.h"), "fmu-unreadable"),
     "device": (lambda: with_source("sources/con.c"), "fmu-unreadable"),
     "control": (lambda: with_source("sources/a\x1b[2Jb.c"), "fmu-unreadable"),
     "nul": (lambda: edited(with_source("sources/evilXc.c"), b"evilXc", b"evil\0c"), "fmu-unreadable"),
@@ -327,6 +331,36 @@ def test_hostile_archives(kind: str, tmp_path: Path) -> None:
     assert tracemalloc.get_traced_memory()[1] < 200 << 20
     tracemalloc.stop()
     assert sorted(tmp_path.rglob("*")) == before
+
+
+@pytest.mark.parametrize("folder", [FMU2, FMU3], ids=["fmi2", "fmi3"])
+def test_damage_of_any_kind(folder: Path, tmp_path: Path) -> None:
+    """Bytes that are others, in the archive or in its files: a model or an error, never another exception."""
+    random = Random(2)
+    whole = pack(folder, tmp_path / "whole.fmu").read_bytes()
+    names = [path.relative_to(folder).as_posix() for path in sorted(folder.rglob("*")) if path.is_file()]
+    refused = 0
+    for round in range(200):
+        data = bytearray(whole)
+        if round % 2:
+            name = random.choice(["modelDescription.xml", *(n for n in names if n.endswith((".xml", ".c", ".h")))])
+            text = bytearray((folder / name).read_bytes())
+            for _ in range(random.randint(1, 4)):
+                at = random.randrange(len(text))
+                text[at : at + random.randint(0, 9)] = random.choice(
+                    [b"", b"<", b'"', b"\0", b"9999999999", b"}", b"\xff"]
+                )
+            entries = [(n, bytes(text) if n == name else (folder / n).read_bytes()) for n in names]
+            data = bytearray(archive(*entries))
+        else:
+            for _ in range(random.randint(1, 8)):
+                data[random.randrange(len(data))] = random.randrange(256)
+        path = tmp_path / "damaged.fmu"
+        path.write_bytes(data)
+        model, diagnostics = load(path)
+        assert (model is None) == diagnostics.has_errors
+        refused += model is None
+    assert 50 < refused < 200
 
 
 def test_what_is_no_part_of_the_model_does_not_matter(tmp_path: Path) -> None:
