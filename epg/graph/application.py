@@ -83,7 +83,7 @@ def outside(component: ResolvedComponent, types: dict[str, str], app: Applicatio
     pins = pin_texts(component, app)
     resources = dict.fromkeys(found.resource for found in component.claims.values() if found.pins_are_real or not pins)
     peripherals = [name for name in resources if not name.startswith("pin ")]
-    return ", ".join(pins), ", ".join(peripherals)
+    return (", ".join(pins), ", ".join(peripherals)) if pins else (", ".join(peripherals), "")
 
 
 def pin_texts(component: ResolvedComponent, app: Application) -> list[str]:
