@@ -19,5 +19,6 @@ def test_native_sim(tmp_path: Path) -> None:
         ("drivers.sensor.epg_qdec.emulated", "native_sim"): "passed",
         ("drivers.sensor.epg_qdec.emulated.pm", "native_sim"): "passed",
         ("epg.jiwy.emulated", "native_sim"): "passed",
+        ("epg.store", "native_sim"): "passed",
         ("sample.epg.qdec.emulated", "native_sim"): "passed",
     }

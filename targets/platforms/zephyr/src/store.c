@@ -193,7 +193,11 @@ static bool write(const void *data, size_t size)
     }
     head_t head = {.magic = MAGIC, .number = place.head.number + 1U, .size = (uint32_t)size};
     head.check = check(check_of_head(&head), data, size);
-    return program(at + head_size(), data, size) && program(at, &head, sizeof head) && valid(&head, at);
+    if (!program(at + head_size(), data, size) || !program(at, &head, sizeof head)) {
+        return false;
+    }
+    const place_t newest = find();
+    return newest.found && newest.head.number == head.number;
 }
 
 size_t epg_port_store_read(void *data, size_t size)
