@@ -162,6 +162,8 @@ def _signals(app: Application, first_slot: int) -> Iterable[SignalView]:
 def _parameters(app: Application) -> Iterable[ParameterView]:
     names: set[str] = set()
     for parameter in app.model.parameters:
+        if not parameter.tunable:  # they come last: positions here are those of the model's enumeration
+            continue
         value = app.parameters.get(parameter.name, parameter.value)
         yield ParameterView(_word(parameter.name, names), _word(parameter.unit), value)
 

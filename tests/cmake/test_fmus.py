@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 from pathlib import Path
 
@@ -45,6 +46,13 @@ def test_in_a_target(built: Project) -> None:
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     assert "200" in done.stdout
+
+
+def test_the_console_offers_what_can_be_changed(built: Project) -> None:
+    """A fixed parameter has its value from the start on."""
+    table = (built.build_folder / "epg/servo/servo_app.c").read_text().partition("parameter_table[] = {")[2]
+    names = re.findall(r'\.name = "([^"]+)"', table.partition("};")[0])
+    assert names == ["PI.kp", "PI.ki"]
 
 
 def test_a_changed_archive_is_unpacked_and_compiled_again(built: Project, tmp_path: Path) -> None:

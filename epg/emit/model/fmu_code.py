@@ -62,7 +62,7 @@ def fmu_code(
         "groups_out": [_group(group, types) for group in details.outputs],
         "parameter_types": [types[kind] for kind in used],
         "places": [
-            (used.index(place.type), place.reference, place.tunable, parameter)
+            (used.index(place.type), place.reference, parameter.tunable, parameter)
             for place, parameter in zip(details.parameters, model.parameters, strict=True)
         ],
         "given": [(index, values[p.name], p) for index, p in enumerate(model.parameters) if p.name in values],

@@ -148,11 +148,10 @@ class FmuPorts:
 
 @dataclass(frozen=True)
 class FmuParameter:
-    """``tunable`` parameters change while the model runs, others before it starts."""
+    """How a parameter is set: its type in FMI, and its value reference."""
 
     type: str
     reference: int
-    tunable: bool
 
 
 @dataclass(frozen=True)

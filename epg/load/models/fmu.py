@@ -182,6 +182,7 @@ def _parameters(description: Description) -> tuple[tuple[Parameter, ...], tuple[
             value = number(variable.start)
             if value is not None:
                 chosen.append((variable, value))
+    chosen.sort(key=lambda item: item[0].variability != "tunable")
     names: dict[str, int] = {}
     titles = []
     for variable, _ in chosen:
@@ -192,8 +193,9 @@ def _parameters(description: Description) -> tuple[tuple[Parameter, ...], tuple[
         zip(chosen, titles, unique_identifiers(titles), strict=True)
     ):
         unit = "" if variable.unit == "1" else variable.unit
-        parameters.append(Parameter(title, identifier, value, unit, index, variable.span))
-    places = [FmuParameter(v.type, v.reference, v.variability == "tunable") for v, _ in chosen]
+        tunable = variable.variability == "tunable"
+        parameters.append(Parameter(title, identifier, value, unit, index, variable.span, tunable))
+    places = [FmuParameter(variable.type, variable.reference) for variable, _ in chosen]
     return tuple(parameters), tuple(places)
 
 

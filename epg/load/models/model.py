@@ -30,7 +30,10 @@ class Port:
 
 @dataclass(frozen=True)
 class Parameter:
-    """A parameter with its exported value; ``name`` as in 20-sim, hierarchical with ``\\``: ``PID1\\kp``."""
+    """A parameter with its exported value; ``name`` as in 20-sim, hierarchical with ``\\``: ``PID1\\kp``.
+
+    One that is not ``tunable`` has its value from the start on; those that are come first in a model.
+    """
 
     name: str
     identifier: str
@@ -38,6 +41,7 @@ class Parameter:
     unit: str
     index: int
     span: Span
+    tunable: bool = True
 
 
 @dataclass(frozen=True)

@@ -53,6 +53,7 @@ def test_reads_everything(archive: bool, tmp_path: Path) -> None:
         ("PI.ki", "PI_ki", 0.5, "1/s"),
         ("table size", "table_size", 4.0, ""),
     ]
+    assert [p.tunable for p in model.parameters] == [True, True, False]
     line = model.inputs[0].span.line
     assert 'name="plant.setpoint"' in (FMU2 / "modelDescription.xml").read_text().splitlines()[line - 1]
     names = {path.name for path in model.files}
@@ -97,6 +98,17 @@ def test_a_matrix_has_its_elements_as_ports(tmp_path: Path) -> None:
     )
     names = [port.name for port in loaded(folder).outputs]
     assert names[:6] == ["duty[1,1]", "duty[1,2]", "duty[1,3]", "duty[2,1]", "duty[2,2]", "duty[2,3]"]
+
+
+def test_parameters_that_can_be_tuned_come_first(tmp_path: Path) -> None:
+    fixed = ('variability="tunable"><Real start="2.0"/>', 'variability="fixed"><Real start="2.0"/>')
+    model = loaded(changed(FMU2, tmp_path / "fmu", "modelDescription.xml", fixed))
+    assert [(p.name, p.index, p.tunable) for p in model.parameters] == [
+        ("PI.ki", 0, True),
+        ("PI.kp", 1, False),
+        ("table size", 2, False),
+    ]
+    assert [place.reference for place in model.details.parameters] == [4, 3, 2]  # type: ignore[union-attr]
 
 
 def test_one_instance_only(tmp_path: Path) -> None:
