@@ -1,7 +1,7 @@
 """Build hook: what a wheel holds besides the Python package.
 
-A wheel carries copies of ``cmake/``, ``targets/``, ``schemas/`` and the page about messages in ``epg/_data``; an
-editable install reads those of the checkout, so that an edit there is seen at once.  Both get
+A wheel carries copies of ``cmake/``, ``targets/``, ``schemas/``, Zephyr's module and the page about messages in
+``epg/_data``; an editable install reads those of the checkout, so that an edit there is seen at once.  Both get
 ``share/EPG/cmake/EPGConfig.cmake``, where CMake looks.
 """
 
@@ -14,7 +14,7 @@ from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
-DATA = ("cmake", "targets", "schemas", "integration", "docs/errors.md")
+DATA = ("cmake", "targets", "schemas", "integration", "zephyr", "zephyr_module", "docs/errors.md")
 
 
 class EpgBuildHook(BuildHookInterface):

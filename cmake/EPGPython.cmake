@@ -1,14 +1,17 @@
 # How CMake calls EPG's Python backend.
 
-# Finds the interpreter once per build tree: Python3_EXECUTABLE or Python_EXECUTABLE if set, else what FindPython3 finds.
+# Finds the interpreter once per build tree: Python3_EXECUTABLE or Python_EXECUTABLE if set, else west's when west
+# configures, else what FindPython3 finds.
 # Another -DPython3_EXECUTABLE is heeded, and so is an interpreter that is gone.
 function(_epg_find_python result)
-  set(wanted "$CACHE{Python3_EXECUTABLE}|$CACHE{Python_EXECUTABLE}")
+  set(wanted "$CACHE{Python3_EXECUTABLE}|$CACHE{Python_EXECUTABLE}|$CACHE{WEST_PYTHON}")
   if(NOT EPG_PYTHON OR NOT EXISTS "${EPG_PYTHON}" OR NOT wanted STREQUAL EPG_PYTHON_WANTED)
     if(Python3_EXECUTABLE)
       set(found "${Python3_EXECUTABLE}")
     elseif(Python_EXECUTABLE)
       set(found "${Python_EXECUTABLE}")
+    elseif(WEST_PYTHON)
+      set(found "${WEST_PYTHON}")
     else()
       # An activated virtual environment wins over newer interpreters of the system, as its user expects.
       set(Python3_FIND_VIRTUALENV FIRST)

@@ -11,7 +11,7 @@ import pytest
 
 from tests.cmake.project import ROOT, Project
 
-TREES = ("cmake", "targets", "schemas", "integration")
+TREES = ("cmake", "targets", "schemas", "integration", "zephyr", "zephyr_module")
 
 
 @pytest.fixture(scope="module")

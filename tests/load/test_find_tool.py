@@ -162,7 +162,7 @@ def test_the_table_is_right() -> None:
     assert [path.stem for path in files] == list(TABLE)
     for path in files:
         jsonschema.Draft202012Validator(schema).validate(json.loads(path.read_text(encoding="utf-8")))
-    needed = {"cmake", "c_compiler", "arm_gcc", "pico_sdk", "picotool", "freertos_kernel", "zephyr", "west"}
+    needed = {"cmake", "c_compiler", "arm_gcc", "pico_sdk", "picotool", "freertos_kernel", "zephyr", "zephyr_sdk", "west"}
     assert needed | {"micro_cdr", "micro_xrce_dds_client", "build_program"} <= set(TABLE)
 
 
@@ -193,6 +193,7 @@ VERSIONS = {
     "micro_cdr": ("CMakeLists.txt", 'project(microcdr VERSION "2.0.1" LANGUAGES C)\n', "2.0.1"),
     "micro_xrce_dds_client": ("CMakeLists.txt", 'project(microxrcedds_client VERSION "2.4.3" LANGUAGES C)\n', "2.4.3"),
     "zephyr": ("VERSION", "VERSION_MAJOR = 4\nVERSION_MINOR = 1\nPATCHLEVEL = 0\nVERSION_TWEAK = 0\n", "4.1.0"),
+    "zephyr_sdk": ("sdk_version", "0.17.0\n", "0.17.0"),
 }
 
 
