@@ -193,7 +193,7 @@ def test_the_executable_is_app(project: Project) -> None:
         (["-DCONFIG=" + CONFIG.replace("PWM=y", "PWM=n")], "CONFIG_PWM is n, and the target needs y"),
         (
             ["-DCONFIG=" + CONFIG.replace("IES=1", "IES=0")],
-            "CONFIG_NUM_METAIRQ_PRIORITIES is 0, and the control thread",
+            "CONFIG_NUM_METAIRQ_PRIORITIES is 0, and the control thread needs at least 1",
         ),
         (["-DNODES=pwm"], "the devicetree has no node epg_robot that is enabled"),
         (["-DFAKE_/pwm_divider-int-1=9"], "&pwm has divider-int-1 = <9>, and components.motor needs <1>"),
@@ -205,6 +205,10 @@ def test_differences_from_what_the_target_needs_are_errors(
     output = project.fails_to_configure(*FINE, *arguments)
     assert message in joined(output)
     assert f"{project.build_folder}/epg/robot/robot.overlay" in joined(output)
+
+
+def test_more_of_what_is_needed_is_no_difference(project: Project) -> None:
+    project.configure(*FINE, "-DCONFIG=" + CONFIG.replace("IES=1", "IES=2"))
 
 
 def test_every_difference_is_reported_at_once(project: Project) -> None:

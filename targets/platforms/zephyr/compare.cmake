@@ -1,7 +1,7 @@
 # What has become of the devicetree and of the configuration, compared with what the target was generated for: a user's
 # overlay and prj.conf go over EPG's, and may say something that the target cannot work with.
 #
-# <name>_zephyr.cmake lists the needs: EPG_ZEPHYR_CONFIG of <symbol>|<value>|<for what>, EPG_ZEPHYR_PROPERTIES of
+# <name>_zephyr.cmake lists the needs: EPG_ZEPHYR_CONFIG of <symbol>|<value, or "at least <number>">|<for what>, EPG_ZEPHYR_PROPERTIES of
 # <label>|<property>|<value>|<for what>, EPG_ZEPHYR_NODES of <label>|<who names it>, EPG_ZEPHYR_UARTS of labels.
 
 function(_epg_zephyr_compare name output)
@@ -16,7 +16,13 @@ function(_epg_zephyr_compare name output)
     if(found STREQUAL "")
       set(found "n")
     endif()
-    if(NOT found STREQUAL wanted)
+    set(good FALSE)
+    if(wanted MATCHES "^at least ([0-9]+)$" AND found GREATER_EQUAL CMAKE_MATCH_1)
+      set(good TRUE)
+    elseif(found STREQUAL wanted)
+      set(good TRUE)
+    endif()
+    if(NOT good)
       string(APPEND differences "\n  CONFIG_${symbol} is ${found}, and ${purpose} needs ${wanted}")
     endif()
   endforeach()

@@ -4,7 +4,7 @@ set(EPG_ZEPHYR_CONFIG
     "GPIO|y|the target"
     "PWM|y|the target"
     "SENSOR|y|the target"
-    "NUM_METAIRQ_PRIORITIES|1|the control thread"
+    "NUM_METAIRQ_PRIORITIES|at least 1|the control thread"
 )
 set(EPG_ZEPHYR_PROPERTIES
     "pwm|divider-int-1|1|components.pwm_pan"
