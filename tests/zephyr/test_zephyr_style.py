@@ -17,7 +17,7 @@ FILES = sorted(
     path
     for folder in FOLDERS
     for path in (ROOT / folder).rglob("*")
-    if path.suffix in KINDS or path.name in ("Kconfig", "CMakeLists.txt")
+    if (path.suffix in KINDS or path.name in ("Kconfig", "CMakeLists.txt")) and "golden" not in path.parts
 )
 
 
