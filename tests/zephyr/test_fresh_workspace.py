@@ -53,9 +53,10 @@ def test_west_epg(place: Path) -> None:
 def test_two_boards_in_one_build(place: Path) -> None:
     """sysbuild: each image has its own target, on its own board."""
     example = "epg/examples/zephyr_two_boards"
-    output = west_build(place, "--sysbuild", "-b", "rpi_pico", "-d", "build/two", example)
+    images = {"zephyr_two_boards": "rpi_pico", "tilt": "nucleo_h743zi"}
+    output = west_build(place, "--sysbuild", "-b", "rpi_pico", "-d", "build/two", example, images=tuple(images))
     assert "warning: " not in output
-    for image, board in (("zephyr_two_boards", "rpi_pico"), ("tilt", "nucleo_h743zi")):
+    for image, board in images.items():
         folder = place / "build/two" / image / "zephyr"
         assert f'CONFIG_BOARD="{board}"' in (folder / ".config").read_text(encoding="utf-8")
         assert b"epg_control" in (folder / "zephyr.elf").read_bytes()

@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 import subprocess
+from collections.abc import Sequence
 from pathlib import Path
 
 from tests.emulator.toolchain import ROOT
@@ -32,9 +33,13 @@ def west(folder: Path, *words: str, check: bool = True) -> str:
     return done.stdout
 
 
-def west_build(folder: Path, *words: str) -> str:
-    """``west build``, with a C library where the compiler needs to be told of one.  Raises :class:`BuildError`."""
-    settings = [f"-D{name}={value}" for name, value in c_library().items()]
+def west_build(folder: Path, *words: str, images: Sequence[str] = ()) -> str:
+    """``west build``, with a C library where the compiler needs to be told of one.  Raises :class:`BuildError`.
+
+    ``images`` are those of sysbuild, each of which has to be told.
+    """
+    prefixes = [f"{image}_" for image in images] or [""]
+    settings = [f"-D{prefix}{name}={value}" for prefix in prefixes for name, value in c_library().items()]
     return west(folder, "build", *words, *(["--", *settings] if settings else []))
 
 
