@@ -113,15 +113,18 @@ typedef enum epg_zephyr_error {
 
 /** What the port layer counts besides the statistics of the control cycle. */
 typedef struct epg_zephyr_status {
-    epg_zephyr_error_t error;           /**< of the newest start */
-    uint32_t control_stack_size;        /**< bytes of the control thread's stack, */
-    uint32_t control_stack_used;        /**< and how many of them have ever been used; 0 where Zephyr does not count */
+    epg_zephyr_error_t error;    /**< of the newest start */
+    uint32_t control_stack_size; /**< bytes of the control thread's stack, */
+    uint32_t control_stack_used; /**< and how many of them have ever been used; 0 where Zephyr does not count */
     uint32_t communication_stack_size;
     uint32_t communication_stack_used;
     uint32_t transport_lost; /**< bytes that the middleware's transport has received and lost */
 } epg_zephyr_status_t;
 
-/** The serial port of USB whose node in the devicetree is labelled epg_usb (a zephyr,cdc-acm-uart), as a transport, */
+/**
+ * The serial port of USB whose node in the devicetree is labelled epg_usb (a zephyr,cdc-acm-uart), as a transport; its
+ * property label is the title,
+ */
 extern const epg_transport_t epg_zephyr_usb;
 /** and the one labelled epg_usb_second: the console's, beside another middleware on epg_usb. */
 extern const epg_transport_t epg_zephyr_usb_second;
