@@ -56,12 +56,19 @@ class Comparison:
 
 def compare(platform: str, scenario_file: Path, angles: Mapping[str, float], folder: Path) -> Comparison:
     """Runs ``scenario_file`` on the image of an RP2040 ``platform`` and on the host."""
+    image = images("pico", platform, "jiwy_firmware", middleware="console") / "jiwy_firmware.elf"
+    return compare_image(image, scenario_file, angles, folder)
+
+
+def compare_image(
+    image: Path, scenario_file: Path, angles: Mapping[str, float], folder: Path, *, core: int = 1, console: int = 0
+) -> Comparison:
+    """The same of any image; see :func:`record`."""
     diagnostics = Diagnostics()
     scenario = load_scenario(scenario_file, diagnostics)
     diagnostics.stop_if_errors()
     assert scenario is not None
-    image = images("pico", platform, "jiwy_firmware", middleware="console") / "jiwy_firmware.elf"
     programs = host_programs(angles)
-    recording = record(image, scenario, angles)
+    recording = record(image, scenario, angles, core=core, console=console)
     host = simulated(programs, scenario, [*CONTROL, *PLANT], folder)
     return Comparison(scenario, recording, host, replayed(programs, recording, [*CONTROL, *PLANT], folder))

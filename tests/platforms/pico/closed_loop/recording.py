@@ -47,11 +47,22 @@ class Recording:
         return len(self.columns["time"])
 
 
-def record(image: Path, scenario: Scenario, angles: Mapping[str, float], *, swapped: Collection[str] = ()) -> Recording:
-    """Runs ``image`` through all of ``scenario``; ``angles`` are where the axes stand at first."""
+def record(
+    image: Path,
+    scenario: Scenario,
+    angles: Mapping[str, float],
+    *,
+    swapped: Collection[str] = (),
+    core: int = 1,
+    console: int = 0,
+) -> Recording:
+    """Runs ``image`` through all of ``scenario``; ``angles`` are where the axes stand at first.
+
+    Ticks come to ``core``; ``console`` is the serial port of the console.
+    """
     with Emulator(image, usb={"seed": 3, "phase": 321}) as pico:
         connect(pico, angles, swapped=swapped)
-        tick = first_tick(pico)
+        tick = first_tick(pico, core=core)
         recording = Recording()
         interval = round(float(scenario.interval) * 1000)
         for number in range(round(float(scenario.duration) * 1000)):
@@ -60,14 +71,14 @@ def record(image: Path, scenario: Scenario, angles: Mapping[str, float], *, swap
             if number % interval == 0:
                 values = {topic: profile.value(number / 1000) for topic, profile in scenario.profiles.items()}
                 recording.sent.append(values)
-                pico.send(" ".join(f"{topic}={value!r}" for topic, value in values.items()) + "\n")
+                pico.send(" ".join(f"{topic}={value!r}" for topic, value in values.items()) + "\n", port=console)
             pico.run(until=tick + number * PERIOD + LATE, cycles=0)
             recording.add("time", number / 1000)
             _read_ports(pico, recording)
             _read_motors(pico, recording)
-        pico.receive()
-        pico.send("stats\n")
-        recording.said = pico.run_until_text("ok stats")
+        pico.receive(port=console)
+        pico.send("stats\n", port=console)
+        recording.said = pico.run_until_text("ok stats", port=console)
         assert pico.call("faults") == []
         return recording
 

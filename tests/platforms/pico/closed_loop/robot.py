@@ -71,12 +71,13 @@ def angle(pico: Emulator, axis: str) -> float:
     return float(pico.call("motor_state", name=axis)["angle"])
 
 
-def first_tick(pico: Emulator, *, milliseconds: int = 200) -> int:
-    """Runs until core 1 has entered its first control cycle; the cycle of the entry."""
+def first_tick(pico: Emulator, *, core: int = 1, milliseconds: int = 200) -> int:
+    """Runs until ``core`` has entered its first tick; the cycle of the entry."""
     pico.call("watch_exceptions", numbers=[WRAP_EXCEPTION])
     for _ in range(milliseconds):
         pico.run(milliseconds=1)
-        entries = [cycle for cycle, core, _, entered in pico.call("take", log="exceptions") if entered and core == 1]
+        taken = pico.call("take", log="exceptions")
+        entries = [cycle for cycle, where, _, entered in taken if entered and where == core]
         if entries:
             return int(entries[0])
     raise AssertionError(f"no tick within {milliseconds} ms; {pico.call('state')}")

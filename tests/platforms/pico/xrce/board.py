@@ -10,7 +10,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from types import TracebackType
 
@@ -36,6 +36,12 @@ def image(platform: str, executable: str) -> Path:
 class Jiwy:
     """A Pico that has started, its console open, connected to its agent."""
 
+    core = 1
+    """That control runs on."""
+    spans: Mapping[str, str] = SPANS
+    start = 40
+    """ms from the reset, after which USB is configured."""
+
     def __init__(
         self, platform: str, executable: str = "jiwy_firmware", seed: int = 3, elf: Path | None = None
     ) -> None:
@@ -44,10 +50,10 @@ class Jiwy:
         self._since = 0
         self.pico = Emulator(elf or image(platform, executable), usb={"seed": seed, "open": False})
         connect(self.pico, {"pan": 0.12, "tilt": 0.12})
-        for name, symbol in SPANS.items():
-            self.pico.call("watch_span", name=name, core=1, **{"from": symbol, "to": "return"})
+        for name, symbol in self.spans.items():
+            self.pico.call("watch_span", name=name, core=self.core, **{"from": symbol, "to": "return"})
         self.pico.call("watch_pwm", slices=list(MOTOR_SLICES))
-        self.pico.run(milliseconds=40)
+        self.pico.run(milliseconds=self.start)
         assert self.pico.call("usb")["state"] == "configured"
         self.pico.call("usb_open", port=CONSOLE_PORT)
         self.pico.run(milliseconds=5)
@@ -105,7 +111,7 @@ class Jiwy:
 
     def timing(self) -> Timing:
         """Of all control cycles since the last call, by the emulator's clock."""
-        ticks, *others = (self.pico.call("span", name=name)["passages"] for name in SPANS)
+        ticks, *others = (self.pico.call("span", name=name)["passages"] for name in ("tick", "read", "write"))
         whole = [tick for tick in ticks if tick[0] >= self._since]  # the last call may have come within a cycle
         self._since = self.pico.cycle
         return evaluate(whole, *others, self.pico.call("take", log="pwm"))

@@ -1,0 +1,49 @@
+"""The example's application on an emulated Pico, as it is shipped: JIWY on its pins, an agent and a person on USB."""
+
+from __future__ import annotations
+
+from collections import Counter
+from functools import partial
+from pathlib import Path
+
+from tests.emulator.toolchain import arm_gcc, node, rp2040js, skip_if_missing, tool
+from tests.platforms.pico.closed_loop.robot import WRAP_EXCEPTION
+from tests.platforms.pico.xrce.board import Jiwy
+from tests.zephyr.workspace import build, c_library, workspace
+
+APPLICATION = "examples/zephyr_jiwy/app"
+SPANS = {"tick": "epg_control_cycle", "read": "epg_port_quadrature_count", "write": "epg_port_pwm_write"}
+
+
+def skip_unless_emulated() -> None:
+    skip_if_missing(partial(workspace, "rpi_pico"), arm_gcc, c_library, node, rp2040js)
+    skip_if_missing(lambda: tool("micro_xrce_dds_client"), lambda: tool("micro_cdr"))
+
+
+def image() -> Path:
+    return build(APPLICATION, "rpi_pico", settings=c_library()) / "zephyr" / "zephyr.elf"
+
+
+class ZephyrJiwy(Jiwy):
+    """The board that has started, connected to its agent; one core has control, communication and USB."""
+
+    core = 0
+    spans = SPANS
+
+    def __init__(self, seed: int = 3, elf: Path | None = None) -> None:
+        super().__init__("zephyr", seed=seed, elf=elf or image())
+        self.pico.call("watch_exceptions", numbers=[WRAP_EXCEPTION])
+
+    def begin(self) -> None:
+        super().begin()
+        self.interrupts()
+
+    def interrupts(self) -> list[int]:
+        """When the tick's interrupt was entered, since the last call."""
+        return [cycle for cycle, _, _, entered in self.pico.call("take", log="exceptions") if entered]
+
+
+def deviations(instants: list[int], period: int) -> Counter[int]:
+    """Of instants from the earliest grid with that period: how late each was, in their unit."""
+    zero = min(instant - number * period for number, instant in enumerate(instants))
+    return Counter(instant - zero - number * period for number, instant in enumerate(instants))

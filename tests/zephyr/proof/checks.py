@@ -1,0 +1,32 @@
+"""What must hold of Zephyr's control loop on a Pico, whatever its communication does."""
+
+from __future__ import annotations
+
+from tests.emulator.emulator import CYCLES_PER_MILLISECOND
+from tests.platforms.pico.closed_loop.robot import PERIOD
+from tests.platforms.pico.xrce.checks import STACK_RESERVE
+
+from .board import ZephyrJiwy, deviations
+
+LATEST = 20 * CYCLES_PER_MILLISECOND // 1000
+"""Cycles by which the control cycle may begin later than the earliest does: 20 us."""
+
+
+def assert_undisturbed(jiwy: ZephyrJiwy) -> dict[str, str]:
+    """Since begin(): no cycle lost or late, all outputs at the same PWM wrap; the console's statistics."""
+    stats = jiwy.stats()
+    assert (stats["enabled"], stats["fault"]) == ("1", "none")
+    for name in ("overruns", "missed", "faults", "outputs_late", "setpoints_dropped", "setpoint_timeouts"):
+        assert stats[name] == "0", name
+    for side in ("control", "communication"):
+        assert int(stats[f"{side}_stack_used"]) * STACK_RESERVE <= int(stats[f"{side}_stack_size"]), side
+    timing = jiwy.timing()
+    assert timing.cycles > 300
+    assert timing.missed == 0
+    assert max(timing.entry) - min(timing.entry) < LATEST
+    assert max(timing.first_read) - min(timing.first_read) < LATEST
+    assert set(timing.actuation) <= {0}, "no level has acted at another wrap"
+    assert max(deviations(jiwy.interrupts(), PERIOD)) < LATEST
+    assert jiwy.faults() == []
+    assert jiwy.pico.run(cycles=1)["resets"] == []
+    return stats

@@ -1,0 +1,124 @@
+"""Zephyr's image of JIWY on a Pico is a ROS 2 node that tracks, and its control cycles are on time."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import struct
+from collections.abc import Iterator
+
+import pytest
+
+from tests.emulator.emulator import CYCLES_PER_MILLISECOND
+from tests.platforms.pico.closed_loop.robot import AXES
+from tests.platforms.pico.xrce.board import CONSOLE_PORT
+from tests.platforms.pico.xrce.scenarios import SCENARIOS, assert_holds, hold
+from tests.xrce_agent.messages import read_diagnostics
+
+from .board import ZephyrJiwy, skip_unless_emulated
+from .checks import assert_undisturbed
+
+PERIOD = 0.033
+"""Seconds between two messages of a topic, as in jiwy.tcf."""
+RESTARTS = 5
+LATEST = 150
+"""ms from the start of an agent to the board's first message, at most."""
+SAFE = 100 * CYCLES_PER_MILLISECOND // 1000
+"""Cycles after a fault from which on no output is driven: 100 us."""
+NOWHERE = 0x60000001
+"""An address that no code has."""
+
+
+@pytest.fixture(scope="module")
+def jiwy() -> Iterator[ZephyrJiwy]:
+    skip_unless_emulated()
+    with ZephyrJiwy() as made:
+        made.home()
+        yield made
+
+
+def test_it_tracks(jiwy: ZephyrJiwy) -> None:
+    """A sine of 0.4 rad in 2 s, a setpoint each 10 ms; positions come each 33 ms, both axes' from one cycle."""
+    jiwy.begin()
+    begin = jiwy.agent.now()
+    distances = []
+    while (time := jiwy.agent.now() - begin) < 1.2:
+        setpoint = 0.5 + 0.4 * math.sin(math.pi * time)
+        jiwy.point(setpoint, setpoint)
+        jiwy.agent.run(10)
+        if time > 0.5:
+            distances.append(max(abs(jiwy.angle(axis.name) - setpoint) for axis in AXES))
+    assert max(distances) < 0.15
+    pan, tilt = (jiwy.agent.heard(f"rt/{axis.name}_publisher", begin) for axis in AXES)
+    assert len(pan) == len(tilt) == pytest.approx(1.2 / PERIOD, abs=2)
+    gaps = [later.time - sooner.time for sooner, later in itertools.pairwise(pan)]
+    assert max(gaps) < PERIOD + 0.004, "a millisecond of the service, and packets of USB"
+    stats = assert_undisturbed(jiwy)
+    assert (stats["unsent"], stats["malformed"]) == ("0", "0")
+    said = read_diagnostics(jiwy.agent.heard("rt/diagnostics")[-1].data)
+    assert (said.name, said.values["fault"], said.values["overruns"]) == ("JIWY_node", "none", "0")
+
+
+def test_agents_are_restarted(jiwy: ZephyrJiwy) -> None:
+    hold(jiwy)
+    times = []
+    for number in range(RESTARTS):
+        jiwy.agent.kill()
+        jiwy.agent.run(11 * number)
+        jiwy.agent.start()
+        begin = jiwy.agent.now()
+        times.append(1000 * (jiwy.agent.wait_for("rt/pan_publisher").time - begin))
+        jiwy.agent.run(7 * number)
+    assert max(times) < LATEST
+    assert jiwy.reconnects() == RESTARTS
+    assert_is_back(jiwy)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("scenario", SCENARIOS)
+def test_it_comes_back(jiwy: ZephyrJiwy, scenario: str) -> None:
+    hold(jiwy)
+    SCENARIOS[scenario](jiwy)
+    assert_is_back(jiwy)
+
+
+def assert_is_back(jiwy: ZephyrJiwy) -> None:
+    """Nothing has disturbed the loop; setpoints arrive, positions leave and say where the axes are."""
+    assert_holds(jiwy)
+    assert_undisturbed(jiwy)
+    hold(jiwy, 0.3)
+    for axis in AXES:
+        assert jiwy.position(axis.name) == pytest.approx(0.3, abs=3 * axis.rad_per_count)
+
+
+def test_a_hard_fault_of_main(jiwy: ZephyrJiwy) -> None:
+    """Its return addresses are overwritten while both axes move: outputs are safe at once, and stay so.
+
+    The last test of this board, which the watchdog then resets.
+    """
+    pins = [pin for axis in AXES for pin in axis.outputs]
+    hold(jiwy)
+    jiwy.point(1.2, 1.2)
+    jiwy.agent.run(60)
+    jiwy.pico.call("watch_pins", pins=pins)
+    stack = jiwy.pico.read("z_main_stack")
+    returns = [n for n, (word,) in enumerate(struct.iter_unpack("<I", stack)) if word >> 20 == 0x100 and word & 1]
+    assert len(returns) > 1
+    for number in returns:
+        jiwy.pico.write_word("z_main_stack", NOWHERE, offset=4 * number)
+    for number in range(110):  # main() sleeps for a second
+        jiwy.point(*(2 * [1.2 if number % 20 < 10 else 0.2]))
+        jiwy.agent.run(10)
+        if jiwy.faults():
+            break
+    (fault, *_) = jiwy.faults()
+    jiwy.agent.run(800)
+    high = [cycle - fault["cycle"] for cycle, _, level, _ in jiwy.pico.call("take", log="pins") if level]
+    assert min(high) < -100 * SAFE, "the motors were driven"
+    assert max(high) < SAFE
+    assert all(jiwy.pico.call("pin", pin=pin)["level"] == 0 for pin in pins)
+    assert [reset["cause"] for reset in jiwy.pico.run(cycles=1)["resets"]] == ["watchdog"]
+    jiwy.pico.call("usb_open", port=CONSOLE_PORT)
+    jiwy.agent.run(300)
+    stats = jiwy.stats()
+    assert (stats["enabled"], stats["fault"]) == ("0", "processor")
