@@ -11,7 +11,7 @@ import pytest
 
 from tests.emulator.toolchain import ROOT, arm_gcc, skip_if_missing
 
-from .west_workspace import BOARDS, fresh_workspace, west, west_build
+from .west_workspace import BOARDS, fresh_workspace, west, west_build, west_sysbuild
 from .workspace import c_library, workspace
 
 pytestmark = pytest.mark.long
@@ -54,7 +54,7 @@ def test_two_boards_in_one_build(place: Path) -> None:
     """sysbuild: each image has its own target, on its own board."""
     example = "epg/examples/zephyr_two_boards"
     images = {"zephyr_two_boards": "rpi_pico", "tilt": "nucleo_h743zi"}
-    output = west_build(place, "--sysbuild", "-b", "rpi_pico", "-d", "build/two", example, images=tuple(images))
+    output = west_sysbuild(place, "build/two", tuple(images), "-b", "rpi_pico", example)
     assert "warning: " not in output
     for image, board in images.items():
         folder = place / "build/two" / image / "zephyr"
