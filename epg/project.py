@@ -19,6 +19,7 @@ from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
 from epg.load.catalog import Catalog, load_catalog
 from epg.load.models import load_model
+from epg.load.models.details import FmuExport
 from epg.load.models.model import Model
 from epg.load.tcf import load_tcf_chain, settings_node
 from epg.resolve.allocation import Assignment
@@ -172,9 +173,12 @@ def check_instances(model: Model, instances: int, span: Span, diagnostics: Diagn
     if instances < 1 or instances > 255:
         diagnostics.error("out-of-range", span, f"{instances} instances: must be from 1 to 255")
     elif instances > 1 and not model.instantiable:
+        is_fmu = isinstance(model.details, FmuExport)
+        why = "can be instantiated once only" if is_fmu else "keeps its state in global variables"
+        other = ": each has its own copy of its code" if is_fmu else ", or export it as a C++ class"
         diagnostics.error(
             "single-instance",
             model.span,
-            f"{model.name} ({model.origin}) keeps its state in global variables: there can be one instance",
-            hint="call epg_add_model once for each, with different names, or export it as a C++ class",
+            f"{model.name} ({model.origin}) {why}: there can be one instance",
+            hint="call epg_add_model once for each, with different names" + other,
         )

@@ -3,6 +3,7 @@ with."""
 
 from __future__ import annotations
 
+import re
 import shutil
 import xml.etree.ElementTree as ElementTree
 import zipfile
@@ -164,43 +165,61 @@ _GET_2 = {"Real": "fmi2Real", "Integer": "fmi2Integer", "Enumeration": "fmi2Inte
 
 
 def run_any(folder: Path, work: Path, step: float, steps: int) -> str:
-    """What an FMU of scalar variables gives that leaves the prefix of FMI's functions to the importer."""
+    """What an FMU gives whose functions have the prefix that the standard asks for, or the importer's.
+
+    Text and binary data among its ports are left as they are; when the FMU says that it has ended, no step follows.
+    """
     root = ElementTree.parse(folder / "modelDescription.xml").getroot()
     standard = int(root.attrib["fmiVersion"][0])
     fmi = f"fmi{standard}"
-    ports: dict[str, list[tuple[str, str, str]]] = {"input": [], "output": []}  # function, C type, reference
-    for variable in root.find("ModelVariables") or ():
+    listed = root.find("ModelVariables")
+    assert listed is not None
+    starts = {variable.attrib.get("valueReference"): variable.attrib.get("start", "") for variable in listed}
+    ports: dict[str, list[tuple[str, str, str, int]]] = {"input": [], "output": []}  # function, C type, reference, size
+    for variable in listed:
         of = ports.get(variable.attrib.get("causality", ""))
-        if of is not None:
-            kind = next(child.tag for child in variable if child.tag in _GET_2) if standard == 2 else variable.tag
+        kind = next((child.tag for child in variable if child.tag in _GET_2), "") if standard == 2 else variable.tag
+        if of is not None and kind not in ("", "String", "Binary"):
             function = {"Enumeration": "Integer" if standard == 2 else "Int64"}.get(kind, kind)
             c = _GET_2[kind] if standard == 2 else f"fmi3{function}"
-            of.append((function, c, variable.attrib["valueReference"]))
+            size = 1
+            for dimension in variable.iter("Dimension"):
+                size *= int(dimension.attrib.get("start") or starts[dimension.attrib["valueReference"]])
+            of.append((function, c, variable.attrib["valueReference"], size))
     take = keep = show = ""
-    count = ", 1" if standard == 3 else ""
-    for index, (function, c, reference) in enumerate(ports["input"]):
-        low, high = {"fmi2Integer": ("-2147483648.0", "2147483647.0")}.get(c, ("-1e30", "1e30"))
-        clamped = f"v > {high} ? {high} : v < {low} ? {low} : v"
-        value = "v > 0.5" if function == "Boolean" else f"({c})({clamped})"
-        take += f"{{ double v = signal(); in{index} = {value}; }}\n"
-        keep += f"{{ {fmi}ValueReference r = {reference}; {fmi}Set{function}(c, &r, 1, &in{index}{count}); }}\n"
-    for function, c, reference in ports["output"]:
-        show += f"{{ {fmi}ValueReference r = {reference}; {c} v; {fmi}Get{function}(c, &r, 1, &v{count}); show(v); }}\n"
-    variables = "".join(f"static {c} in{index};\n" for index, (_, c, _) in enumerate(ports["input"]))
+    for index, (function, c, reference, size) in enumerate(ports["input"]):
+        low, high = _limits(c)
+        clamped = f"v >= {high} ? {high} : v > {low} ? v : {low}"
+        value = "v > 0.5" if function == "Boolean" else f"({c})({clamped})" if high else "v"
+        count = f", {size}" if standard == 3 else ""
+        take += f"for (int i = 0; i < {size}; i++) {{ double v = signal(); in{index}[i] = {value}; }}\n"
+        keep += f"{{ {fmi}ValueReference r = {reference}; {fmi}Set{function}(c, &r, 1, in{index}{count}); }}\n"
+    for function, c, reference, size in ports["output"]:
+        count = f", {size}" if standard == 3 else ""
+        show += f"{{ {fmi}ValueReference r = {reference}; {c} v[{size}]; {fmi}Get{function}(c, &r, 1, v{count});\n"
+        show += f"  for (int i = 0; i < {size}; i++) {{ show((double)v[i]); }} }}\n"
+    variables = "".join(f"static {c} in{index}[{size}];\n" for index, (_, c, _, size) in enumerate(ports["input"]))
     guid = root.attrib["guid" if standard == 2 else "instantiationToken"]
     if standard == 2:
         start = f"""static const fmi2CallbackFunctions callbacks = {{logger, calloc, free, NULL, NULL}};
     c = fmi2Instantiate("a", fmi2CoSimulation, "{guid}", "file:///", &callbacks, 0, 0);
     if (c == NULL || fmi2SetupExperiment(c, 0, 0.0, 0.0, 0, 0.0) > fmi2Warning) {{ return 3; }}
     fmi2EnterInitializationMode(c); {keep} fmi2ExitInitializationMode(c);"""
-        do = "if (fmi2DoStep(c, t, h, 1) != fmi2OK) { return 1; }"
+        do = """if (!ended) {
+            fmi2Status s = fmi2DoStep(c, t, h, 1);
+            if (s == fmi2Discard) { s = fmi2GetBooleanStatus(c, fmi2Terminated, &ended); if (!ended) { return 1; } }
+            if (s != fmi2OK) { return 1; }
+        }"""
         log = "fmi2ComponentEnvironment e, fmi2String n, fmi2Status s, fmi2String g, fmi2String m, ..."
     else:
         start = f"""c = fmi3InstantiateCoSimulation("a", "{guid}", NULL, 0, 0, 0, 0, NULL, 0, NULL, logger, NULL);
     if (c == NULL) {{ return 3; }}
     fmi3EnterInitializationMode(c, 0, 0.0, 0.0, 0, 0.0); {keep} fmi3ExitInitializationMode(c);"""
-        do = """bool a, b, d; double last;
-        if (fmi3DoStep(c, t, h, 1, &a, &b, &d, &last) != fmi3OK) { return 1; }"""
+        do = """if (!ended) {
+            bool a, b, d; double last;
+            if (fmi3DoStep(c, t, h, 1, &a, &b, &d, &last) != fmi3OK) { return 1; }
+            ended = b;
+        }"""
         log = "fmi3InstanceEnvironment e, fmi3Status s, fmi3String g, fmi3String m"
     text = f"""#include "{fmi}Functions.h"
 #include <stdlib.h>
@@ -208,18 +227,26 @@ def run_any(folder: Path, work: Path, step: float, steps: int) -> str:
 {SIGNAL}
 {variables}
 static {"fmi2Component" if standard == 2 else "fmi3Instance"} c;
+static int ended;
 static void logger({log}) {{ }}
 """
-    text += _main(start, f"(void)signal; {take}", f"{keep} {do}", f'{show} puts("");', f"{fmi}Terminate(c);", steps)
+    set_and_do = f"if (!ended) {{ {keep} }} {do}"
+    text += _main(start, f"(void)signal; {take}", set_and_do, f'{show} puts("");', f"{fmi}Terminate(c);", steps)
     sources, folders, options = _sources(folder, root, standard)
-    return _run(
-        text,
-        standard,
-        sources,
-        folders,
-        work,
-        ["-DFMI_COSIMULATION", f"-DFMI{standard}_FUNCTION_PREFIX=direct_", *options],
-    )
+    prefix = f"{root.find('CoSimulation').attrib['modelIdentifier']}_"  # type: ignore[union-attr]
+    options = ["-DFMI_COSIMULATION", f"-DFMI{standard}_FUNCTION_PREFIX={prefix}", *options]
+    return _run(text, standard, sources, folders, work, options)
+
+
+def _limits(c: str) -> tuple[str, str]:
+    """The doubles that an integer of this type can have; empty for reals."""
+    match = re.fullmatch(r"fmi3(U?)Int(\d+)", "fmi3Int32" if c == "fmi2Integer" else c)
+    if match is None:
+        return "", ""
+    bits = int(match[2]) - (match[1] == "")
+    # the largest double below the power of two, where doubles are too coarse for the integer before it
+    high = float(2**bits - 1) if bits <= 53 else float(2**bits - 2 ** (bits - 53))
+    return ("0.0" if match[1] else repr(-float(2**bits))), repr(high)
 
 
 def _sources(folder: Path, root: ElementTree.Element, standard: int) -> tuple[list[Path], list[Path], list[str]]:

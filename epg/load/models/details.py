@@ -181,6 +181,7 @@ class FmuExport:
     outputs: tuple[FmuPorts, ...]
     parameters: tuple[FmuParameter, ...]
     states: tuple[int, ...]  # value references of continuous states
+    state_count: int  # of their values: arrays have several
     step_argument: Fraction  # of DoStep, in seconds
     endless: bool  # an end of the experiment is given, far away: without it the FMU takes its own
     terminated: bool  # fmi2GetBooleanStatus exists

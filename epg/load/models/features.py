@@ -122,7 +122,7 @@ def check_features(
                 _check_declared(name, start, code, declarations, told, diagnostics)
             elif name not in _LIBRARY_ALL and name not in stubs:
                 continue
-            _check_call(name, start, code, stubs, known, told, diagnostics)
+            _check_call(name, start, code, stubs, known, told, diagnostics, foreign)
         if function.owner and not _may_allocate(function):
             for match in re.finditer(r"\bnew\b", code.body(function)):
                 start = function.body_start + match.start()
@@ -207,6 +207,7 @@ def _check_call(
     known: set[str],
     told: set[str],
     diagnostics: Diagnostics,
+    foreign: bool,
 ) -> None:
     span = code.file.span(start, start + len(name))
     if name in stubs:
@@ -225,9 +226,10 @@ def _check_call(
         diagnostics.error("model-heap", span, f"the model calls {name}()", hint=_HEAP_HINT)
     elif name in _FILES and not _TERMINAL.match(code.file.code, start):
         message = f"the model calls {name}(): there are no files on a target"
-        diagnostics.error(
-            "model-file-use", span, message, hint="replace tables in files by equations or parameters in 20-sim"
-        )
+        hint = "replace tables in files by equations or parameters in 20-sim"
+        if foreign:
+            hint = "let the model have what it reads as parameters, or as constants in its code"
+        diagnostics.error("model-file-use", span, message, hint=hint)
     elif name in _PRINTS or name in _FILES:
         message = f"the model calls {name}(): its output goes nowhere on a target"
         diagnostics.warning("model-prints", span, message, hint="remove it, or bind an output port to a topic")
@@ -240,7 +242,8 @@ def _check_call(
         )
     elif name in _CLOCKS:
         message = f"the model reads the computer's clock ({name}()), which targets do not have"
-        diagnostics.warning("model-real-time", span, message, hint="use 'time' instead of 'realtime' in 20-sim")
+        hint = "use the time of the simulation" if foreign else "use 'time' instead of 'realtime' in 20-sim"
+        diagnostics.warning("model-real-time", span, message, hint=hint)
     elif name not in _LIBRARY_ALL:
         told.add(name)
         if re.match(r"XX|YY", name) or name.endswith("Submodel"):

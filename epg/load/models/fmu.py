@@ -13,10 +13,11 @@ from pathlib import Path
 from epg.diagnostics import Diagnostics
 from epg.load.models.assignments import number
 from epg.load.models.details import FmuExport, FmuParameter, FmuPorts
-from epg.load.models.fmu_description import TYPES_2, TYPES_3, Description, Variable, read_description
+from epg.load.models.fmu_description import Description, read_description
 from epg.load.models.fmu_features import check_fmu, uses_heap
 from epg.load.models.fmu_files import DESCRIPTION, FmuFiles, read_fmu_files
 from epg.load.models.fmu_sources import FMI_HEADERS, FmuSources, find_sources
+from epg.load.models.fmu_variables import TYPES_2, TYPES_3, Variable
 from epg.load.models.identifiers import one_line, to_identifier, unique_identifiers
 from epg.load.models.link import Linked
 from epg.load.models.model import Model, Parameter, Port
@@ -57,14 +58,14 @@ def load_fmu(
         return None
     step = _step(description, step, step_span, diagnostics)
     sources = find_sources(files, description, diagnostics)
-    if sources is None or step is None:
+    if sources is None:
         return None
     check_fmu(sources.linked, description.standard, diagnostics)
     inputs, outputs = (_ports(description, direction, diagnostics) for direction in ("input", "output"))
     parameters, places = _parameters(description)
-    if diagnostics.error_count > before:
+    if step is None or diagnostics.error_count > before:
         return None
-    states = {variable.reference for variable in description.variables if variable.state}
+    states = {variable.reference: variable.count for variable in description.variables if variable.state}
     needed = uses_heap(sources.codes.values())
     read = {files.path(name) for name in (*sources.units, *sources.headers)} if not files.archive else set()
     return Model(
@@ -94,12 +95,13 @@ def load_fmu(
             headers=_lacking(description.standard, sources),
             definitions=tuple({**dict(sources.definitions), **dict(definitions)}.items()),
             renames=_renames(sources.linked),
-            prefixes=_prefixes(sources.linked),
+            prefixes=_prefixes(sources.linked, description.identifier),
             plain_names=not _names_by_header(description.standard, sources),
             inputs=_groups(description, "input"),
             outputs=_groups(description, "output"),
             parameters=places,
             states=tuple(sorted(states)),
+            state_count=sum(states.values()),
             step_argument=_step_argument(description, step),
             endless=description.is_20sim,
             terminated="fmi2GetBooleanStatus" in {f.name for _, f in sources.linked.functions()},
@@ -215,15 +217,18 @@ def _lacking(standard: int, sources: FmuSources) -> tuple[str, ...]:
     return tuple(name for name in FMI_HEADERS[standard] if name not in sources.own_headers)
 
 
-def _prefixes(linked: Linked) -> tuple[str, ...]:
-    """What the FMU's sources put before FMI's function names, where they insist on it."""
+def _prefixes(linked: Linked, identifier: str) -> tuple[str, ...]:
+    """What the FMU's sources put before FMI's function names, where they insist on it.
+
+    Some put it together from other macros: then it is what the standard asks for (FMI 2.0.4, 2.1.1).
+    """
     found = {
-        macro.value
+        macro.value if macro.value.isidentifier() else f"{identifier}_"
         for code in linked.all
         for macro in code.macros
-        if macro.name in ("FMI2_FUNCTION_PREFIX", "FMI3_FUNCTION_PREFIX") and macro.value.isidentifier()
+        if macro.name in ("FMI2_FUNCTION_PREFIX", "FMI3_FUNCTION_PREFIX") and macro.value
     }
-    return tuple(sorted(name for name in found if name.isascii()))
+    return tuple(sorted(name for name in found if name.isascii() and name.isidentifier()))
 
 
 def _names_by_header(standard: int, sources: FmuSources) -> bool:

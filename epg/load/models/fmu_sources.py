@@ -133,14 +133,17 @@ def _listed(files: FmuFiles, description: Description, diagnostics: Diagnostics)
 
 def _configuration(root: Element, description: Description, diagnostics: Diagnostics) -> _Listed | None:
     """The build configuration for this interface; of several, the first that is for no certain platform."""
-    fitting = [
-        child
-        for child in root.children
-        if child.name == "BuildConfiguration" and child.attributes.get("modelIdentifier") == description.identifier
-    ]
+    found = [child for child in root.children if child.name == "BuildConfiguration"]
+    fitting = [child for child in found if child.attributes.get("modelIdentifier") == description.identifier]
+    wanted = f"'{one_line(description.identifier)[:60]}'"
+    if not fitting and len({child.attributes.get("modelIdentifier") for child in found}) == 1:
+        fitting = found  # FMUs that were made from another one's files have its name here
+        other = one_line(found[0].attributes.get("modelIdentifier", ""))[:60]
+        message = f"the build configuration is for '{other}', but the FMU is {wanted}: it is used nevertheless"
+        diagnostics.warning("fmu-other-name", found[0].span, message, hint="check that these are the FMU's sources")
     fitting.sort(key=lambda child: "platform" in child.attributes)
     if not fitting:
-        message = f"there is no build configuration for '{one_line(description.identifier)[:60]}'"
+        message = f"there is no build configuration for {wanted}"
         diagnostics.error("fmu-file-missing", root.span, message, hint="export the FMU again, with its sources")
         return None
     chosen = fitting[0]

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from epg.emit.model import emit_model, model_build
+from epg.load.models.details import FmuExport
 from tests.models.fmus import FMU2, FMU3, changed, pack, run_fmu2, run_fmu3
 from tests.models.harness import Library, build, loaded, run, run_program, run_wrapper
 
@@ -26,6 +27,39 @@ def test_gives_its_own_numbers(folder: Path, tmp_path: Path) -> None:
     assert run_wrapper(library, STEPS, options=sanitize) == expected
     archive = pack(folder, tmp_path / "packed.fmu", {"binaries/win64/x.dll": b"MZ", "resources/a.txt": b"?"})
     assert run_wrapper(build(loaded(archive), "tilt", tmp_path), STEPS) == expected
+
+
+def test_a_prefix_that_is_put_together(tmp_path: Path) -> None:
+    """Of the model identifier, in macros, by sources that insist on it."""
+    parts = """#define MODEL_IDENTIFIER Servo
+#define paste(a, b) a##b
+#define paste_values(a, b) paste(a, b)
+#define FMI2_FUNCTION_PREFIX paste_values(MODEL_IDENTIFIER, _)"""
+    change = ("#define FMI2_FUNCTION_PREFIX Servo_", parts)
+    folder = changed(FMU2, tmp_path / "fmu", "sources/servo.c", change)
+    library = build(loaded(folder), "pan", tmp_path)
+    assert run_wrapper(library, 30) == run_fmu2(tmp_path / "direct", 30)
+
+
+def test_arrays_with_a_size_of_their_own_and_text(tmp_path: Path) -> None:
+    """A structural parameter keeps its start value, a state may be an array, and what is no number is left alone."""
+    size, text = '<Dimension start="3"/>', '<String name="label" valueReference="21" causality="input"/>'
+    text += '<Binary name="trace" valueReference="22" causality="output"/>'
+    text += '<Clock name="tick" valueReference="23" causality="output" intervalVariability="triggered"/>'
+    text += '<UInt64 name="axes" valueReference="20" causality="structuralParameter" variability="fixed" start="3"/>'
+    folder = changed(
+        FMU3,
+        tmp_path / "fmu",
+        "modelDescription.xml",
+        (size, '<Dimension valueReference="20"/>'),
+        ('<Float64 name="time"', f'{text}<Float64 name="time"'),
+        ('derivative="11"', 'derivative="1"'),  # as if the setpoints were states
+    )
+    model = loaded(folder)
+    assert [port.name for port in model.inputs] == [p.name for p in loaded(FMU3).inputs]
+    assert isinstance(model.details, FmuExport)
+    assert (model.details.states, model.details.state_count) == ((1,), 3)
+    assert run_wrapper(build(model, "pan", tmp_path), 30) == run_fmu3(tmp_path / "direct", 30)
 
 
 def test_an_archive_is_unpacked_the_same_each_time(tmp_path: Path) -> None:
