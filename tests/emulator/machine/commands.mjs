@@ -369,27 +369,23 @@ export class Commands {
 
     /**
      * Watches code of {core} from {from} up to {to} (symbols or addresses; `to: "return"` for the return of the function
-     * `from`), under {name}: cycles and instructions of each passage, and its accesses to flash.
+     * `from`), under {name}: cycles and instructions of each passage, its accesses to flash, and how many lines of
+     * the flash cache (8 bytes) these were in.
      */
     watch_span({ name, core, from, to }) {
         const { machine } = this;
-        const span = { open: null, passages: [], flash: [], flashTotal: 0 };
+        const span = { open: null, passages: [], flash: [], flashTotal: 0, lines: new Set() };
         this.spans.set(need(name, 'name'), span);
         const close = (at) => {
             if (span.open !== null) {
                 span.passages.push([span.open.cycle, at.time - span.open.cycle, at.instructions - span.open.instructions]);
                 span.open = null;
-                machine.hookFlash(at, null);
+                this.recordFlash(at);
             }
         };
         const open = (at) => {
-            span.open = { cycle: at.time, instructions: at.instructions };
-            machine.hookFlash(at, (user, address) => {
-                span.flashTotal++;
-                if (span.flash.length < 1000) {
-                    span.flash.push([user.time, user.opcodePC, address]);
-                }
-            });
+            span.open = { cycle: at.time, instructions: at.instructions, core: at };
+            this.recordFlash(at);
             if (to === 'return') {
                 this.closeAtReturn(at, close);
             }
@@ -399,6 +395,20 @@ export class Commands {
             machine.probe(core, machine.address(to), close);
         }
         return null;
+    }
+
+    /** Accesses of a core to flash count in all spans that are open there, one within another too. */
+    recordFlash(core) {
+        const spans = [...this.spans.values()].filter((span) => span.open?.core === core);
+        this.machine.hookFlash(core, spans.length === 0 ? null : (user, address) => {
+            for (const span of spans) {
+                span.flashTotal++;
+                span.lines.add(address >>> 3);
+                if (span.flash.length < 1000) {
+                    span.flash.push([user.time, user.opcodePC, address]);
+                }
+            }
+        });
     }
 
     closeAtReturn(core, close) {
@@ -433,17 +443,18 @@ export class Commands {
         });
     }
 
-    /** {passages: [[cycle, cycles, instructions]], flash: [[cycle, pc, address]], flash_total}; forgets them. */
+    /** {passages: [[cycle, cycles, instructions]], flash: [[cycle, pc, address]], flash_total, flash_lines}; forgets. */
     span({ name }) {
         const span = this.spans.get(name);
         if (span === undefined) {
             throw new Error(`there is no span ${name}`);
         }
-        const { passages, flash, flashTotal } = span;
+        const { passages, flash, flashTotal, lines } = span;
         span.passages = [];
         span.flash = [];
         span.flashTotal = 0;
-        return { passages, flash, flash_total: flashTotal };
+        span.lines = new Set();
+        return { passages, flash, flash_total: flashTotal, flash_lines: lines.size };
     }
 
     // USB ----------------------------------------------------------------------------------------------------------------
