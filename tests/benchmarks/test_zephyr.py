@@ -1,0 +1,25 @@
+"""The benchmark of Zephyr runs, with one board and one round: both applications make the same image."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from functools import partial
+
+import pytest
+
+from tests.emulator.toolchain import ROOT, arm_gcc, skip_if_missing, tool
+from tests.zephyr.workspace import c_library, workspace
+
+pytestmark = pytest.mark.long
+
+
+def test_it_runs_and_prints_its_tables() -> None:
+    boards = ("rpi_pico", "nucleo_h743zi", "rpi_pico2/rp2350a/m33")
+    skip_if_missing(arm_gcc, partial(workspace, *boards), c_library, lambda: tool("micro_xrce_dds_client"))
+    command = [sys.executable, str(ROOT / "benchmarks/zephyr.py"), "--rounds", "1", "--boards", "1"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    titles = re.findall(r"^(.+)\n-+$", done.stdout, flags=re.MULTILINE)
+    assert titles == ["Configuring JIWY (cmake), processor time", "Size of images, bytes"]
