@@ -175,7 +175,12 @@ def run_any(folder: Path, work: Path, step: float, steps: int) -> str:
     listed = root.find("ModelVariables")
     assert listed is not None
     starts = {variable.attrib.get("valueReference"): variable.attrib.get("start", "") for variable in listed}
-    ports: dict[str, list[tuple[str, str, str, int]]] = {"input": [], "output": []}  # function, C type, reference, size
+    items = {
+        kind.attrib["name"]: [int(item.attrib["value"]) for item in kind.iter("Item")]
+        for kind in root.findall("TypeDefinitions/*")
+    }
+    # function, C type, reference, size, values of its enumeration
+    ports: dict[str, list[tuple[str, str, str, int, list[int]]]] = {"input": [], "output": []}
     for variable in listed:
         of = ports.get(variable.attrib.get("causality", ""))
         kind = next((child.tag for child in variable if child.tag in _GET_2), "") if standard == 2 else variable.tag
@@ -185,20 +190,23 @@ def run_any(folder: Path, work: Path, step: float, steps: int) -> str:
             size = 1
             for dimension in variable.iter("Dimension"):
                 size *= int(dimension.attrib.get("start") or starts[dimension.attrib["valueReference"]])
-            of.append((function, c, variable.attrib["valueReference"], size))
+            typed = variable.find(kind) if standard == 2 else variable
+            assert typed is not None
+            values = items.get(typed.attrib.get("declaredType", ""), [])
+            of.append((function, c, variable.attrib["valueReference"], size, values))
     take = keep = show = ""
-    for index, (function, c, reference, size) in enumerate(ports["input"]):
-        low, high = _limits(c)
+    for index, (function, c, reference, size, values) in enumerate(ports["input"]):
+        low, high = (repr(float(min(values))), repr(float(max(values)))) if values else _limits(c)
         clamped = f"v >= {high} ? {high} : v > {low} ? v : {low}"
         value = "v > 0.5" if function == "Boolean" else f"({c})({clamped})" if high else "v"
         count = f", {size}" if standard == 3 else ""
         take += f"for (int i = 0; i < {size}; i++) {{ double v = signal(); in{index}[i] = {value}; }}\n"
         keep += f"{{ {fmi}ValueReference r = {reference}; {fmi}Set{function}(c, &r, 1, in{index}{count}); }}\n"
-    for function, c, reference, size in ports["output"]:
+    for function, c, reference, size, _ in ports["output"]:
         count = f", {size}" if standard == 3 else ""
         show += f"{{ {fmi}ValueReference r = {reference}; {c} v[{size}]; {fmi}Get{function}(c, &r, 1, v{count});\n"
         show += f"  for (int i = 0; i < {size}; i++) {{ show((double)v[i]); }} }}\n"
-    variables = "".join(f"static {c} in{index}[{size}];\n" for index, (_, c, _, size) in enumerate(ports["input"]))
+    variables = "".join(f"static {c} in{index}[{size}];\n" for index, (_, c, _, size, _) in enumerate(ports["input"]))
     guid = root.attrib["guid" if standard == 2 else "instantiationToken"]
     if standard == 2:
         start = f"""static const fmi2CallbackFunctions callbacks = {{logger, calloc, free, NULL, NULL}};

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from epg.emit.model.fmi_headers import fmi_functions, fmi_headers
@@ -74,7 +74,10 @@ def fmu_code(
 
 
 def _group(group: FmuPorts, types: Mapping[str, FmiType]) -> dict[str, Any]:
-    return {"type": types[group.type], "references": group.references, "positions": group.positions}
+    type = types[group.type]
+    limited = [replace(type, low=repr(float(of[0])), high=repr(float(of[1]))) if of else type for of in group.limits]
+    places = list(zip(limited, group.positions, strict=True))
+    return {"type": type, "references": group.references, "positions": group.positions, "places": places}
 
 
 def fmu_files(details: FmuExport, name: str) -> dict[str, str]:

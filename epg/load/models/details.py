@@ -138,12 +138,13 @@ class HandWritten:
 class FmuPorts:
     """Ports of one type of FMI, "Real" or "Float64": value references, and positions among all inputs or outputs.
 
-    An array has one reference and several positions.
+    An array has one reference and several positions.  ``limits`` are those of enumerations, by position.
     """
 
     type: str
     references: tuple[int, ...]
     positions: tuple[int, ...]
+    limits: tuple[tuple[int, int] | None, ...]
 
 
 @dataclass(frozen=True)

@@ -165,15 +165,16 @@ def _ports(description: Description, direction: str, diagnostics: Diagnostics) -
 
 def _groups(description: Description, direction: str) -> tuple[FmuPorts, ...]:
     """The ports by type, as FMI's functions get and set them; arrays count as many values."""
-    groups: dict[str, tuple[list[int], list[int]]] = {}
+    groups: dict[str, tuple[list[int], list[int], list[tuple[int, int] | None]]] = {}
     position = 0
     for variable in description.variables:
         if variable.causality == direction:
-            references, positions = groups.setdefault(variable.type, ([], []))
+            references, positions, limits = groups.setdefault(variable.type, ([], [], []))
             references.append(variable.reference)
             positions.extend(range(position, position + variable.count))
+            limits.extend([variable.limits] * variable.count)
             position += variable.count
-    return tuple(FmuPorts(kind, tuple(of), tuple(at)) for kind, (of, at) in sorted(groups.items()))
+    return tuple(FmuPorts(kind, tuple(of), tuple(at), tuple(to)) for kind, (of, at, to) in sorted(groups.items()))
 
 
 def _parameters(description: Description) -> tuple[tuple[Parameter, ...], tuple[FmuParameter, ...]]:

@@ -32,7 +32,8 @@ _LARGEST_VARIABLES = 100_000
 class Variable:
     """A scalar, or an array of FMI 3.0 with its ``dimensions``, which are constant as EPG sets none of them.
 
-    ``type`` is the standard's name: "Real", "Float64", ...; ``state`` tells that the FMU integrates it.
+    ``type`` is the standard's name: "Real", "Float64", ...; ``state`` tells that the FMU integrates it.  ``limits`` are
+    the lowest and the highest item of an enumeration.
     """
 
     name: str
@@ -45,6 +46,7 @@ class Variable:
     unit: str
     description: str
     state: bool
+    limits: tuple[int, int] | None
     span: Span
 
     @property
@@ -75,8 +77,24 @@ def _units_of_types(root: Element, standard: int) -> dict[str, str]:
     return units
 
 
+def _limits_of_types(root: Element, standard: int) -> dict[str, tuple[int, int]]:
+    """The lowest and the highest item of each enumeration, by its name."""
+    definitions = root.find("TypeDefinitions")
+    limits: dict[str, tuple[int, int]] = {}
+    for item in definitions.children if definitions is not None else ():
+        holder = item.find("Enumeration") if standard == 2 else item
+        values = [
+            int(child.attributes["value"])
+            for child in (holder.children if holder is not None else ())
+            if child.name == "Item" and re.fullmatch(r"-?\d{1,9}", child.attributes.get("value", ""))
+        ]
+        if values:
+            limits[item.attributes.get("name", "")] = min(values), max(values)
+    return limits
+
+
 def _variables_2(root: Element, diagnostics: Diagnostics) -> tuple[Variable, ...]:
-    units = _units_of_types(root, 2)
+    units, limits = _units_of_types(root, 2), _limits_of_types(root, 2)
     elements = _listed(root, diagnostics)
     states: set[int] = set()  # positions in the list, from 0
     for element in elements:
@@ -87,14 +105,14 @@ def _variables_2(root: Element, diagnostics: Diagnostics) -> tuple[Variable, ...
     found = []
     for position, element in enumerate(elements):
         typed = next((child for child in element.children if child.name in (*TYPES_2, *_NO_NUMBERS)), None)
-        variable = _variable(element, typed, (), units, position in states, diagnostics)
+        variable = _variable(element, typed, (), units, limits, position in states, diagnostics)
         if variable is not None:
             found.append(variable)
     return tuple(found)
 
 
 def _variables_3(root: Element, diagnostics: Diagnostics) -> tuple[Variable, ...]:
-    units = _units_of_types(root, 3)
+    units, limits = _units_of_types(root, 3), _limits_of_types(root, 3)
     elements = _listed(root, diagnostics)
     states = {element.attributes["derivative"] for element in elements if "derivative" in element.attributes}
     sizes = _sizes(elements)
@@ -105,7 +123,7 @@ def _variables_3(root: Element, diagnostics: Diagnostics) -> tuple[Variable, ...
         dimensions = _dimensions(element, sizes, diagnostics)
         state = element.attributes.get("valueReference") in states
         if dimensions is not None:
-            variable = _variable(element, element, dimensions, units, state, diagnostics)
+            variable = _variable(element, element, dimensions, units, limits, state, diagnostics)
             if variable is not None:
                 found.append(variable)
     return tuple(found)
@@ -158,6 +176,7 @@ def _variable(
     typed: Element | None,
     dimensions: tuple[int, ...],
     units: Mapping[str, str],
+    limits: Mapping[str, tuple[int, int]],
     state: bool,
     diagnostics: Diagnostics,
 ) -> Variable | None:
@@ -183,7 +202,8 @@ def _variable(
             message = f"{causality} '{name}' has no name or no value reference"
             diagnostics.error("fmu-variable", element.span, message, hint="export the FMU again")
         return None
-    unit = typed.attributes.get("unit", "") or units.get(typed.attributes.get("declaredType", ""), "")
+    declared = typed.attributes.get("declaredType", "")
+    unit = typed.attributes.get("unit", "") or units.get(declared, "")
     return Variable(
         name=name,
         reference=int(reference),
@@ -195,5 +215,6 @@ def _variable(
         unit=one_line(unit),
         description=one_line(attributes.get("description", "")),
         state=state and typed.name in ("Real", "Float64"),
+        limits=limits.get(declared) if typed.name == "Enumeration" else None,
         span=element.span,
     )

@@ -62,6 +62,24 @@ def test_arrays_with_a_size_of_their_own_and_text(tmp_path: Path) -> None:
     assert run_wrapper(build(model, "pan", tmp_path), 30) == run_fmu3(tmp_path / "direct", 30)
 
 
+def test_enumerations_get_no_value_beyond_their_items(tmp_path: Path) -> None:
+    """This one refuses others: what is bound to it may be 0 before anybody has said anything."""
+    items = '<SimpleType name="Mode"><Enumeration><Item name="on" value="2"/><Item name="off" value="1"/></Enumeration>'
+    folder = changed(
+        FMU2,
+        tmp_path / "fmu",
+        "modelDescription.xml",
+        ("<TypeDefinitions>", f"<TypeDefinitions>{items}</SimpleType>"),
+        ('<Integer start="0"/>', '<Enumeration declaredType="Mode" start="1"/>'),
+    )
+    code = folder / "sources/servo.c"
+    take = "((servo_t *)c)->integers[vr[i]] = value[i];"
+    assert take in code.read_text()
+    code.write_text(code.read_text().replace(take, f"if (value[i] < 1 || value[i] > 2) {{ return fmi2Error; }} {take}"))
+    library = build(loaded(folder), "pan", tmp_path)
+    assert run_wrapper(library, 30) == run_fmu2(tmp_path / "direct", 30)
+
+
 def test_an_archive_is_unpacked_the_same_each_time(tmp_path: Path) -> None:
     model = loaded(pack(FMU2, tmp_path / "a.fmu", {"resources/a.txt": b"?"}))
     files = emit_model(model, "pan")
