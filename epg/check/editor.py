@@ -127,7 +127,7 @@ def _pins_needed(kind: Kind) -> Schema:
     if not kind.pins:
         return {}
     wired: Schema = {"required": ["pins"], "properties": {"pins": {"required": list(kind.pins)}}}
-    return {"anyOf": [wired, {"required": ["node"]}]} if len(kind.claims) == 1 else wired
+    return {"oneOf": [wired, {"required": ["node"]}]} if len(kind.claims) == 1 else wired
 
 
 def _middlewares(targets: Iterable[Target], catalog: Catalog, named: bool) -> list[Schema]:

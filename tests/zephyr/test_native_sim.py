@@ -83,9 +83,16 @@ def agent() -> Iterator[Agent]:
         yield made
 
 
+def start(command: list[str]) -> subprocess.Popen[str]:
+    """As :func:`run`, to be gone on with while it runs."""
+    here = Path(command[0]).parent
+    return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, cwd=here)
+
+
 def run(program: Path, *options: str, cwd: Path | None = None) -> tuple[int, str]:
-    """Exit status, and what it wrote to stderr."""
-    done = subprocess.run([program, *options], capture_output=True, text=True, check=False, timeout=PATIENCE, cwd=cwd)
+    """Exit status, and what it wrote to stderr.  Its simulated flash is a file in the folder it runs in."""
+    here = cwd or program.parent
+    done = subprocess.run([program, *options], capture_output=True, text=True, check=False, timeout=PATIENCE, cwd=here)
     return done.returncode, done.stderr
 
 
@@ -163,7 +170,7 @@ def follow(agent: Agent, seconds: float) -> float:
 def test_a_node_over_udp(image: Path, agent: Agent) -> None:
     """It follows what comes from the agent, also one that has been restarted, and says whether there is one."""
     command = [str(image), "--realtime", f"--agent={agent.address}"]
-    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
+    with start(command) as process:
         try:
             assert process.stderr is not None
             assert process.stderr.readline() == f"jiwy: connected to the agent at {agent.address}\n"
@@ -185,7 +192,7 @@ def test_a_node_over_udp(image: Path, agent: Agent) -> None:
 def test_a_node_over_a_terminal(image: Path, tmp_path: Path) -> None:
     with Agent(PtyLink(tmp_path / "line")) as agent:
         command = [str(image), "--realtime", "--quiet", f"--serial-device={agent.address}"]
-        with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
+        with start(command) as process:
             try:
                 agent.topics.wait_for_reader("rt/pan_subscriber")
                 before = len(agent.topics.samples("rt/pan_publisher", 0.0))
@@ -227,7 +234,7 @@ def test_what_is_saved_is_there_at_the_next_start(image: Path, tmp_path: Path) -
 def test_console_on_a_terminal_and_an_interrupt(image: Path, tmp_path: Path) -> None:
     name, trace = tmp_path / "console", tmp_path / "trace.csv"
     command = [str(image), "--realtime", "--quiet", "--duration=60", f"--console-pty={name}", f"--trace={trace}"]
-    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
+    with start(command) as process:
         try:
             end = time.monotonic() + PATIENCE
             while not name.exists() and time.monotonic() < end:
