@@ -241,7 +241,8 @@ static void logger({log}) {{ }}
     set_and_do = f"if (!ended) {{ {keep} }} {do}"
     text += _main(start, f"(void)signal; {take}", set_and_do, f'{show} puts("");', f"{fmi}Terminate(c);", steps)
     sources, folders, options = _sources(folder, root, standard)
-    prefix = f"{root.find('CoSimulation').attrib['modelIdentifier']}_"  # type: ignore[union-attr]
+    identifier = root.find("CoSimulation").attrib["modelIdentifier"]  # type: ignore[union-attr]
+    prefix = f"{identifier}_" if identifier.isidentifier() else "direct_"
     options = ["-DFMI_COSIMULATION", f"-DFMI{standard}_FUNCTION_PREFIX={prefix}", *options]
     return _run(text, standard, sources, folders, work, options)
 
