@@ -66,33 +66,58 @@ void epg_port_wait_until(uint64_t time_ns)
 
 /* PWM ------------------------------------------------------------------------------------------------------------ */
 
-static const epg_zephyr_pwm_t *find_pwm(uint8_t block, uint8_t unit)
+/** Outputs of one target; the chips have fewer. */
+#define PWMS 32U
+
+/* By row of the table: the period in clocks of the device, so that no cycle divides 64 bits to know it. */
+static uint32_t periods[PWMS];
+
+static const epg_zephyr_pwm_t *find_pwm(uint8_t block, uint8_t unit, size_t *row)
 {
-    for (size_t i = 0; i < epg_zephyr_hardware.pwm_count; i++) {
+    for (size_t i = 0; i < epg_zephyr_hardware.pwm_count && i < PWMS; i++) {
         const epg_zephyr_pwm_t *pwm = &epg_zephyr_hardware.pwms[i];
         if (pwm->block == block && pwm->unit == unit) {
+            *row = i;
             return pwm;
         }
     }
     return NULL;
 }
 
-/** Sets the high time, as a level out of `top + 1`. */
-static int set_level(const epg_port_pwm_t *config, uint32_t level)
+static int find_period(const epg_port_pwm_t *config)
 {
-    const epg_zephyr_pwm_t *pwm = find_pwm(config->block, config->unit);
+    size_t row = 0;
+    uint64_t rate = 0;
+    const epg_zephyr_pwm_t *pwm = find_pwm(config->block, config->unit, &row);
     if (pwm == NULL) {
         return -ENODEV;
     }
+    periods[row] = config->top + 1U;
     if (pwm->period_ns == 0) {
-        return pwm_set_cycles(pwm->device, pwm->channel, config->top + 1U, level, pwm->flags);
+        return 0;
     }
-    const uint32_t pulse = (uint32_t)((uint64_t)pwm->period_ns * level / (config->top + 1U));
-    return pwm_set(pwm->device, pwm->channel, pwm->period_ns, pulse, pwm->flags);
+    const int error = pwm_get_cycles_per_sec(pwm->device, pwm->channel, &rate);
+    periods[row] = (uint32_t)(pwm->period_ns * rate / NS_PER_S);
+    return error;
+}
+
+/** Sets the high time, as a level out of `top + 1`. */
+static int set_level(const epg_port_pwm_t *config, uint32_t level)
+{
+    size_t row = 0;
+    const epg_zephyr_pwm_t *pwm = find_pwm(config->block, config->unit, &row);
+    if (pwm == NULL) {
+        return -ENODEV;
+    }
+    const uint32_t period = periods[row];
+    const uint32_t steps = config->top + 1U;
+    const uint32_t pulse = period == steps ? level : (uint32_t)((uint64_t)period * level / steps);
+    return pwm_set_cycles(pwm->device, pwm->channel, period, pulse, pwm->flags);
 }
 
 void epg_port_pwm_start(const epg_port_pwm_t *pwm)
 {
+    check(find_period(pwm));
     check(set_level(pwm, 0));
 }
 
