@@ -22,7 +22,9 @@ from tests.platforms.pico.rp2350.cortex_m33 import _symbols
 from .timers import Timer
 
 FLASH, FLASH_SIZE = 0x08000000, 0x200000
-MEMORIES = ((0x00000000, 0x10000), (0x20000000, 0x20000), (0x24000000, 0x80000), (0x30000000, 0x48000))
+MEMORIES = (
+    (0x00000000, 0x10000), (0x1FF00000, 0x20000), (0x20000000, 0x20000), (0x24000000, 0x80000), (0x30000000, 0x48000),
+)  # fmt: skip
 PERIPHERALS, PERIPHERALS_SIZE = 0x40000000, 0x20000000
 PRIVATE, PRIVATE_SIZE = 0xE0000000, 0x100000
 RETURN = 0xFFF0
@@ -32,6 +34,10 @@ RCC, PWR, GPIO, GPIO_SIZE = 0x58024400, 0x58024800, 0x58020000, 0x400
 RCC_CR, RCC_CFGR, RCC_BDCR, RCC_CSR = 0x000, 0x010, 0x070, 0x074
 AHB4ENR, APB1LENR, APB2ENR, APB1LRSTR, APB2RSTR = 0x0E0, 0x0E8, 0x0F0, 0x090, 0x098
 PWR_CSR1, PWR_D3CR, VOS_READY = 0x04, 0x18, 1 << 13
+USARTS, USART_ISR, USART_READY = (0x40004800, 0x58000C00), 0x1C, 1 << 22 | 1 << 21 | 1 << 7 | 1 << 6
+RTC_ICSR, RTC_READY = 0x5800400C, 1 << 6 | 1 << 5
+SYST_CSR = 0xE000E010
+ADC_ISRS, ADC_CRS = (0x40022000, 0x40022100, 0x58026000), (0x40022008, 0x40022108, 0x58026008)
 NVIC_ISER, NVIC_ICER, NVIC_IPR, VTOR, MPU_TYPE = 0xE000E100, 0xE000E180, 0xE000E400, 0xE000ED08, 0xE000ED90
 
 # Base address, width, interrupt of the channels; registers and bit of clock and reset (RM0433, 2.3, 19.1.2, 8.7).
@@ -115,6 +121,26 @@ class Stm32h743:
         self._go(handler & ~1, RETURN, 10_000)
         assert self.pc == RETURN, f"interrupt {number} has not returned: it is at {self.pc:#x}"
         self.cpu.context_restore(before)
+
+    def call(self, function: str, *arguments: int, longest: int = 100_000) -> tuple[int, int]:
+        """Calls a function from where the program stands; its result, and how many instructions it took."""
+        executed = 0
+
+        def count(*_: Any) -> None:
+            nonlocal executed
+            executed += 1
+
+        before = self.cpu.context_save()
+        for register, value in zip(("R0", "R1", "R2", "R3"), arguments):
+            self.cpu.reg_write(getattr(self.arm, f"UC_ARM_REG_{register}"), value)
+        self.cpu.reg_write(self.arm.UC_ARM_REG_LR, RETURN | 1)
+        hook = self.cpu.hook_add(4, count)  # UC_HOOK_CODE
+        self._go(self.symbols[function] & ~1, RETURN, longest)
+        self.cpu.hook_del(hook)
+        result = int(self.cpu.reg_read(self.arm.UC_ARM_REG_R0))
+        assert self.pc == RETURN, f"{function}() has not returned: it is at {self.pc:#x}"
+        self.cpu.context_restore(before)
+        return result, executed
 
     def _go(self, start: int, end: int, instructions: int) -> None:
         self.cpu.emu_start(start | 1, end, count=instructions)
@@ -202,6 +228,16 @@ class Stm32h743:
             return value | (value & 1) << 1
         if address in (PWR + PWR_CSR1, PWR + PWR_D3CR):
             return value | VOS_READY
+        if address in ADC_ISRS:  # on, and its regulator too
+            return value | 1 << 12 | 1
+        if address in ADC_CRS:  # calibrated
+            return value & ~(1 << 31)
+        if address == SYST_CSR:  # a millisecond has passed, which ST's library counts while it waits
+            return value | 1 << 16
+        if address == RTC_ICSR:  # ready for what is asked of it
+            return value | RTC_READY
+        if address - USART_ISR in USARTS:  # 3 and LPUART1: on, and everything is sent
+            return USART_READY
         return value
 
     def _write(self, address: int, value: int) -> None:

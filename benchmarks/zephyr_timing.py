@@ -1,0 +1,193 @@
+"""When Zephyr's control cycles of JIWY come, and what they take, on the one core of a Pico that runs everything.
+
+The example's application as it is shipped, in EPG's RP2040 emulator, which times every control cycle from outside.
+Simulated are the core to the cycle, PIO, PWM and USB; not simulated is the flash cache, through which this image runs.
+"""
+
+from __future__ import annotations
+
+import random
+import sys
+from collections import Counter
+from dataclasses import dataclass
+from pathlib import Path
+from statistics import fmean
+
+from measure import ROOT
+from pico_timing import extent, verdict
+from report import Table, arguments, command_line, show
+
+sys.path.insert(0, str(ROOT))
+
+from tests.emulator.toolchain import Missing, arm_gcc, node, rp2040js, tool
+from tests.platforms.pico.closed_loop.robot import PERIOD
+from tests.platforms.pico.timing.measure import Timing
+from tests.platforms.pico.xrce.board import AGENT_PORT, CONSOLE_PORT
+from tests.zephyr.proof.board import APPLICATION, ZephyrJiwy, deviations
+from tests.zephyr.workspace import build, c_library, workspace
+
+FREQUENT = "tests/zephyr/proof/application"
+AIM = 2500
+"""Cycles of 8 ns: 20 us."""
+PARTS = {
+    "inputs": ("sample", "read_inputs", "inputs_finite"),
+    "model": ("model_step", "model_finite", "model_stopped"),
+    "outputs": ("write_outputs",),
+}
+SIMULATED = (
+    "Simulated, with the compiler's doubles, and without the flash cache: a board is slower by what the cache misses."
+)
+
+
+@dataclass(frozen=True)
+class Load:
+    """``period`` of setpoints and of what is published in ms; ``flooded``: packets on both ports all the time."""
+
+    period: int
+    flooded: bool = False
+
+    @property
+    def title(self) -> str:
+        return f"{self.period} ms" + (", flooded" if self.flooded else "")
+
+    def image(self) -> Path:
+        if self.period == 33:
+            return build(APPLICATION, "rpi_pico", settings=c_library()) / "zephyr" / "zephyr.elf"
+        period = {"PERIOD": f"{self.period} ms"}
+        return build(FREQUENT, "rpi_pico", settings={**c_library(), **period}) / "zephyr" / "zephyr.elf"
+
+
+LOADS = (Load(33), Load(33, flooded=True), Load(10))
+
+
+@dataclass
+class Measured:
+    """``timing`` by the emulator's clock; ``interrupt``: how late the tick's was entered, in cycles of 8 ns."""
+
+    timing: Timing
+    interrupt: Counter[int]
+
+
+def main() -> None:
+    options = arguments(__doc__, seeds=5, milliseconds=2000, loads=len(LOADS), cycles=200)
+    try:
+        workspace("rpi_pico")
+        c_library()
+        for need in (arm_gcc, node, rp2040js, lambda: tool("micro_xrce_dds_client")):
+            need()
+    except Missing as missing:
+        raise SystemExit(str(missing)) from None
+    measured = {load: measure(load, options.seeds, options.milliseconds) for load in LOADS[: options.loads]}
+    tables = [timing_table(measured, options.seeds, options.milliseconds), split_table(options.cycles)]
+    show("zephyr_timing", tables, options.write, command_line("zephyr_timing"))
+
+
+# Deviations -----------------------------------------------------------------------------------------------------------
+
+
+def measure(load: Load, seeds: int, milliseconds: int) -> Measured:
+    """The sum over USB hosts with other times of packets; an agent and, when flooded, somebody at the console."""
+    total = Measured(Timing(), Counter())
+    image = load.image()
+    for seed in range(1, seeds + 1):
+        draw = random.Random(seed)
+        with ZephyrJiwy(seed=seed, elf=image) as jiwy:
+            jiwy.home()
+            jiwy.begin()
+            if load.flooded:
+                jiwy.pico.call("usb_flood", text="stats\nports\nnonsense\n", port=CONSOLE_PORT)
+                jiwy.pico.call(
+                    "usb_flood", text="".join(chr(draw.randrange(32, 126)) for _ in range(997)), port=AGENT_PORT
+                )
+            end = jiwy.agent.now() + milliseconds / 1000
+            while jiwy.agent.now() < end:
+                jiwy.point(draw.uniform(0.1, 1.2), draw.uniform(0.1, 1.2))
+                jiwy.agent.run(load.period * draw.uniform(0.98, 1.02))
+            total.timing.add(jiwy.timing())
+            total.interrupt.update(deviations(jiwy.interrupts(), PERIOD))
+            for port in (AGENT_PORT, CONSOLE_PORT) if load.flooded else ():
+                jiwy.pico.call("usb_flood", on=False, port=port)
+            if load.flooded:
+                jiwy.pico.send("\nwatch none\n", port=CONSOLE_PORT)
+                jiwy.agent.run(2000)
+            stats = jiwy.stats()
+            total.timing.overruns += int(stats["overruns"])
+            if stats["enabled"] != "1" or jiwy.faults():
+                raise SystemExit(f"the board does not control any more: {stats}, {jiwy.faults()}")
+    return total
+
+
+def timing_table(measured: dict[Load, Measured], seeds: int, milliseconds: int) -> Table:
+    head = ["communication", "cycles", "lost", "overruns", "interrupt", "cycle", "first encoder", "second encoder",
+            "written", "output"]  # fmt: skip
+    rows = []
+    for load, found in measured.items():
+        timing = found.timing
+        written = f"{min(timing.written) * 0.008:.0f} ... {max(timing.written) * 0.008:.0f}"
+        counts = [f"{timing.cycles:,}", str(timing.missed), str(timing.overruns)]
+        late = [extent(one) for one in (found.interrupt, timing.entry, timing.first_read, timing.last_read)]
+        rows.append([load.title, *counts, *late, written, extent(timing.actuation)])
+    timings = [found.timing for found in measured.values()]
+    entry = max(max(timing.entry) - min(timing.entry) for timing in timings)
+    lost = sum(timing.missed + timing.overruns for timing in timings)
+    notes = [
+        "Deviations from t0 + k T in cycles of 8 ns, smallest ... largest, and the share of cycles that deviate. "
+        "Interrupt: entry of the tick's, against the earliest. Cycle: its first instruction in the control thread. "
+        "Encoders: the start of each read. Written: the end of the last write to the outputs, in microseconds from the "
+        "cycle's begin. Output: the PWM wrap (every 6,250 cycles) at which a level takes effect, against the wrap at "
+        "which most do.",
+        f"{seeds} USB hosts with other times of packets, {milliseconds / 1000:g} s each. An agent sends setpoints as "
+        "often as the board publishes. Flooded: packets on both serial ports as fast as USB takes them.",
+        f"Aims: no tick lost and no overrun: {verdict(lost == 0)}; begin of the cycle within 20 us: "
+        f"{verdict(entry < AIM)}.",
+        SIMULATED,
+    ]
+    return Table("Deviation of a 1 ms control cycle, Zephyr on RP2040, simulated", head, rows, notes)
+
+
+# Split ----------------------------------------------------------------------------------------------------------------
+
+
+def split_table(count: int) -> Table:
+    """Means of cycles in which both axes move."""
+    functions = [name for names in PARTS.values() for name in names]
+    with ZephyrJiwy(elf=LOADS[0].image()) as jiwy:
+        jiwy.home()
+        pico = jiwy.pico
+        for name in functions:
+            pico.call("watch_span", name=name, core=0, **{"from": name, "to": "return"})
+        ways = {"tick": ("on_wrap", "epg_control_cycle"), "path": ("on_wrap", "epg_port_wait_until")}
+        for name, (begin, end) in ways.items():
+            pico.call("watch_span", name=name, core=0, **{"from": begin, "to": end})
+        jiwy.point(0.9, 0.6)
+        lines = []
+        for _ in range(count):
+            jiwy.agent.run(1)
+            found = pico.call("span", name="path")
+            if len(found["passages"]) == 1:
+                lines.append((found["passages"][0], found["flash_lines"]))
+        spans = {name: pico.call("span", name=name)["passages"] for name in [*functions, "tick"]}
+    ran = len(spans["tick"])
+
+    def mean(names: tuple[str, ...], column: int) -> float:
+        return sum(passage[column] for name in names for passage in spans[name]) / ran
+
+    costs = {"tick to cycle": [mean(("tick",), column) for column in (2, 1)]}
+    costs |= {part: [mean(names, column) for column in (2, 1)] for part, names in PARTS.items() if part != "outputs"}
+    whole = [fmean(passage[column] for passage, _ in lines) for column in (2, 1)]
+    costs["rest"] = [whole[n] - sum(cost[n] for cost in costs.values()) for n in (0, 1)]
+    costs["until the outputs are known"] = whole
+    costs["writing them, after the output delay"] = [mean(PARTS["outputs"], column) for column in (2, 1)]
+    rows = [[part, f"{cost[0]:.0f}", f"{0.008 * cost[1]:.1f}"] for part, cost in costs.items()]
+    notes = [
+        f"Means of {ran} cycles in which both axes move, from the first instruction of the tick's interrupt on; what "
+        "interrupts a cycle counts in it. Tick to cycle: the interrupt, the semaphore, and the change of threads.",
+        f"Until the outputs are known, a cycle touches {fmean(n for _, n in lines):.0f} lines of 8 bytes of the flash "
+        f"({max(n for _, n in lines)} at most), of the 2,048 that the RP2040's cache holds.",
+        SIMULATED,
+    ]
+    return Table("A control cycle of Zephyr on RP2040, simulated", ["part", "instructions", "us"], rows, notes)
+
+
+if __name__ == "__main__":
+    main()
