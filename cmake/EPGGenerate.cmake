@@ -63,8 +63,8 @@ function(_epg_key result)
     file(SIZE "${EPG_PYTHON}" size)
     set(interpreter "${EPG_PYTHON} ${time} ${size}")
   endif()
-  string(SHA256 key "${ARGN}\n${EPG_TARGETS_PATH}\n$ENV{EPG_TARGETS_PATH}\n${generator}\n${interpreter}
-$CACHE{Python3_EXECUTABLE}\n$CACHE{Python_EXECUTABLE}")
+  _epg_wanted_python(wanted)
+  string(SHA256 key "${ARGN}\n${EPG_TARGETS_PATH}\n$ENV{EPG_TARGETS_PATH}\n${generator}\n${interpreter}\n${wanted}")
   set(${result} "${key}" PARENT_SCOPE)
 endfunction()
 

@@ -4,7 +4,7 @@
 # configures, else what FindPython3 finds.
 # Another -DPython3_EXECUTABLE is heeded, and so is an interpreter that is gone.
 function(_epg_find_python result)
-  set(wanted "$CACHE{Python3_EXECUTABLE}|$CACHE{Python_EXECUTABLE}|$CACHE{WEST_PYTHON}")
+  _epg_wanted_python(wanted)
   if(NOT EPG_PYTHON OR NOT EXISTS "${EPG_PYTHON}" OR NOT wanted STREQUAL EPG_PYTHON_WANTED)
     if(Python3_EXECUTABLE)
       set(found "${Python3_EXECUTABLE}")
@@ -37,6 +37,16 @@ function(_epg_find_python result)
     set(EPG_PYTHON_WANTED "${wanted}" CACHE INTERNAL "What EPG_PYTHON was found from")
   endif()
   set(${result} "${EPG_PYTHON}" PARENT_SCOPE)
+endfunction()
+
+# What users say of the interpreter.  What a build system has put into the cache after EPG had found one,
+# EPG_PYTHON_FOUND_LATER, they have not said.
+function(_epg_wanted_python result)
+  set(python3 "$CACHE{Python3_EXECUTABLE}")
+  if(python3 STREQUAL "$CACHE{EPG_PYTHON_FOUND_LATER}")
+    set(python3 "")
+  endif()
+  set(${result} "${python3}|$CACHE{Python_EXECUTABLE}|$CACHE{WEST_PYTHON}" PARENT_SCOPE)
 endfunction()
 
 # Runs `epg <argument>...`; its messages go to the terminal as they are (CMake would wrap their lines).
