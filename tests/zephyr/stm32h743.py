@@ -66,6 +66,8 @@ class Stm32h743:
         self.enabled: set[int] = set()
         self.interrupts = 0
         """Interrupts that were served."""
+        self.milliseconds = True
+        """Whether each look at SysTick finds another millisecond gone; else time stands still."""
         for base, size in ((FLASH, FLASH_SIZE), *MEMORIES):
             self.cpu.mem_map(base, size)
         for address, data in _load_segments(elf):
@@ -123,7 +125,10 @@ class Stm32h743:
         self.cpu.context_restore(before)
 
     def call(self, function: str, *arguments: int, longest: int = 100_000) -> tuple[int, int]:
-        """Calls a function from where the program stands; its result, and how many instructions it took."""
+        """Calls a function from where the program stands; its result, and how many instructions it took.
+
+        ``arguments`` are words: the first four go into registers, the others onto the stack (AAPCS32 6.4).
+        """
         executed = 0
 
         def count(*_: Any) -> None:
@@ -133,6 +138,10 @@ class Stm32h743:
         before = self.cpu.context_save()
         for register, value in zip(("R0", "R1", "R2", "R3"), arguments):
             self.cpu.reg_write(getattr(self.arm, f"UC_ARM_REG_{register}"), value)
+        stacked = b"".join(struct.pack("<I", value) for value in arguments[4:])
+        stack = self.cpu.reg_read(self.arm.UC_ARM_REG_SP) - (len(stacked) + 7) // 8 * 8
+        self.cpu.mem_write(stack, stacked)
+        self.cpu.reg_write(self.arm.UC_ARM_REG_SP, stack)
         self.cpu.reg_write(self.arm.UC_ARM_REG_LR, RETURN | 1)
         hook = self.cpu.hook_add(4, count)  # UC_HOOK_CODE
         self._go(self.symbols[function] & ~1, RETURN, longest)
@@ -232,8 +241,8 @@ class Stm32h743:
             return value | 1 << 12 | 1
         if address in ADC_CRS:  # calibrated
             return value & ~(1 << 31)
-        if address == SYST_CSR:  # a millisecond has passed, which ST's library counts while it waits
-            return value | 1 << 16
+        if address == SYST_CSR:  # COUNTFLAG: a millisecond has passed, which ST's library counts while it waits
+            return value & ~(1 << 16) | self.milliseconds << 16
         if address == RTC_ICSR:  # ready for what is asked of it
             return value | RTC_READY
         if address - USART_ISR in USARTS:  # 3 and LPUART1: on, and everything is sent

@@ -1,6 +1,6 @@
 """The example's application for a Nucleo-H743ZI on an emulated chip: what its port layer reads and writes.
 
-The emulated processor has no arithmetic of doubles, and no change of threads: the controller itself does not run.
+The emulated processor has no arithmetic of doubles, and no change of threads: the controller runs in test_h743_cycle.py.
 """
 
 from __future__ import annotations
