@@ -56,6 +56,8 @@ void epg_zephyr_control_release(void);
 /** Bytes of the stack, and how many of them have ever been used; 0 where Zephyr does not count. */
 void epg_zephyr_control_stack(uint32_t *size, uint32_t *used);
 
+/* stack.c --------------------------------------------------------------------------------------------------------- */
+
 /** Bytes that have ever been used of the stack of `thread`, `size` bytes large; 0 where Zephyr does not count. */
 uint32_t epg_zephyr_stack_used(const struct k_thread *thread, size_t size);
 

@@ -6,8 +6,11 @@
 
 #include <zephyr/drivers/pwm.h>
 #include <zephyr/kernel.h>
+#include <zephyr/logging/log.h>
 
 #include "parts.h"
+
+LOG_MODULE_DECLARE(epg, CONFIG_EPG_LOG_LEVEL);
 
 BUILD_ASSERT(
     IS_ENABLED(CONFIG_TIMER_HAS_64BIT_CYCLE_COUNTER),
@@ -174,6 +177,15 @@ bool epg_port_input_read(uint8_t pin)
 }
 
 /* All --------------------------------------------------------------------------------------------------------------- */
+
+bool epg_zephyr_ready(const struct device *device)
+{
+    const bool ready = device_is_ready(device);
+    if (!ready) {
+        LOG_ERR("%s is not ready", device == NULL ? "a device" : device->name);
+    }
+    return ready;
+}
 
 bool epg_zephyr_devices_ready(void)
 {

@@ -16,28 +16,6 @@ LOG_MODULE_REGISTER(epg, CONFIG_EPG_LOG_LEVEL);
 static const epg_zephyr_target_t *running;
 static epg_zephyr_error_t error;
 
-bool epg_zephyr_ready(const struct device *device)
-{
-    const bool ready = device_is_ready(device);
-    if (!ready) {
-        LOG_ERR("%s is not ready", device == NULL ? "a device" : device->name);
-    }
-    return ready;
-}
-
-/* Threads of POSIX run on stacks of the host. */
-uint32_t epg_zephyr_stack_used(const struct k_thread *thread, size_t size)
-{
-#if defined(CONFIG_INIT_STACKS) && defined(CONFIG_THREAD_STACK_INFO) && !defined(CONFIG_ARCH_POSIX)
-    size_t unused = 0;
-    return k_thread_stack_space_get(thread, &unused) == 0 ? (uint32_t)(size - unused) : 0U;
-#else
-    ARG_UNUSED(thread);
-    ARG_UNUSED(size);
-    return 0U;
-#endif
-}
-
 static void report_stacks(epg_control_t *control)
 {
     uint32_t size;

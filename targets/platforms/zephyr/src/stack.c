@@ -1,0 +1,20 @@
+/**
+ * @file
+ * How much of a thread's stack has been used.
+ */
+#include <zephyr/kernel.h>
+
+#include "parts.h"
+
+/* Threads of POSIX run on stacks of the host. */
+uint32_t epg_zephyr_stack_used(const struct k_thread *thread, size_t size)
+{
+#if defined(CONFIG_INIT_STACKS) && defined(CONFIG_THREAD_STACK_INFO) && !defined(CONFIG_ARCH_POSIX)
+    size_t unused = 0;
+    return k_thread_stack_space_get(thread, &unused) == 0 ? (uint32_t)(size - unused) : 0U;
+#else
+    ARG_UNUSED(thread);
+    ARG_UNUSED(size);
+    return 0U;
+#endif
+}
