@@ -48,12 +48,13 @@ class Statistics:
 def run_executable(
     executable: Path, folder: Path, duration: float, setpoints: Path, *, realtime: bool, progress: Progress
 ) -> None:
-    """Runs ``executable``, which writes ``trace.csv``, ``topics.csv`` and ``statistics.json`` into ``folder``.
+    """Runs ``executable`` in ``folder``, where it writes ``trace.csv``, ``topics.csv`` and ``statistics.json``.
 
     Raises UserError when it cannot be started, takes far too long, or fails.
     """
-    # The form -option=value is the only one that Zephyr's native_sim understands.
-    command = [str(executable.resolve()), "--quiet", f"--duration={duration!r}", f"--setpoints={setpoints}"]
+    folder = folder.resolve()
+    # The form -option=value is the only one that native_sim understands; its simulated flash is a file where it runs.
+    command = [str(executable.resolve()), "--quiet", f"--duration={duration!r}", f"--setpoints={setpoints.resolve()}"]
     command += [f"--{option}={folder / f'{option}.csv'}" for option in ("topics", "trace")]
     command.append(f"--statistics={folder / 'statistics.json'}")
     if realtime:
@@ -62,7 +63,10 @@ def run_executable(
     progress(f"running {executable.name}: {duration:g} {unit}")
     log = folder / "messages.txt"
     try:
-        with log.open("wb") as messages, subprocess.Popen(command, stdout=messages, stderr=messages) as process:
+        with (
+            log.open("wb") as messages,
+            subprocess.Popen(command, stdout=messages, stderr=messages, cwd=folder) as process,
+        ):
             if not _wait(process, duration, realtime, progress):
                 process.kill()
                 _fail(executable, f"'{executable.name}' did not end", f"killed after {_patience(duration):.0f} s")

@@ -69,7 +69,12 @@ class Host(Lines):
     def __init__(self, program: Path, *options: str) -> None:
         command = [str(program), "--realtime", "--console", *options]
         self.process = subprocess.Popen(
-            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, bufsize=0
+            command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            bufsize=0,
+            cwd=program.parent,
         )
         assert self.process.stdin is not None and self.process.stdout is not None
         super().__init__(self.process.stdout.fileno(), self.process.stdin.fileno())
