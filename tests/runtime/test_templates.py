@@ -254,7 +254,7 @@ def program(catalog: Catalog, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("templates")
     renderers = [Renderer(catalog, component) for component in COMPONENTS_TRIED]
     (folder / "generated.h").write_text(header(renderers))
-    port = [HOST / "src" / f"{name}.c" for name in ("port", "clock", "serial", "store")]
+    port = [HOST / "src" / f"{name}.c" for name in ("port", "clock", "monotonic", "serial", "store")]
     sources = [HARNESS, *port, *runtime_sources(), *(s for s in component_sources() if s.stem != "uart")]
     return compile_program(folder / "templates", sources, includes=[folder, HOST / "include", HOST / "src"])
 
