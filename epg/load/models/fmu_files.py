@@ -10,15 +10,17 @@ import os
 import re
 import stat
 import struct
-import zipfile
-import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from epg.diagnostics import Diagnostics
 from epg.load.models.source_file import MAX_BYTES
 from epg.source import Span
+
+if TYPE_CHECKING:
+    import zipfile
 
 DESCRIPTION = "modelDescription.xml"
 SOURCES = "sources"
@@ -120,6 +122,9 @@ def _folder(root: Path) -> FmuFiles:
 
 
 def _archive(path: Path) -> FmuFiles:
+    import zipfile  # every run would pay for it
+    import zlib
+
     _check_directory(path)
     try:
         with zipfile.ZipFile(path) as archive:

@@ -13,7 +13,6 @@ from pathlib import Path
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.load.models import details
 from epg.load.models.c_code import parse_code
-from epg.load.models.fmu_settings import FmuSettings
 from epg.load.models.folders import source_files
 from epg.load.models.identifiers import is_reserved, one_line, to_identifier
 from epg.load.models.model import Model, Parameter, Port
@@ -57,9 +56,16 @@ def load_hand_written(path: Path, diagnostics: Diagnostics) -> Model | None:
     node = load_yaml(path, diagnostics)
     if node is None:
         return None
-    reader = FmuSettings(path, node, diagnostics) if "fmu" in node else _Reader(path, node, diagnostics)
-    model = reader.load()
+    model = _load(path, node, diagnostics)
     return model if diagnostics.error_count == before else None
+
+
+def _load(path: Path, node: Node, diagnostics: Diagnostics) -> Model | None:
+    if "fmu" in node:
+        from epg.load.models.fmu_settings import FmuSettings  # as rare as it is large
+
+        return FmuSettings(path, node, diagnostics).load()
+    return _Reader(path, node, diagnostics).load()
 
 
 class _Reader(ModelYaml):

@@ -9,7 +9,6 @@ from pathlib import Path
 from epg.diagnostics import Diagnostics
 from epg.load.models import c_function, cpp_class, hand_written
 from epg.load.models.c_code import Code, parse_code
-from epg.load.models.fmu import load_fmu
 from epg.load.models.fmu_files import DESCRIPTION, SUFFIX, is_fmu_folder
 from epg.load.models.folders import source_files
 from epg.load.models.link import is_program
@@ -106,7 +105,13 @@ def _fmus(folder: Path) -> list[Candidate]:
 
 
 def _fmu_candidate(path: Path, file: Path) -> Candidate:
-    return Candidate(file, lambda diagnostics: load_fmu(path, diagnostics))
+    return Candidate(file, lambda diagnostics: _load_fmu(path, diagnostics))
+
+
+def _load_fmu(path: Path, diagnostics: Diagnostics) -> Model | None:
+    from epg.load.models.fmu import load_fmu  # a quarter of what loading a model imports, and few models are FMUs
+
+    return load_fmu(path, diagnostics)
 
 
 def _sources(folder: Path) -> list[Candidate]:
@@ -149,9 +154,9 @@ def _tokens_candidate(path: Path) -> Candidate:
 def _load_file(path: Path, whole: Span, diagnostics: Diagnostics) -> Model | None:
     suffix = path.suffix.lower()
     if suffix == SUFFIX:
-        return load_fmu(path, diagnostics)
+        return _load_fmu(path, diagnostics)
     if path.name == DESCRIPTION and is_fmu_folder(path.parent):
-        return load_fmu(path.parent, diagnostics)
+        return _load_fmu(path.parent, diagnostics)
     if suffix == ".xml":
         return _tokens_candidate(path).load(diagnostics)
     if suffix in (".yaml", ".yml"):
