@@ -1,6 +1,6 @@
 """The example's application for a Nucleo-H743ZI on an emulated chip: what its port layer reads and writes.
 
-The emulated processor has no arithmetic of doubles, and no change of threads: the controller runs in test_h743_cycle.py.
+The emulated processor has no arithmetic of doubles and no change of threads: test_h743_cycle.py runs the controller.
 """
 
 from __future__ import annotations
