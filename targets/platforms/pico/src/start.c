@@ -3,6 +3,7 @@
  * Starting and stopping a target; what core 0 does for it.
  */
 #include "epg/port.h"
+#include "epg/serve.h"
 #include "parts.h"
 
 /** Bytes at the bottom of core 0's stack that its guard may cover, rounded up to where the MPU can begin. */
@@ -31,19 +32,6 @@ static void report_stacks(void)
     epg_control_report_stack(control, EPG_STACK_COMMUNICATION, status.service_stack_used, status.service_stack_size);
 }
 
-static void serve_middleware(const epg_middleware_t *middleware, const epg_transport_t *transport)
-{
-    if (transport != NULL && transport->poll != NULL) {
-        transport->poll(transport->stream.context);
-    }
-    if (middleware != NULL) {
-        middleware->poll(epg_port_time_ns());
-    }
-    if (transport != NULL && transport->flush != NULL) {
-        transport->flush(transport->stream.context);
-    }
-}
-
 /** One turn of the communication side. */
 static void serve(void)
 {
@@ -51,8 +39,8 @@ static void serve(void)
     static bool reported;
     const epg_pico_target_t *pico = running;
     epg_control_alive(pico->target->control);
-    serve_middleware(pico->target->middleware, pico->transport);
-    serve_middleware(pico->target->console, pico->console_transport);
+    epg_serve(pico->target->middleware, pico->transport);
+    epg_serve(pico->target->console, pico->console_transport);
     const uint32_t now_us = timer_hw->timerawl;
     if (!reported || now_us - stacks_us >= STACKS_PERIOD_US) {
         reported = true;
@@ -65,26 +53,11 @@ void epg_pico_serve_others(void (*rest)(void))
 {
     const epg_pico_target_t *pico = running;
     const epg_transport_t *transport = pico->transport;
-    if (transport != NULL && transport->flush != NULL) {
-        transport->flush(transport->stream.context);
-    }
+    epg_serve_flush(transport);
     rest();
     epg_control_alive(pico->target->control);
-    serve_middleware(NULL, transport);
-    serve_middleware(pico->target->console, pico->console_transport);
-}
-
-static bool start_transport(const epg_transport_t *transport, const char *title)
-{
-    return transport == NULL || transport->start(transport->stream.context, title);
-}
-
-static void start_middleware(const epg_pico_target_t *pico, const epg_middleware_t *middleware,
-                             const epg_transport_t *transport)
-{
-    if (middleware != NULL) {
-        middleware->start(pico->target, transport != NULL ? &transport->stream : NULL);
-    }
+    epg_serve(NULL, transport);
+    epg_serve(pico->target->console, pico->console_transport);
 }
 
 static void paint_main_stack(void)
@@ -104,16 +77,16 @@ static epg_pico_error_t start(const epg_pico_target_t *pico)
     }
     paint_main_stack();
     epg_pico_guard_faults();
-    if (!start_transport(pico->transport, pico->transport_title) ||
-        !start_transport(pico->console_transport, "EPG console")) {
+    if (!epg_serve_start_transport(pico->transport, pico->transport_title) ||
+        !epg_serve_start_transport(pico->console_transport, "EPG console")) {
         return EPG_PICO_ERROR_RESOURCE;
     }
     const epg_pico_error_t failed = epg_pico_control_start(pico, fault);
     if (failed != EPG_PICO_OK) {
         return failed;
     }
-    start_middleware(pico, pico->target->middleware, pico->transport);
-    start_middleware(pico, pico->target->console, pico->console_transport);
+    epg_serve_start_middleware(pico->target, pico->target->middleware, pico->transport);
+    epg_serve_start_middleware(pico->target, pico->target->console, pico->console_transport);
     running = pico;
     if (!epg_pico_service_start(serve)) {
         epg_pico_stop();

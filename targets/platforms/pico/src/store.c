@@ -7,6 +7,7 @@
  */
 #include <string.h>
 
+#include "epg/adler32.h"
 #include "epg/port.h"
 #include "flash.h"
 #include "parts.h"
@@ -45,23 +46,11 @@ static const uint8_t *sector(uint32_t index)
     return (const uint8_t *)(XIP_BASE + EPG_PICO_STORE_OFFSET + index * FLASH_SECTOR_SIZE);
 }
 
-/** Adler-32 (RFC 1950, section 8.2): finds a page that was programmed in part.  Goes on from `sum`, at first 1. */
-static uint32_t check(uint32_t sum, const void *data, size_t size)
-{
-    const uint8_t *bytes = data;
-    uint32_t first = sum & 0xFFFFU;
-    uint32_t second = sum >> 16;
-    for (size_t i = 0; i < size; i++) {
-        first = (first + bytes[i]) % 65521U;
-        second = (second + first) % 65521U;
-    }
-    return second << 16 | first;
-}
-
 static uint32_t check_of(const head_t *head, const uint8_t *data)
 {
-    const uint32_t sum = check(check(1U, &head->number, sizeof head->number), &head->size, sizeof head->size);
-    return check(sum, data, head->size);
+    const uint32_t sum =
+        epg_adler32(epg_adler32(1U, &head->number, sizeof head->number), &head->size, sizeof head->size);
+    return epg_adler32(sum, data, head->size);
 }
 
 /** Copies the head of a sector; false if there is none that fits its bytes. */

@@ -6,6 +6,7 @@
 #include <zephyr/logging/log.h>
 
 #include "epg/port.h"
+#include "epg/serve.h"
 #include "parts.h"
 
 LOG_MODULE_REGISTER(epg, CONFIG_EPG_LOG_LEVEL);
@@ -26,27 +27,14 @@ static void report_stacks(epg_control_t *control)
     epg_control_report_stack(control, EPG_STACK_COMMUNICATION, used, size);
 }
 
-static void serve_middleware(const epg_middleware_t *middleware, const epg_transport_t *transport)
-{
-    if (transport != NULL && transport->poll != NULL) {
-        transport->poll(transport->stream.context);
-    }
-    if (middleware != NULL) {
-        middleware->poll(epg_port_time_ns());
-    }
-    if (transport != NULL && transport->flush != NULL) {
-        transport->flush(transport->stream.context);
-    }
-}
-
 /** One turn of the communication side. */
 static void serve(void)
 {
     static uint64_t stacks_ns;
     const epg_target_t *target = running->target;
     epg_control_alive(target->control);
-    serve_middleware(target->middleware, running->transport);
-    serve_middleware(target->console, running->console_transport);
+    epg_serve(target->middleware, running->transport);
+    epg_serve(target->console, running->console_transport);
     const uint64_t now_ns = epg_port_time_ns();
     if (stacks_ns == 0U || now_ns - stacks_ns >= STACKS_PERIOD_NS) {
         stacks_ns = now_ns;
@@ -54,26 +42,11 @@ static void serve(void)
     }
 }
 
-static bool start_transport(const epg_transport_t *transport, const char *title)
-{
-    return transport == NULL || transport->start(transport->stream.context, title);
-}
-
-static void start_middleware(const epg_target_t *target, const epg_middleware_t *middleware,
-                             const epg_transport_t *transport)
-{
-    if (middleware != NULL) {
-        middleware->start(target, transport != NULL ? &transport->stream : NULL);
-    }
-}
-
 static void stop_middleware(const epg_middleware_t *middleware, const epg_transport_t *transport)
 {
     if (middleware != NULL && middleware->stop != NULL) {
         middleware->stop();
-        if (transport != NULL && transport->flush != NULL) {
-            transport->flush(transport->stream.context);
-        }
+        epg_serve_flush(transport);
     }
 }
 
@@ -86,8 +59,8 @@ static epg_zephyr_error_t start(const epg_zephyr_target_t *zephyr)
     if (!epg_zephyr_devices_ready()) {
         return EPG_ZEPHYR_ERROR_DEVICE;
     }
-    if (!start_transport(zephyr->transport, zephyr->transport_title) ||
-        !start_transport(zephyr->console_transport, "EPG console")) {
+    if (!epg_serve_start_transport(zephyr->transport, zephyr->transport_title) ||
+        !epg_serve_start_transport(zephyr->console_transport, "EPG console")) {
         LOG_ERR("a transport does not start");
         return EPG_ZEPHYR_ERROR_DEVICE;
     }
@@ -99,8 +72,8 @@ static epg_zephyr_error_t start(const epg_zephyr_target_t *zephyr)
         return failed;
     }
     running = zephyr;
-    start_middleware(target, target->middleware, zephyr->transport);
-    start_middleware(target, target->console, zephyr->console_transport);
+    epg_serve_start_middleware(target, target->middleware, zephyr->transport);
+    epg_serve_start_middleware(target, target->console, zephyr->console_transport);
     epg_zephyr_communication_start(serve);
     return EPG_ZEPHYR_OK;
 }

@@ -13,6 +13,7 @@
 #include <zephyr/kernel.h>
 #include <zephyr/storage/flash_map.h>
 
+#include "epg/adler32.h"
 #include "epg/port.h"
 #include "parts.h"
 
@@ -81,22 +82,9 @@ static uint32_t record_size(uint32_t size)
     return head_size() + (uint32_t)ROUND_UP(size, flash.align);
 }
 
-/** Adler-32 (RFC 1950, section 8.2).  Goes on from `sum`, at first 1. */
-static uint32_t check(uint32_t sum, const void *data, size_t size)
-{
-    const uint8_t *bytes = data;
-    uint32_t first = sum & 0xFFFFU;
-    uint32_t second = sum >> 16;
-    for (size_t i = 0; i < size; i++) {
-        first = (first + bytes[i]) % 65521U;
-        second = (second + first) % 65521U;
-    }
-    return second << 16 | first;
-}
-
 static uint32_t check_of_head(const head_t *head)
 {
-    return check(check(1U, &head->number, sizeof head->number), &head->size, sizeof head->size);
+    return epg_adler32(epg_adler32(1U, &head->number, sizeof head->number), &head->size, sizeof head->size);
 }
 
 /** Whether the data after a head are what it says. */
@@ -109,7 +97,7 @@ static bool valid(const head_t *head, uint32_t at)
         if (flash_area_read(flash.area, (off_t)(at + head_size() + done), piece, size) < 0) {
             return false;
         }
-        sum = check(sum, piece, size);
+        sum = epg_adler32(sum, piece, size);
     }
     return sum == head->check;
 }
@@ -192,7 +180,7 @@ static bool write(const void *data, size_t size)
         }
     }
     head_t head = {.magic = MAGIC, .number = place.head.number + 1U, .size = (uint32_t)size};
-    head.check = check(check_of_head(&head), data, size);
+    head.check = epg_adler32(check_of_head(&head), data, size);
     if (!program(at + head_size(), data, size) || !program(at, &head, sizeof head)) {
         return false;
     }
