@@ -22,7 +22,6 @@ def model_files() -> dict[Path, str]:
         Path("existing_firmware/station/model"): c_function(turntable.control()),
         Path("existing_pico_repository/turntable/model"): c_function(turntable.control()),
         Path("existing_zephyr_application/model"): c_function(turntable.control()),
-        Path("zephyr_two_boards/model"): c_function(turntable.control()),
     }
     return {folder / name: text for folder, files in folders.items() for name, text in files.items()}
 
