@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import os
 import shutil
 import signal
@@ -19,8 +18,9 @@ import pytest
 from epg.simulate import simulate
 from tests.emulator.toolchain import ROOT, Missing, arm_gcc, skip_if_missing
 from tests.middlewares.client import Host, Lines, values
-from tests.xrce_agent import Agent, PtyLink, UdpLink, float64, read_float64
+from tests.xrce_agent import Agent, PtyLink, UdpLink, float64
 from tests.xrce_agent.bare import libraries
+from tests.xrce_agent.jiwy import follow
 
 from .workspace import NATIVE, build, workspace
 from .workspace import run as run_tool
@@ -151,20 +151,6 @@ def test_mistakes(image: Path, tmp_path: Path, options: list[str], status: int, 
 
 
 # Real time ------------------------------------------------------------------------------------------------------------
-
-
-def follow(agent: Agent, seconds: float) -> float:
-    """Pan goes to and fro by 0.4 rad in 4 s; the largest distance between setpoint and position, in rad."""
-    largest = 0.0
-    began = time.monotonic()
-    while (now := time.monotonic() - began) < seconds:
-        setpoint = 0.5 + 0.4 * math.sin(2 * math.pi * now / 4)
-        agent.topics.publish("rt/pan_subscriber", float64(setpoint), reliable=False)
-        positions = agent.topics.samples("rt/pan_publisher", began)
-        if now > 0.5 and positions:
-            largest = max(largest, abs(read_float64(positions[-1].data) - setpoint))
-        time.sleep(0.01)
-    return largest
 
 
 def test_a_node_over_udp(image: Path, agent: Agent) -> None:

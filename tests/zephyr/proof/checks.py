@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tests.emulator.emulator import CYCLES_PER_MILLISECOND
 from tests.platforms.pico.closed_loop.robot import MOTOR_PERIOD, PERIOD
-from tests.platforms.pico.xrce.checks import STACK_RESERVE
+from tests.platforms.pico.xrce.checks import assert_nothing_counted
 
 from .board import ZephyrJiwy, deviations
 
@@ -20,12 +20,7 @@ def assert_undisturbed(jiwy: ZephyrJiwy, *, flooded: bool = False) -> dict[str, 
     All outputs act at the same PWM wrap, or, when flooded, some at the next: writing them then ends too near to it.
     """
     latest = LATEST_FLOODED if flooded else LATEST
-    stats = jiwy.stats()
-    assert (stats["enabled"], stats["fault"]) == ("1", "none")
-    for name in ("overruns", "missed", "faults", "outputs_late", "setpoints_dropped", "setpoint_timeouts"):
-        assert stats[name] == "0", name
-    for side in ("control", "communication"):
-        assert int(stats[f"{side}_stack_used"]) * STACK_RESERVE <= int(stats[f"{side}_stack_size"]), side
+    stats = assert_nothing_counted(jiwy)
     timing = jiwy.timing()
     assert timing.cycles > 300
     assert timing.missed == 0

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
-import math
 import struct
 from collections.abc import Iterator
 
@@ -12,13 +10,13 @@ import pytest
 from tests.emulator.emulator import CYCLES_PER_MILLISECOND
 from tests.platforms.pico.closed_loop.robot import AXES
 from tests.platforms.pico.xrce.board import CONSOLE_PORT
+from tests.platforms.pico.xrce.checks import assert_it_tracks
 from tests.platforms.pico.xrce.scenarios import SCENARIOS, assert_holds, hold
 from tests.xrce_agent.messages import read_diagnostics
 
 from .board import ZephyrJiwy, skip_unless_emulated
 from .checks import assert_undisturbed
 
-PERIOD = 0.033
 """Seconds between two messages of a topic, as in jiwy.tcf."""
 RESTARTS = 5
 LATEST = 150
@@ -40,19 +38,7 @@ def jiwy() -> Iterator[ZephyrJiwy]:
 def test_it_tracks(jiwy: ZephyrJiwy) -> None:
     """A sine of 0.4 rad in 2 s, a setpoint each 10 ms; positions come each 33 ms, both axes' from one cycle."""
     jiwy.begin()
-    begin = jiwy.agent.now()
-    distances = []
-    while (time := jiwy.agent.now() - begin) < 1.2:
-        setpoint = 0.5 + 0.4 * math.sin(math.pi * time)
-        jiwy.point(setpoint, setpoint)
-        jiwy.agent.run(10)
-        if time > 0.5:
-            distances.append(max(abs(jiwy.angle(axis.name) - setpoint) for axis in AXES))
-    assert max(distances) < 0.15
-    pan, tilt = (jiwy.agent.heard(f"rt/{axis.name}_publisher", begin) for axis in AXES)
-    assert len(pan) == len(tilt) == pytest.approx(1.2 / PERIOD, abs=2)
-    gaps = [later.time - sooner.time for sooner, later in itertools.pairwise(pan)]
-    assert max(gaps) < PERIOD + 0.004, "a millisecond of the service, and packets of USB"
+    assert_it_tracks(jiwy, 1.2)
     stats = assert_undisturbed(jiwy)
     assert (stats["unsent"], stats["malformed"]) == ("0", "0")
     said = read_diagnostics(jiwy.agent.heard("rt/diagnostics")[-1].data)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Iterator
 
@@ -13,10 +12,9 @@ from tests.platforms.pico.images import PLATFORMS, skip_unless_emulated
 from tests.xrce_agent.messages import float64, read_diagnostics
 
 from .board import Jiwy
-from .checks import assert_undisturbed
+from .checks import ENDS, assert_it_tracks, assert_undisturbed
 
 PAN, TILT = AXES
-PERIOD = 0.033
 """Seconds between two messages of a topic, as in jiwy.tcf."""
 
 
@@ -30,15 +28,7 @@ def jiwy(request: pytest.FixtureRequest) -> Iterator[Jiwy]:
 def test_what_it_reads_and_writes(jiwy: Jiwy) -> None:
     jiwy.agent.run(1200)
     ends = {end.topic: (end.type, end.reliable) for end in [*jiwy.agent.topics.readers, *jiwy.agent.topics.writers]}
-    number, switch = "std_msgs::msg::dds_::Float64_", "std_msgs::msg::dds_::Bool_"
-    assert ends == {
-        "rt/pan_subscriber": (number, False),
-        "rt/tilt_subscriber": (number, False),
-        "rt/JIWY_node/enable": (switch, True),
-        "rt/pan_publisher": (number, False),
-        "rt/tilt_publisher": (number, False),
-        "rt/diagnostics": ("diagnostic_msgs::msg::dds_::DiagnosticArray_", True),
-    }
+    assert ends == ENDS
     said = read_diagnostics(jiwy.agent.heard("rt/diagnostics")[-1].data)
     assert (said.name, said.values["fault"], said.values["overruns"]) == ("JIWY_node", "none", "0")
     assert said.hardware == jiwy.pico.call("usb")["serial"]
@@ -48,19 +38,7 @@ def test_it_tracks(jiwy: Jiwy) -> None:
     """A sine of 0.4 rad in 2 s, a setpoint each 10 ms; positions come each 33 ms, both axes' from one cycle."""
     jiwy.home()
     jiwy.begin()
-    begin = jiwy.agent.now()
-    distances = []
-    while (time := jiwy.agent.now() - begin) < 2:
-        setpoint = 0.5 + 0.4 * math.sin(math.pi * time)
-        jiwy.point(setpoint, setpoint)
-        jiwy.agent.run(10)
-        if time > 0.5:
-            distances.append(max(abs(jiwy.angle(axis.name) - setpoint) for axis in AXES))
-    assert max(distances) < 0.15
-    pan, tilt = (jiwy.agent.heard(f"rt/{axis.name}_publisher", begin) for axis in AXES)
-    assert len(pan) == len(tilt) == pytest.approx(2 / PERIOD, abs=2)
-    gaps = [later.time - sooner.time for sooner, later in itertools.pairwise(pan)]
-    assert max(gaps) < PERIOD + 0.004, "a millisecond of the service, and packets of USB"
+    assert_it_tracks(jiwy, 2)
     stats = assert_undisturbed(jiwy)
     jiwy.agent.run(300)
     assert jiwy.position("pan") == pytest.approx(jiwy.angle("pan"), abs=PAN.rad_per_count)
