@@ -38,8 +38,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from epg.cli.progress import Progress
     from epg.cli.report import to_json
+    from epg.ros.open_source import open_source
     from epg.ros.recorder import SETPOINTS, TOPICS, channels_of, record
-    from epg.ros.source import open_source
 
     robot = _robot(options, diagnostics)
     files = [options.output / SETPOINTS, options.output / TOPICS]
