@@ -25,7 +25,10 @@ class Note:
 
 @dataclass(frozen=True)
 class Diagnostic:
-    """One problem. ``id`` is stable: documentation, tests and programs refer to it."""
+    """One problem. ``id`` is stable: documentation, tests and programs refer to it.
+
+    ``about`` names what it is about where the position does not: ``inputs.position_pan`` for a port that no line binds.
+    """
 
     id: str
     severity: str  # "error" or "warning"
@@ -33,6 +36,7 @@ class Diagnostic:
     message: str
     hint: str = ""
     notes: tuple[Note, ...] = ()
+    about: str = ""
 
 
 @dataclass
@@ -44,11 +48,15 @@ class Diagnostics:
     _counted: int = field(default=0, repr=False, compare=False)
     _errors: int = field(default=0, repr=False, compare=False)
 
-    def error(self, id: str, span: Span, message: str, *, hint: str = "", notes: Iterable[Note] = ()) -> None:
-        self._add(Diagnostic(id, "error", span, message, hint, tuple(notes)))
+    def error(
+        self, id: str, span: Span, message: str, *, hint: str = "", notes: Iterable[Note] = (), about: str = ""
+    ) -> None:
+        self._add(Diagnostic(id, "error", span, message, hint, tuple(notes), about))
 
-    def warning(self, id: str, span: Span, message: str, *, hint: str = "", notes: Iterable[Note] = ()) -> None:
-        self._add(Diagnostic(id, "warning", span, message, hint, tuple(notes)))
+    def warning(
+        self, id: str, span: Span, message: str, *, hint: str = "", notes: Iterable[Note] = (), about: str = ""
+    ) -> None:
+        self._add(Diagnostic(id, "warning", span, message, hint, tuple(notes), about))
 
     @property
     def wants_hints(self) -> bool:

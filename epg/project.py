@@ -8,7 +8,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from epg.check.bindings import Bindings, load_bindings
@@ -22,6 +22,7 @@ from epg.load.models import load_model
 from epg.load.models.details import FmuExport
 from epg.load.models.model import Model
 from epg.load.tcf import load_tcf_chain, settings_node
+from epg.load.text_file import Drafts
 from epg.resolve.allocation import Assignment
 from epg.resolve.application import Application
 from epg.resolve.claims import TICK, ClaimKey
@@ -46,15 +47,36 @@ class Request:
     user_roots: Sequence[Path] = ()
     caller: Span | None = None
     beside: Path = field(default_factory=Path)
+    drafts: Drafts = field(default_factory=dict)
 
     @property
     def roots(self) -> tuple[Path, ...]:
         return targets_roots(self.user_roots)
 
 
+@dataclass(frozen=True)
+class Parts:
+    """What the files of a request hold: each is None where there are mistakes.
+
+    ``application`` is also None where the others do not fit together.
+    """
+
+    configuration: Configuration | None
+    model: Model | None
+    bindings: Bindings | None
+    application: Application | None = None
+
+
 def load_configuration(request: Request, catalog: Catalog, diagnostics: Diagnostics) -> Configuration | None:
     """The checked configuration of ``request.tcf`` with its settings."""
-    chain = load_tcf_chain(request.tcf, request.roots, diagnostics, beside=request.beside, wanted_by=request.caller)
+    chain = load_tcf_chain(
+        request.tcf,
+        request.roots,
+        diagnostics,
+        beside=request.beside,
+        wanted_by=request.caller,
+        drafts=request.drafts,
+    )
     settings = settings_node(request.settings, diagnostics)
     if not chain:
         return None
@@ -70,20 +92,26 @@ def make_catalog(request_roots: Sequence[Path], diagnostics: Diagnostics) -> Cat
 
 def load_application(request: Request, diagnostics: Diagnostics) -> Application | None:
     """The application of ``request``, or None after reporting every problem of all its files."""
+    return load_parts(request, diagnostics).application
+
+
+def load_parts(request: Request, diagnostics: Diagnostics) -> Parts:
+    """The application of ``request`` with what it is made of, after reporting every problem of all its files."""
     check_name(request.name, request.caller or Span("command line"), diagnostics)
     catalog = make_catalog(request.roots, diagnostics)
     configuration = load_configuration(request, catalog, diagnostics)
     model = load_model(request.model, diagnostics)
-    bindings = load_bindings(request.bindings, diagnostics, request.caller)
+    bindings = load_bindings(request.bindings, diagnostics, request.caller, request.drafts)
+    parts = Parts(configuration, model, bindings)
     plant_model: Model | None = None
     plant_bindings: Bindings | None = None
     if request.plant is not None and request.plant_bindings is not None:
         plant_model = load_model(request.plant, diagnostics)
         plant_bindings = load_bindings(request.plant_bindings, diagnostics, request.caller)
         if plant_model is None or plant_bindings is None:
-            return None
+            return parts
     if configuration is None or model is None or bindings is None:
-        return None
+        return parts
     plant = PlantFiles(plant_model, plant_bindings) if plant_model and plant_bindings else None
     check_model_names(model, f"{request.name}_model", diagnostics)
     if plant is not None:
@@ -92,7 +120,7 @@ def load_application(request: Request, diagnostics: Diagnostics) -> Application 
     if application is not None:
         check_driver_headers(application, diagnostics)
         check_paths((*application.files, *request.user_roots), diagnostics)
-    return None if diagnostics.has_errors else application
+    return parts if diagnostics.has_errors else replace(parts, application=application)
 
 
 def hardware_of(application: Application) -> Hardware:

@@ -11,6 +11,7 @@ from types import MappingProxyType
 
 from epg.check.schema import load_schema, validate
 from epg.diagnostics import Diagnostics
+from epg.load.text_file import NO_DRAFTS, Drafts
 from epg.load.yaml_file import load_yaml
 from epg.quantity import QuantityError, parse_ratio
 from epg.source import Node, Span
@@ -52,9 +53,11 @@ class Bindings:
     root: Node
 
 
-def load_bindings(path: Path, diagnostics: Diagnostics, wanted_by: Span | None = None) -> Bindings | None:
+def load_bindings(
+    path: Path, diagnostics: Diagnostics, wanted_by: Span | None = None, drafts: Drafts = NO_DRAFTS
+) -> Bindings | None:
     """The bindings in ``path``, or None after reporting what is wrong with them."""
-    node = load_yaml(path, diagnostics, wanted_by)
+    node = load_yaml(path, diagnostics, wanted_by, drafts)
     if node is None:
         return None
     if not node.is_mapping:

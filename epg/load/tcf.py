@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics, did_you_mean
-from epg.load.text_file import is_file, read_text
+from epg.load.text_file import NO_DRAFTS, Drafts, is_file, read_text
 from epg.load.yaml_file import MAX_DEPTH, parse_yaml
 from epg.source import Node, Span
 
@@ -70,6 +70,7 @@ def load_tcf_chain(
     *,
     beside: Path | None = None,
     wanted_by: Span | None = None,
+    drafts: Drafts = NO_DRAFTS,
 ) -> tuple[TcfFile, ...]:
     """The file ``name`` and all that it extends, innermost first; empty after reporting why it cannot be read."""
     chain: list[TcfFile] = []
@@ -92,7 +93,7 @@ def load_tcf_chain(
             assert wanted_by is not None
             diagnostics.error("extends-depth", wanted_by, f"more than {_MAX_CHAIN} files extend each other")
             return ()
-        node = _load(path, diagnostics, wanted_by)
+        node = _load(path, diagnostics, wanted_by, drafts)
         if node is None:
             return ()
         candidates = _candidates(name, beside)
@@ -104,8 +105,8 @@ def load_tcf_chain(
         name, beside, wanted_by = extends.value, path.parent, extends.span
 
 
-def _load(path: Path, diagnostics: Diagnostics, wanted_by: Span | None) -> Node | None:
-    text = read_text(path, diagnostics, wanted_by)
+def _load(path: Path, diagnostics: Diagnostics, wanted_by: Span | None, drafts: Drafts) -> Node | None:
+    text = read_text(path, diagnostics, wanted_by, drafts)
     if text is None:
         return None
     if _20SIM_4C.match(text):

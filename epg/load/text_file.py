@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 
 from epg.diagnostics import Diagnostics
 from epg.source import Span
@@ -13,16 +15,25 @@ MAX_BYTES = 1 << 20
 _CONTROL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x84\x86-\x9f]")
 _NO_CHARACTER = re.compile("[\ufffe\uffff]")
 
+Drafts = Mapping[Path, str]
+"""Texts that an editor holds, which are read instead of the files."""
+NO_DRAFTS: Drafts = MappingProxyType({})
 
-def read_text(path: Path, diagnostics: Diagnostics, wanted_by: Span | None = None) -> str | None:
+
+def read_text(
+    path: Path, diagnostics: Diagnostics, wanted_by: Span | None = None, drafts: Drafts = NO_DRAFTS
+) -> str | None:
     """The UTF-8 text of ``path``, or None after reporting why there is none.
 
     ``wanted_by`` is where the name of the file is written; problems with the file as a whole are reported there.
     """
     whole = wanted_by or Span(str(path))
     try:
-        with path.open("rb") as file:
-            data = file.read(MAX_BYTES + 1)
+        if path in drafts:
+            data = drafts[path].encode("utf-8")
+        else:
+            with path.open("rb") as file:
+                data = file.read(MAX_BYTES + 1)
     except FileNotFoundError:
         diagnostics.error("file-not-found", whole, f"there is no file '{path.name}'", hint=_neighbours(path))
         return None

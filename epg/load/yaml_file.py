@@ -15,7 +15,7 @@ from types import MappingProxyType
 import yaml
 
 from epg.diagnostics import Diagnostics, Note
-from epg.load.text_file import read_text
+from epg.load.text_file import NO_DRAFTS, Drafts, read_text
 from epg.source import Node, Scalar, Span
 
 MAX_DEPTH = 32
@@ -31,9 +31,11 @@ _SPECIAL = re.compile(r"([-+]?)\.(inf|Inf|INF)|\.(nan|NaN|NAN)")
 _MAX_DIGITS = 64
 
 
-def load_yaml(path: Path, diagnostics: Diagnostics, wanted_by: Span | None = None) -> Node | None:
+def load_yaml(
+    path: Path, diagnostics: Diagnostics, wanted_by: Span | None = None, drafts: Drafts = NO_DRAFTS
+) -> Node | None:
     """The document in ``path``, or None after reporting what is wrong with the file."""
-    text = read_text(path, diagnostics, wanted_by)
+    text = read_text(path, diagnostics, wanted_by, drafts)
     return None if text is None else parse_yaml(text, str(path), diagnostics)
 
 

@@ -37,7 +37,9 @@ def input_wires(
             otherwise = f"add 'inputs: {{{port.name}: ...}}' with one of"
             hint = _nearest(port.name, lambda: _possible(components.values(), direction), otherwise, diagnostics)
             span = bindings.root.key_span("inputs") if "inputs" in bindings.root else bindings.model_span
-            diagnostics.error("unbound-input", span, f"model input '{port.name}' is not bound", hint=hint)
+            diagnostics.error(
+                "unbound-input", span, f"model input '{port.name}' is not bound", hint=hint, about=f"inputs.{port.name}"
+            )
             continue
         _, binding = bindings.inputs[port.name]
         end = _end(binding, direction, components, diagnostics)
@@ -72,7 +74,13 @@ def output_wires(
         if port.name not in bindings.outputs:
             span = bindings.root.key_span("outputs") if "outputs" in bindings.root else bindings.model_span
             hint = f"bind it, or write '{port.name}: unconnected'"
-            diagnostics.warning("unbound-output", span, f"model output '{port.name}' is not bound", hint=hint)
+            diagnostics.warning(
+                "unbound-output",
+                span,
+                f"model output '{port.name}' is not bound",
+                hint=hint,
+                about=f"outputs.{port.name}",
+            )
             continue
         for binding in bindings.outputs[port.name][1]:
             end = _end(binding, direction, components, diagnostics)
