@@ -56,8 +56,8 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         _print_hardware(hardware if options.hardware else {})
         print("no errors")
     else:
-        from epg.cli.hardware import hardware_data
         from epg.cli.report import diagnostics_json, to_json
+        from epg.emit.hardware import hardware_data
 
         data: dict[str, Any] = {"diagnostics": diagnostics_json(diagnostics)}
         if options.hardware:

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from epg.cli.arguments import add_target_arguments, request_of
-from epg.cli.hardware import divider_text
 from epg.cli.report import to_json
 from epg.diagnostics import Diagnostics, did_you_mean
+from epg.emit.hardware import divider_text
 from epg.source import Span
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from epg.emit.topics import Topics
 from epg.graph.svg import Picture, width
-from epg.graph.wiring import pin_title
+from epg.graph.wiring import wire_texts
 from epg.load.models.model import Port
 from epg.resolve.application import Application, ResolvedComponent, Step, Wire
 from epg.resolve.divider import show
@@ -88,14 +88,7 @@ def outside(component: ResolvedComponent, types: dict[str, str], app: Applicatio
 
 def pin_texts(component: ResolvedComponent, app: Application) -> list[str]:
     """``a GP10``: what each wire of a component is connected to; empty where the target has no pins."""
-    texts = []
-    for claim in component.kind.claims:
-        found = component.claims.get(claim.name)
-        for signal, pin in claim.signals.items() if found is not None and found.pins_are_real else ():
-            assert found is not None
-            if signal in found.pins:
-                texts.append(f"{pin} {pin_title(app.target, app.target.soc.pins[found.pins[signal]])}")
-    return texts
+    return wire_texts(component.kind, component.claims, app.target)
 
 
 def conversion(steps: Sequence[Step]) -> str:

@@ -13,6 +13,7 @@ from epg.check.configuration import Component
 from epg.graph.svg import WIRES, Picture, width
 from epg.load.hardware import Target
 from epg.load.headers import Contact, Layout
+from epg.load.kind import Kind
 from epg.resolve.allocation import Assignment
 from epg.resolve.claims import ClaimKey
 
@@ -99,6 +100,18 @@ def pin_title(target: Target, pin: str) -> str:
     """How the board calls a pin of its chip: ``GP10``."""
     prefix = target.board.prefixes[0] if target.board.prefixes and pin.isdigit() else ""
     return prefix + pin
+
+
+def wire_texts(kind: Kind, claims: Mapping[str, Assignment], target: Target) -> list[str]:
+    """``a GP10``: where each wire of a component with these ``claims`` goes; empty where there are no pins."""
+    texts = []
+    for claim in kind.claims:
+        found = claims.get(claim.name)
+        for signal, pin in claim.signals.items() if found is not None and found.pins_are_real else ():
+            assert found is not None
+            if signal in found.pins:
+                texts.append(f"{pin} {pin_title(target, target.soc.pins[found.pins[signal]])}")
+    return texts
 
 
 def _places(layout: Layout, side: str) -> dict[int, Contact]:

@@ -1,0 +1,47 @@
+"""What components got of the hardware: peripherals, pins, and the frequencies that dividers reach."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import Any
+
+from epg.emit.description import describe_divider
+from epg.resolve.allocation import Assignment
+from epg.resolve.claims import TICK, ClaimKey
+from epg.resolve.divider import show
+
+
+def divider_text(divider: Mapping[str, Any]) -> tuple[str, str]:
+    """Frequency and remark for people: ``("19.9984 kHz", "6250 steps; 20 kHz asked for, -0.008 %")``."""
+    reached, asked = Fraction(divider["reached"]), Fraction(divider["asked"])
+    steps = f"{divider['steps']} steps"
+    if divider["error"] == 0:
+        return show(asked, "frequency"), steps
+    return show(reached, "frequency"), f"{steps}; {show(asked, 'frequency')} asked for, {100 * divider['error']:+.2g} %"
+
+
+def hardware_data(assignments: Mapping[ClaimKey, Assignment]) -> list[dict[str, Any]]:
+    """One entry per claim, for programs."""
+    return [
+        {
+            "component": component or None,
+            "claim": claim,
+            "resource": found.resource,
+            "pins": dict(sorted(found.pins.items())) if found.pins_are_real else {},
+            "divider": describe_divider(found),
+        }
+        for (component, claim), found in assignments.items()
+    ]
+
+
+def hardware_rows(assignments: Mapping[ClaimKey, Assignment]) -> list[tuple[str, str, str, str, str]]:
+    """The same for people: who uses which hardware, pins, frequency, and what there is to say about that."""
+    rows = []
+    for key, entry in zip(assignments, hardware_data(assignments)):
+        frequency, remark = divider_text(entry["divider"]) if entry["divider"] else ("", "")
+        remark = "exactly" if key == TICK and remark else remark
+        pins = ", ".join(f"{signal} {pin}" for signal, pin in entry["pins"].items())
+        user = "(control loop)" if key == TICK else f"{entry['component']}.{entry['claim']}"
+        rows.append((user, entry["resource"], pins, frequency, remark))
+    return rows
