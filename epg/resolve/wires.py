@@ -198,7 +198,7 @@ def _wrong_direction(
     diagnostics.error("wrong-direction", binding.span, message, hint=hint)
 
 
-def _component_step(component: Component, port: KindPort) -> tuple[list[Step], str]:
+def component_steps(component: Component, port: KindPort) -> tuple[list[Step], str]:
     """The conversion on the component, and the unit on its model side (empty: unknown)."""
     conversion = component.conversion
     unit = normal_unit(port.unit)
@@ -241,7 +241,7 @@ def _input_steps(
     *,
     physical: bool,
 ) -> tuple[Step, ...]:
-    steps, unit = ([], normal_unit(component_port.unit)) if physical else _component_step(component, component_port)
+    steps, unit = ([], normal_unit(component_port.unit)) if physical else component_steps(component, component_port)
     wanted = normal_unit(binding.conversion.unit if binding.conversion.unit is not None else port.unit)
     steps += _unit_step(unit, wanted, binding, f"{component.name} -> {port.name}", diagnostics)
     steps += _wire_step(binding, f"inputs.{port.name}")
@@ -257,7 +257,7 @@ def _output_steps(
     *,
     physical: bool,
 ) -> tuple[Step, ...]:
-    own, unit = ([], normal_unit(component_port.unit)) if physical else _component_step(component, component_port)
+    own, unit = ([], normal_unit(component_port.unit)) if physical else component_steps(component, component_port)
     given = normal_unit(binding.conversion.unit if binding.conversion.unit is not None else port.unit)
     between = _unit_step(given, unit, binding, f"{port.name} -> {component.name}", diagnostics)
     # towards the hardware a unit conversion on the component runs the other way round
