@@ -31,7 +31,7 @@ from tests.platforms.pico.timing.programs import PROJECT, Program, by_hand, gene
 GENERATED = {
     "inputs": ("sample", "read_inputs", "inputs_finite"),
     "model": ("model_step", "model_finite", "model_stopped"),
-    "outputs": ("write_outputs",),
+    "outputs": ("prepare_outputs", "write_outputs"),
 }
 HANDWRITTEN = {"inputs": ("read_inputs",), "model": ("step_model",), "outputs": ("write_outputs",)}
 HOMED = 900

@@ -32,6 +32,7 @@ AIM = 2500
 PARTS = {
     "inputs": ("sample", "read_inputs", "inputs_finite"),
     "model": ("model_step", "model_finite", "model_stopped"),
+    "preparing outputs": ("prepare_outputs",),
     "outputs": ("write_outputs",),
 }
 SIMULATED = (

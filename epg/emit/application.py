@@ -112,10 +112,11 @@ class InputView:
 
 @dataclass(frozen=True)
 class OutputView:
-    """A statement that hands a model output on."""
+    """Statements that hand a model output on: what can be done before its instant, if anything, and the rest."""
 
     name: str
     sink: str
+    prepare: Code
     statement: Code
 
 
@@ -290,8 +291,10 @@ class Emitter:
         )
 
     def _service_macro(self, component: ResolvedComponent, macro: str, *arguments: object) -> Code:
-        code = self.macro(component, macro, *arguments)
-        return _indented(code) if macro == "write" else code
+        if macro == "write":  # at once
+            prepare, write = self._output_statements(component, *arguments)
+            return Code("\n".join(statements for statements in (prepare, write) if statements))
+        return self.macro(component, macro, *arguments)
 
     def _middleware_code(self, view: MiddlewareView | None) -> Code:
         templates = {m.name for m in self.app.communication.middlewares if m.has_template}
@@ -340,8 +343,13 @@ class Emitter:
     def _output(self, wire: Wire) -> OutputView:
         value = Code(f"{self.prefix}_outputs.{identifier(wire.port.identifier)}")
         value = self._converted(value, wire.steps)
-        statement = self._statement(wire.component, "write", wire.component_port.name, value)
-        return OutputView(wire.port.name, _reference(wire), _indented(statement))
+        prepare, write = self._output_statements(wire.component, wire.component_port.name, value)
+        return OutputView(wire.port.name, _reference(wire), prepare, write)
+
+    def _output_statements(self, component: ResolvedComponent, port: object, value: object) -> tuple[Code, Code]:
+        prepare = self.macro(component, "prepare", port, value)
+        write = (self.macro if prepare else self._statement)(component, "write", port, value)
+        return _indented(prepare), _indented(write)
 
     def _plant_input(self, wire: Wire) -> InputView:
         value = self._expression(wire.component, "plant_read", wire.component_port.name)
@@ -352,7 +360,7 @@ class Emitter:
         value = Code(f"outputs.{identifier(wire.port.identifier)}")
         value = self._converted(value, wire.steps, counted=False)
         statement = self._statement(wire.component, "plant_write", wire.component_port.name, value)
-        return OutputView(wire.port.name, _reference(wire), _indented(statement))
+        return OutputView(wire.port.name, _reference(wire), Code(""), _indented(statement))
 
     def _converted(self, value: Code, steps: Sequence[Step], *, counted: bool = True) -> Code:
         """The C expression for ``value`` after all steps; steps without limits between them become one.

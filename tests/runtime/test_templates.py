@@ -227,7 +227,11 @@ class Renderer:
                 if port.drive:
                     text = self.render("applied", port.name)
                     lines.append(f"static inline double {name}_applied_{port_name}(void)\n{{\nreturn {text};\n}}")
-                text = self.render("write", port.name, value)
+                prepare = self.render("prepare", port.name, value) if self.has("prepare") else ""
+                text = self.render("write", port.name, value) if self.has("write") else ""
+                if prepare:
+                    lines.append(f"static inline void {name}_prepare_{port_name}(double value)\n{{\n{prepare}\n}}")
+                    text = f"{name}_prepare_{port_name}(value);\n{text}"
                 lines.append(f"static inline void {name}_{write}_{port_name}({argument})\n{{\n{text}\n}}")
             if port.direction == "source" and self.has("plant_write"):
                 text = self.render("plant_write", port.name, value)

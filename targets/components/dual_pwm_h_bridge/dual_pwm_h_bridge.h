@@ -84,13 +84,21 @@ static inline void epg_dual_pwm_h_bridge_start(epg_dual_pwm_h_bridge_t *bridge,
 }
 
 /**
- * Drives with `duty` (-1 ... 1), rounded to a whole number of timer clocks.  Returns true if it had to be limited to
- * +-max_duty.  A duty that is not finite makes the bridge safe, and counts as limited.
+ * What the bridge is to do for `duty` (-1 ... 1), rounded to a whole number of timer clocks: epg_dual_pwm_h_bridge_set()
+ * does it.  Returns true if it had to be limited to +-max_duty.  A duty that is not finite makes the bridge safe, and
+ * counts as limited.
  */
+static inline bool epg_dual_pwm_h_bridge_command(epg_dual_pwm_h_bridge_t *bridge,
+                                                 const epg_dual_pwm_h_bridge_config_t *config, double duty)
+{
+    return epg_bridge_command(&bridge->bridge, &config->bridge, config->forwards.top + 1U, duty);
+}
+
+/** Drives with `duty` at once. */
 static inline bool epg_dual_pwm_h_bridge_write(epg_dual_pwm_h_bridge_t *bridge,
                                                const epg_dual_pwm_h_bridge_config_t *config, double duty)
 {
-    const bool limited = epg_bridge_command(&bridge->bridge, &config->bridge, config->forwards.top + 1U, duty);
+    const bool limited = epg_dual_pwm_h_bridge_command(bridge, config, duty);
     epg_dual_pwm_h_bridge_set(bridge, config);
     return limited;
 }

@@ -4,9 +4,10 @@
  */
 #include "pwm_h_bridge.h"
 
-static void set_pins(const epg_pwm_h_bridge_t *bridge, const epg_pwm_h_bridge_config_t *config)
+static void set_pins(epg_pwm_h_bridge_t *bridge, const epg_pwm_h_bridge_config_t *config)
 {
     const epg_bridge_state_t state = bridge->bridge.state;
+    bridge->shown = state;
     epg_port_output_write(config->pin_a, state == EPG_BRIDGE_FORWARDS || state == EPG_BRIDGE_BRAKE);
     epg_port_output_write(config->pin_b, state == EPG_BRIDGE_BACKWARDS || state == EPG_BRIDGE_BRAKE);
 }
@@ -35,10 +36,11 @@ void epg_pwm_h_bridge_safe(epg_pwm_h_bridge_t *bridge, const epg_pwm_h_bridge_co
         epg_port_pwm_write(&config->pwm, bridge->bridge.level);
     } else {
         off(config);
+        bridge->shown = EPG_BRIDGE_COAST;
     }
 }
 
-void epg_pwm_h_bridge_change(const epg_pwm_h_bridge_t *bridge, const epg_pwm_h_bridge_config_t *config)
+void epg_pwm_h_bridge_change(epg_pwm_h_bridge_t *bridge, const epg_pwm_h_bridge_config_t *config)
 {
     off(config);
     set_pins(bridge, config);

@@ -28,9 +28,10 @@ typedef struct epg_pwm_h_bridge_config {
     epg_bridge_config_t bridge;
 } epg_pwm_h_bridge_config_t;
 
-/** State of one bridge; set by epg_pwm_h_bridge_start().  Between two calls the pins are as it says. */
+/** State of one bridge; set by epg_pwm_h_bridge_start(). */
 typedef struct epg_pwm_h_bridge {
     epg_bridge_t bridge;
+    epg_bridge_state_t shown; /**< what the direction pins say */
 } epg_pwm_h_bridge_t;
 
 /** Configures pins and PWM; the motor coasts until this ends, and is safe then. */
@@ -40,25 +41,40 @@ void epg_pwm_h_bridge_start(epg_pwm_h_bridge_t *bridge, const epg_pwm_h_bridge_c
 void epg_pwm_h_bridge_safe(epg_pwm_h_bridge_t *bridge, const epg_pwm_h_bridge_config_t *config);
 
 /** Direction pins as the bridge's state says; off in between, with the PWM low. */
-void epg_pwm_h_bridge_change(const epg_pwm_h_bridge_t *bridge, const epg_pwm_h_bridge_config_t *config);
+void epg_pwm_h_bridge_change(epg_pwm_h_bridge_t *bridge, const epg_pwm_h_bridge_config_t *config);
 
 /**
- * Drives with `duty` (-1 ... 1), rounded to a whole number of timer clocks.  Returns true if it had to be limited to
- * +-max_duty.  A duty that is not finite makes the bridge safe, and counts as limited.
+ * What the bridge is to do for `duty` (-1 ... 1), rounded to a whole number of timer clocks; no pin changes yet.
+ * Returns true if it had to be limited to +-max_duty.  A duty that is not finite makes the bridge safe, and counts as
+ * limited.
+ */
+static inline bool epg_pwm_h_bridge_command(epg_pwm_h_bridge_t *bridge, const epg_pwm_h_bridge_config_t *config,
+                                            double duty)
+{
+    return epg_bridge_command(&bridge->bridge, &config->bridge, config->pwm.top + 1U, duty);
+}
+
+/**
+ * Does it, which takes a few writes and no arithmetic.
  *
  * When the direction changes, the bridge is off before the pins change and while they do.  A PWM that takes a level
  * over at its next period only may give the rest of the present period with the level from before, in the new
  * direction, unless there is a dead time.
  */
-static inline bool epg_pwm_h_bridge_write(epg_pwm_h_bridge_t *bridge, const epg_pwm_h_bridge_config_t *config,
-                                          double duty)
+static inline void epg_pwm_h_bridge_apply(epg_pwm_h_bridge_t *bridge, const epg_pwm_h_bridge_config_t *config)
 {
-    const epg_bridge_state_t before = bridge->bridge.state;
-    const bool limited = epg_bridge_command(&bridge->bridge, &config->bridge, config->pwm.top + 1U, duty);
-    if (bridge->bridge.state != before) {
+    if (bridge->bridge.state != bridge->shown) {
         epg_pwm_h_bridge_change(bridge, config);
     }
     epg_port_pwm_write(&config->pwm, bridge->bridge.level);
+}
+
+/** Drives with `duty` at once: epg_pwm_h_bridge_command() and epg_pwm_h_bridge_apply(). */
+static inline bool epg_pwm_h_bridge_write(epg_pwm_h_bridge_t *bridge, const epg_pwm_h_bridge_config_t *config,
+                                          double duty)
+{
+    const bool limited = epg_pwm_h_bridge_command(bridge, config, duty);
+    epg_pwm_h_bridge_apply(bridge, config);
     return limited;
 }
 

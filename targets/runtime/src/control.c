@@ -253,6 +253,9 @@ void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed
     } else if (!control->enabled) {
         application->safe();
     } else if (stepped) {
+        if (application->prepare != NULL) {
+            application->prepare();
+        }
         if (application->output_delay_ns > 0U) {
             begin_ns += wait_for_outputs(control, application, tick_ns); /* it is no computation */
         }

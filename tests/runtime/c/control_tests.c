@@ -413,6 +413,28 @@ TEST(outputs_are_written_at_the_output_delay_whatever_computing_takes)
     }
 }
 
+static uint64_t prepared_ns;
+
+static void prepare_outputs(void)
+{
+    prepared_ns = fake_port.now_ns;
+    fake_port.now_ns += FAKE_PERIOD_NS / 8; /* arithmetic takes time */
+}
+
+TEST(outputs_are_prepared_before_the_output_delay)
+{
+    begin_with_output_delay(0);
+    fake.application.prepare = prepare_outputs;
+    fake_cycle();
+    CHECK_EQUAL(prepared_ns, FAKE_PERIOD_NS);
+    CHECK_EQUAL(fake.written_ns, FAKE_PERIOD_NS + FAKE_PERIOD_NS / 2);
+    CHECK_EQUAL(fake_status().statistics.computation_max, FAKE_PERIOD_NS / 8);
+    request(false);
+    prepared_ns = 0;
+    fake_cycle();
+    CHECK_EQUAL(prepared_ns, 0); /* safe outputs are none of the model's */
+}
+
 TEST(outputs_that_are_not_ready_at_the_output_delay_follow_at_once_and_are_counted)
 {
     begin_with_output_delay(FAKE_PERIOD_NS / 2 + 1);
@@ -695,6 +717,7 @@ RUN(ENTRY(start_makes_peripherals_safe_and_runs_nothing), ENTRY(nothing_is_read_
     ENTRY(enabling_while_the_input_is_not_finite_fails_and_the_model_rests), ENTRY(model_asks_to_stop),
     ENTRY(a_model_that_never_stops_needs_no_function_for_it),
     ENTRY(outputs_are_written_at_the_output_delay_whatever_computing_takes),
+    ENTRY(outputs_are_prepared_before_the_output_delay),
     ENTRY(outputs_that_are_not_ready_at_the_output_delay_follow_at_once_and_are_counted),
     ENTRY(safe_outputs_do_not_wait_for_the_output_delay), ENTRY(overruns_in_a_row),
     ENTRY(overruns_with_a_good_cycle_between_do_not_disable), ENTRY(overruns_without_a_limit_are_only_counted),

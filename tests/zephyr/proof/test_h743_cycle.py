@@ -25,7 +25,7 @@ STEPS = 12_000
 """Of the PWM: 240 MHz by 20 kHz."""
 HOMING = {"pwm_pan": 0.05, "pwm_tilt": 0.06}
 """Duties by which the example's controller homes."""
-PARTS = {"sample": 44, "read": 48, "model_step": 60, "model_finite": 64, "write": 72}
+PARTS = {"sample": 44, "read": 48, "model_step": 60, "model_finite": 64, "prepare": 72, "write": 76}
 """Members of epg_application_t (epg/control.h), and where they are."""
 LIMIT = 20_000
 """Instructions of a cycle, its first with the model's initialisation: 42 us at 480 MHz and one clock each."""

@@ -86,10 +86,11 @@ typedef struct epg_application {
     bool (*inputs_finite)(void);
     void (*model_init)(void); /**< (re-)initialises the model with the inputs read last */
     void (*model_step)(void);
-    bool (*model_finite)(void);      /**< states and outputs */
-    bool (*model_stopped)(void);     /**< the model has asked to stop; NULL: it never does */
-    void (*write)(void);             /**< model outputs to actuators and resets; after each step */
-    void (*safe)(void);              /**< every actuator to its safe value; every cycle while disabled */
+    bool (*model_finite)(void);  /**< states and outputs */
+    bool (*model_stopped)(void); /**< the model has asked to stop; NULL: it never does */
+    void (*prepare)(void);       /**< what of write() needs no instant: arithmetic, resets; before it; NULL: nothing */
+    void (*write)(void);         /**< model outputs to actuators, after each step, at the output delay */
+    void (*safe)(void);          /**< every actuator to its safe value; every cycle while disabled */
     void (*monitor)(double *values); /**< fills `monitor_count` values to publish, after actuators; NULL: none */
     bool (*fail_safe)(void);         /**< true: the target may be enabled; before read(); NULL: no such input */
     uint16_t fail_safe_component;    /**< index of the component that is the fail-safe input */
