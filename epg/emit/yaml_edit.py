@@ -1,0 +1,288 @@
+"""Edits of YAML text that leave every character alone which the edit is not about.
+
+Each function takes the text, finds its place in what PyYAML's own (not libyaml's) parser says about it, and returns
+the new text.  None of them knows what the text is for, and none checks the result: callers parse it again.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+import yaml
+
+_BREAK = re.compile("\r\n|[\r\n\x85\u2028\u2029]")
+_REST = re.compile(r"[ \t]*(#.*)?")
+Steps = tuple["str | int", ...]
+"""A way from the root to a value: keys of maps and indices of lists."""
+Item = tuple[int, int]
+"""Where an entry of a map or an element of a list begins and ends in the text, comments and commas not included."""
+
+
+class CannotEdit(Exception):
+    """Only an editor can make this change; the message says where and why."""
+
+
+def compose(text: str) -> yaml.Node:
+    """The nodes of ``text``, which :func:`epg.load.yaml_file.parse_yaml` has accepted."""
+    try:
+        root = yaml.compose(text, Loader=yaml.SafeLoader)
+    except (yaml.YAMLError, RecursionError) as error:
+        raise CannotEdit(f"YAML: {str(error).splitlines()[0]}") from None
+    if root is None:
+        raise CannotEdit("the file is empty")
+    return root
+
+
+def find(text: str, path: Steps) -> yaml.Node | None:
+    """The node at ``path``, or None."""
+    node: yaml.Node = compose(text)
+    for step in path:
+        if isinstance(node, yaml.MappingNode):
+            found = [value for key, value in node.value if key.value == step]
+        else:
+            found = node.value[step : step + 1] if isinstance(node, yaml.SequenceNode) and isinstance(step, int) else []
+        if not found:
+            return None
+        node = found[0]
+    return node
+
+
+def node_at(text: str, path: Steps) -> yaml.Node:
+    """As :func:`find`, where there must be one."""
+    node = find(text, path)
+    if node is None:
+        raise CannotEdit(f"there is no '{'.'.join(map(str, path))}'")
+    return node
+
+
+def start_of(node: yaml.Node) -> int:
+    return int(node.start_mark.index)
+
+
+def end_of(text: str, node: yaml.Node) -> int:
+    """Where the last value in ``node`` ends: PyYAML's end of a block is where the next thing begins."""
+    if isinstance(node, yaml.ScalarNode):
+        end = int(node.end_mark.index)
+        return max(len(text[:end].rstrip()), start_of(node)) if node.style in ("|", ">") else end
+    if is_flow(node) or not node.value:
+        return int(node.end_mark.index)
+    last = node.value[-1]
+    return end_of(text, last[1] if isinstance(last, tuple) else last)
+
+
+def is_flow(node: yaml.Node) -> bool:
+    """Whether it is written with ``{}`` or ``[]``."""
+    return bool(getattr(node, "flow_style", False))
+
+
+def source_of(text: str, node: yaml.Node) -> str:
+    return text[start_of(node) : end_of(text, node)]
+
+
+def line_start(text: str, position: int) -> int:
+    return max(text.rfind(character, 0, position) for character in "\r\n\x85\u2028\u2029") + 1
+
+
+def line_end(text: str, position: int) -> int:
+    found = _BREAK.search(text, position)
+    return found.start() if found else len(text)
+
+
+def next_line(text: str, position: int) -> int:
+    found = _BREAK.search(text, position)
+    return found.end() if found else len(text)
+
+
+def column_of(text: str, position: int) -> int:
+    return position - line_start(text, position)
+
+
+def has_break(text: str) -> bool:
+    return _BREAK.search(text) is not None
+
+
+def insert_lines(text: str, position: int, lines: Sequence[str]) -> str:
+    """``lines`` below the one that ``position`` is in; a last line without a line end leaves the new one so too."""
+    found = _BREAK.search(text, position)
+    if found:
+        return text[: found.end()] + "".join(line + found[0] for line in lines) + text[found.end() :]
+    return text + "".join(_line_break(text) + line for line in lines)
+
+
+def remove_lines(text: str, start: int, end: int) -> str:
+    """Without the lines from that of ``start`` to that of ``end``."""
+    first = line_start(text, start)
+    found = _BREAK.search(text, end)
+    if found:
+        return text[:first] + text[found.end() :]
+    return text[: first - 2] if text.endswith("\r\n", 0, first) else text[: max(first - 1, 0)]
+
+
+def skip_gap(text: str, position: int) -> int:
+    """The next character after ``position`` that is neither blank nor part of a comment."""
+    while position < len(text):
+        if text[position] == "#":
+            position = line_end(text, position)
+        elif text[position] in " \t\r\n\x85\u2028\u2029":
+            position += 1
+        else:
+            break
+    return position
+
+
+def colon_of(text: str, path: Steps) -> int:
+    """Where the ``:`` is that the value at ``path`` follows."""
+    parent = node_at(text, path[:-1])
+    for key, _ in parent.value:
+        if key.value == path[-1]:
+            colon = skip_gap(text, key.end_mark.index)
+            if text[colon : colon + 1] == ":":
+                return colon
+    raise CannotEdit(f"'{path[-1]}' has no ':'")
+
+
+def replace(text: str, path: Steps, new: str) -> str:
+    """The value at ``path`` is ``new`` instead; what stood over several lines below its key now stands beside it."""
+    node = node_at(text, path)
+    start, end = start_of(node), end_of(text, node)
+    if start == end:
+        return f"{text[:start]} {new}{text[end:]}"
+    if is_flow(node) or isinstance(node, yaml.ScalarNode):
+        return text[:start] + new + text[end:]
+    anchor = colon_of(text, path) if isinstance(path[-1], str) else _dash(text, path)
+    if line_start(text, anchor) == line_start(text, start):
+        return text[:start] + new + text[end:]
+    text = remove_lines(text, start, end)
+    return f"{text[: anchor + 1]} {new}{text[anchor + 1 :]}"
+
+
+def replace_by_lines(text: str, path: Steps, lines: Sequence[str]) -> str:
+    """The value at ``path``, of a key in a block, is what ``lines`` say; they are indented from the key's column on."""
+    node = node_at(text, path)
+    colon = colon_of(text, path)
+    key = next(key for key, _ in node_at(text, path[:-1]).value if key.value == path[-1])
+    indent = " " * column_of(text, start_of(key))
+    start, end = start_of(node), end_of(text, node)
+    if line_start(text, colon) == line_start(text, start):
+        text = text[: colon + 1] + text[end:]
+    else:
+        text = remove_lines(text, start, end)
+    return insert_lines(text, colon, [indent + line for line in lines])
+
+
+def indent_as_element(text: str, node: yaml.Node) -> str:
+    """The block map ``node`` is the element of a list of one."""
+    end = end_of(text, node)
+    position = next_line(text, start_of(node))
+    result = f"{text[: start_of(node)]}- {text[start_of(node) : position]}"
+    while position < end:
+        following = next_line(text, position)
+        blank = not text[position:following].strip()
+        result += text[position:following] if blank else "  " + text[position:following]
+        position = following
+    return result + text[position:]
+
+
+def insert(text: str, path: Steps, index: int, new: str) -> str:
+    """``new`` (``key: value``, or an element) becomes the entry with that index of the map or list at ``path``."""
+    node = node_at(text, path)
+    items = _items(text, node)
+    if is_flow(node):
+        return _insert_flow(text, node, items, index, new)
+    mark = "- " if isinstance(node, yaml.SequenceNode) else ""
+    first = items[0][0]
+    indent = " " * column_of(text, first)
+    if index > 0:
+        return insert_lines(text, items[index - 1][1], [indent + mark + new])
+    found = _BREAK.search(text, first)
+    return f"{text[:first]}{mark}{new}{found[0] if found else _line_break(text)}{indent}{text[first:]}"
+
+
+def remove(text: str, path: Steps) -> str:
+    """Without the entry at ``path``, and without comments inside of it and behind it, if it had the line for itself.
+
+    A map or list in block style must have another entry.
+    """
+    parent = node_at(text, path[:-1])
+    items = _items(text, parent)
+    index = path[-1] if isinstance(path[-1], int) else [key.value for key, _ in parent.value].index(path[-1])
+    if is_flow(parent):
+        return _remove_flow(text, items, index)
+    start, end = items[index]
+    if not text[line_start(text, start) : start].strip():
+        return remove_lines(text, start, end)
+    # the first key of a map that begins on the line of a dash
+    following = skip_gap(text, end)
+    if "#" in text[line_end(text, end) : following]:
+        return text[:start].rstrip() + text[line_end(text, end) :]
+    return text[:start] + text[following:]
+
+
+def _items(text: str, node: yaml.Node) -> list[Item]:
+    if isinstance(node, yaml.MappingNode):
+        return [(start_of(key), max(end_of(text, key), end_of(text, value))) for key, value in node.value]
+    items: list[Item] = []
+    position = start_of(node)
+    for element in node.value:
+        start = start_of(element) if is_flow(node) else skip_gap(text, position)
+        position = end_of(text, element)
+        items.append((start, position))
+    return items
+
+
+def _dash(text: str, path: Steps) -> int:
+    index = path[-1]
+    assert isinstance(index, int)
+    return _items(text, node_at(text, path[:-1]))[index][0]
+
+
+def _comma(text: str, end: int) -> int | None:
+    """Where the comma is that follows what ends at ``end``."""
+    position = skip_gap(text, end)
+    return position if text[position : position + 1] == "," else None
+
+
+def _has_own_lines(text: str, item: Item, comma: int | None) -> bool:
+    start, end = item
+    behind = end if comma is None else comma + 1
+    rest = text[behind : line_end(text, behind)]
+    return not text[line_start(text, start) : start].strip() and _REST.fullmatch(rest) is not None
+
+
+def _insert_flow(text: str, node: yaml.Node, items: list[Item], index: int, new: str) -> str:
+    if not items:
+        inside = start_of(node) + 1
+        return text[:inside] + new + text[inside:]
+    start, end = items[max(index - 1, 0)]
+    comma = _comma(text, end)
+    if not _has_own_lines(text, (start, end), comma):
+        return f"{text[:end]}, {new}{text[end:]}" if index > 0 else f"{text[:start]}{new}, {text[start:]}"
+    first = line_start(text, start)
+    indent = text[first:start]
+    if index == 0:
+        found = _BREAK.search(text, start)
+        return f"{text[:first]}{indent}{new},{found[0] if found else _line_break(text)}{text[first:]}"
+    if comma is not None:
+        return insert_lines(text, comma, [f"{indent}{new},"])
+    return insert_lines(f"{text[:end]},{text[end:]}", end + 1, [f"{indent}{new}"])
+
+
+def _remove_flow(text: str, items: list[Item], index: int) -> str:
+    start, end = items[index]
+    comma = _comma(text, end)
+    before = _comma(text, items[index - 1][1]) if index > 0 else None
+    stop = end if comma is None else comma + 1
+    if _has_own_lines(text, items[index], comma):
+        text = remove_lines(text, start, stop)
+        return text[:before] + text[before + 1 :] if comma is None and before is not None else text
+    if before is not None and "#" not in text[before:start]:
+        return text[:before] + text[end:]
+    if index == 0 and len(items) > 1 and "#" not in text[stop : items[1][0]]:
+        stop = items[1][0]
+    return text[:start] + text[stop:]
+
+
+def _line_break(text: str) -> str:
+    found = _BREAK.search(text)
+    return found[0] if found else "\n"

@@ -1,0 +1,43 @@
+"""Scalars as YAML text that every reader takes for the same value, in blocks and between ``{}`` and ``[]``.
+
+>>> scalar_text("encoder_pan.reset"), scalar_text("on"), scalar_text("1/4"), scalar_text("010")
+('encoder_pan.reset', "'on'", '1/4', "'010'")
+"""
+
+from __future__ import annotations
+
+import json
+import re
+
+_WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_.]*(/[A-Za-z0-9_.]+)?")
+_RATIO = re.compile(r"[-+]?[0-9][0-9.]*/[-+]?[0-9.]+")
+# YAML 1.1 reads more words as truth values than YAML 1.2
+_NO_TEXT = frozenset(("true", "false", "null", "yes", "no", "on", "off", "y", "n"))
+
+
+def scalar_text(value: object, style: str = "") -> str:
+    """``value`` on one line.  ``style`` is the quote a text had before, which it keeps if it can."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if value is None:
+        return "null"
+    if isinstance(value, float):
+        return repr(value).replace("inf", ".inf").replace("nan", ".nan")
+    if isinstance(value, int):
+        return repr(value)
+    text = str(value)
+    if any(character != " " and not character.isprintable() for character in text) or style == '"':
+        return _double_quoted(text)
+    plain = (_WORD.fullmatch(text) and text.casefold() not in _NO_TEXT) or _RATIO.fullmatch(text)
+    return text if plain and style != "'" else "'" + text.replace("'", "''") + "'"
+
+
+def _double_quoted(text: str) -> str:
+    # JSON's escapes are YAML's, but for pairs of surrogates
+    return '"' + "".join(_escaped(character) for character in text) + '"'
+
+
+def _escaped(character: str) -> str:
+    if character.isprintable():
+        return json.dumps(character, ensure_ascii=False)[1:-1]
+    return f"\\U{ord(character):08X}" if ord(character) > 0xFFFF else f"\\u{ord(character):04X}"
