@@ -9,7 +9,6 @@ import argparse
 import importlib.util
 import os
 import platform
-import shutil
 import sys
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
@@ -23,11 +22,10 @@ from epg.cli.report import to_json
 from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
 from epg.load.find_tool import Finding, Surroundings, find_tool, read_cmake_cache
-from epg.load.tools import Tool, load_tools
+from epg.load.remedy import command_for, package_manager, privileged
+from epg.load.tools import load_tools
 
 HOST = "host"
-MANAGERS = {"apt": "apt-get", "dnf": "dnf", "pacman": "pacman", "brew": "brew", "winget": "winget"}
-"""Package managers, and the program that shows that a computer has them."""
 
 
 @dataclass(frozen=True)
@@ -117,8 +115,8 @@ def _package(group: str, name: str, oldest: tuple[int, ...], *, required: bool) 
     remedy = f"{sys.executable} -m pip install {name}"
     if importlib.util.find_spec("pip") is not None and not os.environ.get("EPG_NO_INSTALL"):
         return Item(name.lower(), name, HOST, required, "later", old, note=note, remedy=remedy)
-    if _manager() == "apt" and group != "ros":  # Debian has no package of it
-        remedy = f"{_privileged('apt')}apt install python3-{'yaml' if name == 'PyYAML' else name.lower()}"
+    if package_manager() == "apt" and group != "ros":  # Debian has no package of it
+        remedy = f"{privileged('apt')}apt install python3-{'yaml' if name == 'PyYAML' else name.lower()}"
     return Item(name.lower(), name, HOST, required, "old" if old else "missing", old, note=note, remedy=remedy)
 
 
@@ -128,9 +126,9 @@ def _item(finding: Finding, cache: Path) -> Item:
         wanted = f"no {tool.holds}" if tool.holds else f"no {' or '.join(tool.programs)}"
         note, remedy = f"there is {wanted} there", f"correct {finding.source}, or leave it unset"
     elif finding.status == "missing":
-        note, remedy = f"looked in {', '.join(finding.looked)}; get it with:", _remedy(tool, cache)
+        note, remedy = f"looked in {', '.join(finding.looked)}; get it with:", command_for(tool, cache)
     elif finding.status == "old":
-        note, remedy = f"{tool.oldest} or newer is needed; get it with:", _remedy(tool, cache)
+        note, remedy = f"{tool.oldest} or newer is needed; get it with:", command_for(tool, cache)
     else:
         differs = tool.tested and finding.version and not f"{finding.version}.".startswith(f"{tool.tested}.")
         note, remedy = f"tested with {tool.tested}" if differs else "", ""
@@ -148,24 +146,6 @@ def _item(finding: Finding, cache: Path) -> Item:
         note=note,
         remedy=remedy,
     )
-
-
-def _remedy(tool: Tool, cache: Path) -> str:
-    manager = _manager()
-    command = tool.get.get(manager) if manager else None
-    prefix = _privileged(manager) if command else ""
-    folder = f'"{cache.as_posix()}"' if " " in cache.as_posix() else cache.as_posix()
-    return prefix + (command or tool.get["any"]).replace("{cache}", folder)
-
-
-def _manager() -> str:
-    """The package manager of this computer, or ""."""
-    return next((name for name, program in MANAGERS.items() if shutil.which(program)), "")
-
-
-def _privileged(manager: str) -> str:
-    root = hasattr(os, "geteuid") and os.geteuid() == 0
-    return "" if root or manager in ("brew", "winget") else "sudo "
 
 
 def _lines(items: Sequence[Item]) -> Iterable[str]:

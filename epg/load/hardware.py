@@ -164,6 +164,17 @@ class Board:
 
 
 @dataclass(frozen=True)
+class Product:
+    """A file beside an executable; ``*`` in ``file`` is the executable's name without its ending.
+
+    ``what`` says what a person does with it.
+    """
+
+    file: str
+    what: str
+
+
+@dataclass(frozen=True)
 class Platform:
     """A port layer for the chips of ``families``, or for one ``board``.
 
@@ -172,8 +183,11 @@ class Platform:
     ``middlewares`` names transports; the first of each is the default.  ``tick`` is the class of the peripheral that
     times the control loop, None where the system software does, as also on chips without that class where
     ``tick_is_optional``.  With ``has_nodes`` a component can name a node of a devicetree instead of pins.  ``shared``
-    are folders beside this one whose templates
-    it uses too.
+    are folders beside this one whose templates it uses too.
+
+    ``sdk`` is the SDK whose name for the board a build is given, "" where there is none; ``built_by`` "cmake" or
+    "west"; ``program`` the CMake target of the executable where the SDK makes it; ``needs`` are tools by name,
+    ``products`` what a build makes for people, the best first.
     """
 
     name: str
@@ -189,6 +203,11 @@ class Platform:
     builds: bool
     templates: tuple[str, ...]
     shared: tuple[str, ...]
+    sdk: str
+    built_by: str
+    program: str
+    needs: tuple[str, ...]
+    products: tuple[Product, ...]
     node: Node
     folder: Path
     span: Span
@@ -280,7 +299,7 @@ def make_board(node: Node, folder: Path) -> Board:
 
 def make_platform(node: Node, folder: Path) -> Platform:
     """The platform that a checked ``platform.yaml`` describes."""
-    tick = node.get("tick", "class")
+    tick, products = node.get("tick", "class"), node.get("products")
     middlewares = {
         name: tuple(str(transport.value) for transport in child.elements())
         for name, child in map_of(node, "middlewares").items()
@@ -299,6 +318,14 @@ def make_platform(node: Node, folder: Path) -> Platform:
         builds=flag_of(node, "builds"),
         templates=texts_of(node, "templates"),
         shared=texts_of(node, "shared"),
+        sdk=text_of(node, "sdk"),
+        built_by=text_of(node, "built_by") or "cmake",
+        program=text_of(node, "program"),
+        needs=texts_of(node, "needs"),
+        products=tuple(
+            Product(text_of(product, "file"), text_of(product, "what"))
+            for product in (products.elements() if products is not None else ())
+        ),
         node=node,
         folder=folder,
         span=node["platform"].span,

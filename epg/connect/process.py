@@ -1,0 +1,120 @@
+"""A program that is started, read line by line, and ended with all that it has started itself.
+
+>>> # process = Process(("cmake", "--build", "build"), Path("."), os.environ, print)
+>>> # status = process.run()          process.cancel() from another thread
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+GRACE = 5.0
+"""Seconds that programs have to end by themselves: Ninja and Make delete half-written files then."""
+
+
+class Process:
+    """One run.  ``line`` is called with each line of its output, standard error included, without its end."""
+
+    def __init__(
+        self, command: Sequence[str], folder: Path, environment: Mapping[str, str], line: Callable[[str], None]
+    ) -> None:
+        self._command, self._folder, self._environment, self._line = command, folder, environment, line
+        self._lock = threading.Lock()
+        self._process: subprocess.Popen[bytes] | None = None
+        self._cancelled = False
+
+    def run(self) -> int:
+        """Runs to the end; the exit status.  Raises OSError when the program cannot be started."""
+        with self._lock:
+            if self._cancelled:
+                return -signal.SIGTERM
+            self._process = self._start()
+        reader = threading.Thread(target=self._read, name="output of a build", daemon=True)
+        reader.start()
+        status = self._process.wait()
+        if self._cancelled:
+            _end_all(self._process.pid)
+        reader.join(GRACE)  # a program left in the background may keep the other end open
+        return status
+
+    def cancel(self) -> None:
+        """Asks the program and all that it has started to end, and sees to it that they do.  Returns at once."""
+        with self._lock:
+            already, self._cancelled = self._cancelled, True
+            process = self._process
+        if process is None or already or process.poll() is not None:
+            return
+        _ask_to_end(process)
+        timer = threading.Timer(GRACE, process.kill)
+        timer.daemon = True
+        timer.start()
+
+    def _start(self) -> subprocess.Popen[bytes]:
+        new_group = getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0)
+        return subprocess.Popen(
+            list(self._command),
+            cwd=self._folder,
+            env=dict(self._environment),
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,  # of POSIX: one signal reaches all, and a terminal's Ctrl-C reaches none
+            creationflags=new_group,  # of Windows
+        )
+
+    def _read(self) -> None:
+        assert self._process is not None and self._process.stdout is not None
+        with self._process.stdout as output:
+            for line in output:
+                self._line(line.decode("utf-8", "replace").rstrip("\r\n"))
+
+
+def _ask_to_end(process: subprocess.Popen[bytes]) -> None:
+    try:
+        if sys.platform == "win32":
+            process.send_signal(signal.CTRL_BREAK_EVENT)
+        else:
+            os.killpg(process.pid, signal.SIGTERM)
+    except OSError:
+        process.terminate()
+
+
+def _end_all(leader: int) -> None:
+    """Waits until nothing of the session that ``leader`` has opened runs any more, and ends what does."""
+    if sys.platform == "win32":
+        return
+    until = time.monotonic() + GRACE
+    while (left := _session(leader)) and time.monotonic() < until:
+        time.sleep(0.02)
+    for process in left:
+        try:
+            os.kill(process, signal.SIGKILL)
+        except OSError:
+            pass  # it has ended meanwhile
+    try:
+        os.killpg(leader, signal.SIGKILL)
+    except OSError:
+        pass
+
+
+def _session(leader: int) -> list[int]:
+    """The processes of a session, where the system says so (Linux).
+
+    Ninja gives each command a process group of its own: the leader's group is not all.
+    """
+    found = []
+    for entry in Path("/proc").glob("[0-9]*"):
+        try:
+            fields = (entry / "stat").read_text(encoding="utf-8", errors="replace").rpartition(")")[2].split()
+        except OSError:
+            continue
+        if fields[0] != "Z" and fields[3] == str(leader):  # state; session
+            found.append(int(entry.name))
+    return found

@@ -1,0 +1,87 @@
+"""What a build has made for people: asked of CMake before it configures, by its file API (cmake-file-api(7)).
+
+>>> # ask(build)                                 before CMake configures
+>>> # products(build, "jiwy", platform, ())      afterwards
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from epg.load.hardware import Platform
+
+CLIENT = "client-epg"
+_QUERY = "codemodel-v2"
+
+
+@dataclass(frozen=True)
+class Made:
+    """A file, and what a person does with it."""
+
+    path: Path
+    what: str
+
+
+def ask(build: Path) -> None:
+    """Lets CMake write, when it configures ``build``, which files its targets will be."""
+    folder = build / ".cmake/api/v1/query" / CLIENT
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / _QUERY).touch()
+
+
+def products(build: Path, target: str, platform: Platform | None, executables: Sequence[str]) -> list[Made]:
+    """The files of the ``executables``, and of all others with the EPG target in them; the best of each first.
+
+    Files that are not there are left out: a build of other targets has not made them.
+    """
+    found: dict[Path, tuple[int, Made]] = {}
+    for program in _programs(build, target, executables, platform.program if platform is not None else ""):
+        for rank, made in _of_program(program, platform):
+            if made.path.is_file():
+                found.setdefault(made.path, (rank, made))
+    return [made for _, made in sorted(found.values(), key=lambda entry: (entry[0], entry[1].path.as_posix()))]
+
+
+def _of_program(program: Path, platform: Platform | None) -> Iterator[tuple[int, Made]]:
+    """What ``platform`` says of the files beside an executable; the executable itself where it says nothing."""
+    known = platform.products if platform is not None else ()
+    for rank, product in enumerate(known):
+        name = program.name if product.file == "*" else product.file.replace("*", program.stem)
+        yield rank, Made(program.with_name(name), product.what)
+    if not known:
+        yield 0, Made(program, "the program")
+
+
+def _programs(build: Path, target: str, executables: Sequence[str], of_sdk: str) -> list[Path]:
+    """The executables that CMake makes of ``target``."""
+    described = list(_targets(build))
+    programs = [
+        (description["name"], [str(needed["id"]) for needed in description.get("dependencies", [])], paths)
+        for description in described
+        if description.get("type") == "EXECUTABLE"
+        and (paths := [build / artifact["path"] for artifact in description.get("artifacts", [])])
+    ]
+    wanted = [
+        paths[0]
+        for name, needed, paths in programs
+        if name in executables or name == of_sdk or any(id.startswith(f"{target}::@") for id in needed)
+    ]
+    sdk = [paths[0] for name, _, paths in programs if name == of_sdk]
+    return sdk or wanted
+
+
+def _targets(build: Path) -> Iterator[Mapping[str, Any]]:
+    """The targets as CMake's newest answer describes them; none when there is no answer."""
+    folder = build / ".cmake/api/v1/reply"
+    try:
+        index = json.loads(max(folder.glob("index-*.json")).read_text(encoding="utf-8"))
+        model = json.loads((folder / index["reply"][CLIENT][_QUERY]["jsonFile"]).read_text(encoding="utf-8"))
+        for configuration in model["configurations"]:
+            for target in configuration["targets"]:
+                yield json.loads((folder / target["jsonFile"]).read_text(encoding="utf-8"))
+    except (OSError, ValueError, KeyError, TypeError):
+        return

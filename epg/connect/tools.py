@@ -1,0 +1,60 @@
+"""The tools that builds for a platform need, and what to do where one is missing: as ``epg doctor`` has it.
+
+>>> # [problem.message for problem in missing_tools(platform, roots)]  ->  ["The picotool was not found."]
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from epg.bootstrap import cache_folder
+from epg.diagnostics import Diagnostics
+from epg.load.find_tool import Finding, Surroundings, find_tool
+from epg.load.hardware import Platform
+from epg.load.remedy import command_for
+from epg.load.tools import load_tools
+
+ALWAYS = ("cmake", "build_program")
+"""What every build needs."""
+
+
+@dataclass(frozen=True)
+class MissingTool:
+    """A tool that is not there, too old, or not where a variable says."""
+
+    name: str
+    title: str
+    message: str
+    hint: str
+
+
+def find_tools(names: Sequence[str], roots: Sequence[Path], cmake: Mapping[str, str] | None = None) -> list[Finding]:
+    """What is found of the tools called ``names``; ``cmake`` are variables of a build folder's cache."""
+    tools = load_tools(roots, Diagnostics())
+    where = Surroundings.here(cache_folder(), cmake)
+    return [find_tool(tools[name], where) for name in names if name in tools]
+
+
+def missing_tools(
+    platform: Platform | None, roots: Sequence[Path], cmake: Mapping[str, str] | None = None
+) -> list[MissingTool]:
+    """What a build for ``platform`` needs and this computer has not."""
+    names = platform.needs if platform is not None and platform.needs else ALWAYS
+    return [problem for finding in find_tools(names, roots, cmake) if (problem := missing(finding)) is not None]
+
+
+def missing(finding: Finding) -> MissingTool | None:
+    """What is wrong with a tool, or None."""
+    tool = finding.tool
+    get = f"get it: {command_for(tool, cache_folder())}"
+    if finding.status == "wrong":
+        message = f"the {finding.source} leads to no {tool.title}: {finding.path}"
+        return MissingTool(tool.name, tool.title, message, f"correct {finding.source}, or leave it unset")
+    if finding.status == "old":
+        message = f"{tool.title} {finding.version} is too old: {tool.oldest} or newer is needed"
+        return MissingTool(tool.name, tool.title, message, get)
+    if finding.status == "missing":
+        return MissingTool(tool.name, tool.title, f"{tool.title} was not found", get)
+    return None
