@@ -1,0 +1,75 @@
+// Notices above the page: a lost connection, edits by others, conflicts, refusals.
+
+import { h } from "./dom.js";
+import { icon } from "./icons.js";
+import { hasEnded, isLost } from "./server.js";
+import { attempt, draw, ui } from "./ui.js";
+
+let dismissed = null; // the note about an edit elsewhere that was read already
+
+export function bars(state) {
+  if (hasEnded()) return [];
+  const list = [];
+  if (isLost()) {
+    const folder = state?.project?.folder;
+    list.push(
+      bar("lost", "error", [
+        h("b", null, "The connection to EPG is lost. "),
+        "Start it again",
+        folder ? [" in ", h("code", null, folder)] : null,
+        " with ",
+        h("code", null, "epg connect"),
+        " and open the address it prints.",
+        state?.draft?.changed ? " Changes that were not saved are kept here only as long as EPG runs." : null,
+      ]),
+    );
+  }
+  if (!state) return list;
+  const { draft } = state;
+  if (state.phase === "connect" && draft.conflict) {
+    list.push(
+      bar(
+        "conflict",
+        "error",
+        [h("b", null, draft.conflict.message), draft.conflict.hint ? ` ${draft.conflict.hint}` : null],
+        h("button", { onclick: () => attempt("reload") }, "Take the file, drop my changes"),
+        h("button", { onclick: () => attempt("save", { anyway: true }) }, "Save mine over it"),
+      ),
+    );
+  } else if (state.phase === "connect" && draft.external && draft.external !== dismissed) {
+    list.push(bar("external", "note", draft.external, dismiss(() => (dismissed = draft.external))));
+  }
+  if (state.phase === "connect" && !state.editable) {
+    list.push(bar("readonly", "warning", [h("b", null, "Connections cannot be changed here. "), state.why_not]));
+  }
+  if (ui.refused) {
+    list.push(
+      bar("refused", "error", [h("b", null, ui.refused.message), ui.refused.hint ? ` ${ui.refused.hint}` : null], dismiss(() => (ui.refused = null))),
+    );
+  }
+  return list;
+}
+
+function dismiss(forget) {
+  return h(
+    "button",
+    {
+      class: "quiet",
+      onclick: () => {
+        forget();
+        draw();
+      },
+    },
+    "Dismiss",
+  );
+}
+
+function bar(key, severity, text, ...buttons) {
+  return h(
+    "div",
+    { class: `bar ${severity}`, key, role: severity === "note" ? "status" : "alert" },
+    icon(severity),
+    h("p", null, text),
+    buttons,
+  );
+}

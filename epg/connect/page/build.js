@@ -1,0 +1,174 @@
+// Generate: progress, messages, products, log.
+
+import { h } from "./dom.js";
+import { icon } from "./icons.js";
+import { problem } from "./problems.js";
+import { current, getJson } from "./server.js";
+import { attempt, draw, say, ui } from "./ui.js";
+
+let log = []; // lines that were fetched
+let fetching = false;
+let since = null; // when the last State came: {seconds, at}
+let last = "idle";
+
+export async function generate() {
+  ui.tab = "build";
+  if (ui.dock === "closed") ui.dock = "open";
+  log = [];
+  draw();
+  await attempt("generate");
+}
+
+export function buildTitle(state) {
+  return { idle: "Build", running: "Build …", done: "Build ✓", failed: "Build ✕", cancelled: "Build" }[state.build.state];
+}
+
+// Called with every new State: says when a build has ended, and goes on with the log.
+export function followBuild(state) {
+  const { build } = state;
+  since = { seconds: build.seconds, at: performance.now() };
+  if (build.state !== last) {
+    if (build.state === "running") {
+      log = [];
+      ui.tab = "build";
+    }
+    if (last === "running") say(outcome(state));
+    last = build.state;
+  }
+  fetchLog();
+}
+
+async function fetchLog() {
+  const { build } = current();
+  if (fetching || !ui.logOpen || log.length >= build.lines) return;
+  fetching = true;
+  try {
+    const answer = await getJson(`api/log?from=${log.length}`);
+    log.push(...answer.lines);
+  } catch {
+    // The page says already that the connection is lost.
+  }
+  fetching = false;
+  draw();
+}
+
+function outcome(state) {
+  const { build } = state;
+  const errors = build.messages.filter((each) => each.severity === "error").length;
+  return {
+    idle: "Nothing was generated yet.",
+    running: build.step === "configure" ? "Configuring" : "Building",
+    done: build.products.length ? "Done. The firmware is ready." : "Done.",
+    failed: `Failed${errors ? `, with ${errors} error${errors === 1 ? "" : "s"}` : ""}.`,
+    cancelled: "Cancelled.",
+  }[build.state];
+}
+
+export function buildPanel(state) {
+  const { build } = state;
+  if (build.state === "idle") {
+    return h("p", { class: "empty" }, "Generate saves, configures and builds the firmware. Its progress and messages appear here.");
+  }
+  return [
+    h("div", { class: `outcome ${build.state}`, key: "outcome" }, status(state), progress(build)),
+    build.products.length ? h("ul", { class: "products", key: "products" }, build.products.map(product)) : null,
+    build.messages.length
+      ? h("ul", { class: "problem-list", key: "messages", "aria-label": "Messages of the build" }, build.messages.map(problem))
+      : null,
+    logPart(build),
+  ];
+}
+
+function status(state) {
+  const { build } = state;
+  const name = { done: "done", failed: "error", cancelled: "note" }[build.state];
+  return h(
+    "p",
+    { class: "outcome-text" },
+    name ? icon(name) : null,
+    h("b", null, outcome(state)),
+    build.state === "running" && build.step === "build" && build.total ? ` ${build.done} of ${build.total} steps` : null,
+    h("span", { class: "muted elapsed", id: "elapsed", keep: true, shown: (node) => (node.textContent = elapsed(build)) }),
+  );
+}
+
+function elapsed(build) {
+  const more = build.state === "running" && since ? (performance.now() - since.at) / 1000 : 0;
+  const seconds = Math.floor(build.seconds + more);
+  return seconds < 60 ? ` ${seconds} s` : ` ${Math.floor(seconds / 60)} min ${seconds % 60} s`;
+}
+
+setInterval(() => {
+  const place = document.getElementById("elapsed");
+  const state = current();
+  if (place && state?.build.state === "running") place.textContent = elapsed(state.build);
+}, 1000);
+
+// Without a known end the bar moves by itself.
+function progress(build) {
+  if (build.state !== "running") return null;
+  const known = build.total > 0;
+  return h("progress", {
+    key: known ? "known" : "unknown",
+    "aria-label": build.step === "configure" ? "Configuring" : "Building",
+    max: known ? build.total : null,
+    value: known ? build.done : undefined,
+  });
+}
+
+function product({ path, what }, n) {
+  return h(
+    "li",
+    { key: n },
+    h("p", null, what),
+    h(
+      "p",
+      { class: "product-path" },
+      h("code", null, path),
+      h("button", { onclick: (event) => copy(path, event.target), "aria-label": `Copy ${path}` }, "Copy path"),
+    ),
+  );
+}
+
+async function copy(text, button) {
+  try {
+    await navigator.clipboard.writeText(text);
+  } catch {
+    // Not allowed, as in some embedded browsers: the old way.
+    const field = document.createElement("textarea");
+    field.value = text;
+    document.body.append(field);
+    field.select();
+    document.execCommand("copy");
+    field.remove();
+    button.focus();
+  }
+  say("Copied");
+  button.textContent = "Copied";
+  setTimeout(() => (button.textContent = "Copy path"), 1500);
+}
+
+function logPart(build) {
+  return h(
+    "details",
+    {
+      key: "log",
+      class: "log",
+      ontoggle: (event) => {
+        ui.logOpen = event.target.open;
+        fetchLog();
+      },
+    },
+    h("summary", null, `Log, ${build.lines} line${build.lines === 1 ? "" : "s"}`),
+    h("pre", { tabindex: "0", "aria-label": "Log", keep: true, shown: showLog }),
+  );
+}
+
+// The end stays in sight unless somebody has scrolled up.
+function showLog(place) {
+  const text = log.join("\n");
+  if (place.textContent === text) return;
+  const atEnd = place.scrollTop + place.clientHeight >= place.scrollHeight - 8;
+  place.textContent = text;
+  if (atEnd) place.scrollTop = place.scrollHeight;
+}

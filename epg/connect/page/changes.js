@@ -1,0 +1,18 @@
+// What saving would change in the files.
+
+import { h } from "./dom.js";
+
+export function changes(state) {
+  const { diff } = state.draft;
+  if (!diff) return h("p", { class: "empty" }, "Nothing has changed since the files were saved.");
+  return h(
+    "pre",
+    { class: "diff" },
+    diff.replace(/\n$/, "").split("\n").map((line, n) => h("span", { key: n, class: kind(line) }, `${line}\n`)),
+  );
+}
+
+function kind(line) {
+  if (line.startsWith("+++") || line.startsWith("---")) return "file";
+  return { "+": "added", "-": "removed", "@": "where" }[line[0]] || "same";
+}

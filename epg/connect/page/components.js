@@ -1,0 +1,66 @@
+// What the target offers: components with the ports of one direction, their pins, peripheral and topic.
+
+import { h, id } from "./dom.js";
+import { componentLabel, handle, match } from "./handles.js";
+import { inline } from "./problems.js";
+import { unitText } from "./wiring.js";
+
+export function componentColumn(state, side, diagnostics, users) {
+  const direction = side === "sources" ? "source" : "sink";
+  const shown = state.components.filter((component) => component.ports.some((port) => port.direction === direction));
+  // What has no ports, such as a motion guard, stands last on the left, so that its messages have a place.
+  const without = side === "sources" ? state.components.filter((component) => component.ports.length === 0) : [];
+  return h(
+    "section",
+    { class: `components ${side}`, key: side, "aria-labelledby": `title-${side}` },
+    h("h3", { id: `title-${side}` }, side === "sources" ? "From the target" : "To the target"),
+    shown.length + without.length === 0 ? h("p", { class: "empty" }, "Nothing here.") : null,
+    [...shown, ...without].map((component) => card(state, side, component, direction, diagnostics, users)),
+  );
+}
+
+function card(state, side, component, direction, diagnostics, users) {
+  const { name, kind, summary, where, peripheral, topic } = component;
+  const ports = component.ports.filter((port) => port.direction === direction);
+  const first = direction === "source" || component.ports.every((port) => port.direction === direction);
+  const facts = [where?.join(" · "), peripheral, topic].filter(Boolean);
+  return h(
+    "article",
+    { class: "component", key: name, "aria-label": `component ${name}` },
+    h(
+      "div",
+      { class: "component-head" },
+      h("span", { class: "component-name" }, name),
+      h("span", { class: "kind", title: summary || null }, kind.replace(/_/g, " ")),
+    ),
+    facts.length && (first || ports.length === 0)
+      ? h("ul", { class: "facts" }, facts.map((fact, n) => h("li", { key: n }, fact)))
+      : null,
+    ports.length
+      ? h("ul", { class: "port-list" }, ports.map((port) => row(state, side, port, users.get(port.reference) || [])))
+      : null,
+    ports.length === 0 || first ? inline(diagnostics.get(name) || []) : null,
+  );
+}
+
+function row(state, side, port, users) {
+  const { reference, name } = port;
+  const converted = users.find((user) => user.end.from_tcf)?.end.from_tcf;
+  return h(
+    "li",
+    {
+      class: `port ${match(state, side, reference)}`,
+      key: reference,
+      "data-drop": "",
+      "data-side": side,
+      "data-name": reference,
+      "data-wire-component": id("at", reference),
+    },
+    handle(side, reference, componentLabel(state, side, port, users.map((user) => user.port)), users.length > 0),
+    h("span", { class: "port-name", title: port.summary || null }, name),
+    h("span", { class: "unit" }, unitText(port)),
+    converted
+      ? h("span", { class: "tcf-label", key: "tcf", title: "conversion in the .tcf" }, h("span", { class: "muted" }, ".tcf "), converted)
+      : null,
+  );
+}

@@ -1,0 +1,154 @@
+// Cards of the configurations one can choose, grouped by robot and board, with search and filter.
+
+import { h, id } from "./dom.js";
+import { icon } from "./icons.js";
+import { draw, ui } from "./ui.js";
+
+const NO_ROBOT = "Board only";
+
+// Radio buttons; the picked one is ui.chosen. `prefix` keeps the ids of two such lists apart.
+export function configurationCards(state, prefix) {
+  const robots = [...new Set(state.configurations.map((each) => each.robot || NO_ROBOT))];
+  const shown = state.configurations.filter(isShown);
+  return h(
+    "div",
+    { class: "chooser" },
+    filters(robots, prefix),
+    h(
+      "p",
+      { class: "muted", role: "status" },
+      shown.length === state.configurations.length
+        ? `${shown.length} targets`
+        : `${shown.length} of ${state.configurations.length} targets`,
+    ),
+    shown.length === 0 ? h("p", { class: "empty" }, "No target matches. Clear the search to see all.") : null,
+    h("div", { class: "robots", role: "radiogroup", "aria-label": "Targets" }, grouped(shown).map((group) => robotGroup(group, prefix))),
+  );
+}
+
+function isShown(configuration) {
+  const { text, robot, fits } = ui.filter;
+  if (robot && (configuration.robot || NO_ROBOT) !== robot) return false;
+  if (fits && (!configuration.possible || configuration.missing.length > 0)) return false;
+  const words = `${configuration.name} ${configuration.robot} ${configuration.board} ${configuration.platform} ${configuration.summary}`;
+  return text
+    .toLowerCase()
+    .split(/\s+/)
+    .every((word) => words.toLowerCase().includes(word));
+}
+
+// [{robot, boards: [{board, configurations}]}]: robots whose ports match best first, bare boards last.
+function grouped(configurations) {
+  const robots = new Map();
+  for (const each of configurations) {
+    const robot = each.robot || NO_ROBOT;
+    if (!robots.has(robot)) robots.set(robot, new Map());
+    const boards = robots.get(robot);
+    if (!boards.has(each.board)) boards.set(each.board, []);
+    boards.get(each.board).push(each);
+  }
+  const best = (boards) => Math.max(...[...boards.values()].flat().map((each) => each.matches));
+  return [...robots]
+    .sort(([a, aBoards], [b, bBoards]) => (a === NO_ROBOT) - (b === NO_ROBOT) || best(bBoards) - best(aBoards))
+    .map(([robot, boards]) => ({ robot, boards: [...boards].map(([board, list]) => ({ board, list })) }));
+}
+
+function filters(robots, prefix) {
+  return h(
+    "div",
+    { class: "filters" },
+    h(
+      "div",
+      { class: "field" },
+      h("label", { for: `${prefix}-search` }, "Search"),
+      h("input", {
+        id: `${prefix}-search`,
+        type: "search",
+        placeholder: "board, robot, RTOS",
+        initial: ui.filter.text,
+        oninput: (event) => change({ text: event.target.value }),
+      }),
+    ),
+    h(
+      "div",
+      { class: "field" },
+      h("label", { for: `${prefix}-robot` }, "Robot"),
+      h(
+        "select",
+        { id: `${prefix}-robot`, value: ui.filter.robot, onchange: (event) => change({ robot: event.target.value }) },
+        h("option", { key: "", value: "" }, "all"),
+        robots.map((robot) => h("option", { key: `:${robot}`, value: robot }, robot)),
+      ),
+    ),
+    h(
+      "label",
+      { class: "check" },
+      h("input", { type: "checkbox", checked: ui.filter.fits, onchange: (event) => change({ fits: event.target.checked }) }),
+      "Only what this computer can build now",
+    ),
+  );
+}
+
+function change(part) {
+  Object.assign(ui.filter, part);
+  draw();
+}
+
+function robotGroup({ robot, boards }, prefix) {
+  const name = id(prefix, "robot", robot);
+  const summary = robot === NO_ROBOT ? "a board without a robot: its components are written into the .tcf" : boards[0].list[0].summary;
+  return h(
+    "section",
+    { class: "robot", key: robot, "aria-labelledby": name },
+    h("h3", { id: name }, robot, summary ? h("span", { class: "muted" }, ` ${summary}`) : null),
+    boards.map(({ board, list }) =>
+      h(
+        "div",
+        { class: "board", key: board, role: "group", "aria-label": `${robot}, ${board}` },
+        h("h4", null, board),
+        h("div", { class: "cards" }, list.map((each) => card(each, prefix))),
+      ),
+    ),
+  );
+}
+
+function card(configuration, prefix) {
+  const { name, platform, picture, components, matches, ports, missing, possible, reason, chosen } = configuration;
+  const [title, ...more] = platform.split(/[:,] /);
+  const field = id(prefix, name);
+  return h(
+    "label",
+    { class: `card${possible ? "" : " impossible"}`, key: name, for: field },
+    h("input", {
+      type: "radio",
+      id: field,
+      name: `${prefix}-configuration`,
+      value: name,
+      checked: ui.chosen === name,
+      disabled: !possible,
+      onchange: () => {
+        ui.chosen = name;
+        draw();
+      },
+    }),
+    picture
+      ? h("img", { src: `picture/wiring.svg?configuration=${encodeURIComponent(name)}`, alt: "", loading: "lazy", width: "84", height: "84" })
+      : h("span", { class: "no-picture", "aria-hidden": "true" }),
+    h(
+      "span",
+      { class: "card-text" },
+      h("span", { class: "card-title" }, title[0].toUpperCase() + title.slice(1), chosen ? h("span", { class: "tag" }, "in use") : null),
+      more.length ? h("span", { class: "card-line" }, more.join(", ")) : null,
+      h("span", { class: "card-line name" }, name),
+      h("span", { class: "card-line" }, offer(components, matches, ports)),
+      missing.length ? h("span", { class: "card-line warning" }, icon("warning"), `This computer lacks ${missing.join(", ")}`) : null,
+      reason ? h("span", { class: "card-line warning" }, icon("warning"), reason) : null,
+    ),
+  );
+}
+
+function offer(components, matches, ports) {
+  const parts = [components === 0 ? "no components yet" : `${components} component${components === 1 ? "" : "s"}`];
+  if (components > 0 && ports > 0) parts.push(`${matches} of ${ports} ports match by name`);
+  return parts.join(", ");
+}

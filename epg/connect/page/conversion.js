@@ -1,0 +1,108 @@
+// The dialog of one wire: scale, offset, limits, unit.
+
+import { closeDialog, openDialog } from "./dialog.js";
+import { h, id } from "./dom.js";
+import { act, current } from "./server.js";
+import { draw, say, ui } from "./ui.js";
+import { endsOf, modelPort, replaceEnd } from "./wiring.js";
+
+export function editConversion(port, n) {
+  const found = modelPort(current(), port);
+  if (!found || !endsOf(current(), port)[n]) return;
+  const { reference } = endsOf(current(), port)[n];
+  const [from, to] = found.side === "inputs" ? [reference, port] : [port, reference];
+  let error = null;
+
+  const apply = async (event) => {
+    event.preventDefault();
+    const value = (name) => event.target.elements[name].value.trim();
+    const limits = value("low") || value("high") ? [value("low"), value("high")] : null;
+    if (limits && !(limits[0] && limits[1])) {
+      error = { message: "Limits need both values, the lowest and the highest", hint: "" };
+      draw();
+      return;
+    }
+    const ends = endsOf(current(), port).map((end) => pick(end));
+    ends[n] = { reference, scale: value("scale"), offset: value("offset"), limits, unit: value("unit") };
+    error = await act("connect", { port, ends });
+    if (error) {
+      draw();
+      return;
+    }
+    ui.refused = null;
+    closeDialog("conversion");
+    const text = endsOf(current(), port)[n]?.text;
+    say(text ? `${from} to ${to}: ${text}` : `${from} to ${to} without a conversion`);
+  };
+
+  openDialog("conversion", `${from} → ${to}`, () => {
+    const end = endsOf(current(), port)[n];
+    // The wire may have gone by an edit elsewhere.
+    if (!end || end.reference !== reference) return null;
+    const readonly = !current().editable;
+    return h(
+      "form",
+      { onsubmit: apply, autocomplete: "off", novalidate: true },
+      h(
+        "p",
+        { class: "muted" },
+        "The value is multiplied by the scale, the offset is added, and the result is kept within the limits. ",
+        "Empty fields change nothing.",
+      ),
+      end.from_tcf ? h("p", null, "The .tcf converts it too: ", h("b", null, end.from_tcf)) : null,
+      h(
+        "div",
+        { class: "fields" },
+        text("scale", "Scale", end.scale, "a number or a ratio such as 361/5625", readonly),
+        text("offset", "Offset", end.offset, "", readonly),
+        text("low", "Lowest", end.limits?.[0], "", readonly),
+        text("high", "Highest", end.limits?.[1], "", readonly),
+        text("unit", "Unit", end.unit, "of the value in the model, where it is not the port's", readonly),
+      ),
+      error
+        ? h("p", { class: "refusal", role: "alert" }, error.message, error.hint ? h("span", { class: "hint" }, error.hint) : null)
+        : null,
+      h(
+        "div",
+        { class: "buttons" },
+        h(
+          "button",
+          {
+            type: "button",
+            disabled: readonly,
+            onclick: () => {
+              closeDialog("conversion");
+              replaceEnd(port, n, null);
+              document.getElementById(id("ends", port, 0))?.focus();
+            },
+          },
+          "Remove wire",
+        ),
+        h("span", { class: "space" }),
+        h("button", { type: "button", onclick: () => closeDialog("conversion") }, "Cancel"),
+        h("button", { type: "submit", class: "primary", disabled: readonly }, "Apply"),
+      ),
+    );
+  });
+}
+
+function text(name, label, value, hint, readonly) {
+  const field = id("conversion-field", name);
+  return h(
+    "div",
+    { class: `field field-${name}` },
+    h("label", { for: field }, label),
+    h("input", {
+      id: field,
+      name,
+      type: "text",
+      spellcheck: "false",
+      initial: value || "",
+      readonly,
+      "aria-describedby": hint ? `${field}-hint` : null,
+    }),
+    hint ? h("span", { class: "hint", id: `${field}-hint` }, hint) : null,
+  );
+}
+
+const pick = ({ reference, scale, offset, limits, unit }) => ({ reference, scale, offset, limits, unit });

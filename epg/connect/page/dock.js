@@ -1,0 +1,93 @@
+// The lower part: tabs with everything that is more than ports.
+
+import { buildPanel, buildTitle } from "./build.js";
+import { changes } from "./changes.js";
+import { h } from "./dom.js";
+import { hardware } from "./hardware.js";
+import { icon } from "./icons.js";
+import { picture } from "./pictures.js";
+import { problemList } from "./problems.js";
+import { draw, ui } from "./ui.js";
+
+function tabs(state) {
+  const { pictures, diagnostics } = state;
+  return [
+    { name: "problems", title: `Problems${diagnostics.length ? ` ${diagnostics.length}` : ""}`, content: problemList },
+    { name: "build", title: buildTitle(state), content: buildPanel },
+    { name: "hardware", title: "Pins and peripherals", content: hardware },
+    pictures.wiring && { name: "wiring", title: "Pinout", content: picture },
+    pictures.application && { name: "application", title: "Application", content: picture },
+    pictures.schedule && { name: "schedule", title: "Schedule", content: picture },
+    { name: "changes", title: state.draft.diff ? "Changes ●" : "Changes", content: changes },
+  ].filter(Boolean);
+}
+
+export function dock(state) {
+  const all = tabs(state);
+  const shown = all.find((each) => each.name === ui.tab) || all[0];
+  const isOpen = ui.dock !== "closed";
+  return [
+    h(
+      "div",
+      { class: "dock-head", key: "head" },
+      h("div", { role: "tablist", "aria-label": "Details", onkeydown: (event) => arrow(event, all, shown) }, all.map((each) => tab(each, each === shown))),
+      h(
+        "div",
+        { class: "dock-size" },
+        sizeButton(ui.dock === "large" ? "Smaller" : "Larger", ui.dock === "large" ? "open" : "large", ui.dock === "large" ? "smaller" : "larger"),
+        sizeButton(isOpen ? "Hide details" : "Show details", isOpen ? "closed" : "open", isOpen ? "close" : "larger"),
+      ),
+    ),
+    h(
+      "div",
+      { class: `panel panel-${shown.name}`, key: `panel-${shown.name}`, role: "tabpanel", id: "panel", "aria-labelledby": `tab-${shown.name}`, tabindex: "0", hidden: !isOpen },
+      shown.content(state, shown.name),
+    ),
+  ];
+}
+
+function tab({ name, title }, selected) {
+  return h(
+    "button",
+    {
+      key: name,
+      id: `tab-${name}`,
+      role: "tab",
+      "aria-selected": String(selected),
+      "aria-controls": "panel",
+      tabindex: selected ? "0" : "-1",
+      onclick: () => {
+        ui.tab = name;
+        if (ui.dock === "closed") ui.dock = "open";
+        draw();
+      },
+    },
+    title,
+  );
+}
+
+function arrow(event, all, shown) {
+  const by = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+  if (!by) return;
+  event.preventDefault();
+  const next = all[(all.indexOf(shown) + by + all.length) % all.length];
+  ui.tab = next.name;
+  draw();
+  document.getElementById(`tab-${next.name}`).focus();
+}
+
+function sizeButton(label, size, picture) {
+  return h(
+    "button",
+    {
+      class: "quiet icon-button",
+      "aria-label": label,
+      title: label,
+      onclick: () => {
+        ui.dock = size;
+        draw();
+      },
+    },
+    icon(picture),
+  );
+}

@@ -1,0 +1,103 @@
+// Elements as a function of data: h() says what should be there, render() changes only what differs, so that focus,
+// scroll positions, open lists and half-typed text stay.
+//
+//   render(document.getElementById("main"), [h("p", {class: "note"}, "4 ports")])
+
+const SVG = "http://www.w3.org/2000/svg";
+const SVG_TAGS = new Set(["svg", "path", "circle", "g", "rect"]);
+
+// What an element should be. Attributes: `key` tells siblings apart, `on...` are handlers, `keep` leaves what is inside
+// to somebody else, `made` is called once with a new element, `shown` after each drawing. Children: null is nothing.
+export function h(tag, attributes, ...children) {
+  const flat = children.flat(Infinity).filter((child) => child !== null && child !== undefined && child !== false);
+  return { tag, attributes: attributes || {}, children: flat };
+}
+
+export function render(parent, descriptions) {
+  const focused = document.activeElement;
+  const after = [];
+  renderChildren(parent, [descriptions].flat(Infinity).filter(Boolean), after);
+  for (const call of after) call();
+  // An element that was moved loses the focus.
+  if (focused && focused !== document.activeElement && focused.isConnected && parent.contains(focused)) focused.focus();
+}
+
+function renderChildren(parent, descriptions, after) {
+  const keyed = new Map();
+  const others = [];
+  for (const node of parent.childNodes) {
+    if (node.epgKey !== undefined) keyed.set(node.epgKey, node);
+    else others.push(node);
+  }
+  let place = parent.firstChild;
+  for (const wanted of descriptions) {
+    let node = take(wanted, keyed, others);
+    if (node === null) {
+      node = make(wanted);
+      parent.insertBefore(node, place);
+    } else if (node === place) {
+      place = place.nextSibling;
+    } else {
+      parent.insertBefore(node, place);
+    }
+    update(node, wanted, after);
+  }
+  for (const node of [...keyed.values(), ...others]) if (node !== null) node.remove();
+}
+
+function take(wanted, keyed, others) {
+  const tag = typeof wanted === "object" ? wanted.tag : null;
+  const key = tag ? wanted.attributes.key : undefined;
+  if (key !== undefined) {
+    const node = keyed.get(key);
+    if (!node || node.localName !== tag) return null;
+    keyed.delete(key);
+    return node;
+  }
+  const n = others.findIndex((node) => node !== null && (tag ? node.localName === tag : node.nodeType === 3));
+  if (n < 0) return null;
+  const [node] = others.splice(n, 1);
+  return node;
+}
+
+function make(wanted) {
+  if (typeof wanted !== "object") return document.createTextNode(String(wanted));
+  const { tag, attributes } = wanted;
+  const node = SVG_TAGS.has(tag) ? document.createElementNS(SVG, tag) : document.createElement(tag);
+  node.epgKey = attributes.key;
+  node.epgAttributes = {};
+  if (attributes.made) attributes.made(node);
+  return node;
+}
+
+function update(node, wanted, after) {
+  if (typeof wanted !== "object") {
+    if (node.data !== String(wanted)) node.data = String(wanted);
+    return;
+  }
+  const { attributes, children } = wanted;
+  const old = node.epgAttributes;
+  for (const name of Object.keys(old)) if (!(name in attributes)) set(node, name, null, old[name]);
+  for (const [name, value] of Object.entries(attributes)) set(node, name, value, old[name]);
+  node.epgAttributes = attributes;
+  if (!attributes.keep) renderChildren(node, children, after);
+  // A select takes its value only when its options are there. `value` is what the files say; what somebody types into
+  // a field is left alone (`initial` fills it once).
+  if ("value" in attributes && node.value !== String(attributes.value)) node.value = attributes.value;
+  if ("checked" in attributes) node.checked = Boolean(attributes.checked);
+  if (attributes.shown) after.push(() => attributes.shown(node));
+}
+
+function set(node, name, value, old) {
+  if (["key", "keep", "made", "shown", "checked"].includes(name) || value === old) return;
+  if (name === "value" && node.localName === "select") return;
+  if (name.startsWith("on")) node[name] = value;
+  else if (name === "initial") node.value = value ?? "";
+  else if (value === null || value === undefined || value === false) node.removeAttribute(name);
+  else node.setAttribute(name, value === true ? "" : String(value));
+}
+
+// An id that is legal for any name of a port.
+export function id(...parts) {
+  return parts.join("-").replace(/[^\w-]/g, (letter) => `_${letter.codePointAt(0)}_`);
+}

@@ -1,0 +1,36 @@
+// What of the board every component got.
+
+import { h } from "./dom.js";
+
+const COLUMNS = [
+  ["component", "Component"],
+  ["claim", "For"],
+  ["resource", "Peripheral"],
+  ["pins", "Pins"],
+  ["frequency", "Frequency"],
+  ["remark", "Remark"],
+];
+
+export function hardware(state) {
+  if (state.hardware.length === 0) return h("p", { class: "empty" }, "The target uses no pins or peripherals.");
+  const columns = COLUMNS.filter(([name]) => state.hardware.some((row) => row[name]));
+  return h(
+    "table",
+    null,
+    h("caption", { class: "unseen" }, "Pins and peripherals"),
+    h("thead", null, h("tr", null, columns.map(([name, title]) => h("th", { key: name, scope: "col" }, title)))),
+    h(
+      "tbody",
+      null,
+      state.hardware.map((row, n) =>
+        h(
+          "tr",
+          { key: n },
+          columns.map(([name], column) =>
+            h(column === 0 ? "th" : "td", { key: name, scope: column === 0 ? "row" : null, class: name }, row[name]),
+          ),
+        ),
+      ),
+    ),
+  );
+}

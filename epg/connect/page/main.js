@@ -1,0 +1,101 @@
+// Draws the page for every State, and listens to what concerns all of it.
+
+import { bars } from "./bars.js";
+import { followBuild } from "./build.js";
+import { componentColumn } from "./components.js";
+import { drawDialogs } from "./dialog.js";
+import { dock } from "./dock.js";
+import { h, render } from "./dom.js";
+import { listenForDrags } from "./drag.js";
+import { drawStops, isKnown, listenForKeys } from "./handles.js";
+import { header } from "./header.js";
+import { modelHead, modelPorts } from "./ports.js";
+import { current, follow, hasEnded } from "./server.js";
+import { startPage } from "./start.js";
+import { attempt, draw, ui, whenDrawn } from "./ui.js";
+import { drawWires } from "./wires.js";
+
+const part = (name) => document.getElementById(name);
+
+function drawPage() {
+  const state = current();
+  render(part("bars"), bars(state));
+  if (hasEnded()) {
+    for (const name of ["header", "dock"]) part(name).hidden = true;
+    render(part("main"), [h("p", { class: "ended", key: "ended" }, "EPG has ended. This window can be closed.")]);
+    return;
+  }
+  if (!state) return;
+  if (!isKnown(state)) ui.held = null;
+  const connecting = state.phase === "connect";
+  document.title = connecting ? `${state.draft.changed ? "● " : ""}${state.project.name} – EPG` : "New project – EPG";
+  document.body.className = `${state.phase} dock-${connecting ? ui.dock : "closed"}${ui.held ? " holding" : ""}`;
+  render(part("header"), header(state));
+  render(part("main"), connecting ? diagram(state) : [startPage(state)]);
+  part("dock").hidden = !connecting;
+  if (connecting) render(part("dock"), dock(state));
+  drawStops();
+  drawDialogs();
+  drawWires();
+}
+
+function diagram(state) {
+  if (!state.model) {
+    return [h("p", { class: "empty", key: "none" }, "The model cannot be read. Problems, below, says why.")];
+  }
+  const byPort = group(state.diagnostics, "port");
+  const byComponent = group(state.diagnostics.filter((each) => !each.port), "component");
+  const users = new Map();
+  for (const [port, ends] of Object.entries(state.wires)) {
+    for (const end of ends) users.set(end.reference, [...(users.get(end.reference) || []), { port, end }]);
+  }
+  return [
+    h(
+      "div",
+      { class: "diagram", id: "diagram", key: "diagram", made: (node) => sizes.observe(node) },
+      componentColumn(state, "sources", byComponent, users),
+      modelHead(state),
+      modelPorts(state, "inputs", byPort),
+      modelPorts(state, "outputs", byPort),
+      componentColumn(state, "sinks", byComponent, users),
+      h("svg", { id: "wires", key: "wires", keep: true, "aria-hidden": "true" }),
+      h("p", { class: "unseen", id: "handle-help", key: "help" }, "Enter picks the end of a wire up"),
+    ),
+  ];
+}
+
+function group(list, name) {
+  const groups = new Map();
+  for (const each of list) if (each[name]) groups.set(each[name], [...(groups.get(each[name]) || []), each]);
+  return groups;
+}
+
+const sizes = new ResizeObserver(() => drawWires());
+
+whenDrawn(drawPage);
+
+document.addEventListener("keydown", (event) => {
+  const state = current();
+  if (!(event.ctrlKey || event.metaKey) || event.altKey || state?.phase !== "connect") return;
+  const writing = event.target.matches?.("input[type=text], input[type=search], textarea");
+  const key = event.key.toLowerCase();
+  if (key === "s") {
+    event.preventDefault();
+    if (state.draft.changed) attempt("save");
+  } else if (!writing && !document.querySelector("dialog[open]") && (key === "z" || key === "y")) {
+    event.preventDefault();
+    const redo = key === "y" || event.shiftKey;
+    if (redo ? state.draft.can_redo : state.draft.can_undo) attempt(redo ? "redo" : "undo");
+  }
+});
+
+window.addEventListener("beforeunload", (event) => {
+  if (current()?.draft?.changed && !hasEnded()) event.preventDefault();
+});
+
+listenForDrags(part("main"));
+listenForKeys(part("main"));
+follow(() => {
+  if (current() && !hasEnded()) followBuild(current());
+  draw();
+});

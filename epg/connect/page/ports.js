@@ -1,0 +1,170 @@
+// The model in the middle: inputs with their source, outputs with what they drive.
+
+import { editConversion } from "./conversion.js";
+import { h, id } from "./dom.js";
+import { handle, match, modelLabel } from "./handles.js";
+import { icon } from "./icons.js";
+import { inline } from "./problems.js";
+import { attempt, draw, ui } from "./ui.js";
+import { disconnect, endsOf, isUnconnected, replaceEnd, setEnds, unitText } from "./wiring.js";
+
+export function modelHead(state) {
+  const { model, proposals } = state;
+  const count = Object.keys(proposals).length;
+  return h(
+    "div",
+    { class: "model-head", key: "model-head" },
+    h("h2", null, model.name),
+    h("p", { class: "muted" }, stepText(model.step), model.origin ? ` · ${model.origin}` : ""),
+    count > 0 && state.editable
+      ? h(
+          "button",
+          { class: "accept-all", onclick: () => attempt("accept") },
+          `Accept all ${count} proposal${count === 1 ? "" : "s"}`,
+        )
+      : null,
+  );
+}
+
+function stepText(step) {
+  if (!step) return "no fixed step";
+  return step < 0.001 ? `step ${Number((step * 1e6).toPrecision(6))} µs` : `step ${Number((step * 1e3).toPrecision(6))} ms`;
+}
+
+export function modelPorts(state, side, diagnostics) {
+  const ports = state.model[side];
+  const title = side === "inputs" ? "Inputs" : "Outputs";
+  return h(
+    "section",
+    { class: `ports ${side}`, key: side, "aria-labelledby": `title-${side}` },
+    h("h3", { id: `title-${side}` }, title, h("span", { class: "count" }, ` ${ports.length}`)),
+    ports.length === 0 ? h("p", { class: "empty" }, `The model has no ${side}.`) : null,
+    h("ul", { class: "port-list" }, ports.map((port) => row(state, side, port, diagnostics.get(port.name) || []))),
+  );
+}
+
+function row(state, side, port, diagnostics) {
+  const { name } = port;
+  const ends = endsOf(state, name);
+  const proposal = name in state.wires ? null : state.proposals[name];
+  const worst = diagnostics.some((each) => each.severity === "error") ? " has-error" : "";
+  const fields = ends.length === 0 ? [field(state, side, port, null, 0)] : ends.map((end, n) => field(state, side, port, end, n));
+  if (ui.adding === name && ends.length > 0) fields.push(field(state, side, port, null, ends.length));
+  const refused = ui.refused?.port === name ? { severity: "error", ...ui.refused } : null;
+  return h(
+    "li",
+    {
+      class: `port ${match(state, side, name)}${worst}`,
+      key: name,
+      "data-drop": "",
+      "data-side": side,
+      "data-name": name,
+    },
+    h(
+      "div",
+      { class: "port-head" },
+      h("label", { class: "port-name", for: id("ends", name, 0), title: port.description || null }, name),
+      h("span", { class: "unit" }, unitText(port)),
+    ),
+    fields,
+    proposal
+      ? h(
+          "p",
+          { class: "proposal", key: "proposal" },
+          h("span", { class: "dashes", "aria-hidden": "true" }),
+          h("span", null, "same name: ", h("b", null, proposal)),
+          h(
+            "button",
+            { onclick: () => attempt("accept", { ports: [name] }), "aria-label": `Accept ${proposal} for ${name}`, disabled: !state.editable },
+            "Accept",
+          ),
+        )
+      : null,
+    inline(refused ? [refused, ...diagnostics] : diagnostics),
+  );
+}
+
+// One end of a port: the list to choose from, its handle, and the conversion on its wire.
+function field(state, side, port, end, n) {
+  const { name } = port;
+  const ends = endsOf(state, name);
+  const mayAdd = side === "outputs" && end !== null && n === ends.length - 1 && ui.adding !== name;
+  return h(
+    "div",
+    { class: "end", key: `end-${n}`, "data-wire-model": id("wire", name, n) },
+    n === 0 ? handle(side, name, modelLabel(state, side, port), ends.length > 0) : h("span", { class: "tap", key: "handle" }),
+    h(
+      "select",
+      {
+        id: id("ends", name, n),
+        key: "select",
+        "aria-label": n === 0 ? null : `${name}, end ${n + 1}`,
+        value: end ? `:${end.reference}` : isUnconnected(state, name) ? "unconnected" : "",
+        disabled: !state.editable,
+        onchange: (event) => choose(side, name, n, event.target.value),
+      },
+      options(state, side, port, end, n),
+    ),
+    mayAdd
+      ? h(
+          "button",
+          {
+            class: "quiet icon-button",
+            key: "add",
+            "aria-label": `Connect ${name} with one more`,
+            title: "Connect with one more",
+            disabled: !state.editable,
+            onclick: () => {
+              ui.adding = name;
+              draw();
+              document.getElementById(id("ends", name, ends.length))?.focus();
+            },
+          },
+          icon("plus"),
+        )
+      : null,
+    end ? conversionButton(port, side, end, n) : null,
+  );
+}
+
+function options(state, side, port, end, n) {
+  const { name } = port;
+  const more = n > 0 && end === null;
+  const list = [h("option", { key: "", value: "" }, more ? "(choose one more)" : n > 0 ? "(remove)" : "(not connected)")];
+  if (side === "outputs" && n === 0) {
+    list.push(h("option", { key: "unconnected", value: "unconnected" }, "unconnected on purpose"));
+  }
+  const references = [...(state.candidates[name] || [])];
+  if (end && !references.includes(end.reference)) references.push(end.reference);
+  const proposal = name in state.wires ? null : state.proposals[name];
+  for (const reference of references) {
+    const note = reference === proposal ? " (same name)" : "";
+    list.push(h("option", { key: `:${reference}`, value: `:${reference}` }, reference + note));
+  }
+  return list;
+}
+
+function choose(side, name, n, value) {
+  if (value === "unconnected") return setEnds(name, []);
+  if (value === "") {
+    ui.adding = null;
+    return n === 0 && side === "inputs" ? disconnect(name) : replaceEnd(name, n, null);
+  }
+  return replaceEnd(name, n, value.slice(1));
+}
+
+function conversionButton(port, side, end, n) {
+  const words = side === "inputs" ? `${end.reference} to ${port.name}` : `${port.name} to ${end.reference}`;
+  return h(
+    "button",
+    {
+      class: end.text ? "wire-label" : "wire-label bare",
+      key: "conversion",
+      id: id("conversion", port.name, n),
+      "aria-label": `Conversion from ${words}: ${end.text || "none"}`,
+      title: end.text || "Conversion on this wire",
+      onclick: () => editConversion(port.name, n),
+    },
+    end.text || icon("conversion"),
+  );
+}

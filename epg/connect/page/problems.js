@@ -1,0 +1,97 @@
+// Messages: where they are about, and as a list. Their text is the command line's.
+
+import { h, id } from "./dom.js";
+import { icon } from "./icons.js";
+import { showSource } from "./source.js";
+import { draw, ui } from "./ui.js";
+
+export function counted(diagnostics) {
+  const errors = diagnostics.filter((each) => each.severity === "error").length;
+  const warnings = diagnostics.filter((each) => each.severity === "warning").length;
+  return { errors, warnings, text: countText(errors, warnings) };
+}
+
+function countText(errors, warnings) {
+  const parts = [];
+  if (errors) parts.push(`${errors} error${errors === 1 ? "" : "s"}`);
+  if (warnings) parts.push(`${warnings} warning${warnings === 1 ? "" : "s"}`);
+  return parts.join(", ") || "No problems";
+}
+
+export const severityIcon = (severity) => icon(severity in { error: 1, warning: 1 } ? severity : "note");
+
+// Messages at the port or component they are about.
+export function inline(diagnostics) {
+  if (diagnostics.length === 0) return null;
+  return h(
+    "ul",
+    { class: "inline-problems", key: "problems" },
+    diagnostics.map((each) =>
+      h(
+        "li",
+        { class: each.severity },
+        severityIcon(each.severity),
+        h(
+          "span",
+          null,
+          h("span", { class: "unseen" }, `${each.severity}: `),
+          each.message,
+          each.hint ? h("span", { class: "hint" }, each.hint) : null,
+        ),
+      ),
+    ),
+  );
+}
+
+export function problemList(state) {
+  if (state.diagnostics.length === 0) {
+    return h("p", { class: "empty" }, icon("done"), "No problems. The target can be generated.");
+  }
+  return h("ul", { class: "problem-list" }, state.diagnostics.map(problem));
+}
+
+// One message as a button that leads to its port, or else to its line.
+export function problem(message) {
+  const place = `${message.file}:${message.line}${message.column ? `:${message.column}` : ""}`;
+  return h(
+    "li",
+    { class: message.severity },
+    h(
+      "button",
+      { class: "problem", onclick: () => goTo(message) },
+      severityIcon(message.severity),
+      h(
+        "span",
+        { class: "problem-text" },
+        h("span", { class: "unseen" }, `${message.severity}: `),
+        h("span", { class: "message" }, message.message),
+        message.hint ? h("span", { class: "hint" }, message.hint) : null,
+        h("span", { class: "place" }, message.port ? `port ${message.port}` : place),
+      ),
+    ),
+    message.port && message.file
+      ? h(
+          "button",
+          { class: "quiet", onclick: () => showSource(message), "aria-label": `Show ${place}` },
+          `${message.file.split("/").pop()}:${message.line}`,
+        )
+      : null,
+  );
+}
+
+export function goTo(message) {
+  if (message.port && focusPort(message.port)) return;
+  if (message.file) showSource(message);
+}
+
+export function focusPort(port) {
+  if (ui.dock === "large") {
+    ui.dock = "open";
+    draw();
+  }
+  const field = document.getElementById(id("ends", port, 0));
+  if (!field) return false;
+  field.scrollIntoView({ block: "center" });
+  field.focus();
+  return true;
+}

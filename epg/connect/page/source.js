@@ -1,0 +1,47 @@
+// A dialog with the lines around a message.
+
+import { openDialog } from "./dialog.js";
+import { h } from "./dom.js";
+import { getJson } from "./server.js";
+
+export async function showSource(message) {
+  const notes = message.notes || [];
+  const places = [message, ...notes];
+  const excerpts = await Promise.all(places.map((place) => excerpt(place)));
+  openDialog("source", message.message, () => [
+    message.hint ? h("p", { class: "hint" }, message.hint) : null,
+    excerpts.map((lines, n) => [
+      n > 0 ? h("h3", null, notes[n - 1].message) : null,
+      h("p", { class: "place" }, `${places[n].file}:${places[n].line}`),
+      lines,
+    ]),
+  ]);
+}
+
+async function excerpt(place) {
+  let data;
+  try {
+    data = await getJson(`api/source?file=${encodeURIComponent(place.file)}&line=${place.line}`);
+  } catch {
+    return h("p", { class: "empty" }, "The file cannot be shown here.");
+  }
+  const column = place.column || 0;
+  return h(
+    "pre",
+    { class: "excerpt", tabindex: "0", "aria-label": `Lines ${data.first} and following` },
+    data.lines.map((text, n) => line(text, data.first + n, data.first + n === data.line ? column : -1)),
+  );
+}
+
+function line(text, number, column) {
+  const here = column >= 0;
+  const marker = here && column > 0 ? `\n${" ".repeat(7)}${text.slice(0, column - 1).replace(/[^\t]/g, " ")}^` : "";
+  return h(
+    "span",
+    { class: here ? "line here" : "line" },
+    h("span", { class: "number" }, `${here ? ">" : " "}${String(number).padStart(4)}  `),
+    text,
+    marker,
+    "\n",
+  );
+}

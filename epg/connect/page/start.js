@@ -1,0 +1,97 @@
+// The start page: a model that has no project yet. 1 Model, 2 Target, 3 Project.
+
+import { configurationCards } from "./configurations.js";
+import { h } from "./dom.js";
+import { attempt, draw, ui } from "./ui.js";
+import { unitText } from "./wiring.js";
+
+let busy = false;
+
+export function startPage(state) {
+  return h(
+    "div",
+    { class: "start", key: "start" },
+    h("h1", { class: "unseen" }, "New project"),
+    modelStep(state.model),
+    h(
+      "section",
+      { class: "step step-target", key: "target", "aria-labelledby": "step-target" },
+      heading("step-target", 2, "Target", "The board and robot that the model will control."),
+      configurationCards(state, "start"),
+    ),
+    projectStep(state),
+  );
+}
+
+function heading(id, number, title, text) {
+  return h(
+    "div",
+    { class: "step-head" },
+    h("h2", { id }, h("span", { class: "step-number" }, String(number)), " ", title),
+    text ? h("p", { class: "muted" }, text) : null,
+  );
+}
+
+function modelStep(model) {
+  if (!model) return h("section", { class: "step step-model", key: "model" }, heading("step-model", 1, "Model", "No model was found."));
+  const list = (title, ports) => [
+    h("h3", null, title, h("span", { class: "count" }, ` ${ports.length}`)),
+    h(
+      "ul",
+      { class: "port-names", tabindex: ports.length > 8 ? "0" : null, "aria-label": title },
+      ports.map((port) => h("li", { key: port.name }, h("span", null, port.name), h("span", { class: "unit" }, unitText(port)))),
+    ),
+  ];
+  return h(
+    "section",
+    { class: "step step-model", key: "model", "aria-labelledby": "step-model" },
+    heading("step-model", 1, "Model"),
+    h("p", { class: "big" }, model.name),
+    h("p", { class: "muted" }, [model.origin, model.step ? `step ${model.step} s` : ""].filter(Boolean).join(", ")),
+    list("Inputs", model.inputs),
+    list("Outputs", model.outputs),
+  );
+}
+
+function projectStep(state) {
+  const picked = state.configurations.find((each) => each.name === ui.chosen);
+  const create = async (event) => {
+    event.preventDefault();
+    const { folder, name } = event.target.elements;
+    busy = true;
+    draw();
+    await attempt("create", { configuration: ui.chosen, folder: folder.value.trim(), name: name.value.trim() });
+    busy = false;
+    draw();
+  };
+  return h(
+    "section",
+    { class: "step step-project", key: "project", "aria-labelledby": "step-project" },
+    heading("step-project", 3, "Project", "A folder with everything the firmware is built from. The model is copied into it."),
+    h(
+      "form",
+      { onsubmit: create, autocomplete: "off" },
+      h(
+        "div",
+        { class: "field" },
+        h("label", { for: "create-name" }, "Name"),
+        h("input", { id: "create-name", name: "name", type: "text", required: true, spellcheck: "false", initial: state.create?.name }),
+      ),
+      h(
+        "div",
+        { class: "field" },
+        h("label", { for: "create-folder" }, "Folder"),
+        h("input", { id: "create-folder", name: "folder", type: "text", required: true, spellcheck: "false", initial: state.create?.folder }),
+      ),
+      h(
+        "p",
+        { class: "picked" },
+        picked ? [`${picked.robot || picked.board}, `, h("b", null, picked.name)] : h("span", { class: "muted" }, "No target is chosen yet."),
+      ),
+      picked?.missing.length
+        ? h("p", { class: "muted" }, `Connecting works now; generating needs ${picked.missing.join(", ")}. 'epg doctor' says how to get it.`)
+        : null,
+      h("button", { type: "submit", class: "primary wide", disabled: !picked || busy }, busy ? "Creating…" : "Create project"),
+    ),
+  );
+}

@@ -1,0 +1,101 @@
+// Wires as curves between handles, in one SVG behind the blocks.
+
+import { editConversion } from "./conversion.js";
+import { h, id, render } from "./dom.js";
+import { handleId } from "./handles.js";
+import { current } from "./server.js";
+import { ui } from "./ui.js";
+import { modelPort, ofModel } from "./wiring.js";
+
+let pointer = null; // where a dragged end is, in the diagram's coordinates
+
+export function setPointer(place) {
+  pointer = place;
+  drawWires();
+}
+
+export function drawWires() {
+  const svg = document.getElementById("wires");
+  const state = current();
+  if (!svg || state?.phase !== "connect" || !state.model) return;
+  const diagram = svg.parentElement;
+  const zero = diagram.getBoundingClientRect();
+  const anchors = new Map();
+  // Reading all places before anything is written keeps this at one layout of the page.
+  for (const each of diagram.querySelectorAll("[data-wire-model], [data-wire-component]")) {
+    const dot = each.querySelector("[data-handle], .tap");
+    const box = dot.getBoundingClientRect();
+    if (box.width === 0) continue;
+    const key = each.dataset.wireModel || each.dataset.wireComponent;
+    anchors.set(key, { x: box.left + box.width / 2 - zero.left, y: box.top + box.height / 2 - zero.top });
+  }
+  const size = { width: diagram.scrollWidth, height: diagram.scrollHeight };
+  const bad = new Set(state.diagnostics.filter((each) => each.severity === "error").map((each) => each.port));
+  const paths = [];
+  for (const [port, ends] of Object.entries(state.wires)) {
+    ends.forEach((end, n) => {
+      const d = curve(anchors.get(id("at", end.reference)), anchors.get(id("wire", port, n)));
+      if (d) paths.push(wire(port, n, end, d, bad.has(port)));
+    });
+  }
+  for (const [port, reference] of Object.entries(state.proposals)) {
+    const d = curve(anchors.get(id("at", reference)), anchors.get(id("wire", port, 0)));
+    if (d) paths.push(h("path", { class: "wire proposed", key: `${port} ?`, d }));
+  }
+  const held = heldCurve(state, anchors, zero);
+  if (held) paths.push(h("path", { class: "wire held", key: "held", d: held }));
+  svg.setAttribute("width", size.width);
+  svg.setAttribute("height", size.height);
+  render(svg, paths);
+}
+
+function wire(port, n, end, d, isBad) {
+  const name = `${port} ${n}`;
+  return h(
+    "g",
+    {
+      class: `wire-group${isBad ? " bad" : ""}`,
+      key: name,
+      onclick: () => editConversion(port, n),
+      onmouseenter: () => mark(port, end.reference, true),
+      onmouseleave: () => mark(port, end.reference, false),
+    },
+    h("path", { class: "wire-reach", d }),
+    h("path", { class: "wire", d }),
+  );
+}
+
+// A pointer over a wire shows both its ends.
+function mark(port, reference, on) {
+  const side = modelPort(current(), port)?.side;
+  const other = side === "inputs" ? "sources" : "sinks";
+  for (const [where, name] of [
+    [side, port],
+    [other, reference],
+  ]) {
+    document.getElementById(handleId(where, name))?.closest(".port")?.classList.toggle("marked", on);
+  }
+}
+
+function heldCurve(state, anchors, zero) {
+  if (ui.held === null) return null;
+  const { side, name } = ui.held;
+  const from = anchors.get(ofModel(side) ? id("wire", name, 0) : id("at", name));
+  let to = pointer;
+  if (ui.held.by === "keyboard") {
+    const focused = document.activeElement?.closest("[data-handle]");
+    if (!focused || focused.dataset.side === side) return null;
+    const box = focused.getBoundingClientRect();
+    to = { x: box.left + box.width / 2 - zero.left, y: box.top + box.height / 2 - zero.top };
+  }
+  return from && to ? curve(from, to) : null;
+}
+
+// From one place to another, leaving and arriving horizontally.
+function curve(from, to) {
+  if (!from || !to) return null;
+  const distance = to.x - from.x;
+  const bend = Math.sign(distance || 1) * Math.max(Math.abs(distance) / 2, 40);
+  const round = (value) => Math.round(value * 10) / 10;
+  return `M${round(from.x)} ${round(from.y)}C${round(from.x + bend)} ${round(from.y)} ${round(to.x - bend)} ${round(to.y)} ${round(to.x)} ${round(to.y)}`;
+}

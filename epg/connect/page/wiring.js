@@ -1,0 +1,80 @@
+// What the State says about wires, and the edits of them. A side is one of
+//   sources   component ports that give a value      inputs   of the model
+//   outputs   of the model                           sinks    component ports that take a value
+
+import { current } from "./server.js";
+import { attempt, say, ui } from "./ui.js";
+
+export const OPPOSITE = { sources: "inputs", inputs: "sources", outputs: "sinks", sinks: "outputs" };
+export const ofModel = (side) => side === "inputs" || side === "outputs";
+
+export function modelPort(state, name) {
+  for (const side of ["inputs", "outputs"]) {
+    const port = state.model?.[side].find((each) => each.name === name);
+    if (port) return { side, port };
+  }
+  return null;
+}
+
+export function componentPorts(state, direction) {
+  return state.components.flatMap((component) =>
+    component.ports.filter((port) => port.direction === direction).map((port) => ({ component, port })),
+  );
+}
+
+export const endsOf = (state, port) => state.wires[port] || [];
+export const isUnconnected = (state, port) => port in state.wires && state.wires[port].length === 0;
+
+// Whether two ends fit by direction, type and unit, as the server says.
+export function fits(state, side, name, other) {
+  const [port, reference] = ofModel(side) ? [name, other] : [other, name];
+  return (state.candidates[port] || []).includes(reference);
+}
+
+export function unitText({ unit, type }) {
+  return [unit || "no unit", type === "real" ? "" : type].filter(Boolean).join(", ");
+}
+
+// The fields of an end that api/connect takes.
+function plain({ reference, scale, offset, limits, unit }) {
+  return { reference, scale: scale || "", offset: offset || "", limits: limits || null, unit: unit || "" };
+}
+
+export function setEnds(port, ends) {
+  return attempt("connect", { port, ends: ends.map(plain) }, port);
+}
+
+export async function disconnect(port) {
+  if (await attempt("disconnect", { port }, port)) say(`${port} is not connected`);
+}
+
+// Joins an end of a component and one of the model, whichever was taken first. An input has one source; an output may
+// drive several sinks.
+export async function join(side, name, other) {
+  const [port, reference] = ofModel(side) ? [name, other] : [other, name];
+  const state = current();
+  const isOutput = side === "outputs" || side === "sinks";
+  const ends = isOutput ? [...endsOf(state, port)] : [];
+  if (endsOf(state, port).some((end) => end.reference === reference)) {
+    say(`${port} and ${reference} are connected already`);
+    return;
+  }
+  ends.push({ reference });
+  if (await setEnds(port, ends)) announceWire(port, reference);
+}
+
+// Replaces end number `n` of a port; null removes it.
+export async function replaceEnd(port, n, reference) {
+  const ends = [...endsOf(current(), port)];
+  if (reference === null) ends.splice(n, 1);
+  else ends.splice(n, 1, { reference });
+  if (ends.length === 0) await disconnect(port);
+  else if (await setEnds(port, ends) && reference) announceWire(port, reference);
+  ui.adding = null;
+}
+
+function announceWire(port, reference) {
+  const problems = current().diagnostics.filter((each) => each.port === port);
+  const what = problems.map((each) => `${each.severity}: ${each.message}`).join(". ");
+  say(`${port} is connected with ${reference}. ${what}`);
+}
