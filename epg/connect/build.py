@@ -1,0 +1,182 @@
+"""A build as somebody watches it: started, followed, cancelled; what it said and what it made.
+
+>>> # build = Build(job, changed=wake_the_page)
+>>> # build.start(); build.state()["done"], build.state()["messages"], build.lines(0)
+"""
+
+from __future__ import annotations
+
+import re
+import threading
+import time
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from epg.connect.build_plan import Plan, make_plan
+from epg.connect.messages import Message, Messages, plain
+from epg.connect.process import Process
+from epg.connect.products import Made, ask, products
+from epg.connect.projects import Job
+from epg.connect.tools import MissingTool, missing_tools
+from epg.diagnostics import Diagnostics
+from epg.load.hardware import Target
+from epg.project import load_configuration, make_catalog
+
+KEPT = 20_000
+"""Lines of output that can be read again; of more, the first are forgotten."""
+WIDEST = 4_000
+"""Characters of a line; longer ones are cut."""
+OFTEN = 0.2
+"""Seconds between two calls of ``changed`` for progress alone."""
+FORGOTTEN = "..."
+_PROGRESS = re.compile(r"\[ *(?P<done>\d+)(?:/(?P<total>\d+)|%)\] (?P<action>.*)")
+
+
+class Build:
+    """One build of ``job``, in a thread of its own.  All methods may be called from any thread, and none waits long."""
+
+    def __init__(self, job: Job, changed: Callable[[], None]) -> None:
+        self._job, self._changed = job, changed
+        self._lock = threading.Lock()
+        self._lines: list[str] = []
+        self._messages: Messages | None = None
+        self._found: list[Message] = []
+        self._products: list[Made] = []
+        self._state, self._step, self._action = "idle", "", ""
+        self._done, self._total = 0, 0
+        self._began = self._ended = self._told = 0.0
+        self._process: Process | None = None
+        self._cancelled = False
+        self._thread: threading.Thread | None = None
+
+    def start(self) -> None:
+        """Begins.  Once for each object."""
+        with self._lock:
+            assert self._thread is None, "a build is started once"
+            self._state, self._began = "running", time.monotonic()
+            self._thread = threading.Thread(target=self._run, name="build", daemon=True)
+        self._thread.start()
+        self._changed()
+
+    def cancel(self) -> None:
+        """Ends the build with all that it has started; it is over when the state says so."""
+        with self._lock:
+            self._cancelled = True
+            process = self._process
+        if process is not None:
+            process.cancel()
+
+    def wait(self, seconds: float | None = None) -> bool:
+        """Whether the build is over, after waiting for at most so long."""
+        if self._thread is not None:
+            self._thread.join(seconds)
+        return self._thread is None or not self._thread.is_alive()
+
+    def state(self) -> dict[str, Any]:
+        """What there is to show; the keys are those of the page's "build"."""
+        with self._lock:
+            now = self._ended or time.monotonic()
+            found = self._messages.all if self._messages is not None else self._found
+            return {
+                "state": self._state,
+                "step": self._step,
+                "action": self._action,
+                "done": self._done,
+                "total": self._total,
+                "seconds": round(now - self._began, 1) if self._began else 0.0,
+                "messages": [message.data() for message in found],
+                "products": [{"path": str(made.path), "what": made.what} for made in self._products],
+                "lines": len(self._lines),
+            }
+
+    def lines(self, start: int) -> list[str]:
+        """The lines of output from number ``start`` on, which counts from 0."""
+        with self._lock:
+            return self._lines[max(start, 0) :]
+
+    # in the thread ----------------------------------------------------------------------------------------------------
+
+    def _run(self) -> None:
+        state, found = "failed", [Message("error", "the build could not be started", id="build-failed")]
+        made: list[Made] = []
+        try:
+            state, found, made = self._build()
+        except OSError as error:
+            found = [Message("error", f"{error.filename or 'the build'}: {error.strerror or error}", id="build-failed")]
+        finally:
+            with self._lock:
+                self._state, self._found, self._products, self._messages = state, found, made, None
+                self._ended, self._action = time.monotonic(), ""
+            self._changed()
+
+    def _build(self) -> tuple[str, list[Message], list[Made]]:
+        target = self._target()
+        plan = make_plan(self._job, target, self._job.request.roots)
+        if plan.missing:
+            return "failed", [_message(problem) for problem in plan.missing], []
+        messages = Messages((plan.source, plan.build))
+        with self._lock:
+            self._messages = messages
+        ask(plan.build)
+        for step in plan.steps:
+            status = self._run_step(plan, step.name, Process(step.command, step.folder, plan.environment, self._read))
+            if self._cancelled:
+                return "cancelled", messages.finish(failed=False), []
+            if status != 0:
+                found = messages.finish(failed=True)
+                return "failed", [*found, *self._unsaid(found, target, plan)], []
+        platform = target.platform if target is not None else None
+        request = self._job.request
+        return (
+            "done",
+            messages.finish(failed=False),
+            products(plan.build, request.name, platform, self._job.executables),
+        )
+
+    def _run_step(self, plan: Plan, name: str, process: Process) -> int:
+        with self._lock:
+            self._process, self._step, self._action = process, name, ""
+            self._done = self._total = 0
+            if self._cancelled:
+                return -1
+        self._changed()
+        return process.run()
+
+    def _target(self) -> Target | None:
+        """Board and platform, None where the configuration is wrong: the build says what is."""
+        diagnostics = Diagnostics()
+        catalog = make_catalog(self._job.request.roots, diagnostics)
+        configuration = load_configuration(self._job.request, catalog, diagnostics)
+        return configuration.target if configuration is not None else None
+
+    def _unsaid(self, found: Sequence[Message], target: Target | None, plan: Plan) -> list[Message]:
+        """Tools that are missing, where configuring has failed and nobody has named them."""
+        if self._step != "configure" or target is None:
+            return []
+        said = " ".join(message.message for message in found)
+        lacking = missing_tools(target.platform, self._job.request.roots, plan.cache)
+        return [_message(problem) for problem in lacking if problem.title not in said]
+
+    def _read(self, line: str) -> None:
+        text = plain(line[: 2 * WIDEST])[:WIDEST]
+        progress = _PROGRESS.match(text)
+        with self._lock:
+            self._lines.append(text)
+            if len(self._lines) > KEPT:
+                self._lines[len(self._lines) - KEPT - 1] = FORGOTTEN
+            if progress is not None:
+                self._done, self._total = int(progress["done"]), int(progress["total"] or 100)
+                self._action = progress["action"]
+            elif text.startswith("-- "):
+                self._action = text.removeprefix("-- ")
+            if self._messages is not None:
+                self._messages.read(text)
+            now = time.monotonic()
+            tell = now - self._told > OFTEN
+            self._told = now if tell else self._told
+        if tell:
+            self._changed()
+
+
+def _message(problem: MissingTool) -> Message:
+    return Message("error", problem.message, hint=problem.hint, id="tool-missing")

@@ -1,0 +1,236 @@
+"""What went wrong in a build, out of what CMake, compilers, linkers and EPG print.
+
+>>> messages = Messages((Path("/home/me/robot"),))
+>>> messages.read("/home/me/robot/main.c:3:5: error: expected ';' before 'return'")
+>>> messages.finish(failed=True)[0].message
+"expected ';' before 'return'"
+
+Each line is read once, as it comes.  What only says that something else has failed is left out when that is there.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import deque
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from epg.connect.cmake_message import CMakeMessage, starts_cmake_message
+
+LIMIT = 300
+"""Messages that are kept of one build; a header that is wrong can give thousands."""
+TAIL = 12
+"""Lines that stand for a failure nobody understands."""
+
+
+@dataclass(frozen=True)
+class Message:
+    """One problem.  ``file`` is absolute where it was found; ``line`` and ``column`` count from 1, 0: not known."""
+
+    severity: str  # "error" or "warning"
+    message: str
+    file: str = ""
+    line: int = 0
+    column: int = 0
+    hint: str = ""
+    id: str = ""
+
+    def data(self) -> dict[str, Any]:
+        return {**asdict(self), "port": None}
+
+
+_FILE = r"(?P<file>(?:[A-Za-z]:[\\/])?[^:\n]+)"
+_EPG = re.compile(
+    r"(?P<file>(?:[A-Za-z]:[\\/])?[^:]+)(?::(?P<line>\d+)(?::(?P<column>\d+))?)?: (?P<severity>error|warning): "
+    r"(?P<text>.*) \[(?P<id>[a-z0-9]\w*(?:-\w+)+)\]"
+)
+_COMPILER = re.compile(
+    _FILE + r":(?P<line>\d+)(?::(?P<column>\d+))?: (?P<severity>fatal error|error|warning): (?P<text>.*)"
+)
+_ASSEMBLER = re.compile(_FILE + r":(?P<line>\d+): (?P<severity>Error|Warning): (?P<text>.*)")
+_MICROSOFT = re.compile(
+    r"(?P<file>[^(\n]+)\((?P<line>\d+)(?:,(?P<column>\d+))?\)\s?: (?P<severity>fatal error|error|warning) "
+    r"(?P<id>[A-Z]+\d+): (?P<text>.*)"
+)
+_REFERENCE = re.compile(
+    r"(?:\S*\bld(?:\.\w+)?(?:\.exe)?: )?" + _FILE + r":(?:(?P<line>\d+)|\([^)]*\)): "
+    r"(?P<text>(?:undefined reference to|multiple definition of|relocation truncated) .*)"
+)
+_LINKER = re.compile(r"(?:\S*[\\/])?(?:[\w.]+-)*ld(?:\.\w+)?(?:\.exe)?: (?:(?P<severity>error|warning): )?(?P<text>.*)")
+_DEVICETREE = re.compile(
+    r"devicetree error: (?:" + _FILE + r":(?P<line>\d+)(?: \(column (?P<column>\d+)\))?: )?(?P<text>.*)"
+)
+_DTC = re.compile(r"Error: (?P<file>[^:\s]+):(?P<line>\d+)\.(?P<column>\d+)(?:-[\d.]+)? (?P<text>.*)")
+_KCONFIG = re.compile(r"(?P<severity>error|warning): (?P<text>.*)")
+_PROGRAM = re.compile(r"(?:ninja: (?:error|fatal): |g?make(?:\[\d+\])?: \*\*\* |(?:FATAL )?ERROR: )(?P<text>.*)")
+_DRIVER = re.compile(r"(?:\S*[\\/])?[\w.+-]+: (?:fatal )?error: (?P<text>.*)")  # collect2: error: ..., cc1: error: ...
+_CAUSED = re.compile(
+    r"was not generated; the messages above say why|subcommand failed|failed with return code|Child return code"
+    r"|execute_process failed|ld returned \d+ exit status|linker command failed|Error \d+$|command exited with status"
+    r"|^Aborting due to|^CMAKE_\w+ not set, after EnableLanguage|^could not load cache|multiple errors|is missing\.$"
+)
+"""What is said because of something else."""
+_NOISE = re.compile(
+    r"\s*$|-- |See also |\[ *\d+(?:/\d+|%)\] |FAILED: |ninja: build stopped|g?make(?:\[\d+\])?: \*\*\* |Call Stack"
+)
+_ESCAPES = re.compile(r"\x1b(?:\[[0-?]*[ -/]*[@-~]|\][^\x07\x1b]*(?:\x07|\x1b\\)|.)")
+"""Colours, movements of the cursor, links."""
+
+
+def plain(line: str) -> str:
+    """A line as text: without colours and other controls."""
+    text = _ESCAPES.sub("", line).rpartition("\r")[2]
+    return "".join(char for char in text if char.isprintable() or char == "\t")
+
+
+class Messages:
+    """Reads output line by line.  Names of files are looked for in ``folders``; the first is the project's own."""
+
+    def __init__(self, folders: Sequence[Path]) -> None:
+        self._folders = folders
+        self._found: dict[tuple[str, str, int, str], Message] = {}
+        self._tail: deque[str] = deque(maxlen=TAIL)
+        self._more: Callable[[str], bool] | None = None  # what a message's further lines go to, until it says False
+        self._perhaps: list[tuple[str, str, int, str]] = []  # warnings that Kconfig may take for errors
+
+    def read(self, line: str) -> None:
+        """Reads the next line, as :func:`plain` makes it."""
+        if not _NOISE.match(line):
+            self._tail.append(line)
+        if self._more is not None and self._more(line):
+            return
+        self._more = None
+        if starts_cmake_message(line):
+            self._start_cmake(line)
+        elif not self._simple(line):
+            self._kconfig(line)
+
+    def finish(self, *, failed: bool) -> list[Message]:
+        """All messages after the last line.  A failure without any error is what the last lines say."""
+        if self._more is not None:
+            self._more("")
+            self._more = None
+        if failed and not any(message.severity == "error" for message in self._found.values()):
+            text = "\n".join(self._tail) or "the build has failed, and has not said why"
+            self._add(Message("error", text, id="build-failed"))
+        return self.all
+
+    @property
+    def all(self) -> list[Message]:
+        """The messages of what was read so far: each once, and none that only says that another is there."""
+        found = list(self._found.values())
+        if any(message.severity == "error" and not _CAUSED.search(message.message) for message in found):
+            found = [message for message in found if not _CAUSED.search(message.message)]
+        return found
+
+    def _simple(self, line: str) -> bool:
+        """Whether ``line`` is, or begins, a message that says all in itself, its hint aside."""
+        if match := _EPG.fullmatch(line):
+            self._start_epg(self._message(match, id=match["id"]))
+        elif match := _REFERENCE.fullmatch(line) or _DEVICETREE.fullmatch(line) or _DTC.fullmatch(line):
+            self._add(self._message(match, severity="error"))
+        elif match := _COMPILER.fullmatch(line) or _ASSEMBLER.fullmatch(line):
+            text, _, option = match["text"].partition(" [-W")
+            message = self._message(match, text=text, id=f"-W{option[:-1]}" if option.endswith("]") else "")
+            self._add(message)
+            if not message.id and message.severity == "warning":
+                self._perhaps.append(_key(message))
+        elif match := _MICROSOFT.fullmatch(line):
+            self._add(self._message(match, id=match["id"]))
+        elif match := _LINKER.fullmatch(line):
+            # a line that ends so says where; the next one says what
+            if not re.search(r"in function [`'\"‘].*:$", line):
+                self._add(Message(match["severity"] or _severity_of(match["text"]), _without_path(match["text"])))
+        elif match := _DRIVER.fullmatch(line) or _PROGRAM.fullmatch(line):
+            self._add(Message("error", match["text"]))
+        else:
+            return False
+        return True
+
+    def _message(self, match: re.Match[str], *, severity: str = "", text: str | None = None, id: str = "") -> Message:
+        named = match.groupdict()
+        how = severity or (named.get("severity") or "error").lower().removeprefix("fatal ")
+        line, column = int(named.get("line") or 0), int(named.get("column") or 0)
+        return Message(how, match["text"] if text is None else text, self._place(named["file"]), line, column, id=id)
+
+    def _place(self, file: str | None) -> str:
+        """The file that a program means: absolute where one of the folders has it."""
+        if not file or Path(file).is_absolute():
+            return file or ""
+        return next((str(folder / file) for folder in self._folders if (folder / file).exists()), file)
+
+    def _add(self, message: Message) -> None:
+        # of a symbol that is missing, or defined twice, one place is enough
+        key = ("", "", 0, message.message) if _REFERS.match(message.message) else _key(message)
+        if len(self._found) < LIMIT:
+            self._found.setdefault(key, message)
+
+    def _start_epg(self, message: Message) -> None:
+        """EPG's message goes on: the line with a caret, notes, the hint."""
+        self._add(message)
+
+        def more(line: str) -> bool:
+            if line.startswith("hint: "):
+                if _key(message) in self._found:
+                    self._found[_key(message)] = replace(message, hint=line.removeprefix("hint: "))
+                return True
+            return bool(re.match(r" *\d* \| ", line + " ") or re.search(r": note: ", line))
+
+        self._more = more
+
+    def _start_cmake(self, line: str) -> None:
+        block = CMakeMessage(line)
+
+        def more(line: str) -> bool:
+            if block.read(line):
+                return True
+            file, number = block.place(self._folders[0])
+            self._add(Message(block.severity, block.text, self._place(file), number, hint=block.hint))
+            return False
+
+        self._more = more
+
+    def _kconfig(self, line: str) -> None:
+        """Kconfig's messages have no file before them, and are wrapped: they go on until an empty line."""
+        match = _KCONFIG.fullmatch(line)
+        if match is None:
+            return
+        severity, text = match["severity"], [match["text"]]
+
+        def more(line: str) -> bool:
+            if line.strip() and not starts_cmake_message(line) and not line.startswith("-- "):
+                text.append(line.strip())
+                return True
+            message = Message(severity, " ".join(text))
+            self._add(message)
+            if severity == "warning":
+                self._perhaps.append(_key(message))
+            elif message.message.startswith("Aborting due to"):
+                self._take_for_errors()
+            return not line.strip()
+
+        self._more = more
+
+    def _take_for_errors(self) -> None:
+        """Kconfig gives up because of what it has only warned of."""
+        for key in self._perhaps:
+            if key in self._found:
+                self._found[key] = replace(self._found[key], severity="error")
+
+
+_REFERS = re.compile(r"undefined reference to |multiple definition of ")
+
+
+def _key(message: Message) -> tuple[str, str, int, str]:
+    return message.severity, message.file, message.line, message.message
+
+
+def _severity_of(text: str) -> str:
+    """Linkers say of warnings only that they are."""
+    return "warning" if re.search(r"(?:^|: )warning: ", text) else "error"
+
+
+def _without_path(text: str) -> str:
+    return re.sub(r"^(?:\S+: )?warning: ", "", text)
