@@ -19,7 +19,7 @@ from epg.check.names import identifier_problem
 from epg.data import data_folder, targets_roots
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.emit.bindings import new_bindings
-from epg.emit.folder import write_folder
+from epg.emit.folder import present_files, write_folder
 from epg.emit.project import ProjectPlan, StandIn, project_files, project_folder, project_names
 from epg.load.catalog import Catalog, Target
 from epg.load.middleware import Middleware
@@ -95,6 +95,19 @@ def new_project(request: ProjectRequest, diagnostics: Diagnostics) -> NewProject
     if copied:
         model = _copied_model(copied, place)
     return _make(_plan(name, base, model, place, request), base, copied, model, request.roots)
+
+
+def write_project(request: ProjectRequest, diagnostics: Diagnostics) -> NewProject:
+    """Writes a new project, all of it or nothing, and replaces no file.  Raises UserError with nothing written."""
+    project = new_project(request, diagnostics)
+    diagnostics.stop_if_errors()
+    assert project is not None
+    for path in present_files(request.folder, project.files):
+        hint = "nothing was written: 'epg new' replaces no file"
+        diagnostics.error("file-exists", Span(str(path)), "this file exists", hint=hint)
+    diagnostics.stop_if_errors()
+    write_folder(request.folder, project.files)
+    return project
 
 
 def check_project(project: NewProject, request: ProjectRequest, diagnostics: Diagnostics) -> None:

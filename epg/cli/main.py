@@ -17,6 +17,7 @@ from epg import bootstrap
 
 COMMANDS = {
     "new": "write a complete project for a model and a target",
+    "connect": "connect a model's ports with a target, in the browser or the terminal",
     "check": "check files without generating anything",
     "generate": "write the sources of a target (CMake calls this)",
     "generate-model": "write the library of one model (CMake calls this)",

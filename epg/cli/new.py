@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 from epg.cli.arguments import user_roots
 from epg.cli.report import to_json
 from epg.diagnostics import Diagnostics
-from epg.source import Span
 
 if TYPE_CHECKING:
     from epg.new_project import NewProject
@@ -28,20 +27,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
-    from epg.emit.folder import present_files, write_folder
-    from epg.new_project import ProjectRequest, check_project, new_project
+    from epg.new_project import ProjectRequest, check_project, write_project
 
     request = ProjectRequest(
         options.name, options.folder, options.target, options.model, options.middleware, user_roots()
     )
-    project = new_project(request, diagnostics)
-    diagnostics.stop_if_errors()
-    assert project is not None
-    for path in present_files(options.folder, project.files):
-        hint = "nothing was written: 'epg new' replaces no file"
-        diagnostics.error("file-exists", Span(str(path)), "this file exists", hint=hint)
-    diagnostics.stop_if_errors()
-    write_folder(options.folder, project.files)
+    project = write_project(request, diagnostics)
     check_project(project, request, diagnostics)
     if not options.json:
         _print(options.folder, project)

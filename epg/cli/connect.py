@@ -1,0 +1,140 @@
+"""``epg connect``: connect a model's ports with a target's components, in the browser or in the terminal."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from epg.cli.arguments import add_target_arguments, request_of, user_roots
+from epg.diagnostics import Diagnostics
+
+if TYPE_CHECKING:
+    from epg.connect.projects import Job
+
+_TEXT_BROWSERS = frozenset(("lynx", "w3m", "links", "elinks", "links2", "www-browser"))
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    folder = "a project (a CMakeLists.txt with epg_add_target), or a model; default: the current folder"
+    parser.add_argument("folder", nargs="?", type=Path, metavar="FOLDER", help=folder)
+    add_target_arguments(parser, required=False)
+    parser.add_argument("--name", help="the target's name; of several in FOLDER, the one to begin with")
+    parser.add_argument("--source-dir", type=Path, metavar="FOLDER", help="the project's folder, for building it")
+    parser.add_argument("--build-dir", type=Path, metavar="FOLDER", help="the project's build folder")
+    parser.add_argument("--built-by", choices=("cmake", "west"), default="cmake", help="what builds the project")
+    parser.add_argument("--port", type=int, default=0, help="of the page's address; default: any that is free")
+    parser.add_argument("--no-browser", action="store_true", help="only print the address")
+    parser.add_argument("--until-closed", action="store_true", help="end when the page has been closed")
+    parser.add_argument("--terminal", action="store_true", help="ask here instead of in a browser")
+
+
+def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
+    from epg.connect.session import Session
+
+    given = [options.tcf, options.model, options.bindings]
+    if any(given) and (not all(given) or options.folder is not None):
+        sys.stderr.write("epg connect: name a FOLDER, or give --tcf, --model and --bindings\n")
+        return 2
+    if not 0 <= options.port <= 65535:
+        sys.stderr.write("epg connect: --port must be from 0 to 65535\n")
+        return 2
+    folder = Path(os.path.abspath(options.folder or "."))
+    jobs = [_job(options)] if all(given) else _jobs(folder, options.name, diagnostics)
+    diagnostics.stop_if_errors()
+    model = None
+    if not jobs:
+        _check_model(folder, diagnostics)
+        diagnostics.stop_if_errors()
+        model = folder
+    session = Session(jobs, model=model, user_roots=user_roots())
+    if options.terminal:
+        from epg.connect.terminal import run as run_terminal
+
+        return run_terminal(session, sys.stdin, sys.stdout)
+    return _serve(session, options)
+
+
+def _serve(session: object, options: argparse.Namespace) -> int:
+    from epg.connect.server import Server
+    from epg.connect.session import Session
+
+    assert isinstance(session, Session)
+    server = Server(session, options.port)
+    print(f"epg connect: {server.address}")
+    print("Press Ctrl-C here, or 'Done' in the page, to end.", flush=True)
+    if not options.no_browser:
+        _open_browser(server.address)
+    try:
+        server.run(until_closed=options.until_closed)
+    except KeyboardInterrupt:
+        print()
+    return 0
+
+
+def _job(options: argparse.Namespace) -> Job:
+    """The target that options name, its files by absolute names: a build may run in another folder."""
+    from dataclasses import replace
+
+    from epg.connect.projects import Job
+
+    request = request_of(options, options.name or Path(options.bindings).name.split(".")[0])
+    beside = Path(os.path.abspath(request.beside))
+    absolute = replace(
+        request,
+        model=Path(os.path.abspath(request.model)),
+        bindings=Path(os.path.abspath(request.bindings)),
+        plant=_absolute(request.plant),
+        plant_bindings=_absolute(request.plant_bindings),
+        beside=beside,
+    )
+    source, build = _absolute(options.source_dir), _absolute(options.build_dir)
+    return Job(absolute, source_dir=source, build_dir=build, built_by=options.built_by)
+
+
+def _absolute(path: Path | None) -> Path | None:
+    return None if path is None else Path(os.path.abspath(path))
+
+
+def _jobs(folder: Path, name: str | None, diagnostics: Diagnostics) -> list[Job]:
+    """The targets of the project in ``folder``, or around the model in it, the one called ``name`` first."""
+    from epg.connect.projects import find_jobs, jobs_of_model
+    from epg.diagnostics import did_you_mean
+    from epg.source import Span
+
+    jobs = find_jobs(folder, diagnostics)
+    if not jobs and not diagnostics.has_errors:
+        jobs = jobs_of_model(folder)
+    if name is not None and jobs:
+        names = [job.request.name for job in jobs]
+        if name not in names:
+            hint = did_you_mean(name, names, "targets")
+            diagnostics.error("unknown-target", Span(str(folder)), f"there is no target '{name}'", hint=hint)
+            return []
+        jobs.sort(key=lambda job: job.request.name != name)
+    return jobs
+
+
+def _check_model(folder: Path, diagnostics: Diagnostics) -> None:
+    """Says what is wrong with a folder that holds neither a project nor a model."""
+    from epg.load.models import load_model
+
+    load_model(folder, diagnostics)
+
+
+def _open_browser(address: str) -> None:
+    """Opens the page where there is a browser with windows; one in the terminal would hide the address."""
+    if sys.platform.startswith("linux") and not any(
+        os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
+    ):
+        return
+    import webbrowser
+
+    try:
+        browser = webbrowser.get()
+    except webbrowser.Error:
+        return
+    if Path(getattr(browser, "name", "")).name not in _TEXT_BROWSERS:
+        browser.open(address)

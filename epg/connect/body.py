@@ -1,0 +1,78 @@
+"""What a request to a session says, checked: nothing of it reaches a file unseen."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from epg.emit.bindings_edit import End
+
+_LONGEST = 1000
+_MOST_ENDS = 64
+
+Body = Mapping[str, object]
+
+
+class Refused(Exception):
+    """Something that cannot be done, in the user's words; ``status`` is HTTP's."""
+
+    def __init__(self, message: str, hint: str = "", status: int = 400) -> None:
+        super().__init__(message)
+        self.message, self.hint, self.status = message, hint, status
+
+
+def text(body: Body, key: str, default: str | None = None) -> str:
+    """A text on one line; required without ``default``."""
+    value = body.get(key, default)
+    if not isinstance(value, str) or len(value) > _LONGEST or not value.isprintable():
+        raise Refused(f"'{key}' must be a text on one line")
+    if not value and default is None:
+        raise Refused(f"'{key}' is empty")
+    return value
+
+
+def boolean(body: Body, key: str) -> bool:
+    value = body.get(key, False)
+    if not isinstance(value, bool):
+        raise Refused(f"'{key}' must be true or false")
+    return value
+
+
+def names(body: Body, key: str, default: Sequence[str]) -> list[str]:
+    """A list of texts, each once."""
+    value = body.get(key, list(default))
+    if not isinstance(value, list) or not all(isinstance(name, str) for name in value):
+        raise Refused(f"'{key}' must be a list of names")
+    return list(dict.fromkeys(value))
+
+
+def ends(body: Body) -> tuple[End, ...]:
+    """The ends of a wire."""
+    value = body.get("ends")
+    if not isinstance(value, list) or len(value) > _MOST_ENDS:
+        raise Refused("'ends' must be a list")
+    return tuple(_end(end) for end in value)
+
+
+def _end(value: object) -> End:
+    if not isinstance(value, Mapping):
+        raise Refused("each of 'ends' must be an object with a 'reference'")
+    limits = value.get("limits")
+    pair = None
+    if limits is not None:
+        if not isinstance(limits, list) or len(limits) != 2:
+            raise Refused("'limits' are two numbers: [lowest, highest]")
+        pair = (_number(limits[0], "limits"), _number(limits[1], "limits"))
+    return End(
+        reference=text(value, "reference").strip(),
+        scale=_number(value.get("scale", ""), "scale"),
+        offset=_number(value.get("offset", ""), "offset"),
+        limits=pair,
+        unit=text(value, "unit", "").strip(),
+    )
+
+
+def _number(value: object, key: str) -> str:
+    """A number as a text, so that 1/4 stays 1/4; whether it is one is said when the file is read."""
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        value = repr(value)
+    return text({key: value}, key, "").strip()

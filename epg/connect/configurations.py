@@ -1,0 +1,195 @@
+"""The target configurations one can choose for a model: predefined ``.tcf`` files, and targets by themselves.
+
+>>> # catalogue = Configurations(roots)
+>>> # [entry["name"] for entry in catalogue.entries(model, current)]
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from epg.bootstrap import cache_folder
+from epg.check.configuration import Configuration
+from epg.diagnostics import Diagnostics
+from epg.emit.project import project_folder
+from epg.graph.wiring import draw_wiring
+from epg.load.catalog import Catalog, Target
+from epg.load.find_tool import Surroundings, find_tool
+from epg.load.models.model import Model
+from epg.load.tcf import load_tcf_chain, predefined_tcf_names
+from epg.load.tools import load_tools
+from epg.project import Request, load_configuration, make_catalog
+from epg.resolve.matching import match_ports
+from epg.resolve.resolve import allocate_hardware
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A configuration by its name, or a target by itself: then ``configuration`` is None."""
+
+    name: str
+    robot: str
+    target: Target
+    configuration: Configuration | None
+    problem: str
+
+
+class Configurations:
+    """All that can be chosen; read when first asked for, which takes a second."""
+
+    def __init__(self, user_roots: Sequence[Path]) -> None:
+        self._user_roots = tuple(user_roots)
+        self._roots = Request("connect", "", Path(), Path(), user_roots=self._user_roots).roots
+        self._preparing = threading.Lock()
+        self._ready = threading.Event()
+
+    @property
+    def ready(self) -> bool:
+        """Whether entries can be had at once."""
+        return self._ready.is_set()
+
+    def prepare(self) -> None:
+        """Reads everything, and looks for the tools of all targets."""
+        with self._preparing:
+            for choice in self.choices:
+                self._missing(choice.target)
+            self._ready.set()
+
+    @cached_property
+    def choices(self) -> tuple[Choice, ...]:
+        """Predefined configurations first, then targets, each by name."""
+        catalog = make_catalog(self._roots, Diagnostics())
+        found = [self._predefined(name, catalog) for name in predefined_tcf_names(self._roots)]
+        bare = [
+            Choice(name, "", target, None, "")
+            for name in catalog.target_names()
+            if (target := catalog.find_target(name)) is not None
+        ]
+        return (*(choice for choice in found if choice is not None), *bare)
+
+    def find(self, name: str) -> Choice | None:
+        return next((choice for choice in self.choices if choice.name == name), None)
+
+    def picture(self, name: str) -> str | None:
+        """The wiring of a configuration's board; None where there is none to draw."""
+        choice = self.find(name)
+        if choice is None or not _has_picture(choice):
+            return None
+        configuration = choice.configuration
+        if configuration is None:
+            return draw_wiring(choice.target, {}, {}, choice.name)
+        hardware = allocate_hardware(configuration, configuration.control.period, Diagnostics())
+        return draw_wiring(choice.target, configuration.components, hardware or {}, choice.name)
+
+    def entries(self, model: Model | None, project: Project | None) -> list[dict[str, Any]]:
+        """What there is to choose, for a new project, or for the ``project`` there is."""
+        entries = []
+        for choice in self.choices:
+            reason = _new_reason(choice, self._roots) if project is None else project.reason(choice)
+            components = choice.configuration.components if choice.configuration is not None else {}
+            ports = (*model.inputs, *model.outputs) if model is not None else ()
+            if choice.configuration is None:  # a topic for each port that a topic can serve
+                matches = sum(port.direction == "output" or port.type == "real" for port in ports)
+            else:
+                found = match_ports(model, components) if model is not None else {}
+                matches = sum(match.reference is not None for match in found.values())
+            entries.append(
+                {
+                    "name": choice.name,
+                    "summary": _summary(choice),
+                    "robot": choice.robot,
+                    "board": choice.target.board.summary,
+                    "platform": choice.target.platform.summary,
+                    "target": choice.target.name,
+                    "chosen": project is not None and choice.name == project.chosen,
+                    "possible": not reason,
+                    "reason": reason,
+                    "missing": self._missing(choice.target),
+                    "components": len(components),
+                    "matches": matches,
+                    "ports": len(ports),
+                    "picture": _has_picture(choice),
+                }
+            )
+        return entries
+
+    def _predefined(self, file: str, catalog: Catalog) -> Choice | None:
+        """One of EPG's or the user's ``.tcf`` files; None for parts that others extend: they name no target."""
+        request = Request("connect", file, Path(), Path(), user_roots=self._user_roots, beside=self._roots[-1])
+        chain = load_tcf_chain(file, self._roots, Diagnostics(), beside=request.beside)
+        named = next((node for part in chain if (node := part.node.get("target")) is not None), None)
+        target = catalog.find_target(str(named.value)) if named is not None else None
+        if target is None:
+            return None
+        problems = Diagnostics()
+        configuration = load_configuration(request, catalog, problems)
+        problem = next((item.message for item in problems if item.severity == "error"), "")
+        return Choice(file.removesuffix(".tcf"), chain[0].path.parent.name, target, configuration, problem)
+
+    @cached_property
+    def _lacking(self) -> Mapping[str, str]:
+        """Titles of the tools this computer lacks, by name."""
+        where = Surroundings.here(cache_folder())
+        tools = load_tools(self._roots, Diagnostics())
+        return {name: tool.title for name, tool in tools.items() if find_tool(tool, where).status != "found"}
+
+    def _missing(self, target: Target) -> list[str]:
+        return [self._lacking[name] for name in target.platform.needs if name in self._lacking]
+
+
+@dataclass(frozen=True)
+class Project:
+    """The project a configuration is chosen for: what its ``.tcf`` ``extends``, and whether that can be changed.
+
+    ``fixed`` says why not; empty if it can.
+    """
+
+    chosen: str
+    fixed: str
+    target: Target | None
+
+    def reason(self, choice: Choice) -> str:
+        """Why ``choice`` cannot be taken; empty if it can."""
+        if choice.name == self.chosen:
+            return ""
+        if self.fixed:
+            return self.fixed
+        if choice.configuration is None:
+            return f"it has no components yet: 'epg new DIR --target {choice.name} --model FOLDER' starts a project"
+        now = self.target
+        if now is not None and (now.platform.name, now.board.name) != _hardware_of(choice.target):
+            return (
+                f"this project's CMakeLists.txt is written for {now.board.summary} with {now.platform.name}: "
+                f"'epg new DIR --target {choice.name} --model FOLDER' starts one for this"
+            )
+        return choice.problem
+
+
+def _hardware_of(target: Target) -> tuple[str, str]:
+    return target.platform.name, target.board.name
+
+
+def _new_reason(choice: Choice, roots: Sequence[Path]) -> str:
+    """Why no project can be started with ``choice``."""
+    if choice.problem:
+        return choice.problem
+    platform = choice.target.platform
+    if not platform.builds:
+        return f"EPG can check files for {platform.name}, but has no code for it"
+    if project_folder((platform.name, *platform.shared), roots) is None:
+        return f"there are no files of a new project for {platform.name}: docs/cmake.md says what to write"
+    return ""
+
+
+def _summary(choice: Choice) -> str:
+    board = choice.target.board.summary
+    return f"{choice.robot} on {board}" if choice.robot else f"{board}, every port a topic"
+
+
+def _has_picture(choice: Choice) -> bool:
+    return choice.target.board.layout is not None and not choice.problem

@@ -1,0 +1,55 @@
+"""A project is started for a model that has none: by the engine of ``epg new``, in its words."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from epg.connect.body import Refused, text
+from epg.connect.projects import Job, find_jobs
+from epg.diagnostics import Diagnostics, UserError
+from epg.new_project import ProjectRequest, project_name, write_project
+
+
+def proposal(model: Path) -> dict[str, str]:
+    """Where a project for ``model`` could be, and what it could be called."""
+    around = model.resolve()
+    around = around if around.is_dir() else around.parent
+    words = [around.name.removesuffix(end) for end in ("_export", "-export") if around.name.endswith(end)]
+    folder = around.with_name(words[0] if words else f"{around.name}_project")
+    number = 2
+    while os.path.lexists(folder):
+        folder, number = around.with_name(f"{around.name}_project{number}"), number + 1
+    return {"folder": str(folder), "name": project_name(folder)}
+
+
+def create(body: Mapping[str, object], model: Path, user_roots: Sequence[Path]) -> list[Job]:
+    """The targets of the new project.  Raises Refused with nothing written, or with a project that needs an editor."""
+    folder = Path(os.path.expanduser(text(body, "folder").strip()))
+    if not folder.is_absolute():
+        folder = Path(os.path.abspath(model.resolve().parent / folder))
+    middleware = text(body, "middleware", "") or None
+    request = ProjectRequest(
+        text(body, "name").strip(), folder, text(body, "configuration"), model, middleware, user_roots
+    )
+    diagnostics = Diagnostics()
+    try:
+        write_project(request, diagnostics)
+    except UserError as problem:
+        raise _refusal(problem.diagnostics) from None
+    except OSError as error:
+        raise Refused(f"cannot write {folder}: {error.strerror or error}", "choose another folder", 409) from None
+    found = Diagnostics()
+    jobs = find_jobs(folder, found)
+    if not jobs:
+        raise _refusal(found)
+    return jobs
+
+
+def _refusal(diagnostics: Diagnostics) -> Refused:
+    errors = [problem for problem in diagnostics if problem.severity == "error"]
+    more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
+    where = errors[0].span.file if errors and errors[0].id == "file-exists" else ""
+    message = f"{where}: {errors[0].message}{more}" if where else f"{errors[0].message}{more}"
+    return Refused(message, errors[0].hint, 409)

@@ -1,0 +1,169 @@
+"""What a user has changed and not saved yet: operations on top of the files, which can be undone and applied again.
+
+>>> # draft = Draft(read_snapshot(bindings), read_snapshot(tcf), "version: 1\\nmodel: JIWY\\n")
+>>> # draft.do((SetEnds("pwm_pan", (End("motor"),)),), model); draft.undo(); draft.diff()
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from epg.connect.files import Snapshot
+from epg.emit.bindings_edit import CannotEdit, End, set_ends
+from epg.emit.tcf_edit import set_extends
+from epg.load.models.model import Model
+
+
+@dataclass(frozen=True)
+class SetEnds:
+    """A port gets other ends: None takes it out of the bindings, none at all leaves an output unconnected."""
+
+    port: str
+    ends: tuple[End, ...] | None
+
+
+@dataclass(frozen=True)
+class SetExtends:
+    """The ``.tcf`` extends another file."""
+
+    name: str
+
+
+Operation = tuple["SetEnds | SetExtends", ...]
+"""What one press of a button did."""
+
+
+@dataclass(frozen=True)
+class Texts:
+    """The two files that can be edited; None where there is no text to edit."""
+
+    bindings: str | None
+    tcf: str | None
+
+
+@dataclass(frozen=True)
+class _Done:
+    operation: Operation
+    before: Texts
+
+
+class Draft:
+    """Operations on the text of two files.
+
+    ``fresh`` is the text that edits begin with where there is no file of bindings yet.
+    """
+
+    def __init__(self, bindings: Snapshot, tcf: Snapshot, fresh: str) -> None:
+        self.bindings, self.tcf, self._fresh = bindings, tcf, fresh
+        self.texts = self._on_disk()
+        self._done: list[_Done] = []
+        self._undone: list[tuple[Operation, Texts]] = []
+        self._saved = 0  # how many operations the files hold
+
+    @property
+    def changed(self) -> bool:
+        return self._pairs() != []
+
+    @property
+    def can_undo(self) -> bool:
+        return bool(self._done)
+
+    @property
+    def can_redo(self) -> bool:
+        return bool(self._undone)
+
+    def drafts(self) -> dict[Path, str]:
+        """What is to be read instead of the files."""
+        texts = ((self.bindings.path, self.texts.bindings), (self.tcf.path, self.texts.tcf))
+        return {path: text for path, text in texts if text is not None}
+
+    def do(self, operation: Operation, model: Model | None) -> None:
+        """Applies ``operation``, or raises CannotEdit with the texts as they were."""
+        after = self._applied(self.texts, operation, model)
+        self._done.append(_Done(operation, self.texts))
+        self._undone.clear()
+        self.texts = after
+
+    def undo(self) -> None:
+        last = self._done.pop()
+        self._undone.append((last.operation, self.texts))
+        self.texts = last.before
+
+    def redo(self) -> None:
+        operation, after = self._undone.pop()
+        self._done.append(_Done(operation, self.texts))
+        self.texts = after
+
+    def unsaved(self) -> list[Snapshot]:
+        """The files as they are to be written, those that differ only."""
+        return [after for _, after in self._pairs()]
+
+    def saved(self, after: Snapshot) -> None:
+        """One of the files is now this, and holds all of the draft that belongs to it."""
+        if after.path == self.bindings.path:
+            self.bindings = after
+        else:
+            self.tcf = after
+        self._saved = len(self._done)
+
+    def rebase(self, bindings: Snapshot, tcf: Snapshot, model: Model | None) -> int:
+        """The files are now these: applies what is not saved to them; how many operations that were.
+
+        Raises CannotEdit, with everything as it was, where one of them does not fit the new text any more.
+        """
+        if len(self._done) < self._saved and self.changed:
+            raise CannotEdit("what was saved and then undone cannot be taken out of the new text")
+        operations = [done.operation for done in self._done[self._saved :]]
+        other = Draft(bindings, tcf, self._fresh)
+        for operation in operations:
+            other.do(operation, model)
+        self.bindings, self.tcf, self.texts = bindings, tcf, other.texts
+        self._done, self._undone, self._saved = other._done, [], 0
+        return len(operations)
+
+    def before_saving(self, path: Path) -> Snapshot:
+        """The file as it was read."""
+        return self.bindings if path == self.bindings.path else self.tcf
+
+    def diff(self) -> str:
+        """What saving would change, as people read it in version control."""
+        lines: list[str] = []
+        for before, after in self._pairs():
+            old, new = before.text or "", after.text or ""
+            name = before.path.name
+            lines += difflib.unified_diff(
+                _lines(old), _lines(new), name if before.data is not None else "(no file)", name, lineterm=""
+            )
+        return "".join(f"{line}\n" for line in lines)
+
+    def _on_disk(self) -> Texts:
+        text = self._fresh if self.bindings.data is None else self.bindings.text
+        return Texts(text, self.tcf.text)
+
+    def _pairs(self) -> list[tuple[Snapshot, Snapshot]]:
+        pairs = []
+        for before, text in ((self.bindings, self.texts.bindings), (self.tcf, self.texts.tcf)):
+            if text is not None and text != before.text:
+                pairs.append((before, before.with_text(text)))
+        return pairs
+
+    def _applied(self, texts: Texts, operation: Iterable[SetEnds | SetExtends], model: Model | None) -> Texts:
+        for change in operation:
+            if isinstance(change, SetExtends):
+                if texts.tcf is None:
+                    raise CannotEdit(f"'{self.tcf.path.name}' cannot be read")
+                texts = replace(texts, tcf=set_extends(texts.tcf, str(self.tcf.path), change.name))
+            elif texts.bindings is None or model is None:
+                what = "the bindings" if texts.bindings is None else "the model"
+                raise CannotEdit(f"{what} must be right before ports can be connected: see the messages")
+            else:
+                text = set_ends(texts.bindings, str(self.bindings.path), model, change.port, change.ends)
+                texts = replace(texts, bindings=text)
+        return texts
+
+
+def _lines(text: str) -> list[str]:
+    return text.replace("\r\n", "\n").replace("\r", "\n").splitlines()

@@ -1,0 +1,192 @@
+"""One target that is open: its files, the draft on top of them, and what all of it means."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from epg.connect.body import Refused
+from epg.connect.configurations import Project
+from epg.connect.draft import Draft, Operation
+from epg.connect.files import Snapshot, Watch, read_snapshot, save
+from epg.connect.loaded import load, tcf_path
+from epg.connect.projects import Job
+from epg.connect.view import view_of
+from epg.diagnostics import Diagnostics
+from epg.emit.bindings_edit import CannotEdit
+from epg.emit.yaml_text import scalar_text
+from epg.load.models import load_model
+from epg.load.yaml_file import parse_yaml
+
+_CONFLICT_HINT = "reload: your changes go; or save anyway: the others' changes go"
+
+
+class Editor:
+    """Not safe for threads: the session has the lock."""
+
+    def __init__(self, job: Job) -> None:
+        self.job = job
+        self.external: str | None = None
+        self.conflict: dict[str, str] | None = None
+        self._tcf_path = tcf_path(job.request) or Path(os.path.abspath(job.request.tcf))
+        self.draft = self._new_draft()
+        self._load()
+
+    def edit(self, operation: Operation) -> None:
+        """Changes the draft; raises CannotEdit, or Refused, with all as it was."""
+        self._check_conflict()
+        self.draft.do(operation, self.loaded.parts.model)
+        self._after_edit()
+
+    def undo(self) -> None:
+        if not self.draft.can_undo:
+            raise Refused("there is nothing to undo", status=409)
+        self.draft.undo()
+        self._after_edit()
+
+    def redo(self) -> None:
+        if not self.draft.can_redo:
+            raise Refused("there is nothing to redo", status=409)
+        self.draft.redo()
+        self._after_edit()
+
+    def save(self, *, anyway: bool) -> None:
+        """Writes what has changed; ``anyway`` also over what others have written since."""
+        if not anyway:
+            self._check_conflict()
+        for after in self.draft.unsaved():
+            save(self.draft.before_saving(after.path), after, anyway=anyway)
+            self.draft.saved(after)
+        self.conflict = self.external = None
+        self._seen = self.draft.bindings, self.draft.tcf
+        self._load()
+
+    def reload(self) -> None:
+        """Throws the draft away."""
+        self.draft = self._new_draft()
+        self.conflict = self.external = None
+        self._load()
+
+    def look(self) -> bool:
+        """Notices what was edited outside; whether anything was."""
+        changed = self._watch.changed()
+        if not changed:
+            return False
+        what = ", ".join(f"'{path.name}'" for path in changed[:3]) + (" and others" if changed[3:] else "")
+        self._seen = bindings, tcf = self._snapshots()
+        if (bindings.data, tcf.data) == (self.draft.bindings.data, self.draft.tcf.data):
+            self.conflict = None
+            self.external = f"{what} changed and was read again"
+        elif not self.draft.changed:
+            self.draft = Draft(bindings, tcf, self._fresh(bindings))
+            self.conflict = None
+            self.external = f"{what} was edited outside and read again"
+        else:
+            self._rebase(bindings, tcf, what)
+        self._load()
+        return True
+
+    def project(self) -> Project:
+        """What the project's own ``.tcf`` extends, and why that cannot be changed."""
+        configuration, chain = self.loaded.parts.configuration, self.loaded.chain
+        target = configuration.target if configuration is not None else None
+        path = self._tcf_path
+        if any(root / "robots" in path.parents for root in self.job.request.roots):
+            hint = f"write a .tcf with 'extends: {path.name}', and name that in CMakeLists.txt"
+            return Project(path.stem, f"this project takes {path.name} as it is: {hint}", target)
+        extends = chain[0].node.get("extends") if chain else None
+        if extends is None or not isinstance(extends.value, str):
+            return Project("", f"{path.name} extends no other file: it says itself what the target is", target)
+        chosen = extends.value.removesuffix(".tcf")
+        if "target" in chain[0].node:
+            return Project(chosen, f"{path.name} names its target itself: change or remove 'target' in it", target)
+        return Project(chosen, "", target)
+
+    def show(self) -> dict[str, Any]:
+        """The part of the state that belongs to this target."""
+        why_not = self._why_not()
+        return {
+            "project": {"name": self.job.request.name, "folder": str(self._folder()), "files": self._files()},
+            **view_of(self.loaded),
+            "draft": {
+                "changed": self.draft.changed,
+                "can_undo": self.draft.can_undo,
+                "can_redo": self.draft.can_redo,
+                "diff": self.draft.diff(),
+                "conflict": self.conflict,
+                "external": self.external,
+            },
+            "editable": not why_not,
+            "why_not": why_not,
+        }
+
+    def _why_not(self) -> str:
+        """Why ports cannot be connected; empty if they can."""
+        name = self.job.request.bindings.name
+        text = self.draft.texts.bindings
+        if text is None:
+            return f"'{name}' cannot be read: see the messages"
+        root = parse_yaml(text, name, Diagnostics())
+        if root is None or not root.is_mapping:
+            return f"'{name}' has a mistake that must be mended in an editor first: see the messages"
+        if self.loaded.parts.model is None:
+            return "the model cannot be read: see the messages"
+        return ""
+
+    def _folder(self) -> Path:
+        return self.job.source_dir or Path(os.path.abspath(self.job.request.bindings)).parent
+
+    def _files(self) -> dict[str, str]:
+        request, folder = self.job.request, self._folder()
+        files = {"tcf": self._tcf_path, "model": request.model, "bindings": request.bindings}
+        return {what: _relative(path, folder) for what, path in files.items()}
+
+    def _check_conflict(self) -> None:
+        if self.conflict is not None:
+            raise Refused(self.conflict["message"], self.conflict["hint"], 409)
+
+    def _after_edit(self) -> None:
+        self.external = None
+        if self.conflict is not None and not self.draft.changed:
+            self.draft = self._new_draft()  # nothing of the user's is left that could be lost
+            self.conflict = None
+        self._load()
+
+    def _rebase(self, bindings: Snapshot, tcf: Snapshot, what: str) -> None:
+        try:
+            count = self.draft.rebase(bindings, tcf, self.loaded.parts.model)
+        except CannotEdit as problem:
+            message = f"{what} was edited outside, and your changes do not fit it any more: {problem}"
+            self.conflict = {"message": message, "hint": _CONFLICT_HINT}
+            self.external = None
+        else:
+            changes = "your change was" if count == 1 else f"your {count} changes were"
+            self.conflict = None
+            self.external = f"{what} was edited outside: {changes} applied to the new text"
+
+    def _load(self) -> None:
+        request = replace(self.job.request, drafts=self.draft.drafts())
+        self.loaded = load(request)
+        self._watch = Watch(self.loaded.files(), self._seen)
+
+    def _new_draft(self) -> Draft:
+        self._seen = bindings, tcf = self._snapshots()
+        return Draft(bindings, tcf, self._fresh(bindings))
+
+    def _snapshots(self) -> tuple[Snapshot, Snapshot]:
+        return read_snapshot(self.job.request.bindings), read_snapshot(self._tcf_path)
+
+    def _fresh(self, bindings: Snapshot) -> str:
+        """The text that bindings begin with which are not there yet."""
+        if bindings.data is not None:
+            return ""
+        model = load_model(self.job.request.model, Diagnostics())
+        return f"version: 1\nmodel: {scalar_text(model.name)}\n" if model is not None else ""
+
+
+def _relative(path: Path, folder: Path) -> str:
+    """A path as people write it: relative where it is below ``folder``."""
+    absolute = Path(os.path.abspath(path))
+    return absolute.relative_to(folder).as_posix() if folder in absolute.parents else str(absolute)

@@ -1,0 +1,122 @@
+"""Everything a request's files mean at one moment, with the command line's own messages about them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from epg.connect.places import Places
+from epg.diagnostics import Diagnostic, Diagnostics
+from epg.load.models import Model
+from epg.load.models.folders import searched_folders
+from epg.load.tcf import TcfFile, find_tcf, load_tcf_chain
+from epg.load.text_file import read_text
+from epg.load.yaml_file import parse_yaml
+from epg.project import Hardware, Parts, Request, hardware_of, load_parts
+from epg.resolve.matching import Match, match_ports
+from epg.resolve.resolve import allocate_hardware
+from epg.source import Node
+
+_MOST_WATCHED = 2000
+"""Files and folders of a model that cannot be read: which of them will mend it nobody knows."""
+
+
+@dataclass(frozen=True)
+class Loaded:
+    """The parts of a request as far as they are right.  ``root`` is the tree of the bindings, even of wrong ones."""
+
+    request: Request
+    parts: Parts
+    diagnostics: tuple[Diagnostic, ...]
+    root: Node | None
+    chain: Sequence[TcfFile]
+
+    @cached_property
+    def hardware(self) -> Hardware:
+        """What the components have got of the hardware; without an application as far as the ``.tcf`` says it."""
+        configuration, application = self.parts.configuration, self.parts.application
+        if application is not None:
+            return hardware_of(application)
+        if configuration is None:
+            return {}
+        period = configuration.control.period or (self.parts.model.step if self.parts.model is not None else None)
+        return allocate_hardware(configuration, period, Diagnostics()) or {}
+
+    @cached_property
+    def matches(self) -> Mapping[str, Match]:
+        """The component each port is probably meant for."""
+        if self.parts.model is None or self.parts.configuration is None:
+            return {}
+        return match_ports(self.parts.model, self.parts.configuration.components)
+
+    @cached_property
+    def bound(self) -> tuple[str, ...]:
+        """The ports that the bindings name."""
+        sections = (self.root.get(section) for section in ("inputs", "outputs")) if self.root is not None else ()
+        return tuple(name for section in sections if section is not None for name, _ in section.items())
+
+    @cached_property
+    def places(self) -> Places:
+        """What the lines of the files belong to."""
+        return Places(str(self.request.bindings), self.root, self.parts.model, self.chain)
+
+    def files(self) -> Iterator[Path]:
+        """Every file that a change of could change any of this."""
+        request, parts = self.request, self.parts
+        yield request.bindings
+        yield from (file.path for file in self.chain)
+        yield from (path for file in self.chain for path in file.absent)
+        if request.plant_bindings is not None:
+            yield request.plant_bindings
+        if parts.application is not None:
+            yield from parts.application.files
+        yield from files_of_model(request.model, parts.model)
+        if request.plant is not None:
+            yield request.plant
+
+
+def tcf_path(request: Request) -> Path | None:
+    """The file that ``request.tcf`` names."""
+    return find_tcf(request.tcf, request.beside, request.roots)
+
+
+def load(request: Request) -> Loaded:
+    """Reads all files of ``request``, drafts instead of those that have one."""
+    diagnostics = Diagnostics()
+    parts = load_parts(request, diagnostics)
+    if parts.bindings is not None:
+        root: Node | None = parts.bindings.root
+    else:
+        text = read_text(request.bindings, Diagnostics(), None, request.drafts)
+        root = parse_yaml(text, str(request.bindings), Diagnostics()) if text is not None else None
+    chain = load_tcf_chain(
+        request.tcf,
+        request.roots,
+        Diagnostics(),
+        beside=request.beside,
+        drafts=request.drafts,
+        wanted_by=request.caller,
+    )
+    return Loaded(request, parts, tuple(diagnostics), root if root is not None and root.is_mapping else None, chain)
+
+
+def files_of_model(path: Path, model: Model | None) -> Iterator[Path]:
+    """What a change of would make the model at ``path`` another one."""
+    yield path
+    if model is not None:
+        yield from model.files
+        yield model.directory
+        return
+    count = 0
+    for folder in searched_folders(path) if path.is_dir() else ():
+        try:
+            entries = sorted(folder.iterdir())
+        except OSError:
+            continue
+        for entry in (folder, *entries):
+            count += 1
+            if count > _MOST_WATCHED:
+                return
+            yield entry

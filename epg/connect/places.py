@@ -1,0 +1,77 @@
+"""Which port, and which component, a message is about, by the place it points to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from epg.diagnostics import Diagnostic
+from epg.load.models.model import Model
+from epg.load.tcf import TcfFile
+from epg.source import Node, Span
+
+_SECTIONS = ("inputs", "outputs")
+
+
+@dataclass(frozen=True)
+class _Stretch:
+    """From the first character of a key to the last of its value."""
+
+    name: str
+    file: str
+    first: tuple[int, int]
+    last: tuple[int, int]
+
+    def holds(self, span: Span) -> bool:
+        return span.file == self.file and self.first <= (span.line, span.column) <= self.last
+
+
+class Places:
+    """The lines of bindings that belong to ports, those of a ``.tcf`` and what it extends that belong to components."""
+
+    def __init__(self, bindings: str, root: Node | None, model: Model | None, chain: Sequence[TcfFile]) -> None:
+        self._bindings = bindings
+        self._ports: list[_Stretch] = []
+        for section in _SECTIONS:
+            node = root.get(section) if root is not None else None
+            self._ports += _stretches(node) if node is not None else []
+        sections = [node for file in chain if (node := file.node.get("components")) is not None]
+        self._components = [stretch for node in sections for stretch in _stretches(node)]
+        ports = (*model.inputs, *model.outputs) if model is not None else ()
+        spans = [port.span for port in ports]
+        self._declared = {port.span: port.name for port in ports if port.span.line and spans.count(port.span) == 1}
+
+    def port(self, diagnostic: Diagnostic) -> str | None:
+        """The model's port that a message is about, if it is about one."""
+        span = diagnostic.span
+        section, _, name = diagnostic.about.partition(".")
+        if section in _SECTIONS and span.file == self._bindings:
+            return name
+        return self._declared.get(span) or _name(self._ports, span)
+
+    def component(self, diagnostic: Diagnostic) -> str | None:
+        """The component whose lines a message points to."""
+        return _name(self._components, diagnostic.span)
+
+
+def _name(stretches: Sequence[_Stretch], span: Span) -> str | None:
+    return next((stretch.name for stretch in stretches if stretch.holds(span)), None)
+
+
+def _stretches(section: Node) -> list[_Stretch]:
+    found = []
+    for name, value in section.items():
+        key = section.key_span(name)
+        ends = [(span.line, span.end - 1) for span in (key, *_spans(value)) if span.file == key.file]
+        found.append(_Stretch(name, key.file, (key.line, key.column), max(ends)))
+    return found
+
+
+def _spans(node: Node) -> Iterator[Span]:
+    """Where the value and all it holds stand."""
+    yield node.span
+    yield from node.keys.values()
+    for _, child in node.items():
+        yield from _spans(child)
+    for child in node.elements():
+        yield from _spans(child)

@@ -1,0 +1,273 @@
+"""A session of ``epg connect``: what is shown, and everything a person can do to it.
+
+Page and terminal call the same two functions: :meth:`Session.wait` for the state, :meth:`Session.act` to change it.
+The state is made anew from the files and the draft after each change, so that it cannot disagree with them.
+
+>>> # session = Session(find_jobs(Path("examples/jiwy"), diagnostics))
+>>> # session.act("connect", {"port": "pwm_pan", "ends": [{"reference": "pwm_tilt"}]})["diagnostics"]
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import epg
+from epg.connect.body import Body, Refused, boolean, ends, names, text
+from epg.connect.configurations import Configurations
+from epg.connect.creation import create
+from epg.connect.draft import SetEnds, SetExtends
+from epg.connect.editor import Editor
+from epg.connect.files import Unsavable
+from epg.connect.pictures import draw
+from epg.connect.projects import Job
+from epg.connect.source import excerpt
+from epg.connect.start import Start
+from epg.emit.bindings_edit import CannotEdit, End
+
+if TYPE_CHECKING:
+    from epg.connect.build import Build
+
+__all__ = ["Refused", "Session", "State"]
+
+LOOK = 0.5
+"""Seconds between two looks at the files while somebody waits for a change."""
+
+State = dict[str, Any]
+NO_BUILD: State = {
+    "state": "idle",
+    "step": "",
+    "done": 0,
+    "total": 0,
+    "seconds": 0.0,
+    "messages": [],
+    "products": [],
+    "lines": 0,
+}
+
+
+class Session:
+    """One target of ``jobs`` at a time, or, where there is none yet, the choice of one for ``model``.
+
+    All methods can be called by any thread.
+    """
+
+    def __init__(self, jobs: Sequence[Job], *, model: Path | None = None, user_roots: Sequence[Path] = ()) -> None:
+        self.ended = threading.Event()
+        self._changed = threading.Condition(threading.RLock())
+        self._version = 0
+        self._looked = 0.0
+        self._jobs = list(jobs)
+        self._user_roots = tuple(user_roots or (jobs[0].request.user_roots if jobs else ()))
+        self._configurations = Configurations(self._user_roots)
+        self._start = Start(model) if model is not None and not jobs else None
+        self._editor = Editor(self._jobs[0]) if self._jobs else None
+        self._build: Build | None = None
+        self._actions: dict[str, Callable[[Body], None]] = {
+            "connect": self._connect,
+            "disconnect": self._disconnect,
+            "accept": self._accept,
+            "undo": lambda body: self._opened().undo(),
+            "redo": lambda body: self._opened().redo(),
+            "save": lambda body: self._opened().save(anyway=boolean(body, "anyway")),
+            "reload": lambda body: self._opened().reload(),
+            "choose": self._choose,
+            "open": self._open,
+            "done": lambda body: self.ended.set(),
+        }
+        self._unlocked: dict[str, Callable[[Body], None]] = {
+            "create": self._create,
+            "generate": self._generate,
+            "cancel": lambda body: self.close(),
+        }
+        self._shown: State = {}
+        self._publish()
+        threading.Thread(target=self._list_configurations, daemon=True).start()
+
+    def state(self) -> State:
+        """The state at this moment."""
+        with self._changed:
+            build = self._build.state() if self._build is not None else NO_BUILD
+            return {"version": self._version, "epg": epg.__version__, **self._shown, "build": build}
+
+    def wait(self, after: int, timeout: float) -> State:
+        """The state as soon as its version is another than ``after``, or after ``timeout`` seconds."""
+        until = time.monotonic() + timeout
+        while True:
+            self._look()
+            with self._changed:
+                left = until - time.monotonic()
+                if self._version != after or left <= 0 or self.ended.is_set():
+                    return self.state()
+                self._changed.wait(min(LOOK, left))
+
+    def act(self, action: str, body: Body) -> State:
+        """Does ``action``; returns the state after it, or raises :class:`Refused` with everything as it was."""
+        try:
+            if action in self._unlocked:
+                self._unlocked[action](body)
+            elif action in self._actions:
+                self._look(at_once=True)
+                with self._changed:
+                    self._actions[action](body)
+                    self._publish()
+            else:
+                raise Refused(f"there is no action '{action}'", status=404)
+        except CannotEdit as problem:
+            raise Refused(str(problem)) from None
+        except Unsavable as problem:
+            raise Refused(str(problem), status=409) from None
+        return self.state()
+
+    def log(self, start: int) -> dict[str, Any]:
+        """What configuring and building have printed, from line ``start`` on."""
+        build = self._build
+        lines = build.lines(max(0, start)) if build is not None else []
+        return {"lines": lines, "next": max(0, start) + len(lines)}
+
+    def picture(self, name: str, configuration: str = "") -> str:
+        """One of the pictures as SVG."""
+        editor = self._editor
+        svg = None
+        if configuration:
+            svg = self._configurations.picture(configuration) if name == "wiring" else None
+        elif editor is not None:
+            svg = draw(editor.loaded, name, editor.job.request.name)
+        if svg is None:
+            raise Refused("there is no such picture", "messages say what keeps it from being drawn", 404)
+        return svg
+
+    def source(self, file: str, line: int) -> dict[str, Any]:
+        """The lines around one that a message points to."""
+        editor = self._editor
+        job = editor.job if editor is not None else None
+        folder = (job.build_dir or job.source_dir if job is not None else None) or Path()
+        return excerpt(self.state(), folder, editor.draft.drafts() if editor is not None else {}, file, line)
+
+    def close(self) -> None:
+        """Ends a build that still runs."""
+        build = self._build
+        if build is not None:
+            build.cancel()
+
+    # what people do to the files
+
+    def _connect(self, body: Body) -> None:
+        port, wires = text(body, "port"), ends(body)
+        model = self._opened().loaded.parts.model
+        if model is not None and len(wires) != 1 and port in [p.name for p in model.inputs]:
+            raise Refused(f"input '{port}' takes its value from one component", "'disconnect' takes it out")
+        self._opened().edit((SetEnds(port, wires),))
+
+    def _disconnect(self, body: Body) -> None:
+        self._opened().edit((SetEnds(text(body, "port"), None),))
+
+    def _accept(self, body: Body) -> None:
+        proposals = self._shown.get("proposals", {})
+        wanted = names(body, "ports", list(proposals))
+        for name in wanted:
+            if name not in proposals:
+                raise Refused(f"there is no proposal for '{name}'", "connect it by hand")
+        if wanted:
+            self._opened().edit(tuple(SetEnds(name, (End(proposals[name]),)) for name in wanted))
+
+    def _choose(self, body: Body) -> None:
+        name = text(body, "configuration")
+        choice = self._configurations.find(name)
+        if choice is None:
+            raise Refused(f"there is no configuration '{name}'", status=404)
+        reason = self._opened().project().reason(choice)
+        if reason:
+            raise Refused(f"'{name}' cannot be chosen here", reason, 409)
+        if name != self._opened().project().chosen:
+            self._opened().edit((SetExtends(f"{name}.tcf"),))
+
+    def _open(self, body: Body) -> None:
+        name = text(body, "target")
+        job = next((job for job in self._jobs if job.request.name == name), None)
+        if job is None:
+            raise Refused(f"there is no target '{name}'", status=404)
+        if job is self._opened().job:
+            return
+        if self._opened().draft.changed:
+            raise Refused("there are changes that are not saved", "save them, or reload to throw them away", 409)
+        if self._is_building():
+            raise Refused("a build is running", "wait for it, or cancel it", 409)
+        self._editor, self._build = Editor(job), None
+
+    # what takes longer
+
+    def _create(self, body: Body) -> None:
+        start = self._start
+        if start is None:
+            raise Refused("there is a project already", status=409)
+        jobs = create(body, start.path, self._user_roots)
+        with self._changed:
+            self._jobs, self._editor, self._start = jobs, Editor(jobs[0]), None
+            self._publish()
+
+    def _generate(self, body: Body) -> None:
+        from epg.connect.build import Build
+
+        self._look(at_once=True)
+        with self._changed:
+            editor = self._opened()
+            if self._is_building():
+                raise Refused("a build is running", "wait for it, or cancel it", 409)
+            count = sum(problem["severity"] == "error" for problem in self._shown["diagnostics"])
+            if count:
+                what = "a mistake" if count == 1 else f"{count} mistakes"
+                raise Refused(f"there {'is' if count == 1 else 'are'} still {what}: nothing can be built", "", 409)
+            editor.save(anyway=False)
+            self._publish()
+            self._build = build = Build(editor.job, self._bump)
+        build.start()
+        self._bump()
+
+    def _is_building(self) -> bool:
+        return self._build is not None and self._build.state()["state"] == "running"
+
+    # how the state comes about
+
+    def _opened(self) -> Editor:
+        if self._editor is None:
+            raise Refused("there is no project yet", "choose a target first", 409)
+        return self._editor
+
+    def _look(self, *, at_once: bool = False) -> None:
+        """Notices what was edited outside: twice a second at most, unless somebody is about to change something."""
+        with self._changed:
+            now = time.monotonic()
+            if not at_once and now - self._looked < 0.9 * LOOK:
+                return
+            self._looked = now
+            looked_at = self._editor or self._start
+            if looked_at is not None and looked_at.look():
+                self._publish()
+
+    def _publish(self) -> None:
+        """Makes the state anew."""
+        with self._changed:
+            if self._editor is not None:
+                shown = {"phase": "connect", "create": None, **self._editor.show()}
+                shown["project"]["targets"] = [job.request.name for job in self._jobs]
+                model, project = self._editor.loaded.parts.model, self._editor.project()
+            else:
+                assert self._start is not None
+                shown, model, project = self._start.show(), self._start.model, None
+            ready = self._configurations.ready
+            shown["configurations"] = self._configurations.entries(model, project) if ready else []
+            self._shown = shown
+            self._bump()
+
+    def _bump(self) -> None:
+        with self._changed:
+            self._version += 1
+            self._changed.notify_all()
+
+    def _list_configurations(self) -> None:
+        self._configurations.prepare()
+        self._publish()

@@ -1,0 +1,61 @@
+"""A model that has no project yet: what there is to say before one is chosen for it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from epg.connect.creation import proposal
+from epg.connect.files import Watch
+from epg.connect.loaded import files_of_model
+from epg.connect.view import diagnostic_view, model_view
+from epg.diagnostics import Diagnostics
+from epg.load.models import load_model
+
+
+class Start:
+    """The model, looked at again when its files change."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._create = proposal(path)
+        self._load()
+
+    def look(self) -> bool:
+        """Whether the model has changed."""
+        changed = bool(self._watch.changed())
+        if changed:
+            self._load()
+        return changed
+
+    def show(self) -> dict[str, Any]:
+        """The state before there is a project; all that belongs to one is empty."""
+        model = self.model
+        return {
+            "phase": "choose",
+            "project": None,
+            "create": self._create,
+            "model": model_view(model) if model is not None else None,
+            "components": [],
+            "wires": {},
+            "proposals": {},
+            "candidates": {},
+            "diagnostics": [diagnostic_view(problem) for problem in self._problems],
+            "hardware": [],
+            "pictures": {"wiring": False, "application": False, "schedule": False},
+            "draft": {
+                "changed": False,
+                "can_undo": False,
+                "can_redo": False,
+                "diff": "",
+                "conflict": None,
+                "external": None,
+            },
+            "editable": False,
+            "why_not": "choose a target first",
+        }
+
+    def _load(self) -> None:
+        self._problems = Diagnostics()
+        self.model = load_model(self.path, self._problems)
+        self._watch = Watch(files_of_model(self.path, self.model))

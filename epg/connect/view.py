@@ -1,0 +1,211 @@
+"""What a page or a terminal shows of a target: plain data, made of nothing but the files and the draft.
+
+Messages are the command line's: the same words, places and order as ``epg check --json`` gives.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from epg.check.configuration import Component, Configuration
+from epg.check.names import absolute_topic
+from epg.connect.loaded import Loaded
+from epg.connect.places import Places
+from epg.diagnostics import Diagnostic
+from epg.emit.bindings_edit import End, ends_of
+from epg.emit.hardware import hardware_rows
+from epg.graph.application import conversion
+from epg.graph.wiring import wire_texts
+from epg.load.kind import KindPort
+from epg.load.models.model import Model, Port
+from epg.quantity import normal_unit
+from epg.resolve.application import Step
+from epg.resolve.claims import TICK
+from epg.resolve.wires import component_steps
+from epg.source import Span
+
+Data = dict[str, Any]
+
+
+def view_of(loaded: Loaded) -> Data:
+    """The part of the state that the files decide."""
+    model, configuration = loaded.parts.model, loaded.parts.configuration
+    wires = _wires(loaded)
+    taken = {end["reference"] for ends in wires.values() for end in ends}
+    return {
+        "model": model_view(model) if model is not None else None,
+        "components": _components(configuration, loaded) if configuration is not None else [],
+        "wires": wires,
+        "proposals": {
+            name: match.reference
+            for name, match in loaded.matches.items()
+            if name not in wires
+            and match.reference is not None
+            and (match.port.direction == "input" or match.reference not in taken)
+        },
+        "candidates": {name: list(match.candidates) for name, match in loaded.matches.items()},
+        "diagnostics": [diagnostic_view(diagnostic, loaded.places) for diagnostic in loaded.diagnostics],
+        "hardware": _hardware(loaded),
+        "pictures": pictures(loaded),
+    }
+
+
+def pictures(loaded: Loaded) -> dict[str, bool]:
+    """Which pictures can be drawn."""
+    configuration, whole = loaded.parts.configuration, loaded.parts.application is not None
+    drawn = configuration is not None and configuration.target.board.layout is not None and bool(loaded.hardware)
+    return {"wiring": drawn, "application": whole, "schedule": whole}
+
+
+def model_view(model: Model) -> Data:
+    """What is known of a model."""
+    return {
+        "name": model.name,
+        "origin": model.origin,
+        "step": float(model.step),
+        "inputs": [_port(port) for port in model.inputs],
+        "outputs": [_port(port) for port in model.outputs],
+    }
+
+
+def _port(port: Port) -> Data:
+    return {"name": port.name, "unit": port.unit, "type": port.type, "description": port.description}
+
+
+def _components(configuration: Configuration, loaded: Loaded) -> list[Data]:
+    claims: dict[str, dict[str, Any]] = {}
+    for (owner, claim), found in loaded.hardware.items():
+        claims.setdefault(owner, {})[claim] = found
+    return [_component(c, configuration, claims.get(c.name, {})) for c in configuration.components.values()]
+
+
+def _component(component: Component, configuration: Configuration, claims: dict[str, Any]) -> Data:
+    kind = component.kind
+    resources = dict.fromkeys(found.resource for found in claims.values())
+    topic = component.parameters.get("topic") if kind.communication else None
+    return {
+        "name": component.name,
+        "kind": kind.name,
+        "summary": kind.summary,
+        "where": wire_texts(kind, claims, configuration.target),
+        "peripheral": ", ".join(name for name in resources if not name.startswith("pin ")),
+        "topic": absolute_topic(str(topic), configuration.namespace, configuration.node) if topic else "",
+        "ports": [
+            {
+                "name": port.name,
+                "direction": port.direction,
+                "reference": _reference(component, port),
+                "unit": component_steps(component, port)[1],
+                "type": port.type,
+                "summary": port.description,
+            }
+            for port in kind.ports
+        ],
+    }
+
+
+def _reference(component: Component, port: KindPort) -> str:
+    """What bindings write for a port: the component alone where that is enough."""
+    return component.name if port == component.kind.main_port(port.direction) else f"{component.name}.{port.name}"
+
+
+def _wires(loaded: Loaded) -> dict[str, list[Data]]:
+    wires: dict[str, list[Data]] = {}
+    for section, direction in (("inputs", "source"), ("outputs", "sink")):
+        node = loaded.root.get(section) if loaded.root is not None else None
+        for name, _ in node.items() if node is not None else ():
+            assert loaded.root is not None
+            ends = ends_of(loaded.root, section, name)
+            if ends is not None:
+                wires[name] = [_wire(end, name, direction, loaded) for end in ends]
+    return wires
+
+
+def _wire(end: End, name: str, direction: str, loaded: Loaded) -> Data:
+    """One end of a wire: what the bindings say of it, and in ``from_tcf`` what its component converts besides."""
+    found = _end(end.reference, direction, loaded.parts.configuration)
+    own = _said(end)
+    given = ""
+    if found is not None:
+        component, port = found
+        steps, unit = component_steps(component, port)
+        given = " ".join(part for part in (_units(steps), conversion(steps)) if part)
+        model = loaded.parts.model
+        ports = (*model.inputs, *model.outputs) if model is not None else ()
+        wanted = next((normal_unit(end.unit or p.unit) for p in ports if p.name == name), "")
+        if not end.scale and unit and wanted and unit != wanted:
+            between = f"{unit} → {wanted}" if direction == "source" else f"{wanted} → {unit}"
+            own = " ".join(part for part in (between, own) if part)
+    return {
+        "reference": end.reference,
+        "scale": end.scale,
+        "offset": end.offset,
+        "limits": list(end.limits) if end.limits is not None else None,
+        "unit": end.unit,
+        "text": own,
+        "from_tcf": given,
+    }
+
+
+def _end(reference: str, direction: str, configuration: Configuration | None) -> tuple[Component, KindPort] | None:
+    name, _, port_name = reference.partition(".")
+    component = configuration.components.get(name) if configuration is not None else None
+    if component is None:
+        return None
+    if not port_name:
+        main = component.kind.main_port(direction)
+        return (component, main) if main is not None else None
+    return next(((component, port) for port in component.kind.ports if port.name == port_name), None)
+
+
+def _said(end: End) -> str:
+    """A conversion as the bindings write it, so that 1/4 stays 1/4: ``×1/4 +1 in 0…2``."""
+    parts = [f"×{end.scale}"] if end.scale else []
+    parts += [end.offset if end.offset.startswith(("-", "+")) else f"+{end.offset}"] if end.offset else []
+    parts += [f"in {end.limits[0]}…{end.limits[1]}"] if end.limits is not None else []
+    return " ".join(parts)
+
+
+def _units(steps: list[Step]) -> str:
+    return " ".join(step.reason.replace("->", "→") for step in steps if " -> " in step.reason)
+
+
+def diagnostic_view(diagnostic: Diagnostic, places: Places | None = None) -> Data:
+    """A message as the command line's JSON has it, with the port and the component it is about."""
+    return {
+        "id": diagnostic.id,
+        "severity": diagnostic.severity,
+        **_position(diagnostic.span),
+        "message": diagnostic.message,
+        "hint": diagnostic.hint,
+        "notes": [{"message": note.message, **_position(note.span)} for note in diagnostic.notes],
+        "port": places.port(diagnostic) if places is not None else None,
+        "component": places.component(diagnostic) if places is not None else None,
+    }
+
+
+def _position(span: Span) -> Data:
+    return {"file": span.file, "line": span.line, "column": span.column}
+
+
+def _hardware(loaded: Loaded) -> list[Data]:
+    configuration = loaded.parts.configuration
+    rows = []
+    for (key, found), (_, resource, pins, frequency, remark) in zip(
+        loaded.hardware.items(), hardware_rows(loaded.hardware)
+    ):
+        owner, claim = key
+        if configuration is not None and owner in configuration.components:
+            wires = wire_texts(configuration.components[owner].kind, {claim: found}, configuration.target)
+            pins = ", ".join(wires) or pins
+        rows.append(
+            {
+                "component": "(control loop)" if key == TICK else owner,
+                "claim": claim,
+                "resource": resource,
+                "pins": pins,
+                "frequency": frequency,
+                "remark": remark,
+            }
+        )
+    return rows
