@@ -7,14 +7,21 @@ import { current, getJson } from "./server.js";
 import { attempt, draw, say, ui } from "./ui.js";
 
 let log = []; // lines that were fetched
+let next = 0; // number of the line to ask for
 let fetching = false;
 let since = null; // when the last State came: {seconds, at}
 let last = "idle";
 
-export async function generate() {
-  ui.tab = "build";
-  if (ui.dock === "closed") ui.dock = "open";
+function forgetLog() {
   log = [];
+  next = 0;
+}
+
+export async function generate() {
+  if (current().diagnostics.some((each) => each.severity === "error")) ui.tab = "problems";
+  else ui.tab = "build";
+  if (ui.dock === "closed") ui.dock = "open";
+  forgetLog();
   draw();
   await attempt("generate");
 }
@@ -29,7 +36,7 @@ export function followBuild(state) {
   since = { seconds: build.seconds, at: performance.now() };
   if (build.state !== last) {
     if (build.state === "running") {
-      log = [];
+      forgetLog();
       ui.tab = "build";
     }
     if (last === "running") say(outcome(state));
@@ -40,11 +47,12 @@ export function followBuild(state) {
 
 async function fetchLog() {
   const { build } = current();
-  if (fetching || !ui.logOpen || log.length >= build.lines) return;
+  if (fetching || !ui.logOpen || next >= build.lines) return;
   fetching = true;
   try {
-    const answer = await getJson(`api/log?from=${log.length}`);
+    const answer = await getJson(`api/log?from=${next}`);
     log.push(...answer.lines);
+    next = answer.next;
   } catch {
     // The page says already that the connection is lost.
   }

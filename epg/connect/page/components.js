@@ -3,7 +3,7 @@
 import { h, id } from "./dom.js";
 import { componentLabel, handle, match } from "./handles.js";
 import { inline } from "./problems.js";
-import { unitText } from "./wiring.js";
+import { unitMark } from "./wiring.js";
 
 export function componentColumn(state, side, diagnostics, users) {
   const direction = side === "sources" ? "source" : "sink";
@@ -58,7 +58,7 @@ function row(state, side, port, users) {
     },
     handle(side, reference, componentLabel(state, side, port, users.map((user) => user.port)), users.length > 0),
     h("span", { class: "port-name", title: port.summary || null }, name),
-    h("span", { class: "unit" }, unitText(port)),
+    unitMark(port),
     converted
       ? h("span", { class: "tcf-label", key: "tcf", title: "conversion in the .tcf" }, h("span", { class: "muted" }, ".tcf "), converted)
       : null,

@@ -21,7 +21,11 @@ export function configurationCards(state, prefix) {
         ? `${shown.length} targets`
         : `${shown.length} of ${state.configurations.length} targets`,
     ),
-    shown.length === 0 ? h("p", { class: "empty" }, "No target matches. Clear the search to see all.") : null,
+    state.configurations.length === 0
+      ? h("p", { class: "empty" }, "Looking for targets and for what this computer has…")
+      : shown.length === 0
+        ? h("p", { class: "empty" }, "No target matches. Clear the search to see all.")
+        : null,
     h("div", { class: "robots", role: "radiogroup", "aria-label": "Targets" }, grouped(shown).map((group) => robotGroup(group, prefix))),
   );
 }
@@ -96,7 +100,7 @@ function change(part) {
 
 function robotGroup({ robot, boards }, prefix) {
   const name = id(prefix, "robot", robot);
-  const summary = robot === NO_ROBOT ? "a board without a robot: its components are written into the .tcf" : boards[0].list[0].summary;
+  const summary = robot === NO_ROBOT ? "no robot yet: every port becomes a topic, and the .tcf is yours to go on with" : "";
   return h(
     "section",
     { class: "robot", key: robot, "aria-labelledby": name },

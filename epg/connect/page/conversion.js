@@ -98,6 +98,7 @@ function text(name, label, value, hint, readonly) {
       type: "text",
       spellcheck: "false",
       initial: value || "",
+      autofocus: name === "scale",
       readonly,
       "aria-describedby": hint ? `${field}-hint` : null,
     }),

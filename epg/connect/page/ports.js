@@ -6,7 +6,7 @@ import { handle, match, modelLabel } from "./handles.js";
 import { icon } from "./icons.js";
 import { inline } from "./problems.js";
 import { attempt, draw, ui } from "./ui.js";
-import { disconnect, endsOf, isUnconnected, replaceEnd, setEnds, unitText } from "./wiring.js";
+import { disconnect, endsOf, isUnconnected, replaceEnd, setEnds, unitMark } from "./wiring.js";
 
 export function modelHead(state) {
   const { model, proposals } = state;
@@ -64,20 +64,22 @@ function row(state, side, port, diagnostics) {
       "div",
       { class: "port-head" },
       h("label", { class: "port-name", for: id("ends", name, 0), title: port.description || null }, name),
-      h("span", { class: "unit" }, unitText(port)),
+      unitMark(port),
     ),
     fields,
     proposal
       ? h(
-          "p",
-          { class: "proposal", key: "proposal" },
-          h("span", { class: "dashes", "aria-hidden": "true" }),
-          h("span", null, "same name: ", h("b", null, proposal)),
-          h(
-            "button",
-            { onclick: () => attempt("accept", { ports: [name] }), "aria-label": `Accept ${proposal} for ${name}`, disabled: !state.editable },
-            "Accept",
-          ),
+          "button",
+          {
+            class: "proposal",
+            key: "proposal",
+            onclick: () => attempt("accept", { ports: [name] }),
+            "aria-label": `Accept ${proposal} for ${name}`,
+            title: "Its name matches",
+            disabled: !state.editable,
+          },
+          h("span", null, "Accept "),
+          h("b", null, proposal),
         )
       : null,
     inline(refused ? [refused, ...diagnostics] : diagnostics),

@@ -20,6 +20,9 @@ function countText(errors, warnings) {
 
 export const severityIcon = (severity) => icon(severity in { error: 1, warning: 1 } ? severity : "note");
 
+// Hints that only say what the list of the port offers already.
+const LISTED = new Set(["unbound-input", "unbound-output"]);
+
 // Messages at the port or component they are about.
 export function inline(diagnostics) {
   if (diagnostics.length === 0) return null;
@@ -36,7 +39,7 @@ export function inline(diagnostics) {
           null,
           h("span", { class: "unseen" }, `${each.severity}: `),
           each.message,
-          each.hint ? h("span", { class: "hint" }, each.hint) : null,
+          each.hint && !LISTED.has(each.id) ? h("span", { class: "hint" }, each.hint) : null,
         ),
       ),
     ),

@@ -3,7 +3,7 @@
 import { configurationCards } from "./configurations.js";
 import { h } from "./dom.js";
 import { attempt, draw, ui } from "./ui.js";
-import { unitText } from "./wiring.js";
+import { unitMark } from "./wiring.js";
 
 let busy = false;
 
@@ -39,7 +39,7 @@ function modelStep(model) {
     h(
       "ul",
       { class: "port-names", tabindex: ports.length > 8 ? "0" : null, "aria-label": title },
-      ports.map((port) => h("li", { key: port.name }, h("span", null, port.name), h("span", { class: "unit" }, unitText(port)))),
+      ports.map((port) => h("li", { key: port.name }, h("span", null, port.name), unitMark(port))),
     ),
   ];
   return h(
@@ -86,8 +86,16 @@ function projectStep(state) {
       h(
         "p",
         { class: "picked" },
-        picked ? [`${picked.robot || picked.board}, `, h("b", null, picked.name)] : h("span", { class: "muted" }, "No target is chosen yet."),
+        picked ? ["Target ", h("b", null, picked.name)] : h("span", { class: "muted" }, "No target is chosen yet."),
       ),
+      picked?.picture
+        ? h("img", {
+            key: "picture",
+            class: "picked-picture",
+            src: `picture/wiring.svg?configuration=${encodeURIComponent(picked.name)}`,
+            alt: `Board of ${picked.name} with its wiring`,
+          })
+        : null,
       picked?.missing.length
         ? h("p", { class: "muted" }, `Connecting works now; generating needs ${picked.missing.join(", ")}. 'epg doctor' says how to get it.`)
         : null,

@@ -2,6 +2,7 @@
 //   sources   component ports that give a value      inputs   of the model
 //   outputs   of the model                           sinks    component ports that take a value
 
+import { h } from "./dom.js";
 import { current } from "./server.js";
 import { attempt, say, ui } from "./ui.js";
 
@@ -33,6 +34,12 @@ export function fits(state, side, name, other) {
 
 export function unitText({ unit, type }) {
   return [unit || "no unit", type === "real" ? "" : type].filter(Boolean).join(", ");
+}
+
+// The same beside a name; what has no unit gets a dash.
+export function unitMark(port) {
+  const text = unitText(port);
+  return h("span", { class: "unit", title: port.unit ? null : text }, port.unit ? text : [port.type === "real" ? "" : `${port.type} `, "–"]);
 }
 
 // The fields of an end that api/connect takes.
