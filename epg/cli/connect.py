@@ -64,7 +64,7 @@ def _serve(session: object, options: argparse.Namespace) -> int:
     assert isinstance(session, Session)
     server = Server(session, options.port)
     print(f"epg connect: {server.address}")
-    print("Press Ctrl-C here, or 'Done' in the page, to end.", flush=True)
+    print("Press Ctrl-C here, or 'Close EPG' in the page, to end.", flush=True)
     if not options.no_browser:
         _open_browser(server.address)
     try:
