@@ -19,7 +19,7 @@ from typing import Any
 
 from epg.connect.cmake_message import CMakeMessage, starts_cmake_message
 
-LIMIT = 300
+LIMIT = 100
 """Messages that are kept of one build; a header that is wrong can give thousands."""
 TAIL = 12
 """Lines that stand for a failure nobody understands."""
