@@ -37,6 +37,7 @@ REQUIREMENTS: dict[str, dict[str, tuple[str, tuple[int, ...]]]] = {
         "editables": ("editables", (0, 5)),
         "cyclonedds": ("cyclonedds", (0, 10, 5)),
         "matplotlib": ("matplotlib", (3, 5)),
+        "playwright": ("playwright", (1, 45)),
         "yaml": ("PyYAML", (5, 4)),
         "jinja2": ("Jinja2", (3, 0)),
         "jsonschema": ("jsonschema", (4, 10)),
