@@ -1,7 +1,7 @@
 """Edits of YAML text that leave every character alone which the edit is not about.
 
-Each function takes the text, finds its place in what PyYAML's own (not libyaml's) parser says about it, and returns
-the new text.  None of them knows what the text is for, and none checks the result: callers parse it again.
+Each function takes the text, finds its place by the positions that PyYAML's nodes have, and returns the new text.
+None of them knows what the text is for, and none checks the result: callers parse it again.
 """
 
 from __future__ import annotations
@@ -10,6 +10,8 @@ import re
 from collections.abc import Sequence
 
 import yaml
+
+from epg.load import yaml_file
 
 _BREAK = re.compile("\r\n|[\r\n\x85\u2028\u2029]")
 _REST = re.compile(r"[ \t]*(#.*)?")
@@ -26,7 +28,7 @@ class CannotEdit(Exception):
 def compose(text: str) -> yaml.Node:
     """The nodes of ``text``, which :func:`epg.load.yaml_file.parse_yaml` has accepted."""
     try:
-        root = yaml.compose(text, Loader=yaml.SafeLoader)
+        root = yaml.compose(text, Loader=yaml_file.LOADER)
     except (yaml.YAMLError, RecursionError) as error:
         raise CannotEdit(f"YAML: {str(error).splitlines()[0]}") from None
     if root is None:

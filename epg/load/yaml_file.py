@@ -19,7 +19,8 @@ from epg.load.text_file import NO_DRAFTS, Drafts, read_text
 from epg.source import Node, Scalar, Span
 
 MAX_DEPTH = 32
-_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+"""libyaml's parser where there is one.  The two differ: PyYAML's own takes no tab before a comment."""
 
 _NULL = {"", "~", "null", "Null", "NULL"}
 _BOOL = {"true": True, "True": True, "TRUE": True, "false": False, "False": False, "FALSE": False}
@@ -43,7 +44,7 @@ def parse_yaml(text: str, file: str, diagnostics: Diagnostics) -> Node | None:
     """The one document in ``text``; ``file`` is the name its positions carry."""
     builder = _Builder(file, diagnostics)
     try:
-        for event in yaml.parse(text, Loader=_LOADER):
+        for event in yaml.parse(text, Loader=LOADER):
             if not builder.feed(event):
                 return None
     except yaml.MarkedYAMLError as error:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from epg.diagnostics import Diagnostics
-from epg.emit.bindings_edit import CannotEdit, End, ends_of, set_ends
+from epg.emit.bindings_edit import End, ends_of, set_ends
 from epg.load.models.model import Model, Port
 from epg.load.yaml_file import parse_yaml
 from epg.source import Span

@@ -1,0 +1,95 @@
+"""Ends of wires as bindings files say them: as texts to show and edit, and as data to compare."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from epg.check.bindings import UNCONNECTED
+from epg.diagnostics import Diagnostics
+from epg.emit.yaml_text import scalar_text
+from epg.load.yaml_file import parse_yaml
+from epg.source import Node
+
+REFERENCE = {"inputs": "from", "outputs": "to"}
+"""The key of a map that names the component, by section."""
+KEYS = ("scale", "offset", "limits", "unit")
+"""What else a wire may have, in the order in which keys are added to a map."""
+
+
+@dataclass(frozen=True)
+class End:
+    """One end of a wire as the file says it; texts, so that 1/4 stays 1/4, and empty where nothing is said."""
+
+    reference: str  # "encoder_pan" or "encoder_pan.reset"
+    scale: str = ""
+    offset: str = ""
+    limits: tuple[str, str] | None = None
+    unit: str = ""
+
+
+def ends_of(root: Node, section: str, port: str) -> tuple[End, ...] | None:
+    """What a file says about a port: None if nothing, an empty tuple for ``unconnected``.
+
+    ``section`` is "inputs" or "outputs".  A value the schema does not allow gives ends, too, as well as that goes.
+    """
+    node = root.get(section, port)
+    if node is None:
+        return None
+    ends = node.elements() if node.is_sequence else (node,)
+    return tuple(_end(end, REFERENCE[section]) for end in ends if section == "inputs" or end.value != UNCONNECTED)
+
+
+def said_ends(node: Node | None, section: str) -> list[Any] | None:
+    """The value of a port as data: for each end a list of keys and values, whatever way it is written."""
+    if node is None:
+        return None
+    ends = node.elements() if node.is_sequence else (node,)
+    maps = [
+        {key: child.plain() for key, child in end.items()} if end.is_mapping else {REFERENCE[section]: end.plain()}
+        for end in ends
+        if section == "inputs" or end.value != UNCONNECTED
+    ]
+    # a unit that is empty says as much as none
+    return [sorted((key, value) for key, value in said.items() if (key, value) != ("unit", "")) for said in maps]
+
+
+def data_of(end: End, section: str) -> list[tuple[str, object]]:
+    """What :func:`said_ends` gives for an end of a file that says ``end``."""
+    said: list[tuple[str, object]] = [(REFERENCE[section], end.reference)]
+    for key in KEYS:
+        value = getattr(end, key)
+        if key == "limits" and value is not None:
+            said.append((key, [typed_value(key, number) for number in value]))
+        elif value:
+            said.append((key, typed_value(key, value)))
+    return sorted(said)
+
+
+def typed_value(key: str, text: str) -> object:
+    """The value that YAML makes of ``text`` where a number is meant, else ``text`` itself."""
+    if key in ("reference", "unit") or not text or any(not (c.isascii() and (c.isalnum() or c in "+-.")) for c in text):
+        return text
+    node = parse_yaml(text, "", Diagnostics())
+    value = None if node is None else node.value
+    return value if isinstance(value, (int, float)) and not isinstance(value, bool) else text
+
+
+def _end(node: Node, key: str) -> End:
+    def text(*path: str) -> str:
+        child = node.get(*path)
+        return "" if child is None or child.value is None else _text(child)
+
+    if not node.is_mapping:
+        return End("" if node.value is None else _text(node))
+    limits = node.get("limits")
+    pair = None
+    if limits is not None:
+        low, high, *_ = *(_text(number) for number in limits.elements()), "", ""
+        pair = (low, high)
+    return End(text(key), text("scale"), text("offset"), pair, text("unit"))
+
+
+def _text(node: Node) -> str:
+    value = node.value
+    return value if isinstance(value, str) else scalar_text(value) if not isinstance(value, tuple) else ""

@@ -1,0 +1,173 @@
+"""Edits of random bindings files: what is wanted is said, nothing else is said otherwise or written otherwise."""
+
+from __future__ import annotations
+
+import re
+import sys
+from difflib import SequenceMatcher
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, Phase, event, given, note, settings
+from hypothesis import strategies as st
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
+from bindings_texts import PORTS, Text, bindings_texts, ends
+
+from epg.diagnostics import Diagnostics
+from epg.emit.bindings_edit import End, ends_of, set_ends
+from epg.emit.bindings_ends import data_of
+from epg.load.models.model import Model, Port
+from epg.load.yaml_file import parse_yaml
+from epg.source import Node, Span
+
+HERE = Span("model.yaml", 1, 1, 2)
+PROFILE = settings(
+    derandomize=True,
+    deadline=None,
+    database=None,
+    max_examples=200,
+    suppress_health_check=list(HealthCheck),
+    phases=(Phase.explicit, Phase.generate),
+    print_blob=True,
+)
+
+
+def _ports(section: str) -> tuple[Port, ...]:
+    names = enumerate(PORTS[section])
+    return tuple(Port(name, f"port_{index}", section[:-1], "", "real", index, HERE) for index, name in names)
+
+
+MODEL = Model(
+    "Servo",
+    "hand-written",
+    "c",
+    "",
+    "",
+    Fraction(1),
+    _ports("inputs"),
+    _ports("outputs"),
+    (),
+    Path(),
+    (),
+    HERE,
+)
+
+
+def _edits() -> st.SearchStrategy[tuple[str, str, tuple[End, ...] | None]]:
+    inputs = st.tuples(st.just("inputs"), st.sampled_from(PORTS["inputs"]), st.none() | ends.map(lambda end: (end,)))
+    several = st.lists(ends, max_size=3, unique_by=lambda end: end.reference).map(tuple)
+    outputs = st.tuples(st.just("outputs"), st.sampled_from(PORTS["outputs"]), st.none() | several)
+    return inputs | outputs
+
+
+edits = _edits()
+
+
+def _root(text: str) -> Node:
+    problems = Diagnostics()
+    root = parse_yaml(text.removeprefix("\ufeff"), "servo.bindings.yaml", problems)
+    assert root is not None, (list(problems), text)
+    return root
+
+
+def _data(section: str, said: tuple[End, ...] | None) -> object:
+    return None if said is None else [data_of(end, section) for end in said]
+
+
+def _set(text: str, port: str, said: tuple[End, ...] | None) -> str:
+    changed = set_ends(text, "servo.bindings.yaml", MODEL, port, said)
+    note(f"--- {port} -> {said}\n{changed}")
+    return changed
+
+
+def _comments(text: str) -> list[str]:
+    return re.findall(r"#\d+", text)
+
+
+def _own_comments(file: Text, names: set[str]) -> set[str]:
+    return {word for line in file.lines if line.owner in names for word in _comments(line.text)}
+
+
+@PROFILE
+@given(bindings_texts(), st.lists(edits, min_size=1, max_size=5))
+def test_what_is_wanted_is_said_and_comments_stay(
+    file: Text, told: list[tuple[str, str, tuple[End, ...] | None]]
+) -> None:
+    text = before = file.text
+    note(before)
+    wanted = {section: dict(ports) for section, ports in file.said.items()}
+    edited: set[str] = set()
+    for section, port, said in told:
+        text = _set(text, port, said)
+        edited.add(port)
+        if file.said[section].get(port) is None and section in file.in_braces:
+            edited.add(section)
+        if said is None:
+            wanted[section].pop(port, None)
+        else:
+            wanted[section][port] = said
+    root = _root(text)
+    for section, ports in PORTS.items():
+        for port in ports:
+            assert repr(_data(section, ends_of(root, section, port))) == repr(_data(section, wanted[section].get(port)))
+        node = root.get(section)
+        assert node is None or node.is_mapping
+    for key in ("version", "model", "parameters"):
+        old, new = _root(before).get(key), root.get(key)
+        assert (old and old.plain()) == (new and new.plain())
+    # in braces, a comment is on the line of a port, but the text of the file does not say of which
+    may_go = _own_comments(file, edited | (file.in_braces & {section for section, _, _ in told}))
+    kept = [comment for comment in _comments(text) if comment not in may_go]
+    assert kept == [comment for comment in _comments(before) if comment not in may_go]
+    assert len(set(_comments(text))) == len(_comments(text))
+    assert text.count("\r") == (text.count("\n") if file.line_end == "\r\n" else 0)
+    if file.has_last_end:
+        assert text.endswith("\n")
+
+
+@PROFILE
+@given(bindings_texts(), edits)
+def test_lines_of_others_are_untouched(file: Text, edit: tuple[str, str, tuple[End, ...] | None]) -> None:
+    section, port, said = edit
+    note(file.text)
+    before = [line.text for line in file.lines]
+    after = _set(file.text, port, said).split(file.line_end)
+    if file.has_last_end:
+        after.pop()
+    steps = SequenceMatcher(None, before, after, autojunk=False).get_opcodes()
+    changed = [line for what, first, last, _, _ in steps if what != "equal" for line in file.lines[first:last]]
+    assert {line.owner for line in changed} <= {port, section}
+    if section not in file.in_braces:
+        # the section's name, where the section begins or ends to have ports
+        names = [line for line in changed if line.owner == section]
+        assert len(names) <= (not file.said[section] or (said is None and set(file.said[section]) == {port}))
+
+
+@PROFILE
+@given(bindings_texts(), edits)
+def test_there_and_back(file: Text, edit: tuple[str, str, tuple[End, ...] | None]) -> None:
+    section, port, said = edit
+    before = file.text
+    note(before)
+    old = file.said[section].get(port)
+    if said is None or (old is None and (not file.said[section] or port in file.open)):
+        return
+    if old is not None:
+        # a value of one word; lists on lines of their own stay lists
+        line = next((line.text for line in file.lines if line.owner == port), "{")
+        if re.search(r"[{\[]|:\s*(#.*)?$", line.split("#")[0].replace("'{}'", "").replace('"{}"', "")):
+            return
+        if len(said) > 1 or "unconnected'" in line:
+            return
+    assert _set(_set(before, port, said), port, old) == before
+    event("there and back" + (" from nothing" if old is None else ""))
+
+
+@pytest.mark.parametrize("section", PORTS)
+def test_what_was_never_there_is_not_missed(section: str) -> None:
+    text = "version: 1\nmodel: Servo\n"
+    for port in PORTS[section]:
+        assert set_ends(text, "servo.bindings.yaml", MODEL, port, None) == text
