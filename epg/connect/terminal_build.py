@@ -1,0 +1,50 @@
+"""A build as the terminal shows it: one line of progress, then the messages and what to do with the products."""
+
+from __future__ import annotations
+
+from epg.connect.console import Console
+from epg.connect.session import Session, State
+from epg.connect.terminal_text import message_lines
+
+LOOK = 1.0
+"""Seconds between two looks at a build that says nothing."""
+
+
+def build(session: Session, console: Console) -> bool:
+    """Saves, configures and builds; whether that went well.  Ctrl-C cancels.  Raises Refused."""
+    state = session.act("generate", {})
+    step = ""
+    while state["build"]["state"] == "running":
+        now = state["build"]
+        if not console.is_terminal and now["step"] != step:
+            console.say(f"{now['step']} ...")
+        step = now["step"]
+        console.over(_progress(now))
+        try:
+            state = session.wait(state["version"], LOOK)
+        except KeyboardInterrupt:
+            console.over("cancelling ...")
+            session.act("cancel", {})
+    console.clear()
+    return _report(state, console)
+
+
+def _progress(now: State) -> str:
+    count = f" {now['done']}/{now['total']}" if now["total"] else ""
+    return f"{now['step'] or 'starting'}{count}, {now['seconds']:.0f} s  {now.get('action', '')}"
+
+
+def _report(state: State, console: Console) -> bool:
+    done = state["build"]
+    folder = state["project"]["folder"]
+    for message in done["messages"]:
+        for line in message_lines(message, folder):
+            console.say(line)
+    if done["state"] != "done":
+        console.say("the build was cancelled" if done["state"] == "cancelled" else "the build has failed")
+        return False
+    console.say(f"built in {done['seconds']:.0f} s")
+    for product in done["products"]:
+        console.say(product["path"])
+        console.fill(product["what"], "  ")
+    return True

@@ -1,0 +1,108 @@
+"""The terminal's first questions, where a model has no project yet: which target, which folder, which name."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from epg.connect.console import Console
+from epg.connect.session import Refused, Session
+from epg.new_project import project_name
+
+WAIT = 60.0
+"""Seconds for the configurations to be read; they take about one."""
+
+Choice = Mapping[str, Any]
+
+
+class Left(Exception):
+    """The person has asked to leave."""
+
+
+def create_project(session: Session, console: Console) -> None:
+    """Asks until there is a project.  Raises Left."""
+    state = session.state()
+    while not state["configurations"]:
+        console.over("reading the configurations ...")
+        before = state["version"]
+        state = session.wait(before, WAIT)
+        if state["version"] == before:
+            raise Left
+    model = state["model"]
+    if model is None:
+        for problem in state["diagnostics"]:
+            console.say(f"{problem['file']}: {problem['severity']}: {problem['message']}")
+        raise Left
+    counts = f"{len(model['inputs'])} inputs, {len(model['outputs'])} outputs, a step every {model['step']:g} s"
+    console.say(f"Model {model['name']} ({model['origin']}): {counts}")
+    while True:
+        choice = _choose(state["configurations"], console)
+        proposal = state["create"]
+        console.say()
+        folder = console.ask("folder of the new project", proposal["folder"])
+        folder = os.path.abspath(os.path.expanduser(folder))  # as in any terminal: from the current folder on
+        usual = proposal["name"] if folder == proposal["folder"] else project_name(Path(folder))
+        name = console.ask("name of the target", usual)
+        try:
+            session.act("create", {"configuration": choice["name"], "folder": folder, "name": name})
+            return
+        except Refused as problem:
+            console.say(f"error: {problem.message}")
+            if problem.hint:
+                console.say(f"hint: {problem.hint}")
+
+
+def _choose(configurations: Sequence[Choice], console: Console) -> Choice:
+    """One configuration, by its number or name; other text leaves those that have it."""
+    possible = sorted((choice for choice in configurations if choice["possible"]), key=_relevance)
+    shown = possible
+    console.say()
+    console.say("What shall it run on?")
+    _list(shown, possible, console)
+    while True:
+        only = shown[0]["name"] if len(shown) == 1 else ""
+        answer = console.ask("number, name, a part of it to see fewer, or q", only)
+        named = [choice for choice in possible if choice["name"] == answer]
+        if named:
+            return named[0]
+        if answer == "q":
+            raise Left
+        if answer.isdecimal() and 0 < int(answer) <= len(possible):
+            return possible[int(answer) - 1]
+        words = answer.casefold().split()
+        fitting = [choice for choice in possible if all(word in _text(choice) for word in words)]
+        if not fitting:
+            refused = [choice for choice in configurations if choice["name"] == answer]
+            console.say(f"{answer}: {refused[0]['reason']}" if refused else f"nothing has '{answer}' in it")
+            continue
+        shown = fitting
+        _list(shown, possible, console)
+
+
+def _list(shown: Sequence[Choice], possible: Sequence[Choice], console: Console) -> None:
+    rows = [
+        (str(possible.index(choice) + 1).rjust(3), choice["name"], _matches(choice), _description(choice))
+        for choice in shown
+    ]
+    console.table(("", "", "ports", ""), rows)
+
+
+def _relevance(choice: Choice) -> tuple[bool, int]:
+    """Robots that have what the model wants come first, those that have nothing of it last."""
+    return bool(choice["robot"]) and not choice["matches"], -choice["matches"] if choice["robot"] else 0
+
+
+def _matches(choice: Choice) -> str:
+    """How many ports find a component of their name; of a target alone, every port becomes a topic."""
+    return f"{choice['matches']}/{choice['ports']}" if choice["robot"] else "topics"
+
+
+def _description(choice: Choice) -> str:
+    return choice["board"] + (f"; needs {', '.join(choice['missing'])}" if choice["missing"] else "")
+
+
+def _text(choice: Choice) -> str:
+    """All that a filter looks at."""
+    return " ".join(str(choice[key]) for key in ("name", "summary", "robot", "board", "platform")).casefold()

@@ -1,0 +1,122 @@
+"""What the terminal shows of a session's state: ports, wires, candidates, messages."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+State = Mapping[str, Any]
+OPEN, UNCONNECTED = "(open)", "(unconnected)"
+
+
+@dataclass(frozen=True)
+class Port:
+    """A port of the model."""
+
+    name: str
+    direction: str  # "input" or "output"
+    unit: str
+    type: str
+    description: str
+
+    @property
+    def title(self) -> str:
+        """``input position_pan in rad``; a type only where it is not the usual one."""
+        kind = f" ({self.type})" if self.type != "real" else ""
+        return f"{self.direction} {self.name}" + (f" in {self.unit}" if self.unit else "") + kind
+
+    @property
+    def arrow(self) -> str:
+        return "<-" if self.direction == "input" else "->"
+
+
+def ports_of(state: State) -> list[Port]:
+    """The ports, inputs first; none when the model cannot be read."""
+    model = state["model"]
+    return [
+        Port(port["name"], direction, port["unit"], port["type"], port["description"])
+        for direction, key in (("input", "inputs"), ("output", "outputs"))
+        for port in (model[key] if model is not None else ())
+    ]
+
+
+def is_open(state: State, port: Port) -> bool:
+    return port.name not in state["wires"]
+
+
+def wire_text(state: State, port: Port) -> str:
+    """What a port is connected with, conversions included."""
+    if is_open(state, port):
+        return OPEN
+    ends = state["wires"][port.name]
+    return ", ".join(f"{end['reference']} {end['text']}".rstrip() for end in ends) or UNCONNECTED
+
+
+def wire_rows(state: State) -> Iterator[tuple[str, str, str, str]]:
+    """A row for each port: name, arrow, component, where that is on the board."""
+    components = {component["name"]: component for component in state["components"]}
+    for port in ports_of(state):
+        names = [end["reference"].partition(".")[0] for end in state["wires"].get(port.name, ())]
+        where = [_where(components[name]) for name in names if name in components]
+        yield port.name, port.arrow, wire_text(state, port), "; ".join(text for text in where if text)
+
+
+def candidate_rows(state: State, port: Port) -> Iterator[tuple[str, str, str]]:
+    """A row for each component's port that may be connected: number, reference, what it is and where."""
+    found = {
+        offered["reference"]: (component, offered)
+        for component in state["components"]
+        for offered in component["ports"]
+    }
+    users = users_of(state)
+    for number, reference in enumerate(state["candidates"].get(port.name, ()), 1):
+        if reference not in found:
+            yield str(number), reference, ""
+            continue
+        component, offered = found[reference]
+        unit = f"in {offered['unit']}" if offered["unit"] else ""
+        other = [name for name in users.get(reference, ()) if name != port.name]
+        used = f"used by {', '.join(other)}" if other and port.direction == "output" else ""
+        parts = (offered["summary"] or component["summary"], unit, component["kind"], _where(component), used)
+        yield str(number), reference, "; ".join(part for part in parts if part)
+
+
+def users_of(state: State) -> dict[str, list[str]]:
+    """The ports of the model at each component's port."""
+    users: dict[str, list[str]] = {}
+    for name, ends in state["wires"].items():
+        for end in ends:
+            users.setdefault(end["reference"], []).append(name)
+    return users
+
+
+def message_lines(message: Mapping[str, Any], folder: str) -> list[str]:
+    """A message as the command line prints it, without the line it points to; ``folder`` is left out of paths."""
+    place = _place(message, folder)
+    id = f" [{message['id']}]" if message.get("id") else ""
+    first, *rest = f"{message['message']}".split("\n")
+    lines = [
+        f"{place}{': ' if place else ''}{message['severity']}: {first}{id}",
+        *(f"  {line}".rstrip() for line in rest),
+    ]
+    for note in message.get("notes", ()):
+        lines.append(f"{_place(note, folder)}: note: {note['message']}")
+    if message["hint"]:
+        lines.append(f"hint: {message['hint']}")
+    return lines
+
+
+def _place(message: Mapping[str, Any], folder: str) -> str:
+    file = str(message["file"])
+    if folder and Path(file).is_absolute() and Path(file).is_relative_to(folder):
+        file = str(Path(file).relative_to(folder))
+    if not message["line"]:
+        return file
+    return f"{file}:{message['line']}:{message['column']}" if message["column"] else f"{file}:{message['line']}"
+
+
+def _where(component: Mapping[str, Any]) -> str:
+    """Where a component is: its pins, or its topic."""
+    return ", ".join(component["where"]) or (f"topic {component['topic']}" if component["topic"] else "")
