@@ -52,10 +52,25 @@ endfunction()
 # Runs `epg <argument>...`; its messages go to the terminal as they are (CMake would wrap their lines).
 # Sets <result> to TRUE or FALSE.
 function(_epg_run result)
-  option(EPG_INSTALL_PYTHON_PACKAGES "Let EPG install Python packages it lacks into its own cache" ON)
   _epg_find_python(python)
+  _epg_environment(environment)
+  _epg_python_folder(folder)
+  execute_process(
+    COMMAND "${CMAKE_COMMAND}" -E env EPG_ABSOLUTE_PATHS=1 ${environment} "${python}" "${folder}/__main__.py" ${ARGN}
+    WORKING_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}"
+    RESULT_VARIABLE status)
+  if(status STREQUAL "0")
+    set(${result} TRUE PARENT_SCOPE)
+  else()
+    set(${result} FALSE PARENT_SCOPE)
+  endif()
+endfunction()
+
+# What EPG's Python finds in its environment, as <variable>=<value>.
+function(_epg_environment result)
+  option(EPG_INSTALL_PYTHON_PACKAGES "Let EPG install Python packages it lacks into its own cache" ON)
   # Paths are bytes to CMake, and UTF-8 in what EPG writes for it, whatever the locale.
-  set(environment EPG_ABSOLUTE_PATHS=1 PYTHONUTF8=1)
+  set(environment PYTHONUTF8=1)
   if(NOT EPG_INSTALL_PYTHON_PACKAGES OR FETCHCONTENT_FULLY_DISCONNECTED)
     list(APPEND environment "EPG_NO_INSTALL=1")
   endif()
@@ -68,16 +83,7 @@ function(_epg_run result)
     endif()
     list(APPEND environment "EPG_TARGETS_PATH=${folders}")
   endif()
-  _epg_python_folder(folder)
-  execute_process(
-    COMMAND "${CMAKE_COMMAND}" -E env ${environment} "${python}" "${folder}/__main__.py" ${ARGN}
-    WORKING_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}"
-    RESULT_VARIABLE status)
-  if(status STREQUAL "0")
-    set(${result} TRUE PARENT_SCOPE)
-  else()
-    set(${result} FALSE PARENT_SCOPE)
-  endif()
+  set(${result} "${environment}" PARENT_SCOPE)
 endfunction()
 
 # The user's `targets` folders: the variable EPG_TARGETS_PATH (a list), else the environment variable.

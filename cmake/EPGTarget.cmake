@@ -2,7 +2,8 @@
 #                [PLANT <folder> PLANT_BINDINGS <file>] [NODE <name>] [NAMESPACE <name>] [SET <key.key=value>...])
 #
 # The library EPG::<name>: model, tables and runtime, free of any SDK, and the port layer of its platform as sources of
-# whoever links it.  <file> of TCF is a path, or the name of one of EPG's predefined configurations.
+# whoever links it.  <file> of TCF is a path, or the name of one of EPG's predefined configurations.  The target
+# <name>_connect opens it in a browser.
 #
 # epg_add_executable(<executable> EPG::<name>)
 #
@@ -23,7 +24,7 @@ function(epg_add_target name)
   set(output "${CMAKE_BINARY_DIR}/epg/${name}")
   get_filename_component(model "${arg_MODEL}" ABSOLUTE BASE_DIR "${here}")
   get_filename_component(bindings "${arg_BINDINGS}" ABSOLUTE BASE_DIR "${here}")
-  set(arguments generate "${name}" --tcf "${arg_TCF}" --beside "${here}" --model "${model}" --bindings "${bindings}"
+  set(arguments --tcf "${arg_TCF}" --beside "${here}" --model "${model}" --bindings "${bindings}"
     --source-dir "${CMAKE_SOURCE_DIR}" --caller "${CMAKE_CURRENT_LIST_FILE}")
   set(inputs "${bindings}")
   get_filename_component(tcf "${arg_TCF}" ABSOLUTE BASE_DIR "${here}")
@@ -47,12 +48,15 @@ function(epg_add_target name)
   endforeach()
 
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${inputs})
-  _epg_generate(good "${name}" "${output}" ${arguments})
+  _epg_generate(good "${name}" "${output}" generate "${name}" ${arguments})
   if(NOT good)
-    message(SEND_ERROR "EPG: target '${name}' was not generated; the messages above say why")
+    _epg_connect_script(script "${name}" ${arguments})
+    message(SEND_ERROR "EPG: target '${name}' was not generated; the messages above say why\n"
+      "Its ports can be connected in a browser:\n  cmake -P \"${script}\"")
     _epg_placeholder("${name}")
     return()
   endif()
+  _epg_connect_target("${name}" ${arguments})
 
   _epg_data_folder(data)
   set(EPG_TARGETS_DIR "${data}/targets")
