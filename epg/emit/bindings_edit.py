@@ -14,7 +14,8 @@ An edit and its reverse give the old text, but for what had to go:
 - a section that was missing, commented out or empty comes back as ``inputs: {}``
 - a port that comes back stands right below the one before it in the model's order, a key of a map likewise in the
   order scale, offset, limits, unit: blank lines and comments that were between stay below
-- quotes around `unconnected`; ``{from: x}`` and ``[x]`` on one line become ``x`` when a key or an element is taken out of them
+- quotes around `unconnected`, which another value has replaced
+- ``{from: x}`` and ``[x]`` on one line become ``x`` when a key or an element is taken out of them
 """
 
 from __future__ import annotations

@@ -1,22 +1,84 @@
-"""A ``.tcf`` extends another file, and everything else in it stays as it was written."""
+"""The file that a ``.tcf`` builds on is another one, and everything else in it stays as it was written.
+
+>>> text = "# my robot\\nversion: 1\\nextends: host_jiwy.tcf   # for now\\nnode: me\\n"
+>>> print(set_extends(text, "robot.tcf", "rpi_pico_bare_metal_jiwy.tcf"), end="")
+# my robot
+version: 1
+extends: rpi_pico_bare_metal_jiwy.tcf   # for now
+node: me
+"""
 
 from __future__ import annotations
+
+import yaml
 
 from epg.diagnostics import Diagnostics
 from epg.emit import yaml_edit
 from epg.emit.yaml_edit import CannotEdit
 from epg.emit.yaml_text import scalar_text
 from epg.load.yaml_file import parse_yaml
+from epg.source import Node
 
 KEY = "extends"
 
 
-def set_extends(text: str, file: str, name: str) -> str:
-    """``text`` with ``extends: name``.  Raises CannotEdit where it is no ``.tcf`` that extends another file."""
-    root = parse_yaml(text, file, Diagnostics())
-    if root is None or not root.is_mapping:
-        raise CannotEdit(f"'{file}' has a mistake that must be mended in an editor first")
+def set_extends(text: str, file: str, value: str) -> str:
+    """``text`` with ``extends: value``: in the place of the old name, or behind ``version`` where there was none.
+
+    ``file`` names the text in messages.  Raises :class:`~epg.emit.yaml_edit.CannotEdit` for a text that is no map, or
+    whose ``extends`` is something other than one name.
+    """
+    body = text.removeprefix("\ufeff")
+    root = _parse(body, file)
     old = root.get(KEY)
-    if old is None or not isinstance(old.value, str):
-        raise CannotEdit(f"'{file}' extends no other file: it says itself what the target consists of")
-    return yaml_edit.replace(text, (KEY,), scalar_text(name))
+    if old is not None and (old.is_mapping or old.is_sequence):
+        line = root.key_span(KEY).line
+        raise CannotEdit(f"{file}:{line}: '{KEY}' takes one name, and this is more: mend this in an editor first")
+    if old is not None and old.value == value:
+        return text
+    try:
+        changed = _edited(body, value, old is not None)
+    except CannotEdit as problem:
+        raise CannotEdit(f"{file}: '{KEY}' cannot be changed here: {problem}") from None
+    _verify(root, changed, file, value)
+    return text[: len(text) - len(body)] + changed
+
+
+def _edited(text: str, value: str, is_there: bool) -> str:
+    if is_there:
+        node = yaml_edit.node_at(text, (KEY,))
+        style = node.style or "" if isinstance(node, yaml.ScalarNode) else ""
+        return yaml_edit.replace(text, (KEY,), _name(value, style))
+    root = yaml_edit.node_at(text, ())
+    keys = [key.value for key, _ in root.value]
+    return yaml_edit.insert(text, (), keys.index("version") + 1 if "version" in keys else 0, f"{KEY}: {_name(value)}")
+
+
+def _name(value: str, style: str = "") -> str:
+    """A file name needs quotes only if a part of it does: ``../robots/a-b.tcf``."""
+    parts = value.replace("-", "_").split("/")
+    plain = not style and all(part in (".", "..") or scalar_text(part) == part for part in parts)
+    return value if plain and not value.startswith("-") else scalar_text(value, style)
+
+
+def _parse(text: str, file: str) -> Node:
+    problems = Diagnostics()
+    root = parse_yaml(text, file, problems)
+    if root is None:
+        first = next(iter(problems))
+        raise CannotEdit(f"{file}:{first.span.line}: {first.message}: mend this in an editor first")
+    if not root.is_mapping:
+        raise CannotEdit(f"{file}:1: this is no map, as a .tcf must be: mend this in an editor first")
+    return root
+
+
+def _verify(root: Node, changed: str, file: str, value: str) -> None:
+    after = parse_yaml(changed, file, Diagnostics())
+    others = [(key, node.plain()) for key, node in root.items() if key != KEY]
+    if (
+        after is None
+        or repr([(key, node.plain()) for key, node in after.items() if key != KEY]) != repr(others)
+        or after[KEY].value != value
+    ):
+        line = root.key_span(KEY).line if KEY in root else 1
+        raise CannotEdit(f"{file}:{line}: EPG does not understand how this is written: change '{KEY}' in an editor")
