@@ -42,6 +42,12 @@ class Console:
         """Prints a paragraph, wrapped."""
         self.say(textwrap.fill(text, self.width, initial_indent=indent, subsequent_indent=indent))
 
+    def items(self, words: Iterable[str], indent: str = "") -> None:
+        """Prints words beside each other, none of them broken at a blank."""
+        text = "  ".join(word.replace(" ", "\0") for word in words)
+        filled = textwrap.fill(text, self.width, initial_indent=indent, subsequent_indent=indent)
+        self.say(filled.replace("\0", " "))
+
     def table(self, header: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
         """Prints columns; the last one is wrapped where the line ends."""
         listed = [tuple(row) for row in rows]
@@ -83,10 +89,10 @@ class Console:
             self._write(line.rstrip("\n") + "\n")
         return line.strip() or default
 
-    def agree(self, question: str) -> bool:
-        """Whether the answer is yes, which Enter means too."""
+    def agree(self, question: str, default: str = "y") -> bool:
+        """Whether the answer is yes; Enter means ``default``."""
         while True:
-            answer = self.ask(f"{question} (y/n)", "y").casefold()
+            answer = self.ask(f"{question} (y/n)", default).casefold()
             if answer in ("y", "yes", "n", "no"):
                 return answer.startswith("y")
             self.say("y or n, please.")

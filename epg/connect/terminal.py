@@ -7,19 +7,19 @@ Answers may come from a file: each question takes one line.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, TextIO
 
 from epg.connect.console import Console, Ended
 from epg.connect.session import Refused, Session, State
 from epg.connect.terminal_build import build
 from epg.connect.terminal_create import Left, create_project
+from epg.connect.terminal_message import say_message
 from epg.connect.terminal_text import (
     UNCONNECTED,
     Port,
     candidate_rows,
     is_open,
-    message_lines,
     ports_of,
     wire_rows,
     wire_text,
@@ -33,6 +33,7 @@ HELP = """\
   s        all wires so far              u   undo the last change
   b        back to the port before       q   leave
   d        take the wire away            e   enough: to the end"""
+NONE_FITS = "no component fits: h lists what can be answered"
 OF_OPEN_PORTS = frozenset(("unbound-input", "unbound-output", "needs-bound"))
 """Messages about ports that have not been asked for yet."""
 LEFT_UNSAVED, INTERRUPTED = 1, 130
@@ -85,10 +86,13 @@ class _Dialog:
             return 1
         ports = ports_of(self._state)
         self._ask_ports([port for port in ports if is_open(self._state, port)], ports)
+        shown = None
         while True:
-            self._console.say()
-            self._show(None)
-            self._say_messages(self._state["diagnostics"])
+            if shown != self._state["wires"]:
+                shown = self._state["wires"]
+                self._console.say()
+                self._show(None)
+                self._say_messages(self._state["diagnostics"])
             answer = self._console.ask("a port to change, u to undo, q to leave, Enter to go on", "")
             if not answer:
                 return self._finish()
@@ -96,6 +100,8 @@ class _Dialog:
                 self._leave()
             elif answer == "u":
                 self._undo(None)
+            elif answer == "s":
+                shown = None
             else:
                 named = self._named(answer, [port.name for port in ports], "port")
                 if named is not None:
@@ -153,7 +159,7 @@ class _Dialog:
         """Asks where something would be lost; raises Left."""
         if not self._state["draft"]["changed"]:
             raise Left
-        if not self._console.agree("there are changes that are not saved: leave without them?"):
+        if not self._console.agree("there are changes that are not saved: leave without them?", "n"):
             return
         raise Left
 
@@ -187,8 +193,7 @@ class _Dialog:
             f"{number}/{len(ports)} {port.title}" + (f": {port.description}" if port.description else "")
         )
         names = self._state["candidates"].get(port.name, ())
-        listed = "  ".join(f"{number} {name}" for number, name in enumerate(names, 1))
-        self._console.fill(listed or "no component fits: h lists what can be answered", "    ")
+        self._console.items([f"{number} {name}" for number, name in enumerate(names, 1)] or [NONE_FITS], "    ")
         default = self._state["proposals"].get(port.name, "")
         if not is_open(self._state, port):
             default = wire_text(self._state, port)
@@ -310,10 +315,9 @@ class _Dialog:
         )
         return True
 
-    def _say_messages(self, problems: Any) -> None:
+    def _say_messages(self, problems: Iterable[State]) -> None:
         for problem in problems:
-            for line in message_lines(problem, self._state["project"]["folder"]):
-                self._console.say(line)
+            say_message(problem, self._session, self._console)
 
     def _say_refused(self, problem: Refused) -> None:
         self._console.fill(f"error: {problem.message}")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from epg.connect.console import Console
 from epg.connect.session import Session, State
-from epg.connect.terminal_text import message_lines
+from epg.connect.terminal_message import say_message
 
 LOOK = 1.0
 """Seconds between two looks at a build that says nothing."""
@@ -26,7 +26,7 @@ def build(session: Session, console: Console) -> bool:
             console.over("cancelling ...")
             session.act("cancel", {})
     console.clear()
-    return _report(state, console)
+    return _report(state, session, console)
 
 
 def _progress(now: State) -> str:
@@ -34,12 +34,10 @@ def _progress(now: State) -> str:
     return f"{now['step'] or 'starting'}{count}, {now['seconds']:.0f} s  {now.get('action', '')}"
 
 
-def _report(state: State, console: Console) -> bool:
+def _report(state: State, session: Session, console: Console) -> bool:
     done = state["build"]
-    folder = state["project"]["folder"]
     for message in done["messages"]:
-        for line in message_lines(message, folder):
-            console.say(line)
+        say_message(message, session, console)
     if done["state"] != "done":
         console.say("the build was cancelled" if done["state"] == "cancelled" else "the build has failed")
         return False

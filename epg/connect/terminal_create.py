@@ -100,7 +100,8 @@ def _matches(choice: Choice) -> str:
 
 
 def _description(choice: Choice) -> str:
-    return choice["board"] + (f"; needs {', '.join(choice['missing'])}" if choice["missing"] else "")
+    needed = f"; needs {', '.join(choice['missing'])}" if choice["missing"] else ""
+    return f"{choice['board']}{needed}"
 
 
 def _text(choice: Choice) -> str:

@@ -1,10 +1,9 @@
-"""What the terminal shows of a session's state: ports, wires, candidates, messages."""
+"""What the terminal shows of a session's state: ports, wires, candidates."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 State = Mapping[str, Any]
@@ -90,31 +89,6 @@ def users_of(state: State) -> dict[str, list[str]]:
         for end in ends:
             users.setdefault(end["reference"], []).append(name)
     return users
-
-
-def message_lines(message: Mapping[str, Any], folder: str) -> list[str]:
-    """A message as the command line prints it, without the line it points to; ``folder`` is left out of paths."""
-    place = _place(message, folder)
-    id = f" [{message['id']}]" if message.get("id") else ""
-    first, *rest = f"{message['message']}".split("\n")
-    lines = [
-        f"{place}{': ' if place else ''}{message['severity']}: {first}{id}",
-        *(f"  {line}".rstrip() for line in rest),
-    ]
-    for note in message.get("notes", ()):
-        lines.append(f"{_place(note, folder)}: note: {note['message']}")
-    if message["hint"]:
-        lines.append(f"hint: {message['hint']}")
-    return lines
-
-
-def _place(message: Mapping[str, Any], folder: str) -> str:
-    file = str(message["file"])
-    if folder and Path(file).is_absolute() and Path(file).is_relative_to(folder):
-        file = str(Path(file).relative_to(folder))
-    if not message["line"]:
-        return file
-    return f"{file}:{message['line']}:{message['column']}" if message["column"] else f"{file}:{message['line']}"
 
 
 def _where(component: Mapping[str, Any]) -> str:
