@@ -3,57 +3,22 @@
 from __future__ import annotations
 
 import re
-import sys
 from difflib import SequenceMatcher
-from fractions import Fraction
-from pathlib import Path
 
 import pytest
-from hypothesis import HealthCheck, Phase, event, given, note, settings
+from hypothesis import event, given, note, settings
 from hypothesis import strategies as st
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-
-from bindings_texts import PORTS, Text, bindings_texts, ends
-
 from epg.diagnostics import Diagnostics
-from epg.emit.bindings_edit import End, ends_of, set_ends
+from epg.emit.bindings_edit import CannotEdit, End, ends_of, set_ends
 from epg.emit.bindings_ends import data_of
-from epg.load.models.model import Model, Port
 from epg.load.yaml_file import parse_yaml
-from epg.source import Node, Span
+from epg.source import Node
+from tests.emit.bindings_texts import PORTS, Text, bindings_texts, ends
+from tests.emit.servo import model_of
+from tests.fuzz.long_run import PROFILE, examples
 
-HERE = Span("model.yaml", 1, 1, 2)
-PROFILE = settings(
-    derandomize=True,
-    deadline=None,
-    database=None,
-    max_examples=200,
-    suppress_health_check=list(HealthCheck),
-    phases=(Phase.explicit, Phase.generate),
-    print_blob=True,
-)
-
-
-def _ports(section: str) -> tuple[Port, ...]:
-    names = enumerate(PORTS[section])
-    return tuple(Port(name, f"port_{index}", section[:-1], "", "real", index, HERE) for index, name in names)
-
-
-MODEL = Model(
-    "Servo",
-    "hand-written",
-    "c",
-    "",
-    "",
-    Fraction(1),
-    _ports("inputs"),
-    _ports("outputs"),
-    (),
-    Path(),
-    (),
-    HERE,
-)
+MODEL = model_of(PORTS["inputs"], PORTS["outputs"])
 
 
 def _edits() -> st.SearchStrategy[tuple[str, str, tuple[End, ...] | None]]:
@@ -91,7 +56,7 @@ def _own_comments(file: Text, names: set[str]) -> set[str]:
     return {word for line in file.lines if line.owner in names for word in _comments(line.text)}
 
 
-@PROFILE
+@settings(PROFILE, max_examples=examples(200))
 @given(bindings_texts(), st.lists(edits, min_size=1, max_size=5))
 def test_what_is_wanted_is_said_and_comments_stay(
     file: Text, told: list[tuple[str, str, tuple[End, ...] | None]]
@@ -128,7 +93,7 @@ def test_what_is_wanted_is_said_and_comments_stay(
         assert text.endswith("\n")
 
 
-@PROFILE
+@settings(PROFILE, max_examples=examples(200))
 @given(bindings_texts(), edits)
 def test_lines_of_others_are_untouched(file: Text, edit: tuple[str, str, tuple[End, ...] | None]) -> None:
     section, port, said = edit
@@ -146,7 +111,7 @@ def test_lines_of_others_are_untouched(file: Text, edit: tuple[str, str, tuple[E
         assert len(names) <= (not file.said[section] or (said is None and set(file.said[section]) == {port}))
 
 
-@PROFILE
+@settings(PROFILE, max_examples=examples(200))
 @given(bindings_texts(), edits)
 def test_there_and_back(file: Text, edit: tuple[str, str, tuple[End, ...] | None]) -> None:
     section, port, said = edit
@@ -164,6 +129,48 @@ def test_there_and_back(file: Text, edit: tuple[str, str, tuple[End, ...] | None
             return
     assert _set(_set(before, port, said), port, old) == before
     event("there and back" + (" from nothing" if old is None else ""))
+
+
+anything = st.text(st.characters(exclude_categories=()), min_size=1, max_size=12) | st.text(
+    "ab.:#'\"{}[],&*!|>%@`\\ \n\r\t\x85\u2028-?~0é\U0001f916", min_size=1, max_size=8
+)
+
+
+@settings(PROFILE, max_examples=examples(200))
+@given(
+    st.lists(anything, min_size=1, max_size=3, unique=True),
+    anything,
+    anything,
+    st.sampled_from(["outputs: {x: y}   # c\n", "outputs:\n  x: y   # c\n", "outputs:\n  x:\n    - y   # c\n", ""]),
+)
+def test_names_of_any_kind(names: list[str], reference: str, typed: str, rest: str) -> None:
+    names = [name for name in names if name != "x"]
+    model = model_of((), (*names, "x"))
+    text = before = "version: 1\nmodel: Servo\n" + rest
+    end = End(reference, typed, typed, (typed, "1"), typed)
+    there = []
+    for name in names:
+        note(text)
+        try:
+            text = set_ends(text, "servo.bindings.yaml", model, name, (end, End("z")))
+        except CannotEdit:
+            # only what YAML has no way to write
+            assert any("\ud800" <= character <= "\udfff" for character in name + reference + typed)
+            event("cannot be written")
+            continue
+        there.append(name)
+    note(text)
+    text.encode()
+    root = _root(text)
+    section = root.get("outputs")
+    assert {key for key, _ in root.items()} <= {"version", "model", "outputs"}
+    assert {key for key, _ in (section.items() if section else ())} == {*there, *(["x"] if rest else [])}
+    assert not rest or text.count("# c\n") == 1
+    for name in reversed(there):
+        said = ends_of(root, "outputs", name)
+        assert said is not None and said[0].reference == reference.strip()
+        text = set_ends(text, "servo.bindings.yaml", model, name, None)
+    assert text == (before if rest or not there else before + "outputs: {}\n")
 
 
 @pytest.mark.parametrize("section", PORTS)
