@@ -64,7 +64,7 @@ class Writer:
         self.comments = 0
 
     def chance(self, one_in: int = 3) -> bool:
-        return self.draw(st.integers(0, one_in - 1)) == 0
+        return self.draw(st.integers(1, one_in)) == one_in  # the simplest is no
 
     def comment(self) -> str:
         """A comment behind a value, mostly none."""
