@@ -159,7 +159,8 @@ class Writer:
 
     def section(self, section: str, result: Text, base: int) -> None:
         style = self.draw(st.sampled_from(["block"] * 6 + ["braces", "long braces", "empty", "open", "missing"]))
-        names = self.draw(st.lists(st.sampled_from(PORTS[section]), unique=True))
+        least = self.draw(st.integers(0, 3))
+        names = self.draw(st.lists(st.sampled_from(PORTS[section]), min_size=least, unique=True))
         if not names and style not in ("open", "missing"):
             style = "empty"
         several = st.lists(ends, max_size=3, unique_by=lambda end: end.reference).map(tuple)

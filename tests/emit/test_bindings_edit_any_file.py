@@ -112,23 +112,34 @@ def test_lines_of_others_are_untouched(file: Text, edit: tuple[str, str, tuple[E
 
 
 @settings(PROFILE, max_examples=examples(200))
-@given(bindings_texts(), edits)
-def test_there_and_back(file: Text, edit: tuple[str, str, tuple[End, ...] | None]) -> None:
-    section, port, said = edit
-    before = file.text
-    note(before)
-    old = file.said[section].get(port)
-    if said is None or (old is None and (not file.said[section] or port in file.open)):
+@given(bindings_texts(), st.data())
+def test_there_and_back(file: Text, data: st.DataObject) -> None:
+    note(file.text)
+    # ports that are not there in sections that are, and ports with one word behind them
+    added = [
+        (section, port)
+        for section, said in file.said.items()
+        for port in PORTS[section]
+        if said and port not in said and port not in file.open
+    ]
+    words = re.compile(r"""\s*('.*'|".*"|\S*) ?: ['"]?[a-z_.]+['"]?\s*(#.*)?""")
+    lines = {line.owner: line.text for line in file.lines if words.fullmatch(line.text)}
+    changed = [
+        (section, port)
+        for section, said in file.said.items()
+        for port, old in said.items()
+        if port in lines and sum(line.owner == port for line in file.lines) == 1 and "unconnected'" not in lines[port]
+    ]
+    if not added and not changed:
+        event("nothing to do")
         return
-    if old is not None:
-        # a value of one word; lists on lines of their own stay lists
-        line = next((line.text for line in file.lines if line.owner == port), "{")
-        if re.search(r"[{\[]|:\s*(#.*)?$", line.split("#")[0].replace("'{}'", "").replace('"{}"', "")):
-            return
-        if len(said) > 1 or "unconnected'" in line:
-            return
-    assert _set(_set(before, port, said), port, old) == before
-    event("there and back" + (" from nothing" if old is None else ""))
+    section, port = data.draw(st.sampled_from(added + changed))
+    new = tuple(
+        data.draw(st.lists(ends, min_size=1, max_size=2 if section == "outputs" and (section, port) in added else 1))
+    )
+    old = file.said[section].get(port)
+    assert _set(_set(file.text, port, new), port, old) == file.text
+    event("changed" if old is not None else "added")
 
 
 anything = st.text(st.characters(exclude_categories=()), min_size=1, max_size=12) | st.text(
