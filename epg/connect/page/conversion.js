@@ -24,11 +24,12 @@ export function editConversion(port, n) {
     }
     const ends = endsOf(current(), port).map((end) => pick(end));
     ends[n] = { reference, scale: value("scale"), offset: value("offset"), limits, unit: value("unit") };
+    const before = errorsOf(port).map((each) => each.message);
     error = await act("connect", { port, ends });
-    if (error) {
-      draw();
-      return;
-    }
+    // What is written but wrong, such as a scale that is no number, is mended best where it was typed.
+    error = error || errorsOf(port).find((each) => !before.includes(each.message)) || null;
+    draw();
+    if (error) return;
     ui.refused = null;
     closeDialog("conversion");
     const text = endsOf(current(), port)[n]?.text;
@@ -105,5 +106,7 @@ function text(name, label, value, hint, readonly) {
     hint ? h("span", { class: "hint", id: `${field}-hint` }, hint) : null,
   );
 }
+
+const errorsOf = (port) => current().diagnostics.filter((each) => each.port === port && each.severity === "error");
 
 const pick = ({ reference, scale, offset, limits, unit }) => ({ reference, scale, offset, limits, unit });

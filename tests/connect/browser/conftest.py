@@ -1,0 +1,129 @@
+"""A browser without a window, projects to open in it, and what holds for every page: nothing leaves this computer,
+and nothing goes wrong unseen."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from .served import ROOT, Served
+
+FLAGS = [
+    "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
+    "--disable-component-update", "--disable-sync", "--disable-extensions", "--no-proxy-server",
+]  # fmt: skip
+NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Any]:
+    try:
+        from playwright.sync_api import sync_playwright
+    except ImportError:
+        pytest.skip("playwright is not installed: pip install playwright")
+    program = next(filter(None, map(shutil.which, NAMES)), None)
+    if program is None:
+        pytest.skip("Chromium is not installed: apt install chromium")
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=program, args=FLAGS)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def open_page(browser: Any) -> Iterator[Callable[..., Any]]:
+    """Opens an address in a window of its own; arguments are Playwright's for a context."""
+    contexts: list[Any] = []
+    wrong: list[str] = []
+
+    def hear(message: Any) -> None:
+        # A refused action is an answer like any other; what is missing of the page itself shows as a response.
+        if message.type in ("error", "warning") and not message.text.startswith("Failed to load resource"):
+            wrong.append(message.text)
+
+    def see(response: Any) -> None:
+        if response.status >= 400 and response.request.method == "GET":
+            wrong.append(f"{response.status} {response.url}")
+
+    def leave(request: Any) -> None:
+        if not request.url.startswith(("http://127.0.0.1:", "data:")):
+            wrong.append(f"a request to {request.url}")
+
+    def make(address: str, **arguments: Any) -> Any:
+        settings = {"viewport": {"width": 1280, "height": 800}, "reduced_motion": "reduce", **arguments}
+        context = browser.new_context(**settings)
+        context.set_default_timeout(5000)
+        contexts.append(context)
+        page = context.new_page()
+        page.on("console", hear)
+        page.on("response", see)
+        page.on("request", leave)
+        page.on("pageerror", lambda error: wrong.append(str(error)))
+        page.goto(address)
+        page.locator("#header .brand").wait_for()
+        return page
+
+    yield make
+    for context in contexts:
+        context.close()
+    assert wrong == []
+
+
+class Project:
+    """A copy of examples/jiwy that is served: for the host, with everything connected."""
+
+    def __init__(self, folder: Path) -> None:
+        copy_jiwy(folder)
+        self.folder = folder
+        self.epg = Served(folder)
+        self.address = self.epg.address
+
+    @property
+    def file(self) -> Path:
+        return self.folder / "jiwy.bindings.yaml"
+
+    def text(self) -> str:
+        return self.file.read_text(encoding="utf-8")
+
+    def write(self, *replacements: tuple[str, str]) -> str:
+        """The bindings of the example with something else in them, as the state from which a test goes on."""
+        text = (ROOT / "examples/jiwy/jiwy.bindings.yaml").read_text(encoding="utf-8")
+        for old, new in replacements:
+            assert old in text, old
+            text = text.replace(old, new)
+        self.file.write_text(text, encoding="utf-8")
+        self.epg.act("reload")
+        return text
+
+
+def copy_jiwy(folder: Path) -> None:
+    shutil.copytree(ROOT / "examples/jiwy", folder, ignore=shutil.ignore_patterns("build"))
+    cmake = folder / "CMakeLists.txt"
+    text = cmake.read_text(encoding="utf-8")
+    here = "${CMAKE_CURRENT_SOURCE_DIR}/../.."
+    assert here in text
+    cmake.write_text(text.replace(here, ROOT.as_posix()), encoding="utf-8")
+
+
+@pytest.fixture(scope="session")
+def served_jiwy(browser: Any, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Project]:
+    project = Project(tmp_path_factory.mktemp("connect") / "jiwy")
+    yield project
+    project.epg.end()
+
+
+@pytest.fixture
+def jiwy(served_jiwy: Project) -> Project:
+    """The project with the example's own bindings and nothing unsaved."""
+    served_jiwy.write()
+    return served_jiwy
+
+
+@pytest.fixture
+def model(tmp_path: Path) -> Path:
+    """A model that has no project: what 20-sim leaves."""
+    return Path(shutil.copytree(ROOT / "examples/jiwy/model", tmp_path / "exports" / "camera"))

@@ -1,0 +1,350 @@
+"""Wires by pointer, by list and by keyboard; after Save, the bindings file says what the page shows."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from .conftest import Project
+from .served import ROOT
+
+Open = Callable[..., Any]
+UNBOUND = ("  position_tilt: encoder_tilt\n", "")
+FREE = ("  pwm_tilt: pwm_tilt\n", "")
+
+
+def handle(page: Any, side: str, name: str) -> Any:
+    return page.locator(f'[data-handle][data-side="{side}"][data-name="{name}"]')
+
+
+def port(page: Any, name: str) -> Any:
+    return page.locator(f'.ports .port[data-name="{name}"]')
+
+
+def field(page: Any, name: str) -> Any:
+    return port(page, name).locator("select").first
+
+
+def drag(page: Any, start: Any, end: Any, *, halfway: Callable[[], None] | None = None) -> None:
+    start.scroll_into_view_if_needed()
+    one, other = start.bounding_box(), end.bounding_box()
+    page.mouse.move(one["x"] + one["width"] / 2, one["y"] + one["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(one["x"] + 30, one["y"] + 10, steps=3)
+    if halfway:
+        halfway()
+    page.mouse.move(other["x"] + other["width"] / 2, other["y"] + other["height"] / 2, steps=5)
+    page.mouse.up()
+
+
+def until(page: Any, expression: str, seconds: float = 5) -> None:
+    """Waits for a JavaScript expression to hold.  Playwright's own waiting needs eval(), which the page forbids."""
+    end = time.monotonic() + seconds
+    while not page.evaluate(expression):
+        assert time.monotonic() < end, expression
+        time.sleep(0.02)
+
+
+def save(page: Any) -> None:
+    page.get_by_role("button", name="Save", exact=True).click()
+    page.get_by_text("Saved", exact=True).wait_for()
+
+
+def check_says(project: Project) -> list[dict[str, Any]]:
+    """What ``epg check`` says of the files on the disk."""
+    command = [
+        sys.executable, "-m", "epg", "check", "--json", "--tcf", "host_jiwy.tcf",
+        "--model", str(project.folder / "model"), "--bindings", str(project.file),
+    ]  # fmt: skip
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, encoding="utf-8", check=False)
+    found: list[dict[str, Any]] = json.loads(done.stdout)["diagnostics"]
+    return found
+
+
+def test_shows_what_the_files_say(jiwy: Project, open_page: Open) -> None:
+    page = open_page(jiwy.address)
+    state = jiwy.epg.state()
+    page.locator(".wire-group").nth(len(state["wires"]) - 1).wait_for()
+    assert page.locator(".wire-group").count() == 10
+    for side in ("inputs", "outputs"):
+        names = page.locator(f".ports.{side} .port-name").all_inner_texts()
+        assert names == [each["name"] for each in state["model"][side]]
+    assert {name: field(page, name).input_value() for name in state["wires"]} == {
+        name: f":{ends[0]['reference']}" for name, ends in state["wires"].items()
+    }
+    assert page.get_by_text("No problems", exact=True).is_visible()
+    assert "step 1 ms" in page.locator(".model-head").inner_text()
+    assert not page.get_by_role("button", name="Save", exact=True).is_enabled()
+
+
+@pytest.mark.parametrize("backwards", [False, True])
+def test_connects_by_drag(jiwy: Project, open_page: Open, backwards: bool) -> None:
+    """From the component to the model and the other way, with what fits marked meanwhile."""
+    before = jiwy.write(UNBOUND)
+    page = open_page(jiwy.address)
+    ends = [handle(page, "sources", "encoder_tilt"), handle(page, "inputs", "position_tilt")]
+    if backwards:
+        ends.reverse()
+
+    def marks() -> None:
+        side = "sources" if backwards else "inputs"
+        marked = page.locator(f'.port.fits[data-side="{side}"]')
+        candidates = jiwy.epg.state()["candidates"]
+        if backwards:
+            expected = set(candidates["position_tilt"])
+        else:
+            inputs = [each["name"] for each in jiwy.epg.state()["model"]["inputs"]]
+            expected = {name for name in inputs if "encoder_tilt" in candidates[name]}
+        assert {each.get_attribute("data-name") for each in marked.all()} == expected
+        assert page.locator(".port.fits[data-side=sinks], .port.fits[data-side=outputs]").count() == 0
+        assert page.locator("path.wire.held").count() == 1
+
+    drag(page, *ends, halfway=marks)
+    page.get_by_text("● Unsaved changes").wait_for()
+    assert field(page, "position_tilt").input_value() == ":encoder_tilt"
+    assert jiwy.text() == before, "nothing is written before Save"
+    save(page)
+    lines = jiwy.text().splitlines()
+    assert "  position_tilt: encoder_tilt" in lines
+    assert [line for line in lines if "position_tilt" not in line] == before.splitlines()
+
+
+def test_drag_beside_a_port_changes_nothing(jiwy: Project, open_page: Open) -> None:
+    page = open_page(jiwy.address)
+    drag(page, handle(page, "sources", "encoder_tilt"), page.locator(".model-head h2"))
+    drag(page, handle(page, "sources", "encoder_tilt"), handle(page, "sources", "encoder_pan"))
+    page.mouse.move(5, 5)
+    assert page.locator(".wire.held").count() == 0
+    assert not jiwy.epg.state()["draft"]["changed"]
+
+
+def test_drag_of_an_output_adds_an_end(jiwy: Project, open_page: Open) -> None:
+    jiwy.write(("  tilt_logging: tilt_publisher\n", "  tilt_logging: unconnected\n"))
+    page = open_page(jiwy.address, viewport={"width": 1280, "height": 1200})
+    drag(page, handle(page, "outputs", "pan_logging"), handle(page, "sinks", "tilt_publisher"))
+    page.get_by_role("combobox", name="pan_logging, end 2").wait_for()
+    save(page)
+    assert "  pan_logging: [pan_publisher, tilt_publisher]" in jiwy.text()
+
+
+def test_connects_by_list(jiwy: Project, open_page: Open) -> None:
+    page = open_page(jiwy.address)
+    options = field(page, "position_tilt").locator("option").all_inner_texts()
+    assert options[0] == "(not connected)"
+    assert options[1:] == jiwy.epg.state()["candidates"]["position_tilt"]
+    field(page, "position_tilt").select_option("encoder_pan")
+    page.get_by_text("● Unsaved changes").wait_for()
+    field(page, "setpoint_pan").select_option("")
+    field(page, "pan_logging").select_option("unconnected on purpose")
+    page.get_by_role("button", name="Connect pwm_pan with one more").click()
+    page.get_by_role("combobox", name="pwm_pan, end 2").select_option("pan_publisher")
+    page.get_by_role("button", name="Connect pwm_pan with one more").wait_for()
+    save(page)
+    text = jiwy.text()
+    for line in ("position_tilt: encoder_pan", "pan_logging: unconnected", "pwm_pan: [pwm_pan, pan_publisher]"):
+        assert f"  {line}\n" in text
+    assert "setpoint_pan" not in text
+    assert text.startswith("# yaml-language-server"), "comments are kept"
+
+
+def test_connects_by_keyboard(jiwy: Project, open_page: Open) -> None:
+    """Picked up with Enter, moved with arrows, dropped with Enter; each step is said aloud."""
+    jiwy.write(FREE)
+    page = open_page(jiwy.address)
+    start = handle(page, "outputs", "pan_logging")
+    start.focus()
+    page.keyboard.press("ArrowDown")
+    page.keyboard.press("ArrowDown")
+    assert page.evaluate("document.activeElement.dataset.name") == "pwm_tilt"
+    page.keyboard.press("Enter")
+    until(page, "document.getElementById('said').textContent.startsWith('pwm_tilt picked up')")
+    page.keyboard.press("ArrowDown")
+    while page.evaluate("document.activeElement.dataset.name") != "pwm_tilt":
+        page.keyboard.press("ArrowDown")
+    assert page.evaluate("document.activeElement.dataset.side") == "sinks"
+    until(page, "/sink pwm_tilt,.*: fits$/.test(document.getElementById('said').textContent)")
+    page.keyboard.press("Enter")
+    until(page, "document.getElementById('said').textContent.includes('is connected with pwm_tilt')")
+    assert page.evaluate("document.activeElement.dataset.name + document.activeElement.dataset.side") == "pwm_tiltoutputs"
+    page.keyboard.press("Control+s")
+    page.get_by_text("Saved", exact=True).wait_for()
+    assert "  pwm_tilt: pwm_tilt\n" in jiwy.text()
+
+    page.keyboard.press("Enter")
+    page.keyboard.press("ArrowDown")
+    page.keyboard.press("Escape")
+    assert page.evaluate("document.activeElement.dataset.side") == "outputs", "put back"
+    page.keyboard.press("Delete")
+    page.get_by_text("● Unsaved changes").wait_for()
+    assert "pwm_tilt" not in jiwy.epg.state()["wires"]
+
+
+def test_takes_proposals(jiwy: Project, open_page: Open) -> None:
+    jiwy.write(UNBOUND, FREE, ("  tilt_logging: tilt_publisher\n", ""))
+    page = open_page(jiwy.address)
+    page.locator("path.wire.proposed").nth(1).wait_for()
+    proposed = jiwy.epg.state()["proposals"]
+    assert page.locator("path.wire.proposed").count() == len(proposed) >= 2
+    page.get_by_role("button", name="Accept encoder_tilt for position_tilt").click()
+    page.locator(".ports .port[data-name=position_tilt] .handle.connected").wait_for()
+    page.get_by_role("button", name="Accept all").click()
+    page.locator("path.wire.proposed").first.wait_for(state="detached")
+    save(page)
+    assert "  position_tilt: encoder_tilt\n" in jiwy.text()
+    assert "  pwm_tilt: pwm_tilt\n" in jiwy.text()
+
+
+@pytest.mark.parametrize(
+    ("side", "name", "other", "message"),
+    [
+        ("inputs", "position_tilt", "pwm_pan", "direction"),
+        ("inputs", "setpoint_pan", "encoder_pan", "unit"),
+        ("outputs", "tilt_logging", "pwm_tilt", "twice"),
+    ],
+)
+def test_conflicts_have_the_words_of_the_command_line(
+    jiwy: Project, open_page: Open, side: str, name: str, other: str, message: str
+) -> None:
+    """At the port, in the list and in the header; the list's entry leads back to the port."""
+    if message == "direction":
+        jiwy.write(("  position_tilt: encoder_tilt", f"  position_tilt: {other}"))
+        page = open_page(jiwy.address)
+    elif message == "unit":
+        jiwy.write((f"  {name}: pan_subscriber", f"  {name}: {{from: pan_subscriber, unit: V}}"))
+        page = open_page(jiwy.address)
+    else:
+        page = open_page(jiwy.address, viewport={"width": 1280, "height": 1200})
+        drag(page, handle(page, side, name), handle(page, "sinks", other))
+        page.get_by_text("● Unsaved changes").wait_for()
+        save(page)
+    found = check_says(jiwy)
+    assert found
+    for each in found:
+        if each["id"].startswith("unbound"):
+            continue
+        assert page.get_by_role("tabpanel").get_by_text(each["message"], exact=True).is_visible()
+        assert page.get_by_role("tabpanel").get_by_text(each["hint"], exact=True).first.is_visible()
+    listed = page.locator(".problem-list .message").all_inner_texts()
+    assert listed == [each["message"] for each in found]
+    errors = sum(each["severity"] == "error" for each in found)
+    assert page.locator("#header .problems-count").inner_text().startswith(f"{errors} error")
+    at_port = next(each for each in jiwy.epg.state()["diagnostics"] if each["port"] == name)
+    assert port(page, name).get_by_text(at_port["message"]).is_visible()
+    page.locator(".problem-list").get_by_text(at_port["message"], exact=True).click()
+    assert page.evaluate("document.activeElement.id") == field(page, name).get_attribute("id")
+
+
+def test_a_message_without_a_port_shows_its_line(jiwy: Project, open_page: Open) -> None:
+    jiwy.write(("  encoder_reset_tilt: encoder_tilt.reset\n", "  encoder_reset_tilt: unconnected\n"))
+    page = open_page(jiwy.address)
+    page.locator(".problem-list").get_by_text("'homing' needs").click()
+    dialog = page.get_by_role("dialog")
+    dialog.wait_for()
+    assert "homing: {travel: 110 deg, time: 10 s}" in dialog.locator(".line.here").first.inner_text()
+    assert dialog.locator("pre").count() == 2, "the place and the file that extends it"
+    page.keyboard.press("Escape")
+    dialog.wait_for(state="detached")
+
+
+def test_conversion(jiwy: Project, open_page: Open) -> None:
+    page = open_page(jiwy.address)
+    page.get_by_role("button", name="Conversion from encoder_pan to position_pan: none").click()
+    dialog = page.get_by_role("dialog", name="encoder_pan → position_pan")
+    assert page.evaluate("document.activeElement.name") == "scale"
+    dialog.get_by_label("Scale").fill("one half")
+    dialog.get_by_role("button", name="Apply").click()
+    dialog.get_by_role("alert").wait_for()
+    (wrong,) = jiwy.epg.state()["diagnostics"]
+    assert wrong["message"] in dialog.get_by_role("alert").inner_text()
+    dialog.get_by_label("Scale").fill("1/2")
+    dialog.get_by_label("Offset").fill("0.1")
+    dialog.get_by_label("Lowest").fill("-1")
+    dialog.get_by_role("button", name="Apply").click()
+    dialog.get_by_text("Limits need both").wait_for()
+    dialog.get_by_label("Highest").fill("1")
+    page.keyboard.press("Enter")
+    dialog.wait_for(state="detached")
+    assert page.locator(".wire-label").filter(has_text="×1/2 +0.1 in -1…1").is_visible()
+    save(page)
+    written = next(line for line in jiwy.text().splitlines() if "position_pan" in line)
+    assert written == "  position_pan: {from: encoder_pan, scale: 1/2, offset: 0.1, limits: [-1, 1]}"
+
+
+def test_undo_and_redo(jiwy: Project, open_page: Open) -> None:
+    page = open_page(jiwy.address)
+    field(page, "position_tilt").select_option("encoder_pan")
+    page.get_by_text("● Unsaved changes").wait_for()
+    page.keyboard.press("Control+z")
+    page.get_by_text("Saved", exact=True).wait_for()
+    assert field(page, "position_tilt").input_value() == ":encoder_tilt"
+    page.keyboard.press("Control+y")
+    page.get_by_text("● Unsaved changes").wait_for()
+    assert field(page, "position_tilt").input_value() == ":encoder_pan"
+    page.get_by_role("button", name="Undo").click()
+    page.get_by_text("Saved", exact=True).wait_for()
+    page.get_by_role("button", name="Redo").click()
+    page.get_by_text("● Unsaved changes").wait_for()
+    page.get_by_role("tab", name="Changes").click()
+    assert "+  position_tilt: encoder_pan" in page.get_by_role("tabpanel").inner_text()
+
+
+def test_edits_outside_are_noticed(jiwy: Project, open_page: Open) -> None:
+    page = open_page(jiwy.address)
+    jiwy.file.write_text(jiwy.text().replace("tilt: encoder_tilt", "tilt: encoder_pan"), encoding="utf-8")
+    until(page, "document.getElementById('ends-position_tilt-0').value === ':encoder_pan'")
+    notice = page.get_by_role("region", name="Notices")
+    assert notice.inner_text()
+    notice.get_by_role("button", name="Dismiss").click()
+    page.locator(".bar").wait_for(state="detached")
+
+    # With something unsaved: it is kept, on top of the new text.
+    field(page, "pan_logging").select_option("unconnected on purpose")
+    page.get_by_text("● Unsaved changes").wait_for()
+    jiwy.file.write_text(jiwy.text().replace("tilt: encoder_pan", "tilt: encoder_tilt"), encoding="utf-8")
+    until(page, "document.getElementById('ends-position_tilt-0').value === ':encoder_tilt'")
+    assert field(page, "pan_logging").input_value() == "unconnected"
+    save(page)
+    assert "  pan_logging: unconnected\n" in jiwy.text() and "  position_tilt: encoder_tilt\n" in jiwy.text()
+
+
+@pytest.mark.parametrize("choice", ["Take the file", "Save mine"])
+def test_conflict_with_an_edit_outside(jiwy: Project, open_page: Open, choice: str) -> None:
+    page = open_page(jiwy.address)
+    field(page, "position_tilt").select_option("encoder_pan")
+    page.get_by_text("● Unsaved changes").wait_for()
+    broken = jiwy.text().replace("inputs:\n", "inputs: [\n")
+    jiwy.file.write_text(broken, encoding="utf-8")
+    button = page.get_by_role("button", name=choice)
+    button.wait_for()
+    conflict = jiwy.epg.state()["draft"]["conflict"]
+    assert page.get_by_role("alert").get_by_text(conflict["message"]).is_visible()
+    button.click()
+    button.wait_for(state="detached")
+    if choice == "Save mine":
+        assert "  position_tilt: encoder_pan\n" in jiwy.text()
+        assert page.get_by_text("Saved", exact=True).is_visible()
+    else:
+        assert jiwy.text() == broken
+        page.get_by_text("Connections cannot be changed here").wait_for()
+
+
+def test_state_elsewhere_keeps_focus_scroll_and_what_is_typed(jiwy: Project, open_page: Open) -> None:
+    """The page is drawn again for every state: whoever is doing something must not notice."""
+    page = open_page(jiwy.address, viewport={"width": 1280, "height": 620})
+    page.get_by_role("button", name="Conversion from encoder_pan to position_pan").click()
+    dialog = page.get_by_role("dialog")
+    dialog.get_by_label("Offset").fill("0.2")
+    page.evaluate("document.getElementById('main').scrollTop = 60")
+    page.evaluate("window.before = document.getElementById('ends-position_pan-0')")
+    jiwy.epg.act("connect", port="position_tilt", ends=[{"reference": "encoder_pan"}])
+    until(page, "document.getElementById('ends-position_tilt-0').value === ':encoder_pan'")
+    assert dialog.get_by_label("Offset").input_value() == "0.2"
+    assert page.evaluate("document.activeElement.name") == "offset"
+    assert page.evaluate("document.getElementById('main').scrollTop") == 60
+    assert page.evaluate("window.before === document.getElementById('ends-position_pan-0')")
