@@ -169,7 +169,7 @@ class Build:
                 self._action = progress["action"]
             elif text.startswith("-- "):
                 self._action = text.removeprefix("-- ")
-            if self._messages is not None:
+            if self._messages is not None and not self._cancelled:  # what is said of an interruption is no news
                 self._messages.read(text)
             now = time.monotonic()
             tell = now - self._told > OFTEN

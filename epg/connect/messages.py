@@ -69,7 +69,7 @@ _DRIVER = re.compile(r"(?:\S*[\\/])?[\w.+-]+: (?:fatal )?error: (?P<text>.*)")  
 _CAUSED = re.compile(
     r"was not generated; the messages above say why|subcommand failed|failed with return code|Child return code"
     r"|execute_process failed|ld returned \d+ exit status|linker command failed|Error \d+$|command exited with status"
-    r"|^Aborting due to|^CMAKE_\w+ not set, after EnableLanguage|^could not load cache|multiple errors|is missing\.$"
+    r"|Terminated$|^Aborting due to|^CMAKE_\w+ not set, after EnableLanguage|^could not load cache|multiple errors|is missing\.$"
 )
 """What is said because of something else."""
 _NOISE = re.compile(
@@ -209,7 +209,7 @@ class Messages:
                 self._perhaps.append(_key(message))
             elif message.message.startswith("Aborting due to"):
                 self._take_for_errors()
-            return not line.strip()
+            return False
 
         self._more = more
 

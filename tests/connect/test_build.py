@@ -1,0 +1,384 @@
+"""Builds that `epg connect` runs: real ones, with real tools, of copies of an example."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from epg.connect import build as build_module
+from epg.connect.build import Build
+from epg.connect.build_plan import make_plan
+from epg.connect.projects import Job, find_jobs
+from epg.data import targets_roots
+from epg.diagnostics import Diagnostics
+from epg.new_project import ProjectRequest, write_project
+from tests.emulator.toolchain import arm_gcc, pico_sdk, skip_if_missing
+
+ROOT = Path(__file__).resolve().parents[2]
+MODEL = ROOT / "examples/jiwy/model"
+COMPONENT = "position_pan: encoder_pan"
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """JIWY on the host, built once; the folder's name has a blank."""
+    folder = tmp_path_factory.mktemp("jiwy") / "a robot"
+    shutil.copytree(ROOT / "examples/jiwy", folder)
+    edit(folder / "CMakeLists.txt", "${CMAKE_CURRENT_SOURCE_DIR}/../..", ROOT.as_posix())
+    assert run(job_of(folder)).state()["state"] == "done"
+    return folder
+
+
+@pytest.fixture
+def robot(built: Path) -> Iterator[Path]:
+    """The project that is built; its files are afterwards what they were."""
+    before = {path: path.read_text() for path in built.iterdir() if path.is_file()}
+    yield built
+    for path in built.iterdir():
+        if path.is_file() and path not in before:
+            path.unlink()
+        elif path.is_file() and path.read_text() != before[path]:
+            path.write_text(before[path])
+
+
+def job_of(folder: Path) -> Job:
+    (job,) = find_jobs(folder, Diagnostics())
+    return job
+
+
+def run(job: Job) -> Build:
+    """A build, after its end."""
+    build = Build(job, lambda: None)
+    build.start()
+    assert build.wait(600), build.lines(0)
+    return build
+
+
+def edit(file: Path, old: str, new: str) -> None:
+    text = file.read_text()
+    assert old in text
+    file.write_text(text.replace(old, new))
+
+
+def messages(build: Build) -> list[tuple[str, str, int]]:
+    return [(found["message"], Path(found["file"]).name, found["line"]) for found in build.state()["messages"]]
+
+
+# what is built --------------------------------------------------------------------------------------------------------
+
+
+def test_a_project_is_configured_and_built_and_its_program_runs(robot: Path) -> None:
+    shutil.rmtree(robot / "build")
+    states: list[dict[str, Any]] = []
+    build = Build(job_of(robot), lambda: states.append(build.state()))
+    assert build.state()["state"] == "idle"
+    build.start()
+    assert build.wait(300)
+    state = build.state()
+    assert state["state"] == "done" and state["messages"] == []
+    assert states[-1]["state"] == "done", "the last change is told"
+    steps = [seen["step"] for seen in states if seen["step"]]
+    assert steps == sorted(steps, key=["configure", "build"].index) and set(steps) == {"configure", "build"}
+    counts = [(seen["done"], seen["total"]) for seen in states if seen["step"] == "build" and seen["total"]]
+    assert len(set(counts)) > 3 and counts == sorted(counts)
+    assert state["done"] == state["total"] == counts[-1][1] > 50
+    assert any("Building C object" in seen["action"] for seen in states)
+    assert state["seconds"] > max(seen["seconds"] for seen in states[:-1]) - 0.1 > 0
+    assert state["lines"] == len(build.lines(0)) > 50
+    assert build.lines(state["lines"] - 1) == build.lines(0)[-1:]
+    (product,) = state["products"]
+    assert product["path"] == str(robot / "build/jiwy_host") and "--duration 5" in product["what"]
+    done = subprocess.run([product["path"], "--duration", "0.1"], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+
+
+def test_a_second_build_compiles_nothing_and_says_the_same(robot: Path) -> None:
+    build = run(job_of(robot))
+    assert build.state()["state"] == "done"
+    assert [Path(product["path"]).name for product in build.state()["products"]] == ["jiwy_host"]
+    assert not [line for line in build.lines(0) if "Building" in line]
+
+
+def test_an_executable_of_ones_own_is_a_product_and_others_are_not(robot: Path) -> None:
+    (robot / "own.c").write_text("int main(void)\n{\n    return 0;\n}\n")
+    (robot / "other.c").write_text("int main(void)\n{\n    return 0;\n}\n")
+    lines = "add_executable(own own.c)\ntarget_link_libraries(own PRIVATE EPG::jiwy)\nadd_executable(other other.c)\n"
+    with (robot / "CMakeLists.txt").open("a") as file:
+        file.write(lines)
+    state = run(job_of(robot)).state()
+    assert state["state"] == "done", state
+    assert [Path(product["path"]).name for product in state["products"]] == ["jiwy_host", "own"]
+    assert (robot / "build/other").is_file(), "all targets are built, as by cmake --build"
+
+
+# what goes wrong ------------------------------------------------------------------------------------------------------
+
+
+def test_a_mistake_in_the_bindings_is_said_once_in_epgs_words(robot: Path) -> None:
+    edit(robot / "jiwy.bindings.yaml", COMPONENT, "position_pan: encodr_pan")
+    build = run(job_of(robot))
+    state = build.state()
+    assert (state["state"], state["step"], state["products"]) == ("failed", "configure", [])
+    assert state["messages"] == [
+        {
+            "severity": "error",
+            "message": "there is no component 'encodr_pan'",
+            "file": str(robot / "jiwy.bindings.yaml"),
+            "line": 6,
+            "column": 17,
+            "hint": "did you mean 'encoder_pan'?",
+            "id": "unknown-component",
+            "port": None,
+        }
+    ]
+    assert any("was not generated" in line for line in build.lines(0)), "the log has all"
+    edit(robot / "jiwy.bindings.yaml", "encodr_pan", "encoder_pan")
+    assert run(job_of(robot)).state()["state"] == "done"
+
+
+def test_a_mistake_in_c_has_its_place(robot: Path) -> None:
+    (robot / "own.c").write_text("int main(void)\n{\n    int unused;\n    return 0\n}\n")
+    with (robot / "CMakeLists.txt").open("a") as file:
+        file.write("add_executable(own own.c)\ntarget_compile_options(own PRIVATE -Wall)\n")
+    build = run(job_of(robot))
+    state = build.state()
+    assert (state["state"], state["step"]) == ("failed", "build")
+    errors = [found for found in state["messages"] if found["severity"] == "error"]
+    assert len(errors) == 1 and errors[0]["file"] == str(robot / "own.c")
+    assert (errors[0]["line"], errors[0]["message"][:12]) == (4, "expected ‘;’")
+    warnings = [found for found in state["messages"] if found["severity"] == "warning"]
+    assert [(found["id"], found["line"]) for found in warnings] == [("-Wunused-variable", 3)]
+
+
+def test_what_the_linker_misses_is_said_once(robot: Path) -> None:
+    (robot / "own.c").write_text("int missing(void);\nint main(void)\n{\n    return missing() + missing();\n}\n")
+    with (robot / "CMakeLists.txt").open("a") as file:
+        file.write("add_executable(own own.c)\n")
+    build = run(job_of(robot))
+    assert build.state()["state"] == "failed"
+    assert messages(build) == [("undefined reference to `missing'", "own.c", 4)]
+
+
+def test_a_failure_that_nobody_understands_is_its_last_lines(robot: Path) -> None:
+    command = (
+        'COMMAND "${CMAKE_COMMAND}" -E echo "the moon is in the wrong quarter" COMMAND "${CMAKE_COMMAND}" -E false'
+    )
+    with (robot / "CMakeLists.txt").open("a") as file:
+        file.write(f"add_custom_target(own ALL {command})\n")
+    (found,) = run(job_of(robot)).state()["messages"]
+    assert found["id"] == "build-failed" and "the moon is in the wrong quarter" in found["message"]
+
+
+def test_a_build_folder_of_another_project(robot: Path, tmp_path: Path) -> None:
+    (tmp_path / "CMakeLists.txt").write_text("cmake_minimum_required(VERSION 3.22)\nproject(other NONE)\n")
+    subprocess.run(["cmake", "-S", tmp_path, "-B", tmp_path / "build"], check=True, capture_output=True)
+    build = run(replace(job_of(robot), build_dir=tmp_path / "build"))
+    (found,) = build.state()["messages"]
+    assert "does not match the source" in found["message"], found
+
+
+@pytest.fixture
+def pico(new_project: Path, tmp_path: Path) -> Path:
+    return Path(shutil.copytree(new_project, tmp_path / "pico robot"))
+
+
+def test_an_sdk_that_is_missing_comes_with_the_command_that_gets_it(
+    pico: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    skip_if_missing(arm_gcc)
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    monkeypatch.setenv("EPG_CACHE", str(tmp_path / "cache"))
+    monkeypatch.delenv("PICO_SDK_PATH", raising=False)
+    state = run(job_of(pico)).state()
+    (found,) = state["messages"]
+    assert found["message"] == "The Raspberry Pi Pico SDK was not found."
+    assert found["hint"].startswith("get it: git clone --depth 1 --branch 2.2.0 ")
+    assert found["hint"].endswith(f" {tmp_path}/cache/pico-sdk-2.2.0"), "the lines that CMake has filled are one"
+    assert found["file"].startswith(str(pico)), "a file of the project, not of EPG"
+
+
+def test_a_compiler_that_is_missing_is_named_as_doctor_does(
+    pico: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whatever CMake says of it first."""
+    (tmp_path / "bin").mkdir()
+    for program in ("cmake", "ninja", "python3"):
+        found = shutil.which(program)
+        if found is None:
+            pytest.skip(f"{program} is not installed")
+        (tmp_path / "bin" / program).symlink_to(os.path.realpath(found))
+    monkeypatch.setenv("PATH", str(tmp_path / "bin"))
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    texts = {found["message"]: found["hint"] for found in run(job_of(pico)).state()["messages"]}
+    named = [text for text in texts if "Arm GNU toolchain was not found" in text]
+    assert len(named) == 1 and texts[named[0]].startswith("get it: "), texts
+
+
+def test_without_cmake_nothing_is_started(robot: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    shutil.copytree(robot, tmp_path / "new", ignore=shutil.ignore_patterns("build"))
+    monkeypatch.setenv("PATH", str(tmp_path))
+    state = run(job_of(tmp_path / "new")).state()
+    assert (state["state"], state["step"], state["lines"]) == ("failed", "", 0)
+    found = {problem["message"]: problem["hint"] for problem in state["messages"]}
+    assert found["CMake was not found"].startswith("get it: ")
+    assert {problem["id"] for problem in state["messages"]} == {"tool-missing"}
+
+
+# cancelling -----------------------------------------------------------------------------------------------------------
+
+
+def processes(folder: Path) -> list[str]:
+    """Command lines of all that runs in or for a folder."""
+    found = []
+    for entry in Path("/proc").glob("[0-9]*"):
+        try:
+            command = (entry / "cmdline").read_bytes().replace(b"\0", b" ").decode(errors="replace")
+            place = os.readlink(entry / "cwd")
+        except OSError:
+            continue
+        if command and int(entry.name) != os.getpid() and (str(folder) in command or place.startswith(str(folder))):
+            found.append(command)
+    return found
+
+
+@pytest.mark.skipif(not Path("/proc/self/cmdline").exists(), reason="this system does not list processes in /proc")
+@pytest.mark.parametrize(
+    ("generator", "step"), [("Ninja", "configure"), ("Ninja", "build"), ("Unix Makefiles", "build")]
+)
+def test_a_cancelled_build_leaves_no_process_and_goes_on_later(
+    robot: Path, tmp_path: Path, generator: str, step: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("CMAKE_GENERATOR", generator)
+    folder = tmp_path / "cancelled"
+    job = replace(job_of(robot), build_dir=folder)
+    build = Build(job, lambda: None)
+    build.start()
+    until = time.monotonic() + 60
+    while not (build.state()["step"] == step and build.lines(0) and build.state()["done"] >= (step == "build")):
+        assert time.monotonic() < until and build.state()["state"] == "running", build.lines(0)
+        time.sleep(0.01)
+    began = time.monotonic()
+    build.cancel()
+    assert time.monotonic() - began < 1, "whoever cancels does not wait"
+    assert build.wait(20)
+    assert processes(folder) == []
+    assert (build.state()["state"], build.state()["products"]) == ("cancelled", [])
+    assert build.state()["messages"] == []
+    state = run(job).state()
+    assert state["state"] == "done"
+    assert [product["path"] for product in state["products"]] == [str(folder / "jiwy_host")]
+    if generator == "Unix Makefiles":
+        assert (state["done"], state["total"]) == (100, 100), "Make counts in hundredths"
+
+
+def test_cancelling_before_the_start_and_twice(robot: Path) -> None:
+    build = Build(job_of(robot), lambda: None)
+    build.cancel()
+    build.start()
+    build.cancel()
+    assert build.wait(20) and build.state()["state"] == "cancelled"
+
+
+# how it is run --------------------------------------------------------------------------------------------------------
+
+
+def plan_of(job: Job) -> tuple[list[tuple[str, ...]], dict[str, str]]:
+    plan = make_plan(job, None, targets_roots(()))
+    return [step.command[1:] for step in plan.steps], dict(plan.environment)
+
+
+def test_the_commands_are_those_a_person_types(robot: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("CMAKE_GENERATOR", raising=False)
+    commands, _ = plan_of(job_of(robot))
+    build = str(robot / "build")
+    assert commands == [("-S", str(robot), "-B", build), ("--build", build)], "as the folder was configured"
+    write_project(ProjectRequest("robot", tmp_path / "new", "host_jiwy", MODEL), Diagnostics())
+    commands, _ = plan_of(job_of(tmp_path / "new"))
+    if shutil.which("ninja") is None:
+        pytest.skip("ninja is not installed")
+    assert commands[0] == ("--preset", "release", "-B", str(tmp_path / "new/build"), "-G", "Ninja")
+    monkeypatch.setenv("CMAKE_GENERATOR", "Unix Makefiles")
+    assert "-G" not in plan_of(job_of(tmp_path / "new"))[0][0], "who has said which, keeps it"
+
+
+def test_nothing_of_this_process_reaches_the_build(
+    robot: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in (
+        "CLICOLOR_FORCE",
+        "MAKEFLAGS",
+        "MAKELEVEL",
+        "PYTHONHOME",
+        "LC_ALL",
+        "NINJA_STATUS",
+        "EPG_DIR",
+        "EPG_PATH",
+    ):
+        monkeypatch.setenv(name, "de_DE.UTF-8" if name == "LC_ALL" else "")
+    for name in ("EPG_DIR", "EPG_PATH"):
+        monkeypatch.delenv(name)
+    monkeypatch.setenv("CLICOLOR_FORCE", "1")
+    monkeypatch.setenv("NINJA_STATUS", "[%f/%t] ")
+    _, environment = plan_of(job_of(robot))
+    assert not {"CLICOLOR_FORCE", "MAKEFLAGS", "MAKELEVEL", "PYTHONHOME", "LC_ALL", "EPG_DIR"} & set(environment)
+    assert environment["LC_MESSAGES"] == "C" and environment["LC_CTYPE"] == "de_DE.UTF-8"
+    assert environment["NINJA_STATUS"] == "[%f/%t] "
+    _, first = plan_of(replace(job_of(robot), build_dir=tmp_path / "new"))
+    assert first["EPG_DIR"] == (ROOT / "cmake").as_posix(), "a new folder takes the EPG that runs"
+    monkeypatch.setenv("EPG_PATH", "/somewhere")
+    assert "EPG_DIR" not in plan_of(replace(job_of(robot), build_dir=tmp_path / "new"))[1]
+
+
+def test_a_build_inside_a_build_is_no_part_of_it(robot: Path, tmp_path: Path) -> None:
+    """As the target <name>_connect is started by Make, with the colours somebody wants."""
+    script = tmp_path / "inside.py"
+    script.write_text(
+        f"import sys\nfrom pathlib import Path\nsys.path.insert(0, {str(ROOT)!r})\n"
+        "from tests.connect.test_build import job_of, run\n"
+        f"build = run(job_of(Path({str(robot)!r})))\n"
+        "print(build.state()['state'], sum('jobserver' in line for line in build.lines(0)))\n"
+    )
+    (tmp_path / "Makefile").write_text(f'all:\n\t+"$(PYTHON)" "{script}"\n')
+    command = ["make", "-j2", "-C", str(tmp_path), f"PYTHON={sys.executable}"]
+    if shutil.which("make") is None:
+        pytest.skip("make is not installed")
+    done = subprocess.run(
+        command, capture_output=True, text=True, env={**os.environ, "CLICOLOR_FORCE": "1"}, check=False
+    )
+    assert "done 0\n" in done.stdout, done.stdout + done.stderr
+
+
+def test_long_output_is_bounded(robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(build_module, "KEPT", 20)
+    monkeypatch.setattr(build_module, "WIDEST", 100)
+    with (robot / "CMakeLists.txt").open("a") as file:
+        file.write(
+            'foreach(i RANGE 200)\nstring(REPEAT "x" 300 long)\nmessage(STATUS "line ${i} ${long}")\nendforeach()\n'
+        )
+    lines = (build := run(job_of(robot))).lines(0)
+    assert len(lines) == build.state()["lines"] > 200, "line numbers stay what they were"
+    assert lines[:-20] == [build_module.FORGOTTEN] * (len(lines) - 20)
+    assert max(map(len, lines)) <= 100
+
+
+@pytest.mark.long
+def test_a_raspberry_pi_pico_gets_its_uf2(pico: Path) -> None:
+    skip_if_missing(arm_gcc, pico_sdk)
+    state = run(job_of(pico)).state()
+    assert state["state"] == "done" and state["messages"] == [], state["messages"]
+    assert [product["path"] for product in state["products"]] == [
+        str(pico / "build/robot_firmware.uf2"),
+        str(pico / "build/robot_firmware.elf"),
+    ]
+    assert "BOOTSEL" in state["products"][0]["what"]
+    data = (pico / "build/robot_firmware.uf2").read_bytes()
+    assert data[:4] == b"UF2\n" and len(data) % 512 == 0
