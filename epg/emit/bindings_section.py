@@ -7,7 +7,8 @@ A section may be missing, commented out by ``epg bind``, empty, or in braces; po
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import yaml
 
@@ -17,6 +18,7 @@ from epg.emit.yaml_text import scalar_text
 ORDER = ("version", "model", "inputs", "outputs", "parameters")
 """Keys of a bindings file in the order in which EPG writes them."""
 _SECTIONS = ("inputs", "outputs")
+_OPEN_PORT = re.compile(r"# (.*):    # no name matches; possible: .*")
 
 
 def open_port(name: str, candidates: Sequence[str]) -> str:
@@ -61,7 +63,7 @@ def add_port(text: str, section: str, order: Sequence[str], port: str, value: st
         return yaml_edit.insert(text, (section,), _index(present, order, port), _entry(port, value))
     if not isinstance(node, yaml.MappingNode) or not node.value:
         text = _opened(text, section, node)
-    return _place(text, section, order, port, value)
+    return _put(text, section, order, port, value)
 
 
 def _entry(port: str, value: str | list[str]) -> str:
@@ -97,30 +99,43 @@ def _opened(text: str, section: str, node: yaml.Node) -> str:
 
 def _with_section(text: str, root: yaml.Node, section: str) -> str:
     """With a section that has no ports yet: in the place of its comment, or behind the key before it."""
-    column = root.start_mark.column
-    for line in _lines(text, 0, len(text)):
-        if _is_open_section(text, line, section):
-            end = yaml_edit.line_end(text, line)
-            return f"{text[:line]}{' ' * column}{section}:{text[end:]}"
+    line = _open_section_of(text, section)
+    if line is None:
+        return _with_line(text, section, f"{section}:")
+    end = yaml_edit.line_end(text, line)
+    return f"{text[:line]}{' ' * root.start_mark.column}{section}:{text[end:]}"
+
+
+def _with_line(text: str, section: str, line: str) -> str:
+    """With a line where ``section`` should be."""
+    root = yaml_edit.node_at(text, ())
     index = _index([key.value for key, _ in root.value], ORDER, section)
-    if index == 0:
-        return yaml_edit.insert(text, (), 0, f"{section}:")
-    position = yaml_edit.end_of(text, root.value[index - 1][1])
-    # comments that belong to the key before
+    if index == 0 and not line.startswith("#"):
+        return yaml_edit.insert(text, (), 0, line)
+    last = root if yaml_edit.is_flow(root) else root.value[max(index - 1, 0)][1]
+    column = root.start_mark.column
+    position = yaml_edit.end_of(text, last)
     following = yaml_edit.next_line(text, position)
-    while following < len(text) and _belongs_above(text, following, column):
+    # comments that belong to the key before
+    while following < len(text) and (
+        _is_deeper_comment(text, following, column) or any(_is_open(text, following, name) for name in _SECTIONS)
+    ):
         position, following = following, yaml_edit.next_line(text, following)
-    return yaml_edit.insert_lines(text, position, [f"{' ' * column}{section}:"])
+    return yaml_edit.insert_lines(text, position, [" " * column + line])
 
 
-def _belongs_above(text: str, line: int, column: int) -> bool:
+def _is_deeper_comment(text: str, line: int, column: int) -> bool:
     words = text[line : yaml_edit.line_end(text, line)]
-    deeper = len(words) - len(words.lstrip(" ")) > column and words.lstrip(" ").startswith("#")
-    return deeper or any(_is_open_section(text, line, section) for section in _SECTIONS)
+    return len(words) - len(words.lstrip(" ")) > column and words.lstrip(" ").startswith("#")
 
 
-def _is_open_section(text: str, line: int, section: str) -> bool:
+def _is_open(text: str, line: int, section: str) -> bool:
     return text[line : yaml_edit.line_end(text, line)].strip() == open_section(section)
+
+
+def _open_section_of(text: str, section: str) -> int | None:
+    """Where the line begins that says the section is commented out."""
+    return next((line for line in _lines(text, 0, len(text)) if _is_open(text, line, section)), None)
 
 
 def _lines(text: str, start: int, end: int) -> list[int]:
@@ -132,33 +147,93 @@ def _lines(text: str, start: int, end: int) -> list[int]:
     return lines
 
 
-def _place(text: str, section: str, order: Sequence[str], port: str, value: str | list[str]) -> str:
-    """Puts lines into a section in block style, or one that has no value yet."""
+def add_open_port(text: str, section: str, order: Sequence[str], port: str, candidates: Sequence[str]) -> str:
+    """With the comment for a port that nobody has bound, where the port would be, if there is none yet."""
+    if yaml_edit.find(text, (section,)) is None and _open_section_of(text, section) is None:
+        text = _with_line(text, section, open_section(section))
+    place = _place_of(text, section, order)
+    if port in place.comments:
+        return text
+    return _inserted(text, place, order, port, [" " * place.column + open_port(port, candidates)])
+
+
+def comment_out_port(text: str, section: str, port: str, remark: str) -> str:
+    """With ``port`` as a comment that ends with ``remark``."""
+    parent = yaml_edit.node_at(text, (section,))
+    key, value = next((key, value) for key, value in parent.value if key.value == port)
+    start, end = yaml_edit.start_of(key), yaml_edit.end_of(text, value)
+    if yaml_edit.is_flow(parent):
+        written = re.split(r"\s*[\r\n]\s*", text[start:end])
+        text = yaml_edit.remove(text, (section, port))
+        place = _place_of(text, section, ())
+        comment = [f"{' ' * place.column}# {words}" for words in written]
+        return yaml_edit.insert_lines(text, place.head, [f"{comment[0]}   # {remark}", *comment[1:]])
+    first = yaml_edit.line_start(text, start)
+    depth = start - first
+    lines = _lines(text, first, end)
+    for line in reversed(lines):
+        stop = yaml_edit.line_end(text, line)
+        words = text[line:stop]
+        blanks = min(len(words) - len(words.lstrip()), depth)
+        words = f"{words[:blanks]}# {words[blanks:]}" + (f"   # {remark}" if line == first else "")
+        text = text[:line] + words + text[stop:]
+    return text if len(parent.value) > 1 else yaml_edit.replace(text, (section,), "{}")
+
+
+@dataclass(frozen=True)
+class _Place:
+    """A section in block style, or one that has no value or is a comment: where its parts begin and end.
+
+    ``head`` is behind all of which the first port must be below, ``column`` is that of the ports.
+    """
+
+    head: int
+    ports: Mapping[str, int]  # where their values end
+    comments: Mapping[str, int]  # those of open ports, where their lines begin
+    column: int
+
+
+def _place_of(text: str, section: str, order: Sequence[str]) -> _Place:
+    root = yaml_edit.node_at(text, ())
+    node = yaml_edit.find(text, (section,))
+    if node is None:
+        line = _open_section_of(text, section)
+        assert line is not None
+        comments = _comments(text, section, order, line, [])
+        return _Place(line, {}, comments, _column(text, section, list(comments.values())))
     colon = yaml_edit.colon_of(text, (section,))
-    node = yaml_edit.node_at(text, (section,))
-    entries = node.value if isinstance(node, yaml.MappingNode) else []
-    spans = {key.value: (yaml_edit.start_of(key), yaml_edit.end_of(text, child)) for key, child in entries}
-    comments = _comments(text, section, order, list(spans.values()))
-    column = _column(text, section, [start for start, _ in spans.values()], list(comments.values()))
-    lines = [f"{' ' * column}{scalar_text(port)}:" + (f" {value}" if isinstance(value, str) else "")]
-    lines += [" " * column + line for line in value] if isinstance(value, list) else []
-    if port in comments:
-        # the comment's line end is the new line's
-        start = comments[port]
-        text = yaml_edit.insert_lines(text, start, lines)
-        return yaml_edit.remove_lines(text, start, start)
-    places = comments | {name: end for name, (_, end) in spans.items()}
+    entries = node.value if isinstance(node, yaml.MappingNode) and not yaml_edit.is_flow(node) else []
+    spans = [(yaml_edit.start_of(key), yaml_edit.end_of(text, child)) for key, child in entries]
+    head = colon if entries else max(colon, yaml_edit.end_of(text, root if yaml_edit.is_flow(root) else node))
+    comments = _comments(text, section, order, head, spans)
+    column = yaml_edit.column_of(text, spans[0][0]) if spans else _column(text, section, list(comments.values()))
+    return _Place(head, {key.value: end for (key, _), (_, end) in zip(entries, spans)}, comments, column)
+
+
+def _put(text: str, section: str, order: Sequence[str], port: str, value: str | list[str]) -> str:
+    """Puts a port into a section in block style, or one that has no value yet."""
+    place = _place_of(text, section, order)
+    blanks = " " * place.column
+    lines = [f"{blanks}{scalar_text(port)}:" + (f" {value}" if isinstance(value, str) else "")]
+    lines += [blanks + line for line in value] if isinstance(value, list) else []
+    if port in place.comments:
+        start = place.comments[port]
+        return yaml_edit.remove_lines(yaml_edit.insert_lines(text, start, lines), start, start)
+    return _inserted(text, place, order, port, lines)
+
+
+def _inserted(text: str, place: _Place, order: Sequence[str], port: str, lines: Sequence[str]) -> str:
+    """Lines below those of the nearest port before ``port``, or below the section's name."""
+    known = {**place.comments, **place.ports}
     for name in reversed(order[: order.index(port)]):
-        if name in places:
-            return yaml_edit.insert_lines(text, places[name], lines)
-    position = max(colon, yaml_edit.start_of(node) if not entries else colon)
-    if not places:
+        if name in known:
+            return yaml_edit.insert_lines(text, known[name], lines)
+    position = place.head
+    if not known:
         # comments below an empty section were above a port that was taken out
-        base = _base_column(text)
+        column = _base_column(text)
         following = yaml_edit.next_line(text, position)
-        while following < len(text) and _belongs_above(text, following, base):
-            if any(_is_open_section(text, following, other) for other in _SECTIONS):
-                break
+        while following < len(text) and _is_deeper_comment(text, following, column):
             position, following = following, yaml_edit.next_line(text, following)
     return yaml_edit.insert_lines(text, position, lines)
 
@@ -167,12 +242,11 @@ def _base_column(text: str) -> int:
     return int(yaml_edit.node_at(text, ()).start_mark.column)
 
 
-def _column(text: str, section: str, entries: list[int], comments: list[int]) -> int:
-    """How far ports are indented: as the others are, or as their comments, or as in the other section, or by two."""
+def _column(text: str, section: str, comments: Sequence[int]) -> int:
+    """How far the first port is indented: as the comments for ports are, or as in the other section, or by two."""
     base = _base_column(text)
-    if entries:
-        return yaml_edit.column_of(text, entries[0])
-    depths = [len(re.match(r" *", text[line:])[0]) for line in comments]  # type: ignore[index]
+    lines = (text[line : yaml_edit.line_end(text, line)] for line in comments)
+    depths = [len(line) - len(line.lstrip(" ")) for line in lines]
     for other in _SECTIONS:
         node = yaml_edit.find(text, (other,))
         if other != section and isinstance(node, yaml.MappingNode) and node.value and not node.flow_style:
@@ -180,19 +254,20 @@ def _column(text: str, section: str, entries: list[int], comments: list[int]) ->
     return next((depth for depth in depths if depth > base), base + 2)
 
 
-def _comments(text: str, section: str, order: Sequence[str], taken: Sequence[yaml_edit.Item]) -> dict[str, int]:
+def _comments(
+    text: str, section: str, order: Sequence[str], head: int, taken: Sequence[yaml_edit.Item]
+) -> dict[str, int]:
     """Where the comments for open ports are, which stand below the section's name and above the next key."""
     root = yaml_edit.node_at(text, ())
-    colon = yaml_edit.colon_of(text, (section,))
-    end = min((yaml_edit.start_of(key) for key, _ in root.value if yaml_edit.start_of(key) > colon), default=len(text))
+    keys = [yaml_edit.line_start(text, yaml_edit.start_of(key)) for key, _ in root.value]
+    end = min((key for key in keys if key > head), default=len(text))
+    names = {scalar_text(name): name for name in order}
     found: dict[str, int] = {}
-    for line in _lines(text, yaml_edit.next_line(text, colon), yaml_edit.line_start(text, end)):
-        if any(_is_open_section(text, line, other) for other in _SECTIONS):
-            break
+    for line in _lines(text, yaml_edit.next_line(text, head), end):
         words = text[line : yaml_edit.line_end(text, line)].strip()
-        if not words.startswith("#") or any(start <= line < stop for start, stop in taken):
-            continue
-        for name in order:
-            if words.startswith(open_port(name, ())[: -len("nothing")].rstrip()):
-                found.setdefault(name, line)
+        if any(words == open_section(other) for other in _SECTIONS):
+            break
+        comment = _OPEN_PORT.fullmatch(words)
+        if comment and comment[1] in names and not any(start <= line < stop for start, stop in taken):
+            found.setdefault(names[comment[1]], line)
     return found

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from functools import lru_cache
+from typing import Any
 
 import yaml
 
@@ -27,8 +29,14 @@ class CannotEdit(Exception):
 
 def compose(text: str) -> yaml.Node:
     """The nodes of ``text``, which :func:`epg.load.yaml_file.parse_yaml` has accepted."""
+    return _compose(text, yaml_file.LOADER)
+
+
+@lru_cache(maxsize=4)
+def _compose(text: str, loader: Any) -> yaml.Node:
+    # one edit asks for the same text several times
     try:
-        root = yaml.compose(text, Loader=yaml_file.LOADER)
+        root = yaml.compose(text, Loader=loader)
     except (yaml.YAMLError, RecursionError) as error:
         raise CannotEdit(f"YAML: {str(error).splitlines()[0]}") from None
     if root is None:

@@ -279,16 +279,16 @@ model: Controller   # mine
 inputs:
   # the load
   angle: encoder   # rad
+  # go:    # no name matches; possible: button, encoder, target
   # old:   # no longer a port of the model
   #   from: button
   #   scale: 2
   setpoint: target
-  # go:    # no name matches; possible: button, encoder, target
 outputs:
-  log: position
-  # gone: motor   # no longer a port of the model
   duty: motor
+  log: position
   reset: encoder.reset
+  # gone: motor   # no longer a port of the model
 """,
     ),
     "flow": (
@@ -303,12 +303,50 @@ outputs: {log: [position], gone: {to: motor, scale: 2}}
 version: 1
 model: Controller
 inputs: {angle: encoder, go: button, setpoint: target}
-outputs:
-  log: [position]
+outputs: {duty: motor, log: [position], reset: encoder.reset}
   # gone: {to: motor, scale: 2}   # no longer a port of the model
-  duty: motor
-  reset: encoder.reset
 # the end
+""",
+    ),
+    "sections without ports": (
+        """\
+version: 1
+model: Controller
+# outputs:    # remove this '#' with the first below it
+    # duty:    # no name matches; possible: encoder.reset
+    # log:    # no name matches; possible: encoder.reset
+inputs:
+    gone: motor
+parameters: {}""",
+        """\
+version: 1
+model: Controller
+outputs:
+    duty: motor
+    # log:    # no name matches; possible: encoder.reset
+    reset: encoder.reset
+inputs: {}
+    # gone: motor   # no longer a port of the model
+    # angle:    # no name matches; possible: button, encoder, target
+    # go:    # no name matches; possible: button, encoder, target
+    # setpoint:    # no name matches; possible: button, encoder, target
+parameters: {}""",
+    ),
+    "a section that is missing": (
+        """\
+version: 1
+model: Controller
+outputs: {log: position, gone: motor}
+""",
+        """\
+version: 1
+model: Controller
+# inputs:    # remove this '#' with the first below it
+  # angle:    # no name matches; possible: button, encoder, target
+  # go:    # no name matches; possible: button, encoder, target
+  # setpoint:    # no name matches; possible: button, encoder, target
+outputs: {duty: motor, log: position, reset: encoder.reset}
+  # gone: motor   # no longer a port of the model
 """,
     ),
 }
@@ -326,6 +364,14 @@ def test_bind_update_keeps_everything_else(robot: Path, style: str, capsys: pyte
     assert "removed: gone\n" in text
     assert main(arguments) == 0
     assert (robot / "bindings.yaml").read_text() == after, "a second update changes nothing"
+
+
+def test_bind_update_does_not_touch_a_file_with_a_mistake(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = "version: 1\nmodel: Controller\ninputs: [angle]\n"
+    (robot / "bindings.yaml").write_text(text)
+    assert main(["bind", "model", "robot.tcf", "-o", "bindings.yaml", "--update"]) == 1
+    assert "bindings.yaml:3:9: error: expected a map" in capsys.readouterr().err
+    assert (robot / "bindings.yaml").read_text() == text
 
 
 def test_bind_update_on_a_complete_file(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from epg.diagnostics import Diagnostics
 from epg.emit.bindings_edit import CannotEdit, End, ends_of, set_ends
 from epg.emit.bindings_ends import data_of
+from epg.emit.yaml_text import scalar_text
 from epg.load.yaml_file import parse_yaml
 from epg.source import Node
 from tests.emit.bindings_texts import PORTS, Text, bindings_texts, ends
@@ -83,6 +84,9 @@ def test_what_is_wanted_is_said_and_comments_stay(
     for key in ("version", "model", "parameters"):
         old, new = _root(before).get(key), root.get(key)
         assert (old and old.plain()) == (new and new.plain())
+    for _, port, said in told:
+        if said is not None and port in file.open:
+            assert f"# {scalar_text(port)}:    # no name matches" not in text
     # in braces, a comment is on the line of a port, but the text of the file does not say of which
     may_go = _own_comments(file, edited | (file.in_braces & {section for section, _, _ in told}))
     kept = [comment for comment in _comments(text) if comment not in may_go]
