@@ -69,7 +69,8 @@ _DRIVER = re.compile(r"(?:\S*[\\/])?[\w.+-]+: (?:fatal )?error: (?P<text>.*)")  
 _CAUSED = re.compile(
     r"was not generated; the messages above say why|subcommand failed|failed with return code|Child return code"
     r"|execute_process failed|ld returned \d+ exit status|linker command failed|Error \d+$|command exited with status"
-    r"|Terminated$|^Aborting due to|^CMAKE_\w+ not set, after EnableLanguage|^could not load cache|multiple errors|is missing\.$"
+    r"|Terminated$"
+    r"|^Aborting due to|^CMAKE_\w+ not set, after EnableLanguage"
 )
 """What is said because of something else."""
 _NOISE = re.compile(
@@ -104,6 +105,8 @@ class Messages:
         self._more = None
         if starts_cmake_message(line):
             self._start_cmake(line)
+        elif line.startswith("Traceback (most recent call last):"):
+            self._more = self._traceback
         elif not self._simple(line):
             self._kconfig(line)
 
@@ -213,9 +216,17 @@ class Messages:
 
         self._more = more
 
+    def _traceback(self, line: str) -> bool:
+        """A script in Python has failed: what it says in the end is the message."""
+        if not line.strip() or line.startswith((" ", "Traceback ", "During handling ", "The above exception ")):
+            return True
+        self._add(Message("error", line))
+        return False
+
     def _take_for_errors(self) -> None:
-        """Kconfig gives up because of what it has only warned of."""
-        for key in self._perhaps:
+        """Kconfig gives up because of what it has only warned of: above all what it has a place for."""
+        placed = [key for key in self._perhaps if key[1]]
+        for key in placed or self._perhaps:
             if key in self._found:
                 self._found[key] = replace(self._found[key], severity="error")
 
