@@ -55,7 +55,9 @@ _MICROSOFT = re.compile(
     r"(?P<id>[A-Z]+\d+): (?P<text>.*)"
 )
 _REFERENCE = re.compile(
-    r"(?:\S*\bld(?:\.\w+)?(?:\.exe)?: )?" + _FILE + r":(?:(?P<line>\d+)|\([^)]*\)): "
+    r"(?:\S*\bld(?:\.\w+)?(?:\.exe)?: )?(?:(?:[A-Za-z]:)?[^:\n]+\.o(?:bj)?:)?"
+    + _FILE
+    + r":(?:(?P<line>\d+)|\([^)]*\)): "
     r"(?P<text>(?:undefined reference to|multiple definition of|relocation truncated) .*)"
 )
 _LINKER = re.compile(r"(?:\S*[\\/])?(?:[\w.]+-)*ld(?:\.\w+)?(?:\.exe)?: (?:(?P<severity>error|warning): )?(?P<text>.*)")
@@ -69,8 +71,7 @@ _DRIVER = re.compile(r"(?:\S*[\\/])?[\w.+-]+: (?:fatal )?error: (?P<text>.*)")  
 _CAUSED = re.compile(
     r"was not generated; the messages above say why|subcommand failed|failed with return code|Child return code"
     r"|execute_process failed|ld returned \d+ exit status|linker command failed|Error \d+$|command exited with status"
-    r"|Terminated$"
-    r"|^Aborting due to|^CMAKE_\w+ not set, after EnableLanguage"
+    r"|Terminated$|^Aborting due to|^CMAKE_\w+ not set, after EnableLanguage"
 )
 """What is said because of something else."""
 _NOISE = re.compile(
