@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import takewhile
 
 import yaml
 
@@ -200,13 +201,13 @@ def _place_of(text: str, section: str, order: Sequence[str]) -> _Place:
         line = _open_section_of(text, section)
         assert line is not None
         comments = _comments(text, section, order, line, [])
-        return _Place(line, {}, comments, _column(text, section, list(comments.values())))
+        return _Place(line, {}, comments, _column(text, section, line))
     colon = yaml_edit.colon_of(text, (section,))
     entries = node.value if isinstance(node, yaml.MappingNode) and not yaml_edit.is_flow(node) else []
     spans = [(yaml_edit.start_of(key), yaml_edit.end_of(text, child)) for key, child in entries]
     head = colon if entries else max(colon, yaml_edit.end_of(text, root if yaml_edit.is_flow(root) else node))
     comments = _comments(text, section, order, head, spans)
-    column = yaml_edit.column_of(text, spans[0][0]) if spans else _column(text, section, list(comments.values()))
+    column = yaml_edit.column_of(text, spans[0][0]) if spans else _column(text, section, head)
     return _Place(head, {key.value: end for (key, _), (_, end) in zip(entries, spans)}, comments, column)
 
 
@@ -228,24 +229,26 @@ def _inserted(text: str, place: _Place, order: Sequence[str], port: str, lines: 
     for name in reversed(order[: order.index(port)]):
         if name in known:
             return yaml_edit.insert_lines(text, known[name], lines)
-    position = place.head
-    if not known:
-        # comments below an empty section were above a port that was taken out
-        column = _base_column(text)
-        following = yaml_edit.next_line(text, position)
-        while following < len(text) and _is_deeper_comment(text, following, column):
-            position, following = following, yaml_edit.next_line(text, following)
-    return yaml_edit.insert_lines(text, position, lines)
+    # comments below an empty section were above a port that was taken out
+    below = [] if known else _comments_below(text, place.head)
+    return yaml_edit.insert_lines(text, below[-1] if below else place.head, lines)
+
+
+def _comments_below(text: str, head: int) -> list[int]:
+    """The lines of comments that belong to a section by their indentation, up to the first other line."""
+    base = _base_column(text)
+    lines = _lines(text, yaml_edit.next_line(text, head), len(text))
+    return list(takewhile(lambda line: _is_deeper_comment(text, line, base), lines))
 
 
 def _base_column(text: str) -> int:
     return int(yaml_edit.node_at(text, ()).start_mark.column)
 
 
-def _column(text: str, section: str, comments: Sequence[int]) -> int:
-    """How far the first port is indented: as the comments for ports are, or as in the other section, or by two."""
+def _column(text: str, section: str, head: int) -> int:
+    """How far the first port is indented: as comments below the section are, or as in the other one, or by two."""
     base = _base_column(text)
-    lines = (text[line : yaml_edit.line_end(text, line)] for line in comments)
+    lines = (text[line : yaml_edit.line_end(text, line)] for line in _comments_below(text, head))
     depths = [len(line) - len(line.lstrip(" ")) for line in lines]
     for other in _SECTIONS:
         node = yaml_edit.find(text, (other,))
