@@ -33,13 +33,14 @@ def build_folders(source: Path) -> list[BuildFolder]:
     """All that may be meant for the project in ``source``, the likeliest first; the usual one is always the last."""
     presets = list(_presets(source))
     places = [source / USUAL, *_below(source / USUAL), *(preset.path for preset in presets), *_below(source)]
+    places += _below(source.parent / USUAL)  # sysbuild's, of the application around an image
     found: dict[Path, BuildFolder] = {}
     names = {preset.path: preset.preset for preset in presets}
     for place in places:
         if place not in found and (variables := _variables(place, source)) is not None:
             above = place.parent
-            is_image = _same(_cache(above / CACHE).get("APP_DIR", ""), source)
-            found[place] = BuildFolder(above if is_image else place, variables, names.get(place, ""))
+            of_sysbuild = "APP_DIR" in _cache(above / CACHE)
+            found[place] = BuildFolder(above if of_sysbuild else place, variables, names.get(place, ""))
     return [*found.values(), *(preset for preset in presets if preset.path not in found), BuildFolder(source / USUAL)]
 
 

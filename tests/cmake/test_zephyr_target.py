@@ -214,3 +214,20 @@ def test_more_of_what_is_needed_is_no_difference(project: Project) -> None:
 def test_every_difference_is_reported_at_once(project: Project) -> None:
     output = project.fails_to_configure(*FINE, "-DCONFIG=EPG=y", "-DNODES=pwm", "-DFAKE_/pwm_divider-int-1=9")
     assert len(re.findall(r"^ +(?:CONFIG_\w+ is|the devicetree)", output, re.MULTILINE)) == 6
+
+
+@pytest.mark.parametrize(
+    ("given", "built_by", "above"),
+    [
+        ((), "cmake", ""),
+        (("WEST_PYTHON",), "west", ".."),
+    ],
+)
+def test_the_target_that_connects_says_how_zephyr_is_built(
+    project: Project, given: tuple[str, ...], built_by: str, above: str
+) -> None:
+    """By west if west configures; an image of sysbuild in the folder around its own."""
+    project.configure(*FINE, *(f"-D{name}={sys.executable}" for name in given), *(["-DSYSBUILD=ON"] if above else []))
+    rules = (project.build_folder / "build.ninja").read_text()
+    (said,) = re.findall(r"__main__\.py connect --name robot .*--build-dir (\S+) --built-by (\w+)", rules)
+    assert said == (str((project.build_folder / above).resolve()), built_by)

@@ -104,6 +104,10 @@ def test_an_image_of_sysbuild_is_built_with_the_others(tmp_path: Path) -> None:
     configured(tmp_path / "pan" / "build" / "pan", app, BOARD="rpi_pico")
     ((job,), _) = found(app)
     assert (job.build_dir, job.board, job.built_by) == (app / "build", "rpi_pico", "west")
+    tilt = project(app / "tilt", f"{CALL}find_package(Zephyr REQUIRED)\nproject(tilt)\n")
+    configured(app / "build" / "tilt", tilt, BOARD="nucleo_h743zi")
+    ((job,), _) = found(tilt)
+    assert (job.build_dir, job.board) == (app / "build", "nucleo_h743zi")
 
 
 def test_ping_pong_on_a_board(examples: Path, tmp_path: Path) -> None:

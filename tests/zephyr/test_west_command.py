@@ -4,8 +4,14 @@ from __future__ import annotations
 
 import json
 import os
+import pty
+import re
+import select
+import shutil
 import subprocess
 import sys
+import time
+import urllib.request
 from pathlib import Path
 
 import pytest
@@ -100,3 +106,66 @@ def test_packages_that_the_python_of_west_lacks_are_asked_for(folder: Path, tmp_
     said = west(folder, "epg", "targets", EPG_CACHE=str(tmp_path), EPG_NO_INSTALL="1")
     assert said.returncode == (0 if complete else 4)
     assert complete or f"for {here.python}: installing them is turned off" in said.stderr
+
+
+class Terminal:
+    """`west epg connect` as somebody sees it who types."""
+
+    def __init__(self, folder: Path, *words: str) -> None:
+        here = workspace()
+        hidden = ("ZEPHYR_BASE", "DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
+        environment = {name: value for name, value in here.environment().items() if name not in hidden}
+        self.process, self.screen = pty.fork()
+        if self.process == 0:
+            os.chdir(folder)
+            os.execve(here.python, [str(here.python), "-m", "west", "epg", "connect", *words], environment)
+        self.text = ""
+
+    def read_until(self, pattern: str, seconds: float = 60) -> re.Match[str]:
+        end = time.monotonic() + seconds
+        while not (match := re.search(pattern, self.text)):
+            assert time.monotonic() < end, self.text
+            if select.select([self.screen], [], [], 0.2)[0]:
+                self.text += os.read(self.screen, 4096).decode(errors="replace")
+        return match
+
+    def type(self, text: str) -> None:
+        os.write(self.screen, text.encode())
+
+    def wait(self) -> int:
+        """The exit status; what is written until then is read."""
+        try:
+            while data := os.read(self.screen, 4096):
+                self.text += data.decode(errors="replace")
+        except OSError:  # Linux, when nobody has the terminal open any more
+            pass
+        os.close(self.screen)
+        return os.waitstatus_to_exitcode(os.waitpid(self.process, 0)[1])
+
+
+@pytest.fixture
+def application(folder: Path) -> Path:
+    there = folder / "application"
+    if not there.exists():
+        ignored = shutil.ignore_patterns("build*")
+        shutil.copytree(ROOT / "examples" / "existing_zephyr_application", there, ignore=ignored)
+    return there
+
+
+def test_connect_knows_the_application_it_is_called_in(application: Path) -> None:
+    """And Ctrl-C, which reaches west and EPG alike, ends both."""
+    terminal = Terminal(application)
+    address = terminal.read_until(r"http://127\.0\.0\.1:\d+/\S+/")[0]
+    with urllib.request.urlopen(f"{address}api/state", timeout=30) as answer:
+        project = json.load(answer)["project"]
+    assert (project["name"], project["folder"]) == ("turntable", str(application))
+    terminal.type("\x03")
+    assert terminal.wait() in (0, 130)
+    assert "Traceback" not in terminal.text
+
+
+def test_connect_asks_in_the_terminal_of_west(application: Path) -> None:
+    terminal = Terminal(application, "--terminal")
+    terminal.read_until("q to leave")
+    terminal.type("q\n")
+    assert terminal.wait() == 0
