@@ -164,7 +164,7 @@ class Project:
         now = self.target
         if now is not None and (now.platform.name, now.board.name) != _hardware_of(choice.target):
             return (
-                f"this project's CMakeLists.txt is written for {now.board.summary} with {now.platform.name}: "
+                f"this project is for {now.board.summary} with {now.platform.name}: "
                 f"'epg new DIR --target {choice.name} --model FOLDER' starts one for this"
             )
         return choice.problem

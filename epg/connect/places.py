@@ -47,7 +47,11 @@ class Places:
         section, _, name = diagnostic.about.partition(".")
         if section in _SECTIONS and span.file == self._bindings:
             return name
-        return self._declared.get(span) or _name(self._ports, span)
+        return self._declared.get(span) or self.port_at(span)
+
+    def port_at(self, span: Span) -> str | None:
+        """The port whose lines in the bindings a place is in."""
+        return _name(self._ports, span)
 
     def component(self, diagnostic: Diagnostic) -> str | None:
         """The component whose lines a message points to."""

@@ -124,6 +124,11 @@ class _Handler(BaseHTTPRequestHandler):
     def do_POST(self) -> None:
         self._answer(self._post)
 
+    def send_error(self, code: int, message: str | None = None, explain: str | None = None) -> None:
+        """What is no request this server knows: methods other than GET and POST, lines that are no HTTP."""
+        self.close_connection = True
+        self._send(404 if code == 501 else code, "application/json", b"{}")
+
     def log_message(self, format: str, *arguments: object) -> None:
         """Says nothing: the terminal is for the user."""
 

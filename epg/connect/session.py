@@ -27,6 +27,7 @@ from epg.connect.projects import Job
 from epg.connect.source import excerpt
 from epg.connect.start import Start
 from epg.emit.bindings_edit import CannotEdit, End
+from epg.source import Span
 
 if TYPE_CHECKING:
     from epg.connect.build import Build
@@ -81,7 +82,7 @@ class Session:
         self._unlocked: dict[str, Callable[[Body], None]] = {
             "create": self._create,
             "generate": self._generate,
-            "cancel": lambda body: self.close(),
+            "cancel": lambda body: self._cancel(),
         }
         self._shown: State = {}
         self._publish()
@@ -90,8 +91,8 @@ class Session:
     def state(self) -> State:
         """The state at this moment."""
         with self._changed:
-            build = self._build.state() if self._build is not None else NO_BUILD
-            return {"version": self._version, "epg": epg.__version__, **self._shown, "build": build}
+            shown = {"version": self._version, "epg": epg.__version__, **self._shown}
+            return shown | {"build": self._build_state()}
 
     def wait(self, after: int, timeout: float) -> State:
         """The state as soon as its version is another than ``after``, or after ``timeout`` seconds."""
@@ -148,10 +149,10 @@ class Session:
         return excerpt(self.state(), folder, editor.draft.drafts() if editor is not None else {}, file, line)
 
     def close(self) -> None:
-        """Ends a build that still runs."""
-        build = self._build
-        if build is not None:
-            build.cancel()
+        """Ends a build that still runs, with all that it has started."""
+        self._cancel()
+        if self._build is not None:
+            self._build.wait(10)
 
     # what people do to the files
 
@@ -226,6 +227,22 @@ class Session:
             self._build = build = Build(editor.job, self._bump)
         build.start()
         self._bump()
+
+    def _cancel(self) -> None:
+        build = self._build
+        if build is not None:
+            build.cancel()
+
+    def _build_state(self) -> State:
+        """The build, with the ports that its messages about the bindings are about."""
+        if self._build is None:
+            return NO_BUILD
+        state = self._build.state()
+        if self._editor is not None:
+            for message in state["messages"]:
+                span = Span(message["file"], message["line"], message["column"])
+                message["port"] = self._editor.loaded.places.port_at(span)
+        return state
 
     def _is_building(self) -> bool:
         return self._build is not None and self._build.state()["state"] == "running"

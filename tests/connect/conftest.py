@@ -1,0 +1,40 @@
+"""Projects to connect, each test with a copy of its own."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from epg.diagnostics import Diagnostics
+from epg.new_project import ProjectRequest, write_project
+from tests.connect.page import Page, serving, session_of
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+
+
+@pytest.fixture(scope="session")
+def new_project(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What ``epg new`` writes for JIWY on a Raspberry Pi Pico."""
+    folder = tmp_path_factory.mktemp("new") / "robot"
+    request = ProjectRequest("robot", folder, "rpi_pico_bare_metal_jiwy", ROOT / "examples/jiwy/model")
+    write_project(request, Diagnostics())
+    return folder
+
+
+@pytest.fixture
+def project(new_project: Path, tmp_path: Path) -> Path:
+    return Path(shutil.copytree(new_project, tmp_path / "a robot"))
+
+
+@pytest.fixture
+def bindings(project: Path) -> Path:
+    return project / "robot.bindings.yaml"
+
+
+@pytest.fixture
+def page(project: Path) -> Iterator[Page]:
+    with serving(session_of(project)) as opened:
+        yield opened

@@ -1,0 +1,92 @@
+"""What the page of ``epg connect`` does, without a browser: requests to a server that runs."""
+
+from __future__ import annotations
+
+import http.client
+import json
+import threading
+import time
+import urllib.error
+import urllib.request
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from epg.connect.projects import find_jobs
+from epg.connect.server import Server
+from epg.connect.session import Session
+from epg.diagnostics import Diagnostics
+
+
+class Denied(Exception):
+    """An answer that is an error."""
+
+    def __init__(self, status: int, error: dict[str, str]) -> None:
+        super().__init__(f"{status} {error}")
+        self.status, self.message, self.hint = status, error["message"], error["hint"]
+
+
+class Page:
+    """One page that is open at ``address``."""
+
+    def __init__(self, address: str) -> None:
+        self.address = address
+
+    def get(self, path: str) -> tuple[bytes, http.client.HTTPMessage]:
+        try:
+            with urllib.request.urlopen(self.address + path, timeout=60) as answer:
+                return answer.read(), answer.headers
+        except urllib.error.HTTPError as problem:
+            raise Denied(problem.code, json.loads(problem.read())["error"]) from None
+
+    def json(self, path: str) -> Any:
+        return json.loads(self.get(path)[0])
+
+    def state(self, after: int = 0) -> dict[str, Any]:
+        return self.json(f"api/state?after={after}")
+
+    def until(self, wanted: Any) -> dict[str, Any]:
+        """The first state of which ``wanted`` is true; as the page does it, by asking for the next one."""
+        state = self.state()
+        end = time.monotonic() + 15
+        while not wanted(state):
+            assert time.monotonic() < end, "the state never came"
+            state = self.state(state["version"])
+        return state
+
+    def post(self, action: str, **body: object) -> dict[str, Any]:
+        return self.send(action, json.dumps(body).encode(), {"Content-Type": "application/json"})
+
+    def send(self, action: str, data: bytes, headers: dict[str, str]) -> dict[str, Any]:
+        request = urllib.request.Request(f"{self.address}api/{action}", data, headers, method="POST")
+        try:
+            with urllib.request.urlopen(request, timeout=60) as answer:
+                return json.loads(answer.read())
+        except urllib.error.HTTPError as problem:
+            raise Denied(problem.code, json.loads(problem.read())["error"]) from None
+
+    def connect(self, port: str, *references: str, **conversion: object) -> dict[str, Any]:
+        return self.post("connect", port=port, ends=[{"reference": name, **conversion} for name in references])
+
+
+@contextmanager
+def serving(session: Session) -> Iterator[Page]:
+    """A page of ``session``, on a server of its own."""
+    server = Server(session)
+    thread = threading.Thread(target=server.run)
+    thread.start()
+    try:
+        yield Page(server.address)
+    finally:
+        session.ended.set()
+        thread.join(20)
+        assert not thread.is_alive()
+
+
+def session_of(folder: Path) -> Session:
+    """A session on the project in ``folder``."""
+    diagnostics = Diagnostics()
+    jobs = find_jobs(folder, diagnostics)
+    assert jobs and not diagnostics.has_errors, list(diagnostics)
+    return Session(jobs)
