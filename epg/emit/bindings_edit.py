@@ -99,6 +99,10 @@ def _section_of(root: Node, file: str, model: Model, port: str, ends: Sequence[E
 
 
 def _refuse(ends: Sequence[End], file: str, section: str, port: str) -> None:
+    texts = [text for end in ends for text in (end.reference, end.scale, end.offset, *(end.limits or ()), end.unit)]
+    if any("\ud800" <= character <= "\udfff" for character in "".join((port, *texts))):
+        # half a character beyond U+FFFF: PyYAML's own parser takes what libyaml refuses
+        raise CannotEdit(f"{file}: what '{section}' would say of a port is no text")
     if section == "inputs" and len(ends) != 1:
         raise CannotEdit(f"{file}: input '{port}' takes its value from one component, not from {len(ends) or 'none'}")
     if section == "outputs" and any(end.reference == UNCONNECTED for end in ends):

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+import yaml
 from hypothesis import strategies as st
 
 from epg.emit.bindings_edit import End
@@ -17,6 +18,8 @@ PORTS = {
     "inputs": ("angle", "Pan\\PID.u", "on", "x y", "set: point"),
     "outputs": ("duty", "log", "it's", "größe", "{}"),
 }
+TAB = ["\t"] if yaml.__with_libyaml__ else []
+"""What a comment may follow, but not for PyYAML's own parser."""
 KEY = {"inputs": "from", "outputs": "to"}
 
 references = st.sampled_from(["encoder", "motor", "motor.duty", "joint_states.pan.position", "lamp", "a"])
@@ -71,7 +74,7 @@ class Writer:
         if not self.chance(4):
             return ""
         self.comments += 1
-        return self.draw(st.sampled_from([" ", "   ", "\t"])) + f"#{self.comments}: {{not}} [a] 'value',"
+        return self.draw(st.sampled_from([" ", "   ", *TAB])) + f"#{self.comments}: {{not}} [a] 'value',"
 
     def between(self, indent: int, owner: str = "") -> None:
         """Lines of their own that say nothing."""
