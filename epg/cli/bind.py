@@ -24,6 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from epg.emit.bindings import new_bindings, updated_bindings
+    from epg.emit.yaml_edit import CannotEdit
     from epg.load.models import load_model
     from epg.load.text_file import read_text
     from epg.project import Request, load_configuration, make_catalog
@@ -43,7 +44,12 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         text = read_text(options.output, diagnostics)
         diagnostics.stop_if_errors()
         assert text is not None
-        change = updated_bindings(text, str(options.output), model, matches, diagnostics)
+        try:
+            change = updated_bindings(text, str(options.output), model, matches, diagnostics)
+        except CannotEdit as problem:
+            sys.stderr.write(f"epg bind: {options.output} stays as it is: {problem}\n")
+            sys.stderr.write("  write one 'port: component' on each line\n")
+            return 1
         diagnostics.stop_if_errors()
         assert change is not None
         if change.text != text:

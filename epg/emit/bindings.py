@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from epg.check.schema import load_schema, validate
 from epg.diagnostics import Diagnostics
 from epg.emit.bindings_section import add_open_port, add_port, comment_out_port, open_port, open_section
+from epg.emit.yaml_edit import CannotEdit
 from epg.emit.yaml_text import scalar_text
 from epg.load.models.model import Model
 from epg.load.yaml_file import parse_yaml
@@ -38,13 +39,18 @@ def new_bindings(model: Model, matches: Mapping[str, Match]) -> str:
 def updated_bindings(
     text: str, file: str, model: Model, matches: Mapping[str, Match], diagnostics: Diagnostics
 ) -> Change | None:
-    """``text`` with lines for new ports and with removed ports commented out; None after reporting a mistake in it."""
+    """``text`` with lines for new ports and with removed ports commented out; None after reporting a mistake in it.
+
+    Raises :class:`~epg.emit.yaml_edit.CannotEdit` for a text that is written as EPG does not understand.
+    """
     root = parse_yaml(text, file, diagnostics)
     if root is None or not validate(root, load_schema("bindings"), diagnostics):
         return None
     added: list[str] = []
     removed: list[str] = []
     left: list[str] = []
+    wanted = root.plain()
+    before = text
     for section, ports in (("inputs", model.inputs), ("outputs", model.outputs)):
         names = [port.name for port in ports]
         written = [key for key, _ in root[section].items()] if section in root else []
@@ -52,14 +58,22 @@ def updated_bindings(
             if name not in names:
                 text = comment_out_port(text, section, name, "no longer a port of the model")
                 removed.append(name)
+                del wanted[section][name]
         for name in (name for name in names if name not in written):
             reference = matches[name].reference
             if reference:
                 text = add_port(text, section, names, name, reference)
                 added.append(name)
+                wanted.setdefault(section, {})[name] = reference
             else:
                 text = add_open_port(text, section, names, name, matches[name].candidates)
                 left.append(name)
+    after = parse_yaml(text, file, Diagnostics())
+    # maps are equal in whatever order; 1 and true are equal, too, but nothing here turns one into the other
+    if text != before and (after is None or after.plain() != wanted):
+        raise CannotEdit(
+            f"{file}: EPG does not understand how this is written: write one 'port: component' on each line"
+        )
     return Change(text, tuple(added), tuple(removed), tuple(left))
 
 

@@ -374,6 +374,14 @@ def test_bind_update_does_not_touch_a_file_with_a_mistake(robot: Path, capsys: p
     assert (robot / "bindings.yaml").read_text() == text
 
 
+def test_bind_update_leaves_a_file_it_cannot_edit(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = "version: 1\nmodel: Controller\noutputs:\n  ? log\n  : position\n"
+    (robot / "bindings.yaml").write_text(text)
+    assert main(["bind", "model", "robot.tcf", "-o", "bindings.yaml", "--update"]) == 1
+    assert capsys.readouterr().err.startswith("epg bind: bindings.yaml stays as it is: ")
+    assert (robot / "bindings.yaml").read_text() == text
+
+
 def test_bind_update_on_a_complete_file(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
     before = (robot / "bindings.yaml").read_bytes()
     assert main(["bind", "model", "robot.tcf", "-o", "bindings.yaml", "--update"]) == 0
