@@ -120,7 +120,7 @@ function progress(build) {
     key: known ? "known" : "unknown",
     "aria-label": build.step === "configure" ? "Configuring" : "Building",
     max: known ? build.total : null,
-    value: known ? build.done : undefined,
+    value: known ? build.done : null,
   });
 }
 

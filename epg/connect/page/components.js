@@ -13,7 +13,7 @@ export function componentColumn(state, side, diagnostics, users) {
   return h(
     "section",
     { class: `components ${side}`, key: side, "aria-labelledby": `title-${side}` },
-    h("h3", { id: `title-${side}` }, side === "sources" ? "From the target" : "To the target"),
+    h("h2", { id: `title-${side}` }, side === "sources" ? "From the target" : "To the target"),
     shown.length + without.length === 0 ? h("p", { class: "empty" }, "Nothing here.") : null,
     [...shown, ...without].map((component) => card(state, side, component, direction, diagnostics, users)),
   );

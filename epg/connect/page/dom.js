@@ -83,7 +83,7 @@ function update(node, wanted, after) {
   if (!attributes.keep) renderChildren(node, children, after);
   // A select takes its value only when its options are there. `value` is what the files say; what somebody types into
   // a field is left alone (`initial` fills it once).
-  if ("value" in attributes && node.value !== String(attributes.value)) node.value = attributes.value;
+  if (node.localName === "select" && node.value !== attributes.value) node.value = attributes.value;
   if ("checked" in attributes) node.checked = Boolean(attributes.checked);
   if (attributes.shown) after.push(() => attributes.shown(node));
 }

@@ -138,11 +138,7 @@ function options(state, side, port, end, n) {
   }
   const references = [...(state.candidates[name] || [])];
   if (end && !references.includes(end.reference)) references.push(end.reference);
-  const proposal = name in state.wires ? null : state.proposals[name];
-  for (const reference of references) {
-    const note = reference === proposal ? " (same name)" : "";
-    list.push(h("option", { key: `:${reference}`, value: `:${reference}` }, reference + note));
-  }
+  for (const reference of references) list.push(h("option", { key: `:${reference}`, value: `:${reference}` }, reference));
   return list;
 }
 

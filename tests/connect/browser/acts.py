@@ -1,0 +1,47 @@
+"""What people do on the page, and how tests wait for what comes of it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+
+def handle(page: Any, side: str, name: str) -> Any:
+    """The end of a wire that can be dragged."""
+    return page.locator(f'[data-handle][data-side="{side}"][data-name="{name}"]')
+
+
+def port(page: Any, name: str) -> Any:
+    """A port of the model."""
+    return page.locator(f'.ports .port[data-name="{name}"]')
+
+
+def field(page: Any, name: str) -> Any:
+    """The list of what a port can be connected with."""
+    return port(page, name).locator("select").first
+
+
+def drag(page: Any, start: Any, end: Any, *, halfway: Callable[[], None] | None = None) -> None:
+    start.scroll_into_view_if_needed()
+    one, other = start.bounding_box(), end.bounding_box()
+    page.mouse.move(one["x"] + one["width"] / 2, one["y"] + one["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(one["x"] + 30, one["y"] + 10, steps=3)
+    if halfway:
+        halfway()
+    page.mouse.move(other["x"] + other["width"] / 2, other["y"] + other["height"] / 2, steps=5)
+    page.mouse.up()
+
+
+def save(page: Any) -> None:
+    page.get_by_role("button", name="Save", exact=True).click()
+    page.get_by_text("Saved", exact=True).wait_for()
+
+
+def until(page: Any, expression: str, seconds: float = 5) -> None:
+    """Waits for a JavaScript expression to hold.  Playwright's own waiting needs eval(), which the page forbids."""
+    end = time.monotonic() + seconds
+    while not page.evaluate(expression):
+        assert time.monotonic() < end, expression
+        time.sleep(0.02)

@@ -1,0 +1,89 @@
+"""Generate: a real build for this computer, its progress, what it makes and what goes wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from .acts import field, until
+from .conftest import Project
+
+Open = Callable[..., Any]
+PATIENT = 60_000  # milliseconds for a build on a busy computer
+
+
+def test_generates_shows_errors_and_cancels(jiwy: Project, open_page: Open) -> None:
+    page = open_page(jiwy.address)
+    source = jiwy.folder / "model" / "xxsubmod.c"
+    original = source.read_text(encoding="utf-8")
+    generate = page.get_by_role("button", name="Generate", exact=True)
+    panel = page.get_by_role("tabpanel")
+
+    # With a mistake in the bindings nothing is built; the page says so and shows the list.
+    field(page, "setpoint_pan").select_option("")
+    page.get_by_text("1 error", exact=True).wait_for()
+    generate.click()
+    page.get_by_role("alert").get_by_text("nothing can be built").wait_for()
+    assert page.get_by_role("tab", name="Problems").get_attribute("aria-selected") == "true"
+    field(page, "setpoint_pan").select_option("pan_subscriber")
+    page.get_by_text("No problems", exact=True).wait_for()
+
+    # A compiler's error leads to its line.
+    source.write_text(original + "\nint broken = nowhere;\n", encoding="utf-8")
+    line = original.count("\n") + 2
+    generate.click()
+    page.get_by_role("progressbar").wait_for()
+    page.get_by_role("button", name="Cancel", exact=True).wait_for()
+    page.locator(".outcome.failed").wait_for(timeout=PATIENT)
+    panel.get_by_text("nowhere").first.click()
+    dialog = page.get_by_role("dialog")
+    assert dialog.locator(".line.here").first.inner_text().startswith(f"> {line}  int broken = nowhere;")
+    page.keyboard.press("Escape")
+
+    # Mended: progress with a known end, and a product.
+    source.write_text(original, encoding="utf-8")
+    page.evaluate(
+        "(() => { window.seen = []; new MutationObserver(() => { const bar = document.querySelector('progress');"
+        " if (bar) seen.push([bar.value, bar.max]); }).observe(document.getElementById('dock'),"
+        " {subtree: true, childList: true, attributes: true}); })()"
+    )
+    generate.click()
+    page.locator(".outcome.done").wait_for(timeout=PATIENT)
+    assert any(0 < value <= most and most > 1 for value, most in page.evaluate("seen"))
+    build = jiwy.epg.state()["build"]
+    for product in build["products"]:
+        assert Path(product["path"]).is_file()
+        assert panel.get_by_text(product["path"], exact=True).is_visible()
+        assert panel.get_by_text(product["what"], exact=True).first.is_visible()
+    panel.get_by_role("button", name="Copy").first.click()
+    panel.get_by_text("Copied").wait_for()
+    panel.get_by_text("Log,").click()
+    until(page, f"document.querySelector('.log pre').textContent.split('\\n').length >= {build['lines']}")
+
+    # Everything again, and cancelled at once.
+    source.write_text(original + "\n", encoding="utf-8")
+    generate.click()
+    page.get_by_role("button", name="Cancel", exact=True).click()
+    page.locator(".outcome.cancelled").wait_for(timeout=PATIENT)
+    source.write_text(original, encoding="utf-8")
+
+
+def test_says_that_the_connection_is_lost(browser: Any, open_page: Open, tmp_path: Path) -> None:
+    from .conftest import copy_jiwy
+    from .served import Served
+
+    copy_jiwy(tmp_path / "jiwy")
+    with Served(tmp_path / "jiwy") as epg:
+        page = open_page(epg.address)
+        field(page, "position_tilt").select_option("encoder_pan")
+        page.get_by_text("● Unsaved changes").wait_for()
+    page.get_by_role("alert").get_by_text("The connection to EPG is lost.").wait_for()
+    assert "epg connect" in page.get_by_role("alert").inner_text()
+    assert field(page, "position_tilt").is_visible(), "what was on the page stays to be read"
+
+    # Whoever leaves with unsaved changes is asked.
+    with page.expect_event("dialog") as leaving:
+        page.close(run_before_unload=True)
+    assert leaving.value.type == "beforeunload"
+    leaving.value.accept()

@@ -1,0 +1,143 @@
+"""From a bare model to a program: choose, create, connect, generate. Once by pointer, once by keyboard alone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from .acts import field, until
+from .served import Served
+
+Open = Callable[..., Any]
+
+
+@pytest.fixture
+def started(browser: Any, model: Path) -> Iterator[Served]:
+    with Served(model) as served:
+        yield served
+
+
+def test_from_model_to_project(started: Served, model: Path, open_page: Open) -> None:
+    page = open_page(started.address)
+    assert page.locator(".step-model .big").inner_text() == "JIWY_Control"
+    create = page.get_by_role("button", name="Create project")
+    page.get_by_role("radio", name="host_jiwy").wait_for()
+    assert not create.is_enabled()
+
+    # Search and filter leave what was asked for.
+    everything = page.locator(".card").count()
+    assert everything == len(started.state()["configurations"])
+    page.get_by_label("Search").fill("pico 2 freertos")
+    names = page.locator(".card .name").all_inner_texts()
+    assert names and all("rpi_pico2_freertos" in name for name in names)
+    page.get_by_label("Search").fill("nothing like it")
+    page.get_by_text("No target matches").wait_for()
+    page.get_by_label("Search").fill("")
+    page.get_by_label("Robot", exact=True).select_option("jiwy")
+    assert {card.split("_")[-1] for card in page.locator(".card .name").all_inner_texts()} == {"jiwy"}
+
+    # What a configuration offers stands on its card.
+    card = page.locator(".card").filter(has=page.get_by_text("rpi_pico_bare_metal_jiwy", exact=True))
+    assert "10 of 10 ports match by name" in card.inner_text()
+    until(page, "[...document.querySelectorAll('.card img')].some(image => image.naturalWidth > 0)")
+
+    page.get_by_role("radio", name="rpi_pico_bare_metal_jiwy").check()
+    folder = model.parent / "my camera"
+    page.get_by_role("textbox", name="Folder").fill(str(folder))
+    page.get_by_role("textbox", name="Name").fill("1 camera")
+    create.click()
+    page.get_by_role("alert").wait_for()  # no name of a CMake target
+    assert not folder.exists()
+    page.get_by_role("textbox", name="Name").fill("camera")
+    create.click()
+    page.locator(".diagram").wait_for()
+    assert page.get_by_role("heading", level=1).inner_text() == "camera"
+    assert (folder / "CMakeLists.txt").is_file()
+
+    # It is connected as far as names match, and the board is there to look at.
+    assert field(page, "position_pan").input_value() == ":encoder_pan"
+    page.get_by_role("tab", name="Pins and peripherals").click()
+    table = page.get_by_role("table")
+    rows = [row for row in started.state()["hardware"]]
+    assert table.locator("tbody tr").count() == len(rows)
+    assert "GP10" in table.inner_text()
+    page.get_by_role("tab", name="Pinout").click()
+    picture = page.get_by_role("tabpanel").get_by_role("img")
+    until(page, "document.querySelector('.picture img')?.naturalWidth > 0")
+    assert "encoder_pan: a GP10, b GP11" in picture.get_attribute("alt")
+    width = picture.bounding_box()["width"]
+    page.get_by_role("button", name="Zoom in").click()
+    page.get_by_role("button", name="Zoom in").click()
+    assert picture.bounding_box()["width"] > width
+
+    # Another target for the same board and RTOS is a change like others.
+    page.get_by_role("button", name="Target").click()
+    dialog = page.get_by_role("dialog")
+    dialog.get_by_label("Robot", exact=True).select_option("relbot")
+    dialog.get_by_role("radio", name="rpi_pico_bare_metal_relbot").check()
+    dialog.get_by_role("button", name="Use this target").click()
+    page.get_by_text("● Unsaved changes").wait_for()
+    page.locator(".component-name").get_by_text("encoder_left", exact=True).first.wait_for()
+    page.get_by_role("tab", name="Changes").click()
+    assert "+extends: rpi_pico_bare_metal_relbot.tcf" in page.get_by_role("tabpanel").inner_text()
+    page.keyboard.press("Control+z")
+    page.locator(".component-name").get_by_text("encoder_pan", exact=True).first.wait_for()
+
+
+def test_everything_by_keyboard(started: Served, model: Path, open_page: Open) -> None:
+    """From the model to the finished program without a pointer; the build is CMake's, for this computer."""
+    page = open_page(started.address)
+    page.get_by_role("radio", name="host_jiwy").wait_for()
+
+    def tab_to(condition: str) -> None:
+        for _ in range(120):
+            page.keyboard.press("Tab")
+            if page.evaluate(f"(() => {{ const it = document.activeElement; return {condition}; }})()"):
+                return
+        raise AssertionError(f"Tab does not lead to: {condition}")
+
+    tab_to("it.type === 'search'")
+    page.keyboard.type("host_jiwy")
+    until(page, "document.querySelectorAll('.card').length === 1")
+    tab_to("it.type === 'radio'")
+    page.keyboard.press("Space")
+    tab_to("it.name === 'name'")
+    page.keyboard.press("Control+a")
+    page.keyboard.type("camera")
+    page.keyboard.press("Enter")
+    page.locator(".diagram").wait_for()
+    folder = Path(started.state()["project"]["folder"])
+    assert folder.parent == model.parent
+
+    # A wire away by the list, and back by the handles.
+    tab_to("it.id === 'ends-pwm_tilt-0'")
+    page.keyboard.press("Home")
+    until(page, "document.querySelector('.saved').textContent.includes('Unsaved')")
+    assert "pwm_tilt" not in started.state()["wires"]
+    page.keyboard.press("Escape")
+    tab_to("it.dataset.side === 'sinks'")
+    while page.evaluate("document.activeElement.dataset.name") != "pwm_tilt":
+        page.keyboard.press("ArrowDown")
+    page.keyboard.press("Enter")
+    page.keyboard.press("ArrowDown")
+    while page.evaluate("document.activeElement.dataset.name") != "pwm_tilt":
+        page.keyboard.press("ArrowDown")
+    page.keyboard.press("Enter")
+    until(page, "document.getElementById('ends-pwm_tilt-0').value === ':pwm_tilt'")
+    page.keyboard.press("Control+s")
+    until(page, "document.querySelector('.saved').textContent === 'Saved'")
+
+    tab_to("it.textContent === 'Generate'")
+    page.keyboard.press("Enter")
+    page.locator(".outcome:not(.running)").wait_for(timeout=60_000)
+    assert started.state()["build"]["state"] == "done", started.state()["build"]
+    (product, *_) = started.state()["build"]["products"]
+    assert Path(product["path"]).is_file()
+    tab_to("it.textContent === 'Copy path'")
+    tab_to("it.textContent === 'Close EPG'")
+    page.keyboard.press("Enter")
+    page.get_by_text("EPG has ended").wait_for()
+    assert started.wait() == 0
