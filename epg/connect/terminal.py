@@ -26,16 +26,17 @@ from epg.connect.terminal_text import (
 )
 
 HELP = """\
-  Enter    take what stands in [ ]; where nothing does, leave the port open
-  2        the component of that number; a name, or as much of it as no other has; an output takes several: a, b
-  -        leave an output unconnected on purpose
-  ?        explain the candidates        c   connect with a conversion
-  s        all wires so far              u   undo the last change
-  b        back to the port before       q   leave
-  d        take the wire away            e   enough: to the end"""
+  Enter  take what stands in [ ]; where nothing does, leave the port open
+  2      the component of that number; or its name; or the beginning of it, if
+         no other begins so. An output takes several: 2, pwm_tilt
+  -      leave an output unconnected on purpose
+  ?      explain the candidates         c  connect with a conversion
+  s      all wires so far               u  undo the last change
+  b      back to the port before        d  take the wire away
+  e      enough: to the end             q  leave"""
 NONE_FITS = "no component fits: h lists what can be answered"
-OF_OPEN_PORTS = frozenset(("unbound-input", "unbound-output", "needs-bound"))
-"""Messages about ports that have not been asked for yet."""
+OF_OPEN_PORTS = frozenset(("unbound-input", "unbound-output", "needs-bound", "unused-component"))
+"""Messages that are there while ports are still to be asked for."""
 LEFT_UNSAVED, INTERRUPTED = 1, 130
 
 
@@ -128,6 +129,7 @@ class _Dialog:
 
     def _finish(self) -> int:
         """Saves and builds, if that is wanted."""
+        self._look()
         if self._state["draft"]["changed"]:
             if not self._console.agree("save?"):
                 self._console.say("nothing was saved")
@@ -282,7 +284,7 @@ class _Dialog:
         names = self._references(port, answer) if answer else None
         if names is None or len(names) != 1:
             return False
-        self._console.say("value of the port = component's value x scale + offset, within limits; Enter: none")
+        self._console.say("Values are multiplied by scale, then offset is added, then limits hold.")
         end: dict[str, Any] = {"reference": names[0]}
         for key, example in (("scale", "0.5 or 1/4"), ("offset", "-1.5"), ("unit", "deg")):
             end[key] = _cleared(self._console.ask(f"{key}, such as {example}", now.get(key, "")))
@@ -296,6 +298,7 @@ class _Dialog:
 
     def _act(self, action: str, body: dict[str, Any], port: Port | None = None) -> bool:
         """Does something, and says what comes of it; whether it was done."""
+        self._look()
         before = {_key(problem) for problem in self._state["diagnostics"]}
         try:
             self._state = self._session.act(action, body)
@@ -303,10 +306,6 @@ class _Dialog:
             self._say_refused(problem)
             self._state = self._session.state()
             return False
-        external = self._state["draft"]["external"] or ""
-        if external and external != self._told:
-            self._console.fill(f"note: {external}")
-        self._told = external
         self._say_messages(
             problem
             for problem in self._state["diagnostics"]
@@ -314,6 +313,14 @@ class _Dialog:
             and problem["id"] not in OF_OPEN_PORTS
         )
         return True
+
+    def _look(self) -> None:
+        """Says what was edited outside meanwhile."""
+        self._state = self._session.wait(self._state["version"], 0)
+        external = self._state["draft"]["external"] or ""
+        if external and external != self._told:
+            self._console.fill(f"note: {external}")
+        self._told = external
 
     def _say_messages(self, problems: Iterable[State]) -> None:
         for problem in problems:

@@ -37,9 +37,9 @@ def create_project(session: Session, console: Console) -> None:
         raise Left
     counts = f"{len(model['inputs'])} inputs, {len(model['outputs'])} outputs, a step every {model['step']:g} s"
     console.say(f"Model {model['name']} ({model['origin']}): {counts}")
+    choice = _choose(state["configurations"], console)
+    proposal = state["create"]
     while True:
-        choice = _choose(state["configurations"], console)
-        proposal = state["create"]
         console.say()
         folder = console.ask("folder of the new project", proposal["folder"])
         folder = os.path.abspath(os.path.expanduser(folder))  # as in any terminal: from the current folder on
