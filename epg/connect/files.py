@@ -77,11 +77,18 @@ def save(before: Snapshot, after: Snapshot, *, anyway: bool = False) -> None:
             os.chmod(temporary, target.stat().st_mode & 0o7777)
         os.replace(temporary, target)
     except OSError as error:
-        temporary.unlink(missing_ok=True)
+        _discard(temporary)
         raise Unsavable(f"cannot write '{before.path.name}': {error.strerror or error}") from error
     except BaseException:
-        temporary.unlink(missing_ok=True)
+        _discard(temporary)
         raise
+
+
+def _discard(temporary: Path) -> None:
+    try:
+        temporary.unlink()
+    except OSError:
+        pass  # it was not made
 
 
 class Watch:

@@ -214,7 +214,7 @@ def test_a_conflict_ends_by_reloading(page: Page, bindings: Path) -> None:
     state = page.post("reload")
     assert state["draft"]["conflict"] is None and not state["editable"]
     assert "robot.bindings.yaml" in state["why_not"]
-    with pytest.raises(Denied, match="robot.bindings.yaml"):
+    with pytest.raises(Denied, match=r"robot\.bindings\.yaml"):
         page.connect("setpoint_pan", "tilt_subscriber")
     bindings.write_text(good)
     assert page.until(lambda state: state["editable"])["diagnostics"] == []
@@ -343,7 +343,7 @@ def test_creating_replaces_nothing(tmp_path: Path) -> None:
     (tmp_path / "robot").mkdir()
     (tmp_path / "robot/CMakeLists.txt").write_text("mine")
     with serving(Session([], model=ROOT / "examples/jiwy/model")) as page:
-        with pytest.raises(Denied, match="CMakeLists.txt: this file exists") as refusal:
+        with pytest.raises(Denied, match=r"CMakeLists\.txt: this file exists") as refusal:
             page.post("create", configuration="host_jiwy", folder=str(tmp_path / "robot"), name="robot")
         assert "replaces no file" in refusal.value.hint
         assert page.state()["phase"] == "choose"
