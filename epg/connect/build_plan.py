@@ -70,7 +70,7 @@ def make_plan(job: Job, target: Target | None, roots: Sequence[Path]) -> Plan:
     else:
         configure = Step("configure", _first(job, source, build, programs), source)
     steps = (configure, Step("build", (programs["cmake"], "--build", str(build), *_parallel(cache, programs)), source))
-    return Plan(source, build, steps, _environment(os.environ, first=not cache, west=west), cache)
+    return Plan(source, build, steps, _environment(os.environ, cache, west=west), cache)
 
 
 def _first(job: Job, source: Path, build: Path, programs: Mapping[str, str]) -> tuple[str, ...]:
@@ -104,15 +104,17 @@ def _parallel(cache: Mapping[str, str], programs: Mapping[str, str]) -> tuple[st
 
 _OF_MAKE = ("MAKEFLAGS", "MFLAGS", "MAKELEVEL", "MAKE_TERMOUT", "MAKE_TERMERR")
 """What Make hands to what it starts: this may be started by a build, but is none of its parts."""
+_SAY_WHICH_EPG = ("EPG_PATH", "EPG_DIR", "EPG_IMPORTED_DIR")
 _COLOURS = ("CLICOLOR_FORCE", "FORCE_COLOR", "CMAKE_COLOR_DIAGNOSTICS")
 
 
-def _environment(own: Mapping[str, str], *, first: bool, west: bool) -> dict[str, str]:
+def _environment(own: Mapping[str, str], cache: Mapping[str, str], *, west: bool) -> dict[str, str]:
     """That of this process, as for somebody who types the command: nothing of EPG's own Python, no colours, English.
 
-    A build folder that is new gets the EPG that runs now where nothing else is said, and its virtual environment, as
-    if that were activated.  Folders that exist have their own answers.
+    A build folder that has not found an EPG yet gets the one that runs now where nothing else is said, and its virtual
+    environment, as if that were activated.  Others have their own answers.
     """
+    first = not any(cache.get(name) for name in _SAY_WHICH_EPG)
     names = {*_OF_MAKE, *_COLOURS, "PYTHONHOME", "EPG_ABSOLUTE_PATHS"}
     environment = {name: value for name, value in own.items() if name not in names}
     everything = environment.pop("LC_ALL", "")

@@ -153,7 +153,7 @@ class _Dialog:
         if conflict is None:
             return self._act("save", {})
         self._console.say(f"error: {conflict['message']}")
-        if self._console.agree("save anyway, over what others have written?"):
+        if self._console.agree("save anyway, over what others have written?", "n"):
             return self._act("save", {"anyway": True})
         return False
 

@@ -259,6 +259,23 @@ def test_edits_outside_are_noticed_and_never_overwritten_unasked(project: Path, 
     assert text.startswith("# mine\n") and "  pwm_pan: pwm_pan\n" in text and "  pwm_tilt: pwm_tilt\n" in text
 
 
+def test_a_conflict_with_edits_outside_is_asked_about(project: Path, bindings: Path) -> None:
+    text = open_ports(bindings, "pwm_pan", "pwm_tilt")
+    theirs = "inputs: ["  # nothing can be applied to this
+
+    def edit() -> None:
+        bindings.write_text(theirs)
+        time.sleep(1)  # files are looked at twice a second
+
+    status, said = talk(session_of(project), "", "", edit, "", "y", "")
+    assert status == 1 and "save anyway, over what others have written? (y/n) [n]" in said
+    assert bindings.read_text() == theirs
+    bindings.write_text(text)
+    status, said = talk(session_of(project), "", "", edit, "", "y", "y", "n")
+    assert status == 0, said
+    assert "  pwm_pan: pwm_pan\n" in bindings.read_text()
+
+
 def test_bindings_that_need_an_editor(project: Path, bindings: Path) -> None:
     bindings.write_text("inputs: [")
     status, said = talk(session_of(project))
