@@ -28,7 +28,7 @@ from epg.diagnostics import Diagnostics
 from epg.emit.bindings_ends import REFERENCE, End, data_of, ends_of, said_ends
 from epg.emit.bindings_section import add_port, remove_port
 from epg.emit.bindings_value import change_value, value_text
-from epg.emit.yaml_edit import CannotEdit
+from epg.emit.yaml_edit import CannotEdit, parse_map
 from epg.load.models.model import Model
 from epg.load.yaml_file import parse_yaml
 from epg.source import Node
@@ -44,7 +44,7 @@ def set_ends(text: str, file: str, model: Model, port: str, ends: Sequence[End] 
     Raises :class:`CannotEdit`.
     """
     body = text.removeprefix("\ufeff")
-    root = _parse(body, file)
+    root = parse_map(body, file)
     section = _section_of(root, file, model, port, ends)
     wanted = None if ends is None else tuple(_trimmed(end) for end in ends)
     if wanted is not None:
@@ -65,17 +65,6 @@ def set_ends(text: str, file: str, model: Model, port: str, ends: Sequence[End] 
         raise CannotEdit(_where(root, file, section, port) + str(problem)) from None
     _verify(root, changed, file, section, port, said)
     return text[: len(text) - len(body)] + changed
-
-
-def _parse(text: str, file: str) -> Node:
-    problems = Diagnostics()
-    root = parse_yaml(text, file, problems)
-    if root is None:
-        first = next(iter(problems))
-        raise CannotEdit(f"{file}:{first.span.line}: {first.message}: mend this in an editor first")
-    if not root.is_mapping:
-        raise CannotEdit(f"{file}:1: this is no map: 'epg bind' writes bindings")
-    return root
 
 
 def _section_of(root: Node, file: str, model: Model, port: str, ends: Sequence[End] | None) -> str:

@@ -14,7 +14,7 @@ import yaml
 
 from epg.diagnostics import Diagnostics
 from epg.emit import yaml_edit
-from epg.emit.yaml_edit import CannotEdit
+from epg.emit.yaml_edit import CannotEdit, parse_map
 from epg.emit.yaml_text import scalar_text
 from epg.load.yaml_file import parse_yaml
 from epg.source import Node
@@ -29,7 +29,7 @@ def set_extends(text: str, file: str, value: str) -> str:
     whose ``extends`` is something other than one name.
     """
     body = text.removeprefix("\ufeff")
-    root = _parse(body, file)
+    root = parse_map(body, file)
     old = root.get(KEY)
     if old is not None and (old.is_mapping or old.is_sequence):
         line = root.key_span(KEY).line
@@ -59,17 +59,6 @@ def _name(value: str, style: str = "") -> str:
     parts = value.replace("-", "_").split("/")
     plain = not style and all(part in (".", "..") or scalar_text(part) == part for part in parts)
     return value if plain and not value.startswith("-") else scalar_text(value, style)
-
-
-def _parse(text: str, file: str) -> Node:
-    problems = Diagnostics()
-    root = parse_yaml(text, file, problems)
-    if root is None:
-        first = next(iter(problems))
-        raise CannotEdit(f"{file}:{first.span.line}: {first.message}: mend this in an editor first")
-    if not root.is_mapping:
-        raise CannotEdit(f"{file}:1: this is no map, as a .tcf must be: mend this in an editor first")
-    return root
 
 
 def _verify(root: Node, changed: str, file: str, value: str) -> None:

@@ -13,7 +13,9 @@ from typing import Any
 
 import yaml
 
+from epg.diagnostics import Diagnostics
 from epg.load import yaml_file
+from epg.source import Node
 
 _BREAK = re.compile("\r\n|[\r\n\x85\u2028\u2029]")
 _REST = re.compile(r"[ \t]*(#.*)?")
@@ -25,6 +27,18 @@ Item = tuple[int, int]
 
 class CannotEdit(Exception):
     """Only an editor can make this change; the message says where and why."""
+
+
+def parse_map(text: str, file: str) -> Node:
+    """The map that ``text`` is.  Raises :class:`CannotEdit` with the first mistake in it; ``file`` names it there."""
+    problems = Diagnostics()
+    root = yaml_file.parse_yaml(text, file, problems)
+    if root is None:
+        first = next(iter(problems))
+        raise CannotEdit(f"{file}:{first.span.line}: {first.message}: mend this in an editor first")
+    if not root.is_mapping:
+        raise CannotEdit(f"{file}:1: this is no map (key: value): mend this in an editor first")
+    return root
 
 
 def compose(text: str) -> yaml.Node:
