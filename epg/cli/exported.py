@@ -11,21 +11,37 @@ from epg.diagnostics import Diagnostics
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("folder", type=Path, metavar="FOLDER", help="folder of the export")
+    then = "then start 'epg connect' with it, until its page is closed"
+    parser.add_argument("--connect", action="store_true", help=then)
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from epg.cli import ports
 
-    folder: Path = options.folder
+    folder = Path(os.path.abspath(options.folder))
     if _forget_people(folder / "ModelConfiguration.xml") and not options.json:
         print("ModelConfiguration.xml: the path of the model file and the license were taken out.\n")
     options.model = folder
-    status = ports.run(options, diagnostics)
+    status = ports.run(options, diagnostics)  # ends here where the model cannot be used: there is nothing to connect
+    if options.connect and not options.json:
+        return _connect(folder, diagnostics)
     if not options.json:
-        print("\nNext: choose a target ('epg targets' lists them) and start a project with this model:")
-        print(f'  epg new --target NAME --model "{folder.resolve()}" PROJECT')
+        print("\nNext: connect its ports, in a page of the browser:")
+        print(f'  epg connect "{folder}"')
+        print("or choose a target ('epg targets' lists them) and start a project with this model:")
+        print(f'  epg new --target NAME --model "{folder}" PROJECT')
         print("or copy this folder into a project that you have, and run 'epg bind' there for its new ports.")
     return status
+
+
+def _connect(folder: Path, diagnostics: Diagnostics) -> int:
+    """``epg connect``: of the project that has this folder as its model, or of one that begins with it."""
+    from epg.cli import connect
+
+    print("\nNext: connect its ports, in the page that the browser opens, or at this address:", flush=True)
+    parser = argparse.ArgumentParser()
+    connect.add_arguments(parser)
+    return connect.run(parser.parse_args(["--until-closed", "--", str(folder)]), diagnostics)
 
 
 def _forget_people(configuration: Path) -> bool:

@@ -31,7 +31,7 @@ class Computer:
         self.notes = folder / "notes.txt"
         self.programs = folder / "my programs"
         self.programs.mkdir(parents=True)
-        self.export = folder / "My (x86) exports & more" / "Servo (1)"
+        self.export = folder / "My (x86) exports & more" / "100% $(HOME) %PATH% ^ ! Servo (1)"
         self.export.mkdir(parents=True)
         shutil.copy(FOLDER / NAME, self.export)
         self.environment = {**os.environ, "WINEPREFIX": str(folder / "wine"), "WINEDEBUG": "-all"}
@@ -43,13 +43,22 @@ class Computer:
         text = f"@echo off\r\n{checks}echo {program} %*>> {windows(self.notes)}\r\nexit /b 0\r\n"
         (self.programs / f"{program}.bat").write_bytes(text.encode())
 
-    def run(self, *arguments: str, script: bool = False) -> subprocess.CompletedProcess[str]:
+    def run(
+        self, *arguments: str, script: bool = False, folder: Path | None = None
+    ) -> subprocess.CompletedProcess[str]:
         environment = {**self.environment, "WINEPATH": windows(self.programs)}
         if script:
             environment["XXSIM_SCRIPT_MODE"] = "1"
-        command = ["wine", "cmd", "/c", NAME, *arguments]
+        name = NAME if folder is None else windows(self.export / NAME)
+        command = ["wine", "cmd", "/c", name, *arguments]
         return subprocess.run(
-            command, cwd=self.export, env=environment, capture_output=True, text=True, timeout=300, check=False
+            command,
+            cwd=folder or self.export,
+            env=environment,
+            capture_output=True,
+            text=True,
+            timeout=300,
+            check=False,
         )
 
     def noted(self) -> list[str]:
@@ -69,15 +78,29 @@ def computer(tmp_path: Path) -> Iterator[Computer]:
 def test_epg_is_started_for_the_folder_of_the_export(computer: Computer) -> None:
     done = computer.run(script=True)
     assert done.returncode == 4 and "EPG is not installed" in done.stdout
-    there = f'exported "{windows(computer.export)}\\."'
     computer.install("py", "-3 -m epg")
     assert computer.run(script=True).returncode == 0
-    assert computer.noted() == [f"py -3 -m epg {there}"]
+    assert computer.noted() == ['py -3 -m epg exported "."']
     computer.install("epg", "")
     assert computer.run("window").returncode == 0
-    assert computer.noted()[1:] == [f"epg {there}"]
+    assert computer.noted()[1:] == ['epg exported "." --connect']  # in a window: somebody looks at it
     assert computer.run().returncode == 0  # opens a window, and does not wait for it
     end = time.monotonic() + 60
     while len(computer.noted()) < 3 and time.monotonic() < end:
         time.sleep(0.2)
-    assert computer.noted()[2:] == [f"epg {there}"]
+    assert computer.noted()[2:] == ['epg exported "." --connect']
+
+
+@needs_wine
+def test_the_folder_is_the_one_of_the_file(computer: Computer) -> None:
+    """Wherever it is called from.  Wine, unlike Windows, replaces %PATH% in a name that it is told: none is here."""
+    top = computer.programs.parent / "exports"
+    top.mkdir()
+    computer.export = Path(shutil.move(computer.export, top / "Servo $ 1"))
+    computer.install("epg", "")
+    program = computer.programs / "epg.bat"
+    program.write_bytes(
+        program.read_bytes().replace(b"echo epg", b"cd >> " + windows(computer.notes).encode() + b"\r\necho epg")
+    )
+    assert computer.run(script=True, folder=computer.programs).returncode == 0
+    assert computer.noted()[-2:] == [windows(computer.export), 'epg exported "."']

@@ -321,7 +321,7 @@ def test_the_command_file(tmp_path: Path) -> None:
     text = (folder / "open_in_epg.cmd").read_bytes()
     assert text == (FOLDER / "open_in_epg.cmd").read_bytes()
     assert text.count(b"\r\n") == text.count(b"\n")
-    assert b'exported "%~dp0."' in text  # with the dot: a backslash before the quote would take it away
+    assert b'"epg_folder=%~dp0."' in text  # with the dot: a backslash before the quote would take it away
 
 
 def test_targets_ini() -> None:

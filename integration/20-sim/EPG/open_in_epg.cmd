@@ -1,11 +1,17 @@
 @echo off
 rem 20-sim runs this in the folder of the export, in which it has put it.  No token stands in it: a folder's name
 rem may hold any character.  XXSIM_SCRIPT_MODE is 1 when a script of 20-sim exports: nobody looks at a window then.
+setlocal
+rem The folder is named only where it must be, as on a network: inside of it, no character of its name matters.
+set "epg_folder=."
+cd /d "%~dp0." 2>nul
+if not exist .\open_in_epg.cmd set "epg_folder=%~dp0."
 if not "%~1"=="window" if not "%XXSIM_SCRIPT_MODE%"=="1" (
-    start "Embedded-Project Generator" /d "%~dp0." cmd /k .\open_in_epg.cmd window
+    start "Embedded-Project Generator" /d "%epg_folder%" cmd /k .\open_in_epg.cmd window
     exit /b 0
 )
-setlocal
+set "epg_option="
+if "%~1"=="window" set "epg_option= --connect"
 set "epg_command="
 call py -3 -m epg --version >nul 2>nul
 if not errorlevel 1 set "epg_command=py -3 -m epg"
@@ -18,4 +24,4 @@ if not defined epg_command (
     if exist "%~dp0ModelConfiguration.xml" echo ModelConfiguration.xml in this folder names your model file and 20-sim license until then.
     exit /b 4
 )
-%epg_command% exported "%~dp0."
+%epg_command% exported "%epg_folder%"%epg_option%
