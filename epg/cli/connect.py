@@ -5,14 +5,17 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+import threading
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from epg.cli.arguments import add_target_arguments, request_of, user_roots
+from epg.cli.report import to_json
 from epg.diagnostics import Diagnostics
 
 if TYPE_CHECKING:
     from epg.connect.projects import Job
+    from epg.connect.session import Session
 
 _TEXT_BROWSERS = frozenset(("lynx", "w3m", "links", "elinks", "links2", "www-browser"))
 
@@ -57,20 +60,24 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     return _serve(session, options)
 
 
-def _serve(session: object, options: argparse.Namespace) -> int:
+def _serve(session: Session, options: argparse.Namespace) -> int:
     from epg.connect.server import Server
-    from epg.connect.session import Session
 
-    assert isinstance(session, Session)
     server = Server(session, options.port)
-    print(f"epg connect: {server.address}")
-    print("Press Ctrl-C here, or 'Close EPG' in the page, to end.", flush=True)
+    if options.json:
+        sys.stdout.write(to_json({"address": server.address}))
+    else:
+        print(f"epg connect: {server.address}")
+        print("Press Ctrl-C here, or 'Close EPG' in the page, to end.")
+    sys.stdout.flush()
     if not options.no_browser:
-        _open_browser(server.address)
+        threading.Thread(target=_open_browser, args=(server.address,), daemon=True).start()  # some wait for its end
     try:
         server.run(until_closed=options.until_closed)
     except KeyboardInterrupt:
         print()
+    if session.state()["draft"]["changed"]:
+        sys.stderr.write("epg connect: changes that were not saved are lost\n")
     return 0
 
 
@@ -78,7 +85,7 @@ def _job(options: argparse.Namespace) -> Job:
     """The target that options name, its files by absolute names: a build may run in another folder."""
     from dataclasses import replace
 
-    from epg.connect.projects import Job
+    from epg.connect.projects import Job, find_jobs
 
     request = request_of(options, options.name or Path(options.bindings).name.split(".")[0])
     beside = Path(os.path.abspath(request.beside))
@@ -91,7 +98,10 @@ def _job(options: argparse.Namespace) -> Job:
         beside=beside,
     )
     source, build = _absolute(options.source_dir), _absolute(options.build_dir)
-    return Job(absolute, source_dir=source, build_dir=build, built_by=options.built_by)
+    found = find_jobs(source, Diagnostics()) if source is not None else []
+    known = next((job for job in found if job.request.name == request.name), Job(absolute))  # its executables
+    build = build or known.build_dir
+    return replace(known, request=absolute, source_dir=source, build_dir=build, built_by=options.built_by)
 
 
 def _absolute(path: Path | None) -> Path | None:

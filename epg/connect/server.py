@@ -93,7 +93,7 @@ class Server:
 
     def _is_abandoned(self) -> bool:
         with self._lock:
-            if self._waiting:
+            if self._waiting or self.session.is_building:
                 return False
             if self._last_seen is None:
                 return time.monotonic() - self._started > self._until_opened
@@ -194,7 +194,7 @@ class _Handler(BaseHTTPRequestHandler):
         self._json(self.server.owner.session.act(path.removeprefix("api/"), body))
 
     def _json(self, data: object) -> None:
-        self._send(200, "application/json", json.dumps(data, ensure_ascii=False).encode())
+        self._send(200, "application/json", json.dumps(data).encode())
 
     def _send(self, status: int, kind: str, data: bytes) -> None:
         self.send_response(status)

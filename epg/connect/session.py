@@ -195,7 +195,7 @@ class Session:
             return
         if self._opened().draft.changed:
             raise Refused("there are changes that are not saved", "save them, or reload to throw them away", 409)
-        if self._is_building():
+        if self.is_building:
             raise Refused("a build is running", "wait for it, or cancel it", 409)
         self._editor, self._build = Editor(job), None
 
@@ -216,7 +216,7 @@ class Session:
         self._look(at_once=True)
         with self._changed:
             editor = self._opened()
-            if self._is_building():
+            if self.is_building:
                 raise Refused("a build is running", "wait for it, or cancel it", 409)
             count = sum(problem["severity"] == "error" for problem in self._shown["diagnostics"])
             if count:
@@ -244,7 +244,9 @@ class Session:
                 message["port"] = self._editor.loaded.places.port_at(span)
         return state
 
-    def _is_building(self) -> bool:
+    @property
+    def is_building(self) -> bool:
+        """Whether a build runs."""
         return self._build is not None and self._build.state()["state"] == "running"
 
     # how the state comes about

@@ -46,10 +46,10 @@ class Page:
     def state(self, after: int = 0) -> dict[str, Any]:
         return self.json(f"api/state?after={after}")
 
-    def until(self, wanted: Any) -> dict[str, Any]:
+    def until(self, wanted: Any, seconds: float = 15) -> dict[str, Any]:
         """The first state of which ``wanted`` is true; as the page does it, by asking for the next one."""
         state = self.state()
-        end = time.monotonic() + 15
+        end = time.monotonic() + seconds
         while not wanted(state):
             assert time.monotonic() < end, "the state never came"
             state = self.state(state["version"])
