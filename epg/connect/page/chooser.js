@@ -4,13 +4,30 @@ import { configurationCards } from "./configurations.js";
 import { closeDialog, openDialog } from "./dialog.js";
 import { h } from "./dom.js";
 import { current } from "./server.js";
-import { attempt, ui } from "./ui.js";
+import { attempt, draw, ui } from "./ui.js";
+
+// What needs a project of its own is listed only when asked for, with the reason.
+function others(all, toggle) {
+  const count = current().configurations.filter((each) => !each.possible).length;
+  if (count === 0) return null;
+  return h(
+    "label",
+    { class: "check" },
+    h("input", { type: "checkbox", checked: all, onchange: toggle }),
+    `Also show ${count} that this project cannot take, and why`,
+  );
+}
 
 export function chooseTarget() {
   const inUse = current().configurations.find((each) => each.chosen);
   ui.chosen = inUse ? inUse.name : null;
+  let all = false;
   openDialog("target", "Target", () => [
-    configurationCards(current(), "other"),
+    others(all, () => {
+      all = !all;
+      draw();
+    }),
+    configurationCards(current(), "other", (each) => all || each.possible),
     h(
       "div",
       { class: "buttons sticky" },

@@ -23,7 +23,8 @@ function card(state, side, component, direction, diagnostics, users) {
   const { name, kind, summary, where, peripheral, topic } = component;
   const ports = component.ports.filter((port) => port.direction === direction);
   const first = direction === "source" || component.ports.every((port) => port.direction === direction);
-  const facts = [where?.join(" · "), peripheral, topic].filter(Boolean);
+  const pins = where?.length ? where.map((pin) => [h("span", { class: "pin" }, pin), " "]) : null;
+  const facts = [pins, peripheral, topic].filter(Boolean);
   return h(
     "article",
     { class: "component", key: name, "aria-label": `component ${name}` },

@@ -7,9 +7,11 @@ import { draw, ui } from "./ui.js";
 const NO_ROBOT = "Board only";
 
 // Radio buttons; the picked one is ui.chosen. `prefix` keeps the ids of two such lists apart.
-export function configurationCards(state, prefix) {
-  const robots = [...new Set(state.configurations.map((each) => each.robot || NO_ROBOT))];
-  const shown = state.configurations.filter(isShown);
+// `only` leaves some of all configurations.
+export function configurationCards(state, prefix, only = () => true) {
+  const configurations = state.configurations.filter(only);
+  const robots = [...new Set(configurations.map((each) => each.robot || NO_ROBOT))];
+  const shown = configurations.filter(isShown);
   return h(
     "div",
     { class: "chooser" },
@@ -17,9 +19,9 @@ export function configurationCards(state, prefix) {
     h(
       "p",
       { class: "muted", role: "status" },
-      shown.length === state.configurations.length
-        ? `${shown.length} targets`
-        : `${shown.length} of ${state.configurations.length} targets`,
+      shown.length === configurations.length
+        ? `${shown.length} target${shown.length === 1 ? "" : "s"}`
+        : `${shown.length} of ${configurations.length} targets`,
     ),
     state.configurations.length === 0
       ? h("p", { class: "empty" }, "Looking for targets and for what this computer has…")
@@ -33,7 +35,7 @@ export function configurationCards(state, prefix) {
 function isShown(configuration) {
   const { text, robot, fits } = ui.filter;
   if (robot && (configuration.robot || NO_ROBOT) !== robot) return false;
-  if (fits && (!configuration.possible || configuration.missing.length > 0)) return false;
+  if (fits && !isReady(configuration)) return false;
   const words = `${configuration.name} ${configuration.robot} ${configuration.board} ${configuration.platform} ${configuration.summary}`;
   return text
     .toLowerCase()
@@ -41,7 +43,10 @@ function isShown(configuration) {
     .every((word) => words.toLowerCase().includes(word));
 }
 
-// [{robot, boards: [{board, configurations}]}]: robots whose ports match best first, bare boards last.
+const isReady = (configuration) => configuration.possible && configuration.missing.length === 0;
+
+// [{robot, boards: [{board, list}]}]: robots whose ports match best first, bare boards last; of a robot, boards that
+// can be built for here and now first.
 function grouped(configurations) {
   const robots = new Map();
   for (const each of configurations) {
@@ -54,7 +59,12 @@ function grouped(configurations) {
   const best = (boards) => Math.max(...[...boards.values()].flat().map((each) => each.matches));
   return [...robots]
     .sort(([a, aBoards], [b, bBoards]) => (a === NO_ROBOT) - (b === NO_ROBOT) || best(bBoards) - best(aBoards))
-    .map(([robot, boards]) => ({ robot, boards: [...boards].map(([board, list]) => ({ board, list })) }));
+    .map(([robot, boards]) => ({
+      robot,
+      boards: [...boards]
+        .map(([board, list]) => ({ board, list: list.sort((a, b) => isReady(b) - isReady(a)) }))
+        .sort((a, b) => isReady(b.list[0]) - isReady(a.list[0])),
+    }));
 }
 
 function filters(robots, prefix) {
@@ -143,12 +153,18 @@ function card(configuration, prefix) {
       { class: "card-text" },
       h("span", { class: "card-title" }, title[0].toUpperCase() + title.slice(1), chosen ? h("span", { class: "tag" }, "in use") : null),
       more.length ? h("span", { class: "card-line" }, more.join(", ")) : null,
-      h("span", { class: "card-line name" }, name),
+      h("span", { class: "card-line name" }, breakable(name)),
       h("span", { class: "card-line" }, offer(components, matches, ports)),
       missing.length ? h("span", { class: "card-line warning" }, icon("warning"), `This computer lacks ${missing.join(", ")}`) : null,
       reason ? h("span", { class: "card-line warning" }, icon("warning"), reason) : null,
     ),
   );
+}
+
+// Long names may break after an underscore.
+function breakable(name) {
+  const parts = name.split("_");
+  return parts.map((part, n) => (n < parts.length - 1 ? [`${part}_`, h("wbr")] : part));
 }
 
 function offer(components, matches, ports) {

@@ -27,7 +27,7 @@ export function hardware(state) {
           "tr",
           { key: n },
           columns.map(([name], column) =>
-            h(column === 0 ? "th" : "td", { key: name, scope: column === 0 ? "row" : null, class: name }, row[name]),
+            h(column === 0 ? "th" : "td", { key: name, scope: column === 0 ? "row" : null, class: `column-${name}` }, row[name]),
           ),
         ),
       ),

@@ -64,5 +64,5 @@ function change(name, zoom) {
 }
 
 function button(text, onclick, pressed, label = null) {
-  return h("button", { class: "quiet", onclick, "aria-label": label, "aria-pressed": label ? null : String(pressed) }, text);
+  return h("button", { onclick, "aria-label": label, "aria-pressed": label ? null : String(pressed) }, text);
 }

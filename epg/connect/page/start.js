@@ -88,6 +88,10 @@ function projectStep(state) {
         { class: "picked" },
         picked ? ["Target ", h("b", null, picked.name)] : h("span", { class: "muted" }, "No target is chosen yet."),
       ),
+      picked?.missing.length
+        ? h("p", { class: "muted" }, `Connecting works now; generating needs ${picked.missing.join(", ")}. 'epg doctor' says how to get it.`)
+        : null,
+      h("button", { type: "submit", class: "primary wide", disabled: !picked || busy }, busy ? "Creating…" : "Create project"),
       picked?.picture
         ? h("img", {
             key: "picture",
@@ -96,10 +100,6 @@ function projectStep(state) {
             alt: `Board of ${picked.name} with its wiring`,
           })
         : null,
-      picked?.missing.length
-        ? h("p", { class: "muted" }, `Connecting works now; generating needs ${picked.missing.join(", ")}. 'epg doctor' says how to get it.`)
-        : null,
-      h("button", { type: "submit", class: "primary wide", disabled: !picked || busy }, busy ? "Creating…" : "Create project"),
     ),
   );
 }

@@ -39,7 +39,7 @@ export function unitText({ unit, type }) {
 // The same beside a name; what has no unit gets a dash.
 export function unitMark(port) {
   const text = unitText(port);
-  return h("span", { class: "unit", title: port.unit ? null : text }, port.unit ? text : [port.type === "real" ? "" : `${port.type} `, "–"]);
+  return h("span", { class: "unit", title: port.unit ? null : text }, port.unit ? text : port.type === "real" ? "–" : port.type);
 }
 
 // The fields of an end that api/connect takes.
@@ -75,9 +75,9 @@ export async function replaceEnd(port, n, reference) {
   const ends = [...endsOf(current(), port)];
   if (reference === null) ends.splice(n, 1);
   else ends.splice(n, 1, { reference });
-  if (ends.length === 0) await disconnect(port);
-  else if (await setEnds(port, ends) && reference) announceWire(port, reference);
   ui.adding = null;
+  if (ends.length === 0) await disconnect(port);
+  else if ((await setEnds(port, ends)) && reference) announceWire(port, reference);
 }
 
 function announceWire(port, reference) {

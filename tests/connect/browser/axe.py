@@ -43,14 +43,21 @@ def _install(folder: Path) -> None:
 
 
 def violations(page: Any) -> list[str]:
-    """What axe-core finds wrong with a page as it is now, a line per place.
+    """What axe-core finds wrong with a page as it is now, in light and in dark, a line per place.
 
     The script is run by the debugger's protocol: the page's policy would refuse a <script>.
     """
-    page.evaluate(axe_core().read_text(encoding="utf-8"))
-    result = page.evaluate("axe.run(document, {resultTypes: ['violations']})")
-    return [
-        f"{rule['id']}: {rule['help']}: {' '.join(map(str, node['target']))}: {node['failureSummary']}"
-        for rule in result["violations"]
-        for node in rule["nodes"]
-    ]
+    if not page.evaluate("'axe' in window"):
+        page.evaluate(axe_core().read_text(encoding="utf-8"))
+    found = []
+    for scheme in ("light", "dark"):
+        page.emulate_media(color_scheme=scheme)
+        # Colours are all that differs in the dark.
+        rules = "" if scheme == "light" else ", runOnly: {type: 'rule', values: ['color-contrast']}"
+        result = page.evaluate(f"axe.run(document, {{resultTypes: ['violations']{rules}}})")
+        found += [
+            f"{scheme}: {rule['id']}: {rule['help']}: {' '.join(map(str, node['target']))}: {node['failureSummary']}"
+            for rule in result["violations"]
+            for node in rule["nodes"]
+        ]
+    return found

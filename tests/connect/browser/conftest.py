@@ -127,3 +127,10 @@ def jiwy(served_jiwy: Project) -> Project:
 def model(tmp_path: Path) -> Path:
     """A model that has no project: what 20-sim leaves."""
     return Path(shutil.copytree(ROOT / "examples/jiwy/model", tmp_path / "exports" / "camera"))
+
+
+@pytest.fixture
+def started(browser: Any, model: Path) -> Iterator[Served]:
+    """The start page for that model."""
+    with Served(model) as served:
+        yield served

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from pathlib import Path
+from collections.abc import Callable
 from typing import Any
 
 import pytest
@@ -23,28 +22,20 @@ def checker() -> None:
     skip_if_missing(axe_core)
 
 
-@pytest.fixture
-def started(browser: Any, model: Path) -> Iterator[Served]:
-    with Served(model) as served:
-        yield served
-
-
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_start_page(started: Served, open_page: Open, scheme: str) -> None:
-    page = open_page(started.address, color_scheme=scheme)
+def test_start_page(started: Served, open_page: Open) -> None:
+    page = open_page(started.address)
     page.locator(".card").first.wait_for()
     page.get_by_role("radio").and_(page.locator(":enabled")).first.check()
     assert violations(page) == []
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_diagram_and_details(jiwy: Project, open_page: Open, scheme: str) -> None:
+def test_diagram_and_details(jiwy: Project, open_page: Open) -> None:
     jiwy.write(
         ("  pwm_tilt: pwm_tilt\n", ""),
         ("  position_tilt: encoder_tilt", "  position_tilt: {from: encoder_tilt, scale: 1/2}"),
         ("  setpoint_pan: pan_subscriber", "  setpoint_pan: {from: pan_subscriber, unit: V}"),
     )
-    page = open_page(jiwy.address, color_scheme=scheme)
+    page = open_page(jiwy.address)
     found = {"diagram": violations(page)}
     field(page, "tilt_logging").select_option("unconnected on purpose")
     page.get_by_text("● Unsaved changes").wait_for()

@@ -135,9 +135,7 @@ def test_connects_by_keyboard(jiwy: Project, open_page: Open) -> None:
     until(page, "/sink pwm_tilt,.*: fits$/.test(document.getElementById('said').textContent)")
     page.keyboard.press("Enter")
     until(page, "document.getElementById('said').textContent.includes('is connected with pwm_tilt')")
-    assert (
-        page.evaluate("document.activeElement.dataset.name + document.activeElement.dataset.side") == "pwm_tiltoutputs"
-    )
+    assert page.evaluate("document.activeElement.id") == "handle-outputs-pwm_tilt"
     page.keyboard.press("Control+s")
     page.get_by_text("Saved", exact=True).wait_for()
     assert "  pwm_tilt: pwm_tilt\n" in jiwy.text()

@@ -1,23 +1,15 @@
-"""From a bare model to a program: choose, create, connect, generate. Once by pointer, once by keyboard alone."""
+"""From a bare model to a project: choose, create, connect."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
-
-import pytest
 
 from .acts import field, until
 from .served import Served
 
 Open = Callable[..., Any]
-
-
-@pytest.fixture
-def started(browser: Any, model: Path) -> Iterator[Served]:
-    with Served(model) as served:
-        yield served
 
 
 def test_from_model_to_project(started: Served, model: Path, open_page: Open) -> None:
@@ -61,8 +53,7 @@ def test_from_model_to_project(started: Served, model: Path, open_page: Open) ->
     assert field(page, "position_pan").input_value() == ":encoder_pan"
     page.get_by_role("tab", name="Pins and peripherals").click()
     table = page.get_by_role("table")
-    rows = [row for row in started.state()["hardware"]]
-    assert table.locator("tbody tr").count() == len(rows)
+    assert table.locator("tbody tr").count() == len(started.state()["hardware"])
     assert "GP10" in table.inner_text()
     page.get_by_role("tab", name="Pinout").click()
     picture = page.get_by_role("tabpanel").get_by_role("img")
@@ -85,59 +76,3 @@ def test_from_model_to_project(started: Served, model: Path, open_page: Open) ->
     assert "+extends: rpi_pico_bare_metal_relbot.tcf" in page.get_by_role("tabpanel").inner_text()
     page.keyboard.press("Control+z")
     page.locator(".component-name").get_by_text("encoder_pan", exact=True).first.wait_for()
-
-
-def test_everything_by_keyboard(started: Served, model: Path, open_page: Open) -> None:
-    """From the model to the finished program without a pointer; the build is CMake's, for this computer."""
-    page = open_page(started.address)
-    page.get_by_role("radio", name="host_jiwy").wait_for()
-
-    def tab_to(condition: str) -> None:
-        for _ in range(120):
-            page.keyboard.press("Tab")
-            if page.evaluate(f"(() => {{ const it = document.activeElement; return {condition}; }})()"):
-                return
-        raise AssertionError(f"Tab does not lead to: {condition}")
-
-    tab_to("it.type === 'search'")
-    page.keyboard.type("host_jiwy")
-    until(page, "document.querySelectorAll('.card').length === 1")
-    tab_to("it.type === 'radio'")
-    page.keyboard.press("Space")
-    tab_to("it.name === 'name'")
-    page.keyboard.press("Control+a")
-    page.keyboard.type("camera")
-    page.keyboard.press("Enter")
-    page.locator(".diagram").wait_for()
-    folder = Path(started.state()["project"]["folder"])
-    assert folder.parent == model.parent
-
-    # A wire away by the list, and back by the handles.
-    tab_to("it.id === 'ends-pwm_tilt-0'")
-    page.keyboard.press("Home")
-    until(page, "document.querySelector('.saved').textContent.includes('Unsaved')")
-    assert "pwm_tilt" not in started.state()["wires"]
-    page.keyboard.press("Escape")
-    tab_to("it.dataset.side === 'sinks'")
-    while page.evaluate("document.activeElement.dataset.name") != "pwm_tilt":
-        page.keyboard.press("ArrowDown")
-    page.keyboard.press("Enter")
-    page.keyboard.press("ArrowDown")
-    while page.evaluate("document.activeElement.dataset.name") != "pwm_tilt":
-        page.keyboard.press("ArrowDown")
-    page.keyboard.press("Enter")
-    until(page, "document.getElementById('ends-pwm_tilt-0').value === ':pwm_tilt'")
-    page.keyboard.press("Control+s")
-    until(page, "document.querySelector('.saved').textContent === 'Saved'")
-
-    tab_to("it.textContent === 'Generate'")
-    page.keyboard.press("Enter")
-    page.locator(".outcome:not(.running)").wait_for(timeout=60_000)
-    assert started.state()["build"]["state"] == "done", started.state()["build"]
-    (product, *_) = started.state()["build"]["products"]
-    assert Path(product["path"]).is_file()
-    tab_to("it.textContent === 'Copy path'")
-    tab_to("it.textContent === 'Close EPG'")
-    page.keyboard.press("Enter")
-    page.get_by_text("EPG has ended").wait_for()
-    assert started.wait() == 0
