@@ -17,14 +17,12 @@ import pytest
 from epg.connect import build as build_module
 from epg.connect.build import Build
 from epg.connect.build_plan import make_plan
-from epg.connect.projects import Job, find_jobs
+from epg.connect.projects import Job
 from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
-from epg.load.hardware import Target
 from epg.new_project import ProjectRequest, write_project
-from epg.project import load_configuration, make_catalog
-from tests.emulator.toolchain import arm_gcc, pico_sdk, skip_if_missing
-from tests.zephyr.workspace import NATIVE, workspace
+from tests.connect.builds import job_of, run
+from tests.emulator.toolchain import arm_gcc, skip_if_missing
 
 ROOT = Path(__file__).resolve().parents[2]
 MODEL = ROOT / "examples/jiwy/model"
@@ -51,19 +49,6 @@ def robot(built: Path) -> Iterator[Path]:
             path.unlink()
         elif path.is_file() and path.read_text() != before[path]:
             path.write_text(before[path])
-
-
-def job_of(folder: Path) -> Job:
-    (job,) = find_jobs(folder, Diagnostics())
-    return job
-
-
-def run(job: Job) -> Build:
-    """A build, after its end."""
-    build = Build(job, lambda: None)
-    build.start()
-    assert build.wait(600), build.lines(0)
-    return build
 
 
 def edit(file: Path, old: str, new: str) -> None:
@@ -346,7 +331,7 @@ def test_a_build_inside_a_build_is_no_part_of_it(robot: Path, tmp_path: Path) ->
     script = tmp_path / "inside.py"
     script.write_text(
         f"import sys\nfrom pathlib import Path\nsys.path.insert(0, {str(ROOT)!r})\n"
-        "from tests.connect.test_build import job_of, run\n"
+        "from tests.connect.builds import job_of, run\n"
         f"build = run(job_of(Path({str(robot)!r})))\n"
         "print(build.state()['state'], sum('jobserver' in line for line in build.lines(0)))\n"
     )
@@ -385,56 +370,3 @@ def test_a_folder_where_the_first_try_failed_takes_the_epg_that_runs_too(
     assert (pico / "build/CMakeCache.txt").is_file()
     (pico / "CMakeLists.txt").write_text(text)
     assert plan_of(job_of(pico))[1]["EPG_DIR"] == (ROOT / "cmake").as_posix()
-
-
-@pytest.mark.long
-def test_a_raspberry_pi_pico_gets_its_uf2(pico: Path) -> None:
-    skip_if_missing(arm_gcc, pico_sdk)
-    state = run(job_of(pico)).state()
-    assert state["state"] == "done" and state["messages"] == [], state["messages"]
-    assert [product["path"] for product in state["products"]] == [
-        str(pico / "build/robot_firmware.uf2"),
-        str(pico / "build/robot_firmware.elf"),
-    ]
-    assert "BOOTSEL" in state["products"][0]["what"]
-    data = (pico / "build/robot_firmware.uf2").read_bytes()
-    assert data[:4] == b"UF2\n" and len(data) % 512 == 0
-
-
-@pytest.mark.long
-def test_a_program_of_zephyr_by_west(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    skip_if_missing(workspace)
-    here = workspace()
-    for name, value in here.environment().items():
-        monkeypatch.setenv(name, value)
-    monkeypatch.setenv("ZEPHYR_TOOLCHAIN_VARIANT", "host")
-    if shutil.which("west") is None:
-        pytest.skip("west is not installed: python -m pip install west")
-    write_project(ProjectRequest("robot", tmp_path / "robot", "native_sim_jiwy", MODEL), Diagnostics())
-    job = replace(job_of(tmp_path / "robot"), board=NATIVE)
-    assert job.built_by == "west"
-    plan = make_plan(replace(job, board=""), load_target(job), targets_roots(()))
-    assert plan.steps[0].command[1:] == (
-        *("build", "--cmake-only", "-d", str(tmp_path / "robot/build"), "-b", "native_sim"),
-        str(tmp_path / "robot"),
-    ), "the board as Zephyr calls it"
-    build = run(job)
-    state = build.state()
-    assert state["state"] == "done", state["messages"]
-    (product,) = state["products"]
-    assert product["path"] == str(tmp_path / "robot/build/zephyr/zephyr.exe")
-    done = subprocess.run([product["path"], "-duration=0.1"], capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stdout + done.stderr
-
-    with (tmp_path / "robot/prj.conf").open("a") as file:
-        file.write("CONFIG_NONSENSE_OF_MINE=y\n")
-    errors = [found for found in run(job).state()["messages"] if found["severity"] == "error"]
-    assert [(found["file"], "NONSENSE_OF_MINE" in found["message"]) for found in errors] == [
-        (str(tmp_path / "robot/prj.conf"), True)
-    ]
-
-
-def load_target(job: Job) -> Target:
-    configuration = load_configuration(job.request, make_catalog(job.request.roots, Diagnostics()), Diagnostics())
-    assert configuration is not None
-    return configuration.target
