@@ -40,6 +40,7 @@ def _connect(folder: Path, diagnostics: Diagnostics) -> int:
 
     print("\nNext: connect its ports, in the page that the browser opens, or at this address:", flush=True)
     parser = argparse.ArgumentParser()
+    parser.add_argument("--json", action="store_true")  # as epg.cli.main gives it to every command
     connect.add_arguments(parser)
     return connect.run(parser.parse_args(["--until-closed", "--", str(folder)]), diagnostics)
 
