@@ -52,7 +52,8 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         _check_model(folder, diagnostics)
         diagnostics.stop_if_errors()
         model = folder
-    session = Session(jobs, model=model, user_roots=user_roots())
+    project = jobs[0].source_dir if jobs and not all(given) else None
+    session = Session(jobs, folder=project, model=model, user_roots=user_roots())
     if options.terminal:
         from epg.connect.terminal import run as run_terminal
 

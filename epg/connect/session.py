@@ -26,6 +26,7 @@ from epg.connect.pictures import draw
 from epg.connect.projects import Job
 from epg.connect.source import excerpt
 from epg.connect.start import Start
+from epg.connect.targets import Targets
 from epg.emit.bindings_edit import CannotEdit, End
 from epg.source import Span
 
@@ -56,16 +57,25 @@ class Session:
     All methods can be called by any thread.
     """
 
-    def __init__(self, jobs: Sequence[Job], *, model: Path | None = None, user_roots: Sequence[Path] = ()) -> None:
+    def __init__(
+        self,
+        jobs: Sequence[Job],
+        *,
+        folder: Path | None = None,
+        model: Path | None = None,
+        user_roots: Sequence[Path] = (),
+    ) -> None:
+        """``folder`` is where ``jobs`` were found, and are found again when its CMakeLists.txt changes."""
         self.ended = threading.Event()
         self._changed = threading.Condition(threading.RLock())
         self._version = 0
         self._looked = 0.0
-        self._jobs = list(jobs)
+        self._targets = Targets(jobs, folder)
+        self._outdated = False
         self._user_roots = tuple(user_roots or (jobs[0].request.user_roots if jobs else ()))
         self._configurations = Configurations(self._user_roots)
         self._start = Start(model) if model is not None and not jobs else None
-        self._editor = Editor(self._jobs[0]) if self._jobs else None
+        self._editor = Editor(jobs[0]) if jobs else None
         self._build: Build | None = None
         self._actions: dict[str, Callable[[Body], None]] = {
             "connect": self._connect,
@@ -73,8 +83,8 @@ class Session:
             "accept": self._accept,
             "undo": lambda body: self._opened().undo(),
             "redo": lambda body: self._opened().redo(),
-            "save": lambda body: self._opened().save(anyway=boolean(body, "anyway")),
-            "reload": lambda body: self._opened().reload(),
+            "save": self._save,
+            "reload": self._reload,
             "choose": self._choose,
             "open": self._open,
             "done": lambda body: self.ended.set(),
@@ -175,6 +185,14 @@ class Session:
         if wanted:
             self._opened().edit(tuple(SetEnds(name, (End(proposals[name]),)) for name in wanted))
 
+    def _save(self, body: Body) -> None:
+        self._opened().save(anyway=boolean(body, "anyway"))
+        self._open_anew()
+
+    def _reload(self, body: Body) -> None:
+        self._opened().reload()
+        self._open_anew()
+
     def _choose(self, body: Body) -> None:
         name = text(body, "configuration")
         choice = self._configurations.find(name)
@@ -188,10 +206,10 @@ class Session:
 
     def _open(self, body: Body) -> None:
         name = text(body, "target")
-        job = next((job for job in self._jobs if job.request.name == name), None)
+        job = self._targets.find(name)
         if job is None:
             raise Refused(f"there is no target '{name}'", status=404)
-        if job is self._opened().job:
+        if name == self._opened().job.request.name:
             return
         if self._opened().draft.changed:
             raise Refused("there are changes that are not saved", "save them, or reload to throw them away", 409)
@@ -207,7 +225,8 @@ class Session:
             raise Refused("there is a project already", status=409)
         jobs = create(body, start.path, self._user_roots)
         with self._changed:
-            self._jobs, self._editor, self._start = jobs, Editor(jobs[0]), None
+            self._targets = Targets(jobs, jobs[0].source_dir)
+            self._editor, self._start = Editor(jobs[0]), None
             self._publish()
 
     def _generate(self, body: Body) -> None:
@@ -215,16 +234,16 @@ class Session:
 
         self._look(at_once=True)
         with self._changed:
-            editor = self._opened()
+            self._opened()
             if self.is_building:
                 raise Refused("a build is running", "wait for it, or cancel it", 409)
             count = sum(problem["severity"] == "error" for problem in self._shown["diagnostics"])
             if count:
                 what = "a mistake" if count == 1 else f"{count} mistakes"
                 raise Refused(f"there {'is' if count == 1 else 'are'} still {what}: nothing can be built", "", 409)
-            editor.save(anyway=False)
+            self._save({})
             self._publish()
-            self._build = build = Build(editor.job, self._bump)
+            self._build = build = Build(self._opened().job, self._bump)
         build.start()
         self._bump()
 
@@ -264,15 +283,31 @@ class Session:
                 return
             self._looked = now
             looked_at = self._editor or self._start
-            if looked_at is not None and looked_at.look():
+            changed = looked_at is not None and looked_at.look()
+            if self._targets.look():
+                self._outdated = changed = True
+                self._open_anew()
+            if changed:
                 self._publish()
+
+    def _open_anew(self) -> None:
+        """Opens the target as its CMakeLists.txt says now, once nothing can be lost by that."""
+        editor = self._editor
+        if editor is None or not self._outdated:
+            return
+        if editor.draft.changed:
+            editor.external = "CMakeLists.txt was edited outside: save or reload, and it is read again"
+            return
+        self._editor = Editor(self._targets.find(editor.job.request.name) or self._targets.jobs[0])
+        self._editor.external = "CMakeLists.txt was edited outside and read again"
+        self._outdated = False
 
     def _publish(self) -> None:
         """Makes the state anew."""
         with self._changed:
             if self._editor is not None:
                 shown = {"phase": "connect", "create": None, **self._editor.show()}
-                shown["project"]["targets"] = [job.request.name for job in self._jobs]
+                shown["project"]["targets"] = self._targets.names
                 model, project = self._editor.loaded.parts.model, self._editor.project()
             else:
                 assert self._start is not None

@@ -89,4 +89,4 @@ def session_of(folder: Path) -> Session:
     diagnostics = Diagnostics()
     jobs = find_jobs(folder, diagnostics)
     assert jobs and not diagnostics.has_errors, list(diagnostics)
-    return Session(jobs)
+    return Session(jobs, folder=folder)

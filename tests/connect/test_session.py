@@ -339,6 +339,18 @@ def test_a_project_is_created_for_a_model(tmp_path: Path) -> None:
         assert "setpoint_pan: tilt_subscriber" in (folder / "robot.bindings.yaml").read_text()
 
 
+def test_a_project_of_topics_is_created_for_a_target(tmp_path: Path) -> None:
+    """A target by itself: every port is a topic, until somebody writes down what is wired to the board."""
+    with serving(Session([], model=ROOT / "examples/jiwy/model")) as page:
+        body = {"configuration": "rpi_pico_bare_metal", "folder": str(tmp_path / "pico"), "middleware": "console"}
+        state = page.post("create", name="pico", **body)
+        assert state["phase"] == "connect" and state["diagnostics"] == [] and len(state["wires"]) == 10
+        state = page.until(lambda state: state["configurations"])
+        assert not any(each["chosen"] for each in state["configurations"])
+        reasons = {each["reason"] for each in state["configurations"]}
+        assert reasons == {"pico.tcf extends no other file: it says itself what the target is"}
+
+
 def test_creating_replaces_nothing(tmp_path: Path) -> None:
     (tmp_path / "robot").mkdir()
     (tmp_path / "robot/CMakeLists.txt").write_text("mine")
@@ -365,6 +377,23 @@ def test_another_target_of_the_project_is_opened(project: Path) -> None:
         with pytest.raises(Denied) as refusal:
             page.post("open", target="third")
         assert refusal.value.status == 404
+
+
+def test_a_target_whose_call_is_edited(page: Page, project: Path) -> None:
+    lists = project / "CMakeLists.txt"
+    (project / "other.bindings.yaml").write_text("version: 1\nmodel: JIWY_Control\n")
+    lists.write_text(lists.read_text().replace("BINDINGS robot.bindings.yaml", "BINDINGS other.bindings.yaml"))
+    state = page.until(lambda state: state["wires"] == {})
+    assert state["project"]["files"]["bindings"] == "other.bindings.yaml"
+    assert "CMakeLists.txt" in state["draft"]["external"]
+
+    page.connect("pwm_pan", "pwm_pan")
+    lists.write_text(lists.read_text().replace("BINDINGS other.bindings.yaml", "BINDINGS robot.bindings.yaml"))
+    state = page.until(lambda state: state["draft"]["external"])
+    assert "save or reload" in state["draft"]["external"] and list(state["wires"]) == ["pwm_pan"]
+    state = page.post("save")
+    assert "pwm_pan: pwm_pan" in (project / "other.bindings.yaml").read_text()
+    assert len(state["wires"]) == 10
 
 
 @pytest.mark.parametrize(
