@@ -116,12 +116,12 @@ def _with_line(text: str, section: str, line: str) -> str:
     last = root if yaml_edit.is_flow(root) else root.value[max(index - 1, 0)][1]
     column = root.start_mark.column
     position = yaml_edit.end_of(text, last)
-    following = yaml_edit.next_line(text, position)
-    # comments that belong to the key before
-    while following < len(text) and (
-        _is_deeper_comment(text, following, column) or any(_is_open(text, following, name) for name in _SECTIONS)
-    ):
-        position, following = following, yaml_edit.next_line(text, following)
+    # comments that belong to the key before, and those of a section that is commented out
+    for following in _lines(text, yaml_edit.next_line(text, position), len(text)):
+        if _is_deeper_comment(text, following, column) or any(_is_open(text, following, name) for name in _SECTIONS):
+            position = following
+        elif text[following : yaml_edit.line_end(text, following)].strip():
+            break
     return yaml_edit.insert_lines(text, position, [" " * column + line])
 
 
