@@ -7,6 +7,7 @@ import { OPPOSITE, join } from "./wiring.js";
 
 const START = 4; // pixels a pointer may shake before a press becomes a drag
 const EDGE = 40; // pixels from the upper and lower edge where the diagram scrolls
+const SPEED = 14; // pixels per frame that it scrolls there
 
 export function listenForDrags(root) {
   root.addEventListener("pointerdown", (event) => {
@@ -22,16 +23,27 @@ function follow(start, handle) {
   const { side, name } = handle.dataset;
   let dragging = false;
   let over = null;
+  let last = start; // newest event of the pointer
+  let frame = 0;
 
   const moved = (event) => {
+    last = event;
     if (!dragging) {
       if (Math.hypot(event.clientX - start.clientX, event.clientY - start.clientY) < START) return;
       dragging = true;
       ui.held = { side, name, by: "pointer" };
       document.documentElement.classList.add("dragging");
       draw();
+      frame = requestAnimationFrame(keepScrolling);
     }
-    scroll(event.clientY);
+    show(event);
+  };
+  // At an edge the diagram goes on moving under a pointer that rests.
+  const keepScrolling = () => {
+    if (scroll(last.clientY)) show(last);
+    frame = requestAnimationFrame(keepScrolling);
+  };
+  const show = (event) => {
     const diagram = document.getElementById("diagram").getBoundingClientRect();
     setPointer({ x: event.clientX - diagram.left, y: event.clientY - diagram.top });
     hover(portAt(event, side));
@@ -52,6 +64,7 @@ function follow(start, handle) {
   };
   const finish = () => {
     hover(null);
+    cancelAnimationFrame(frame);
     if (dragging) ui.held = null;
     dragging = false;
     document.documentElement.classList.remove("dragging");
@@ -71,6 +84,8 @@ function portAt(event, side) {
 function scroll(y) {
   const area = document.getElementById("main");
   const box = area.getBoundingClientRect();
-  if (y < box.top + EDGE) area.scrollTop -= 12;
-  else if (y > box.bottom - EDGE) area.scrollTop += 12;
+  const before = area.scrollTop;
+  if (y < box.top + EDGE) area.scrollTop -= SPEED;
+  else if (y > box.bottom - EDGE) area.scrollTop += SPEED;
+  return area.scrollTop !== before;
 }

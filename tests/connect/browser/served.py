@@ -21,11 +21,10 @@ ROOT = Path(__file__).resolve().parents[3]
 
 
 class Served:
-    """A process that serves the page for a folder: a project, or a bare model."""
+    """A process that serves the page: for a folder with a project or a bare model, or for what options name."""
 
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
-        command = [sys.executable, "-m", "epg", "connect", str(folder), "--no-browser"]
+    def __init__(self, *arguments: Path | str) -> None:
+        command = [sys.executable, "-m", "epg", "connect", *map(str, arguments), "--no-browser"]
         packages = [str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])]
         environment = {**os.environ, "PYTHONPATH": os.pathsep.join(packages), "EPG_PATH": str(ROOT)}
         self._process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, encoding="utf-8", env=environment)

@@ -1,0 +1,102 @@
+"""Takes the pictures of the page in docs/pictures anew; they are of the real page, on a real build.
+
+    python -m tests.connect.browser.pictures
+
+needs what the tests here need, and the Pico SDK.
+"""
+
+from __future__ import annotations
+
+import io
+import shutil
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from epg.bootstrap import ensure
+from tests.emulator.toolchain import arm_gcc, pico_sdk
+
+from .conftest import FLAGS, NAMES
+from .served import ROOT, Served
+
+PICTURES = ROOT / "docs" / "pictures"
+COLOURS = 64
+SIZE = {"width": 1280, "height": 800}
+
+
+def take_pictures(folder: Path = PICTURES) -> None:
+    """Writes ``connect-*.png``.  Raises Missing without the Pico SDK or its compiler."""
+    from playwright.sync_api import sync_playwright
+
+    pico_sdk()
+    arm_gcc()
+    # Names that can be seen in the pictures: the same each time.
+    place = Path(tempfile.gettempdir()) / "robots"
+    shutil.rmtree(place, ignore_errors=True)
+    model = Path(shutil.copytree(ROOT / "examples/jiwy/model", place / "camera_export"))
+    program = next(filter(None, map(shutil.which, NAMES)))
+    with sync_playwright() as playwright, Served(model) as epg:
+        browser = playwright.chromium.launch(executable_path=program, args=FLAGS)
+        page = browser.new_context(viewport=SIZE, reduced_motion="reduce").new_page()
+        page.goto(epg.address)
+        _start(page, folder)
+        _connect(page, epg, folder)
+        _build(page, epg, folder)
+        browser.close()
+    shutil.rmtree(place, ignore_errors=True)
+
+
+def _start(page: Any, folder: Path) -> None:
+    page.get_by_role("radio", name="rpi_pico2_bare_metal_jiwy").check()
+    page.wait_for_load_state("networkidle")
+    _take(page, folder, "start")
+    page.get_by_role("button", name="Create project").click()
+    page.locator(".diagram").wait_for()
+
+
+def _connect(page: Any, epg: Served, folder: Path) -> None:
+    _end(epg, "position_pan", reference="encoder_pan", scale="1/2", limits=["-1", "1"])
+    page.get_by_role("button", name="Conversion from encoder_pan to position_pan: ×1/2").click()
+    _take(page, folder, "conversion")
+    page.keyboard.press("Escape")
+    _end(epg, "position_pan", reference="encoder_pan")
+    for port in ("pwm_tilt", "tilt_logging"):
+        epg.act("disconnect", port=port)
+    page.locator("path.wire.proposed").nth(1).wait_for(state="attached")
+    page.evaluate("document.activeElement.blur()")
+    _take(page, folder, "connect")
+    _end(epg, "setpoint_tilt", reference="tilt_subscriber", unit="V")
+    _end(epg, "pwm_tilt", reference="pwm_pan")
+    page.get_by_text("2 errors").wait_for()
+    _take(page, folder, "conflict")
+    page.emulate_media(color_scheme="dark")
+    page.get_by_role("tab", name="Changes").click()
+    _take(page, folder, "dark")
+    page.emulate_media(color_scheme="light")
+    epg.act("reload")
+
+
+def _build(page: Any, epg: Served, folder: Path) -> None:
+    page.get_by_role("button", name="Generate", exact=True).click()
+    page.locator(".outcome.done").wait_for(timeout=600_000)
+    page.wait_for_timeout(200)
+    _take(page, folder, "build")
+
+
+def _end(epg: Served, port: str, **end: Any) -> None:
+    epg.act("connect", port=port, ends=[end])
+
+
+def _take(page: Any, folder: Path, name: str) -> None:
+    """With few colours, so that the repository stays small."""
+    ensure("plot")  # brings Pillow
+    from PIL import Image
+
+    page.wait_for_timeout(300)
+    picture = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
+    reduced = picture.quantize(COLOURS, dither=Image.Dither.NONE)
+    reduced.save(folder / f"connect-{name}.png", optimize=True)
+
+
+if __name__ == "__main__":
+    take_pictures()

@@ -1,0 +1,95 @@
+"""A model with 60 ports and a target with 80: everything is there, at the speed of a hand."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from .acts import field, handle, until
+from .served import Served
+
+Open = Callable[..., Any]
+PORTS, COMPONENTS = 30, 40  # in each direction
+
+BOTTOM = "(({scrollTop: y, clientHeight: h, scrollHeight: all}) => y + h > all - 2)(document.getElementById('main'))"
+
+
+@pytest.fixture
+def large(browser: Any, tmp_path: Path) -> Iterator[Served]:
+    model = tmp_path / "model"
+    model.mkdir()
+    members = {side: [f"{side}_{n}" for n in range(PORTS)] for side in ("in", "out")}
+    fields = {side: " ".join(f"double {name};" for name in names) for side, names in members.items()}
+    (model / "large.h").write_text(
+        f"typedef struct {{ {fields['in']} }} large_in_t;\ntypedef struct {{ {fields['out']} }} large_out_t;\n"
+        "void large_step(const large_in_t *in, large_out_t *out);\n",
+        encoding="utf-8",
+    )
+    (model / "large.c").write_text(
+        '#include "large.h"\nvoid large_step(const large_in_t *in, large_out_t *out) { out->out_0 = in->in_0; }\n',
+        encoding="utf-8",
+    )
+    ports = {side: "".join(f"  {name}: {{}}\n" for name in names) for side, names in members.items()}
+    (model / "model.yaml").write_text(
+        "version: 1\nstep: 1 ms\nheader: large.h\nsources: [large.c]\n"
+        "types: {inputs: large_in_t, outputs: large_out_t}\nfunctions: {step: large_step}\n"
+        f"inputs:\n{ports['in']}outputs:\n{ports['out']}",
+        encoding="utf-8",
+    )
+    components = "".join(
+        f"  command_{n}: {{kind: ros_subscriber, topic: command_{n}}}\n"
+        f"  value_{n}: {{kind: ros_publisher, topic: value_{n}}}\n"
+        for n in range(COMPONENTS)
+    )
+    (tmp_path / "large.tcf").write_text(
+        f"version: 1\ntarget: host\nnode: large\ncontrol: {{enable_at_start: true}}\ncomponents:\n{components}",
+        encoding="utf-8",
+    )
+    wires = {
+        "inputs": "".join(f"  in_{n}: command_{n}\n" for n in range(PORTS)),
+        "outputs": "".join(f"  out_{n}: value_{n}\n" for n in range(PORTS - 1)),
+    }
+    bindings = tmp_path / "large.bindings.yaml"
+    bindings.write_text(
+        f"version: 1\nmodel: model\ninputs:\n{wires['inputs']}outputs:\n{wires['outputs']}", encoding="utf-8"
+    )
+    with Served("--tcf", tmp_path / "large.tcf", "--model", model, "--bindings", bindings) as served:
+        yield served
+
+
+def test_large_model(large: Served, open_page: Open) -> None:
+    page = open_page(large.address)
+    page.locator(".wire-group").nth(2 * PORTS - 2).wait_for()
+    assert page.locator(".ports .port").count() == 2 * PORTS
+    assert page.locator(".component .port").count() == 2 * COMPONENTS
+
+    # Every wire is drawn at every move of a dragged end, and all of the page for every state.
+    draw = page.evaluate(
+        "(async () => { const { draw } = await import(new URL('ui.js', location)); draw();"
+        " const times = []; for (let n = 0; n < 5; n++) { const start = performance.now(); draw();"
+        " times.push(performance.now() - start); } return times.sort((a, b) => a - b)[2]; })()"
+    )
+    assert draw < 100, f"{draw:.0f} ms for drawing the page once"
+
+    # What is out of sight can be reached: the diagram scrolls when an end is held at its edge.
+    last = f"out_{PORTS - 1}"
+    start, end = handle(page, "outputs", last), handle(page, "sinks", f"value_{COMPONENTS - 1}")
+    start.scroll_into_view_if_needed()
+    box, main = start.bounding_box(), page.locator("#main").bounding_box()
+    page.mouse.move(box["x"] + 7, box["y"] + 7)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 100, main["y"] + main["height"] - 5, steps=3)
+    until(page, BOTTOM, 20)
+    box = end.bounding_box()
+    page.mouse.move(box["x"] + 7, box["y"] + 7)
+    page.mouse.up()
+    until(page, f"document.getElementById('ends-{last}-0').value === ':value_{COMPONENTS - 1}'")
+    field(page, last).select_option("")
+    page.get_by_text(f"model output '{last}' is not bound").first.wait_for()
+    page.locator("#main").evaluate("(main) => { main.scrollTop = 0; }")
+    page.locator(".problem-list").get_by_text(f"model output '{last}' is not bound", exact=True).click()
+    assert page.evaluate("document.activeElement.id") == f"ends-{last}-0"
+    assert field(page, last).evaluate("(field) => field.getBoundingClientRect().bottom < innerHeight")
