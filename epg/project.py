@@ -175,12 +175,19 @@ def check_driver_headers(application: Application, diagnostics: Diagnostics) -> 
 
 
 def check_paths(paths: Iterable[Path], diagnostics: Diagnostics) -> None:
-    """Paths that CMake is told are text, and no brackets in them swallow the ``;`` of its lists."""
+    """Paths that CMake is told are text, no brackets in them swallow the ``;`` of its lists, and no build program
+    takes a part of one for a variable: CMake hands ``$(`` to Ninja and Make as it is."""
     for path in sorted(paths):
         text = str(path.absolute())
-        if not text.isprintable() or text.count("[") != text.count("]"):
-            message = f"'{text}' cannot be named in CMake: "
-            message += "brackets in it must be balanced" if text.isprintable() else "it is no printable UTF-8 text"
+        problem = ""
+        if not text.isprintable():
+            problem = "it is no printable UTF-8 text"
+        elif text.count("[") != text.count("]"):
+            problem = "brackets in it must be balanced"
+        elif "$(" in text:
+            problem = "'$(' in it begins a variable of Make"
+        if problem:
+            message = f"'{text}' cannot be named in CMake: {problem}"
             diagnostics.error("invalid-name", Span(str(path)), message, hint="rename the file or its folder")
             return
 

@@ -193,3 +193,11 @@ def test_import_file_under_a_toolchain_that_confines_packages(robot: Project, wh
     include = "include(epg_import.cmake)"
     robot.edit("CMakeLists.txt", line, f"{include}\n{line}" if where.startswith("before") else f"{line}\n{include}")
     robot.configure(f"-DCMAKE_TOOLCHAIN_FILE={robot.source}/toolchain.cmake", f"-DEPG_PATH={ROOT}", epg_dir=False)
+
+
+@pytest.mark.parametrize("name", ["$(HOME).yaml", "a$(b).yaml"])
+def test_paths_that_cmake_or_make_would_read_otherwise(robot: Project, name: str) -> None:
+    (robot.source / "bindings.yaml").rename(robot.source / name)
+    robot.edit("CMakeLists.txt", "BINDINGS bindings.yaml", f"BINDINGS [=[{name}]=]")
+    output = robot.fails_to_configure()
+    assert f"{name}' cannot be named in CMake: " in output and "[invalid-name]" in output

@@ -31,7 +31,7 @@ def test_without_a_window_nothing_is_started(tmp_path: Path) -> None:
 
 
 def test_a_project_begins_with_the_export(tmp_path: Path) -> None:
-    folder = export_into(tmp_path / "My (x86) exports & more" / "100% $(HOME) %PATH% ^ ! Servo (1)")
+    folder = export_into(tmp_path / "My (x86) exports & more" / "100% $HOME %PATH% ^ ! Servo (1)")
     with started(exported(Path("."), "--connect"), folder) as (page, process):
         state = page.state()
         assert (state["phase"], state["model"]["name"]) == ("choose", "Servo")
