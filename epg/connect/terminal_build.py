@@ -13,18 +13,18 @@ LOOK = 1.0
 def build(session: Session, console: Console) -> bool:
     """Saves, configures and builds; whether that went well.  Ctrl-C cancels.  Raises Refused."""
     state = session.act("generate", {})
-    step = ""
+    said = ""
     while state["build"]["state"] == "running":
-        now = state["build"]
-        if not console.is_terminal and now["step"] != step:
-            console.say(f"{now['step']} ...")
-        step = now["step"]
-        console.over(_progress(now))
         try:
+            now = state["build"]
+            if not console.is_terminal and now["step"] != said:
+                said = now["step"]
+                console.say(f"{said} ...")
+            console.over(_progress(now))
             state = session.wait(state["version"], LOOK)
         except KeyboardInterrupt:
             console.over("cancelling ...")
-            session.act("cancel", {})
+            state = session.act("cancel", {})
     console.clear()
     return _report(state, session, console)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 from epg.connect.build import Build
@@ -20,3 +21,17 @@ def run(job: Job) -> Build:
     build.start()
     assert build.wait(600), build.lines(0)
     return build
+
+
+def processes(folder: Path) -> list[str]:
+    """Command lines of all that runs in or for a folder."""
+    found = []
+    for entry in Path("/proc").glob("[0-9]*"):
+        try:
+            command = (entry / "cmdline").read_bytes().replace(b"\0", b" ").decode(errors="replace")
+            place = os.readlink(entry / "cwd")
+        except OSError:
+            continue
+        if command and int(entry.name) != os.getpid() and (str(folder) in command or place.startswith(str(folder))):
+            found.append(command)
+    return found

@@ -21,7 +21,7 @@ from epg.connect.projects import Job
 from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
 from epg.new_project import ProjectRequest, write_project
-from tests.connect.builds import job_of, run
+from tests.connect.builds import job_of, processes, run
 from tests.emulator.toolchain import arm_gcc, skip_if_missing
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -222,20 +222,6 @@ def test_without_cmake_nothing_is_started(robot: Path, tmp_path: Path, monkeypat
 
 
 # cancelling -----------------------------------------------------------------------------------------------------------
-
-
-def processes(folder: Path) -> list[str]:
-    """Command lines of all that runs in or for a folder."""
-    found = []
-    for entry in Path("/proc").glob("[0-9]*"):
-        try:
-            command = (entry / "cmdline").read_bytes().replace(b"\0", b" ").decode(errors="replace")
-            place = os.readlink(entry / "cwd")
-        except OSError:
-            continue
-        if command and int(entry.name) != os.getpid() and (str(folder) in command or place.startswith(str(folder))):
-            found.append(command)
-    return found
 
 
 @pytest.mark.skipif(not Path("/proc/self/cmdline").exists(), reason="this system does not list processes in /proc")

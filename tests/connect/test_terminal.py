@@ -7,6 +7,7 @@ import os
 import re
 import select
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -18,6 +19,7 @@ import pytest
 from epg.cli.main import main
 from epg.connect.session import Session
 from epg.connect.terminal import run
+from tests.connect.builds import processes
 from tests.connect.page import session_of
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -146,6 +148,26 @@ def test_in_a_terminal_a_build_takes_one_line(export: Path, tmp_path: Path) -> N
     assert len(progress) > 3 and progress == sorted(progress, key=lambda found: int(found[0]))
     assert "\n" not in seen[seen.index("\rbuild ") : seen.rindex("\rbuild ")], "one line"
     assert (tmp_path / "robot/build/robot_host").is_file() and "robot_host\n" in seen
+
+
+@pytest.mark.skipif(not Path("/proc/self/cmdline").exists(), reason="this system does not list processes in /proc")
+def test_ctrl_c_cancels_the_build(export: Path, tmp_path: Path) -> None:
+    answers = ["host_jiwy", str(tmp_path / "robot"), "", "", "y"]
+    command = [sys.executable, "-m", "epg", "connect", "--terminal", str(export)]
+    process = subprocess.Popen(command, cwd=ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    assert process.stdin is not None and process.stdout is not None
+    process.stdin.write("\n".join(answers) + "\n")
+    process.stdin.flush()
+    for line in process.stdout:
+        if line == "build ...\n":
+            break
+    process.send_signal(signal.SIGINT)
+    rest = process.stdout.read()
+    assert process.wait(20) == 1
+    assert rest == "the build was cancelled\n"
+    assert processes(tmp_path / "robot") == []
+    process.stdin.close()
+    process.stdout.close()
 
 
 # ports ----------------------------------------------------------------------------------------------------------------

@@ -16,11 +16,12 @@ from typing import Any
 from epg.bootstrap import ensure
 from tests.emulator.toolchain import arm_gcc, pico_sdk
 
+from .acts import until
 from .conftest import FLAGS, NAMES
 from .served import ROOT, Served
 
 PICTURES = ROOT / "docs" / "pictures"
-COLOURS = 64
+COLOURS = 160
 SIZE = {"width": 1280, "height": 800}
 
 
@@ -48,7 +49,8 @@ def take_pictures(folder: Path = PICTURES) -> None:
 
 def _start(page: Any, folder: Path) -> None:
     page.get_by_role("radio", name="rpi_pico2_bare_metal_jiwy").check()
-    page.wait_for_load_state("networkidle")
+    until(page, "document.querySelector('.picked-picture')?.naturalWidth > 0")
+    page.wait_for_timeout(1000)  # the small pictures of the cards in sight
     _take(page, folder, "start")
     page.get_by_role("button", name="Create project").click()
     page.locator(".diagram").wait_for()
