@@ -20,7 +20,7 @@ export function modelHead(state) {
       ? h(
           "button",
           { class: "accept-all", onclick: () => attempt("accept") },
-          `Accept all ${count} proposal${count === 1 ? "" : "s"}`,
+          count === 1 ? "Accept 1 proposal" : `Accept all ${count} proposals`,
         )
       : null,
   );

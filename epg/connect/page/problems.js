@@ -2,6 +2,7 @@
 
 import { h, id } from "./dom.js";
 import { icon } from "./icons.js";
+import { current } from "./server.js";
 import { showSource } from "./source.js";
 import { draw, ui } from "./ui.js";
 
@@ -53,9 +54,20 @@ export function problemList(state) {
   return h("ul", { class: "problem-list" }, state.diagnostics.map(problem));
 }
 
+const placeText = (file, { line, column }) => [file, line, column].filter(Boolean).join(":");
+
+// Inside the project as it is there; elsewhere the end says most.
+export function shortFile(file) {
+  const folder = current()?.project?.folder;
+  if (folder && file.startsWith(folder)) return file.slice(folder.length).replace(/^[\\/]/, "");
+  const parts = file.split(/[\\/]/);
+  return parts.length > 3 ? `…/${parts.slice(-2).join("/")}` : file;
+}
+
 // One message as a button that leads to its port, or else to its line.
 export function problem(message) {
-  const place = `${message.file}:${message.line}${message.column ? `:${message.column}` : ""}`;
+  const full = placeText(message.file, message);
+  const place = placeText(shortFile(message.file), message);
   return h(
     "li",
     { class: message.severity },
@@ -69,14 +81,14 @@ export function problem(message) {
         h("span", { class: "unseen" }, `${message.severity}: `),
         h("span", { class: "message" }, message.message),
         message.hint ? h("span", { class: "hint" }, message.hint) : null,
-        h("span", { class: "place" }, message.port ? `port ${message.port}` : place),
+        h("span", { class: "place", title: full }, message.port ? `port ${message.port}` : place),
       ),
     ),
     message.port && message.file
       ? h(
           "button",
-          { class: "quiet", onclick: () => showSource(message), "aria-label": `Show ${place}` },
-          `${message.file.split("/").pop()}:${message.line}`,
+          { class: "quiet", onclick: () => showSource(message), "aria-label": `Show ${place}`, title: full },
+          placeText(message.file.split(/[\\/]/).pop(), { line: message.line }),
         )
       : null,
   );
