@@ -58,6 +58,11 @@ class Diagnostics:
     ) -> None:
         self._add(Diagnostic(id, "warning", span, message, hint, tuple(notes), about))
 
+    def add_all(self, others: Iterable[Diagnostic]) -> None:
+        """Adds what was said elsewhere, each once."""
+        for diagnostic in others:
+            self._add(diagnostic)
+
     @property
     def wants_hints(self) -> bool:
         """Whether a hint that is searched among many names is worth its time: not for the thousandth problem."""

@@ -7,7 +7,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -31,6 +31,9 @@ from epg.source import Span
 
 Hardware = Mapping[ClaimKey, Assignment]
 """What each claim of a component, or of the control loop, got."""
+
+
+ModelReader = Callable[[Path, Diagnostics], "Model | None"]
 
 
 @dataclass(frozen=True)
@@ -95,18 +98,18 @@ def load_application(request: Request, diagnostics: Diagnostics) -> Application 
     return load_parts(request, diagnostics).application
 
 
-def load_parts(request: Request, diagnostics: Diagnostics) -> Parts:
+def load_parts(request: Request, diagnostics: Diagnostics, read_model: ModelReader = load_model) -> Parts:
     """The application of ``request`` with what it is made of, after reporting every problem of all its files."""
     check_name(request.name, request.caller or Span("command line"), diagnostics)
     catalog = make_catalog(request.roots, diagnostics)
     configuration = load_configuration(request, catalog, diagnostics)
-    model = load_model(request.model, diagnostics)
+    model = read_model(request.model, diagnostics)
     bindings = load_bindings(request.bindings, diagnostics, request.caller, request.drafts)
     parts = Parts(configuration, model, bindings)
     plant_model: Model | None = None
     plant_bindings: Bindings | None = None
     if request.plant is not None and request.plant_bindings is not None:
-        plant_model = load_model(request.plant, diagnostics)
+        plant_model = read_model(request.plant, diagnostics)
         plant_bindings = load_bindings(request.plant_bindings, diagnostics, request.caller)
         if plant_model is None or plant_bindings is None:
             return parts

@@ -46,6 +46,7 @@ class Configurations:
         self._user_roots = tuple(user_roots)
         self._roots = Request("connect", "", Path(), Path(), user_roots=self._user_roots).roots
         self._preparing = threading.Lock()
+        self._counts: dict[tuple[object, ...], int] = {}
         self._ready = threading.Event()
 
     @property
@@ -96,8 +97,7 @@ class Configurations:
             if choice.configuration is None:  # a topic for each port that a topic can serve
                 matches = sum(port.direction == "output" or port.type == "real" for port in ports)
             else:
-                found = match_ports(model, components) if model is not None else {}
-                matches = sum(match.reference is not None for match in found.values())
+                matches = self._count(choice, model)
             entries.append(
                 {
                     "name": choice.name,
@@ -117,6 +117,16 @@ class Configurations:
                 }
             )
         return entries
+
+    def _count(self, choice: Choice, model: Model | None) -> int:
+        """How many ports of the model have a component whose name matches; counted once for the same ports."""
+        if model is None or choice.configuration is None:
+            return 0
+        key = (choice.name, tuple((port.name, port.direction) for port in (*model.inputs, *model.outputs)))
+        if key not in self._counts:
+            found = match_ports(model, choice.configuration.components)
+            self._counts[key] = sum(match.reference is not None for match in found.values())
+        return self._counts[key]
 
     def _predefined(self, file: str, catalog: Catalog) -> Choice | None:
         """One of EPG's or the user's ``.tcf`` files; None for parts that others extend: they name no target."""

@@ -11,7 +11,7 @@ from epg.connect.body import Refused
 from epg.connect.configurations import Project
 from epg.connect.draft import Draft, Operation
 from epg.connect.files import Snapshot, Watch, read_snapshot, save
-from epg.connect.loaded import load, tcf_path
+from epg.connect.loaded import Models, load, tcf_path
 from epg.connect.projects import Job
 from epg.connect.view import view_of
 from epg.diagnostics import Diagnostics
@@ -31,6 +31,7 @@ class Editor:
         self.external: str | None = None
         self.conflict: dict[str, str] | None = None
         self._tcf_path = tcf_path(job.request) or Path(os.path.abspath(job.request.tcf))
+        self._models = Models()
         self.draft = self._new_draft()
         self._load()
 
@@ -168,7 +169,7 @@ class Editor:
 
     def _load(self) -> None:
         request = replace(self.job.request, drafts=self.draft.drafts())
-        self.loaded = load(request)
+        self.loaded = load(request, self._models)
         self._watch = Watch(self.loaded.files(), self._seen)
 
     def _new_draft(self) -> Draft:

@@ -106,6 +106,10 @@ class Watch:
             digest = hashlib.sha256(snapshot.data).digest() if snapshot.data is not None else b""
             self._known[snapshot.path] = ((-1,), digest)
 
+    def newest(self) -> float:
+        """When the youngest of the files was changed, in seconds since 1970; 0 where there is none."""
+        return max((status[0] * 1e-9 for status, _ in self._known.values() if len(status) > 1), default=0.0)
+
     def changed(self) -> list[Path]:
         """The files that have changed since they were last asked for, sorted."""
         found = []

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
+from epg.connect.files import Watch
 from epg.connect.places import Places
 from epg.diagnostics import Diagnostic, Diagnostics
-from epg.load.models import Model
+from epg.load.models import Model, load_model
 from epg.load.models.folders import searched_folders
 from epg.load.tcf import TcfFile, find_tcf, load_tcf_chain
 from epg.load.text_file import read_text
@@ -21,6 +23,8 @@ from epg.source import Node
 
 _MOST_WATCHED = 2000
 """Files and folders of a model that cannot be read: which of them will mend it nobody knows."""
+_SETTLED = 2.0
+"""Seconds after which a file counts as written: younger ones could have changed while they were read."""
 
 
 @dataclass(frozen=True)
@@ -82,10 +86,30 @@ def tcf_path(request: Request) -> Path | None:
     return find_tcf(request.tcf, request.beside, request.roots)
 
 
-def load(request: Request) -> Loaded:
+class Models:
+    """Models by their place, read again only when a file of theirs has changed: large ones take a while."""
+
+    def __init__(self) -> None:
+        self._known: dict[Path, tuple[Watch, Model | None, Diagnostics]] = {}
+
+    def read(self, path: Path, diagnostics: Diagnostics) -> Model | None:
+        """As :func:`epg.load.models.load_model`, with the same messages each time."""
+        known = self._known.pop(path, None)
+        if known is None or known[0].changed():
+            problems = Diagnostics()
+            model = load_model(path, problems)
+            known = Watch(files_of_model(path, model)), model, problems
+        watch, model, problems = known
+        if watch.newest() < time.time() - _SETTLED:
+            self._known[path] = known
+        diagnostics.add_all(problems)
+        return model
+
+
+def load(request: Request, models: Models) -> Loaded:
     """Reads all files of ``request``, drafts instead of those that have one."""
     diagnostics = Diagnostics()
-    parts = load_parts(request, diagnostics)
+    parts = load_parts(request, diagnostics, models.read)
     if parts.bindings is not None:
         root: Node | None = parts.bindings.root
     else:

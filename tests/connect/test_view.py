@@ -11,7 +11,8 @@ from typing import Any
 import pytest
 
 from epg.cli.main import main
-from epg.connect.loaded import load
+from epg.connect.loaded import Loaded, Models
+from epg.connect.loaded import load as load_with
 from epg.connect.pictures import draw
 from epg.connect.view import view_of
 from epg.project import Request
@@ -31,6 +32,10 @@ def files(tmp_path: Path) -> Path:
     shutil.copy(ROOT / "examples/jiwy/jiwy.bindings.yaml", tmp_path / "b.yaml")
     (tmp_path / "t.tcf").write_text(TCF)
     return tmp_path
+
+
+def load(request: Request) -> Loaded:
+    return load_with(request, Models())
 
 
 def request(folder: Path, **others: Any) -> Request:
