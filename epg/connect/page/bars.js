@@ -20,7 +20,7 @@ export function bars(state) {
         " with ",
         h("code", null, "epg connect"),
         " and open the address it prints.",
-        state?.draft?.changed ? " Changes that were not saved are kept here only as long as EPG runs." : null,
+        state?.draft?.changed ? " What was not saved is gone if EPG has ended; Changes, below, still shows it." : null,
       ]),
     );
   }

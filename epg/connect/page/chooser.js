@@ -3,6 +3,7 @@
 import { configurationCards } from "./configurations.js";
 import { closeDialog, openDialog } from "./dialog.js";
 import { h } from "./dom.js";
+import { shortFile } from "./problems.js";
 import { current } from "./server.js";
 import { attempt, draw, ui } from "./ui.js";
 
@@ -31,7 +32,7 @@ export function chooseTarget() {
     h(
       "div",
       { class: "buttons sticky" },
-      h("p", { class: "muted" }, `Changes 'extends' in ${current().project?.files.tcf}, and can be undone.`),
+      h("p", { class: "muted" }, `Changes 'extends' in ${shortFile(current().project?.files.tcf || "")}, and can be undone.`),
       h("span", { class: "space" }),
       h("button", { type: "button", onclick: () => closeDialog("target") }, "Cancel"),
       h(

@@ -4,7 +4,7 @@ import { generate } from "./build.js";
 import { chooseTarget } from "./chooser.js";
 import { h } from "./dom.js";
 import { icon } from "./icons.js";
-import { counted } from "./problems.js";
+import { counted, shortFile } from "./problems.js";
 import { attempt, draw, ui } from "./ui.js";
 
 export function header(state) {
@@ -65,7 +65,7 @@ function projectName(state) {
 
 function targetButton(state) {
   const chosen = state.configurations.find((each) => each.chosen);
-  const name = chosen ? chosen.name : state.project.files.tcf;
+  const name = chosen ? chosen.name : shortFile(state.project.files.tcf);
   return h(
     "button",
     { class: "target", key: "target", onclick: chooseTarget, disabled: state.configurations.length === 0 || !state.editable },

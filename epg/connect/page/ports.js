@@ -19,11 +19,20 @@ export function modelHead(state) {
     count > 0 && state.editable
       ? h(
           "button",
-          { class: "accept-all", onclick: () => attempt("accept") },
+          { class: "accept-all", onclick: acceptAll },
           count === 1 ? "Accept 1 proposal" : `Accept all ${count} proposals`,
         )
       : null,
   );
+}
+
+// Buttons that go with what they offer leave the focus nowhere: the next thing to do gets it.
+async function acceptAll() {
+  if (await attempt("accept")) document.getElementById("main").focus();
+}
+
+async function accept(name) {
+  if (await attempt("accept", { ports: [name] })) document.getElementById(id("ends", name, 0))?.focus();
 }
 
 function stepText(step) {
@@ -73,7 +82,7 @@ function row(state, side, port, diagnostics) {
           {
             class: "proposal",
             key: "proposal",
-            onclick: () => attempt("accept", { ports: [name] }),
+            onclick: () => accept(name),
             "aria-label": `Accept ${proposal} for ${name}`,
             title: "Its name matches",
             disabled: !state.editable,

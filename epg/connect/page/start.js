@@ -34,22 +34,24 @@ function heading(id, number, title, text) {
 
 function modelStep(model) {
   if (!model) return h("section", { class: "step step-model", key: "model" }, heading("step-model", 1, "Model", "No model was found."));
-  const list = (title, ports) => [
-    h("h3", null, title, h("span", { class: "count" }, ` ${ports.length}`)),
+  const list = (title, ports) =>
     h(
-      "ul",
-      { class: "port-names", tabindex: ports.length > 8 ? "0" : null, "aria-label": title },
-      ports.map((port) => h("li", { key: port.name }, h("span", null, port.name), unitMark(port))),
-    ),
-  ];
+      "div",
+      { key: title },
+      h("h3", null, title, h("span", { class: "count" }, ` ${ports.length}`)),
+      h(
+        "ul",
+        { class: "port-names", tabindex: ports.length > 6 ? "0" : null, "aria-label": title },
+        ports.map((port) => h("li", { key: port.name }, h("span", null, port.name), unitMark(port))),
+      ),
+    );
   return h(
     "section",
     { class: "step step-model", key: "model", "aria-labelledby": "step-model" },
     heading("step-model", 1, "Model"),
     h("p", { class: "big" }, model.name),
     h("p", { class: "muted" }, [model.origin, model.step ? `step ${model.step} s` : ""].filter(Boolean).join(", ")),
-    list("Inputs", model.inputs),
-    list("Outputs", model.outputs),
+    h("div", { class: "port-lists" }, list("Inputs", model.inputs), list("Outputs", model.outputs)),
   );
 }
 
@@ -60,9 +62,10 @@ function projectStep(state) {
     const { folder, name } = event.target.elements;
     busy = true;
     draw();
-    await attempt("create", { configuration: ui.chosen, folder: folder.value.trim(), name: name.value.trim() });
+    const done = await attempt("create", { configuration: ui.chosen, folder: folder.value.trim(), name: name.value.trim() });
     busy = false;
     draw();
+    if (done) document.getElementById("main").focus();
   };
   return h(
     "section",
