@@ -9,8 +9,9 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from epg.connect.cmake_values import Variables
+from epg.connect.cmake_values import Variables, expression
 from epg.load.cmake_file import Argument
+from epg.load.text_file import is_file, is_folder
 
 _TRUE = re.compile(r"(ON|YES|TRUE|Y|-?[0-9]*[1-9][0-9]*)$", re.IGNORECASE)
 _FALSE = re.compile(r"(0|OFF|NO|FALSE|N|IGNORE|NOTFOUND|.*-NOTFOUND|)$", re.IGNORECASE)
@@ -84,7 +85,7 @@ class _Condition:
         if test == "DEFINED":
             return True if self.variables.get(text) is not None else None
         if test in ("EXISTS", "IS_DIRECTORY") and Path(text).is_absolute():
-            return Path(text).exists() if test == "EXISTS" else Path(text).is_dir()
+            return is_folder(Path(text)) or (test == "EXISTS" and is_file(Path(text)))
         return None
 
     def _binary(self, first: Argument, test: str, second: Argument) -> bool | None:
@@ -98,12 +99,8 @@ class _Condition:
             return None
         if test == "STREQUAL" or (test == "EQUAL" and left.isdigit() and right.isdigit()):
             return left == right if test == "STREQUAL" else int(left) == int(right)
-        if test == "MATCHES":
-            try:
-                return re.search(right, left) is not None
-            except re.error:
-                return None
-        return None
+        pattern = expression(right) if test == "MATCHES" else None
+        return pattern.search(left) is not None if pattern is not None and len(left) < 300 else None
 
     def _operand(self, argument: Argument) -> str | None:
         """A value, or the variable of that name: one in capitals may be set where nobody looks."""

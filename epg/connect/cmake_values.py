@@ -19,6 +19,11 @@ from epg.load.cmake_file import Argument
 from epg.source import Span
 
 _REFERENCE = re.compile(r"\$(ENV|CACHE)?\{")
+MAX_LENGTH = 10_000
+"""Longer values are not known: they could double with every line."""
+_NOT_PYTHONS = re.compile(r"\(\?|[*+?}][?+]|\[\[|\\[A-Za-z0-9]")
+_REPEATED_GROUP = re.compile(r"\)[*+?]")
+"""Could take Python for ever."""
 _NAME = re.compile(r"[A-Za-z_]\w*")
 _SEMICOLON = "\0"
 """Stands for ``\\;``, which separates no elements."""
@@ -32,6 +37,16 @@ class Word:
     text: str | None
     written: str
     span: Span
+
+
+def expression(pattern: str) -> re.Pattern[str] | None:
+    """A regular expression that means the same to CMake and to Python, or None."""
+    if _NOT_PYTHONS.search(pattern) or _REPEATED_GROUP.search(pattern):
+        return None
+    try:
+        return re.compile(pattern)
+    except re.error:
+        return None
 
 
 class Variables:
@@ -114,7 +129,8 @@ class Variables:
             else:
                 found.append(text[at])
                 at += 1
-        return ("".join(found) if known else None), at
+        value = "".join(found)
+        return (value if known and len(value) <= MAX_LENGTH else None), at
 
     def _refer(self, where: str | None, name: str) -> str | None:
         if where == "ENV":

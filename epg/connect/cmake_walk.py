@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from epg.connect.cmake_condition import condition
-from epg.connect.cmake_values import Variables, Word
+from epg.connect.cmake_values import MAX_LENGTH, Variables, Word, expression
 from epg.load.cmake_file import Command, NotCMake, parse_cmake
 from epg.source import Span
 
@@ -74,7 +74,7 @@ class Walk:
         try:
             text = path.read_bytes().decode("utf-8-sig", "replace")
             tree = _tree(parse_cmake(text, str(path)))
-        except OSError:
+        except (OSError, ValueError):
             return  # CMake says so when it configures
         except NotCMake as problem:
             self.unknown.append(Unknown(problem.span, f"this is not understood: {problem}"))
@@ -82,7 +82,10 @@ class Walk:
         for name in ("CMAKE_CURRENT_SOURCE_DIR", "CMAKE_CURRENT_LIST_DIR"):
             variables.set(name, folder.as_posix())
         variables.set("CMAKE_CURRENT_LIST_FILE", path.as_posix())
-        _File(self, folder, depth).run(tree, variables, certain)
+        try:
+            _File(self, folder, depth).run(tree, variables, certain)
+        except RecursionError:
+            self.unknown.append(Unknown(Span(str(path)), "this is nested too deeply"))
 
     def enter(self, folder: Path, variables: Variables, depth: int, certain: bool) -> None:
         """What add_subdirectory() does."""
@@ -220,7 +223,8 @@ def _set(command: str, name: str, rest: Sequence[Word], variables: Variables, ce
     cached = texts.index("CACHE") if "CACHE" in texts else None
     values = texts[:cached]
     known = [value for value in values if value is not None]
-    value = ";".join(known) if len(known) == len(values) else None
+    joined = ";".join(known)
+    value = joined if len(known) == len(values) and len(joined) <= MAX_LENGTH else None
     if cached is None:
         variables.set(name, value)
     else:
@@ -229,11 +233,12 @@ def _set(command: str, name: str, rest: Sequence[Word], variables: Variables, ce
 
 def _replaced(pattern: str | None, replacement: str | None, text: str | None) -> str | None:
     """string(REGEX REPLACE) of expressions that mean the same to CMake and Python."""
-    if pattern is None or replacement is None or text is None or re.search(r"\(\?|[*+?}][?+]|\[\[|\\[A-Za-z]", pattern):
+    compiled = expression(pattern) if pattern is not None else None
+    if compiled is None or replacement is None or text is None or len(text) > 300:
         return None
     try:
-        return re.sub(pattern, replacement, text)
-    except (re.error, IndexError):
+        return compiled.sub(replacement, text)
+    except (re.error, IndexError):  # in the replacement
         return None
 
 

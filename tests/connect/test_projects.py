@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shutil
 import subprocess
+import time
 from pathlib import Path
 
 import pytest
@@ -266,3 +267,23 @@ def test_the_same_text_as_cmake_reads(tmp_path: Path) -> None:
             parse_cmake(path.read_text(encoding="utf-8"), str(path))
         except NotCMake as problem:
             pytest.fail(f"{problem.span}: {problem}")
+
+
+HOSTILE = {
+    "parentheses": "a(" + "(" * 3000,
+    "blocks": "if(A)\n" * 3000 + "endif()\n" * 3000,
+    "references": "set(a " + "${" * 4000 + "b" + "}" * 4000 + ")\n",
+    "negations": "if(" + "NOT " * 4000 + "A)\nendif()\n",
+    "values that double": "set(a x)\n" + "set(a ${a}${a})\n" * 60,
+    "lists that double": "set(a x;x)\n" + "set(a ${a} ${a})\n" * 60,
+    "a slow expression": f'if("{"a" * 60}!" MATCHES "^(a|a)*$")\nendif()\nstring(REGEX REPLACE "(a*)*b" "" r {"a" * 60})\n',
+    "names no system has": f'add_subdirectory("a\nb")\nadd_subdirectory({"x" * 5000})\nif(EXISTS "/{"x" * 5000}")\nendif()\n',
+    "NUL": "set(a \0)\n",
+}
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_any_text_ends_soon(name: str, tmp_path: Path) -> None:
+    start = time.monotonic()
+    found(project(tmp_path, f"project(p C)\n{HOSTILE[name]}{CALL}"))
+    assert time.monotonic() - start < 5
