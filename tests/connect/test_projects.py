@@ -276,8 +276,10 @@ HOSTILE = {
     "negations": "if(" + "NOT " * 4000 + "A)\nendif()\n",
     "values that double": "set(a x)\n" + "set(a ${a}${a})\n" * 60,
     "lists that double": "set(a x;x)\n" + "set(a ${a} ${a})\n" * 60,
-    "a slow expression": f'if("{"a" * 60}!" MATCHES "^(a|a)*$")\nendif()\nstring(REGEX REPLACE "(a*)*b" "" r {"a" * 60})\n',
-    "names no system has": f'add_subdirectory("a\nb")\nadd_subdirectory({"x" * 5000})\nif(EXISTS "/{"x" * 5000}")\nendif()\n',
+    "a slow test": f'if("{"a" * 60}!" MATCHES "^(a|a)*$")\nendif()\n',
+    "a slow replacement": f'string(REGEX REPLACE "(a*)*b" "" r {"a" * 60})\n',
+    "folders no system has": f'add_subdirectory("a\nb")\nadd_subdirectory({"x" * 5000})\n',
+    "files no system has": f'if(EXISTS "/{"x" * 5000}")\nendif()\n',
     "NUL": "set(a \0)\n",
 }
 
