@@ -4,19 +4,25 @@
  */
 #include "pwm_h_bridge.h"
 
+/** From a bridge that is off. */
 static void set_pins(epg_pwm_h_bridge_t *bridge, const epg_pwm_h_bridge_config_t *config)
 {
     const epg_bridge_state_t state = bridge->bridge.state;
+    if (state == EPG_BRIDGE_FORWARDS || state == EPG_BRIDGE_BRAKE) {
+        epg_port_output_write(config->pin_a, true);
+    }
+    if (state == EPG_BRIDGE_BACKWARDS || state == EPG_BRIDGE_BRAKE) {
+        epg_port_output_write(config->pin_b, true);
+    }
     bridge->shown = state;
-    epg_port_output_write(config->pin_a, state == EPG_BRIDGE_FORWARDS || state == EPG_BRIDGE_BRAKE);
-    epg_port_output_write(config->pin_b, state == EPG_BRIDGE_BACKWARDS || state == EPG_BRIDGE_BRAKE);
 }
 
-static void off(const epg_pwm_h_bridge_config_t *config)
+static void off(epg_pwm_h_bridge_t *bridge, const epg_pwm_h_bridge_config_t *config)
 {
     epg_port_pwm_write(&config->pwm, 0);
     epg_port_output_write(config->pin_a, false);
     epg_port_output_write(config->pin_b, false);
+    bridge->shown = EPG_BRIDGE_COAST;
 }
 
 void epg_pwm_h_bridge_start(epg_pwm_h_bridge_t *bridge, const epg_pwm_h_bridge_config_t *config)
@@ -35,13 +41,12 @@ void epg_pwm_h_bridge_safe(epg_pwm_h_bridge_t *bridge, const epg_pwm_h_bridge_co
         set_pins(bridge, config);
         epg_port_pwm_write(&config->pwm, bridge->bridge.level);
     } else {
-        off(config);
-        bridge->shown = EPG_BRIDGE_COAST;
+        off(bridge, config);
     }
 }
 
 void epg_pwm_h_bridge_change(epg_pwm_h_bridge_t *bridge, const epg_pwm_h_bridge_config_t *config)
 {
-    off(config);
+    off(bridge, config);
     set_pins(bridge, config);
 }

@@ -37,6 +37,14 @@ static struct {
     uint64_t period_ns;
 } loop;
 
+/**
+ * The target's application.  On RP2040 and RP2350, where outputs act at the PWM's wraps and the tick is one too, no
+ * interrupt comes between its writes, so that one that comes then makes no output miss its wrap.  Interrupts wait for
+ * as long as that takes: for JIWY 3 us, and 13 us in a cycle in which both motors change their direction (RP2040 at
+ * 125 MHz).  A driver of yours that sleeps in a write lets them in.
+ */
+static epg_application_t wrapped;
+
 static bool running; /* the thread is there */
 static atomic_bool stopping;
 
@@ -77,6 +85,23 @@ static bool held(void)
         k_sem_give(&hold_answered);
     }
     return atomic_load(&hold_granted);
+}
+
+static void write_uninterrupted(void)
+{
+    const unsigned int key = irq_lock();
+    loop.application->write();
+    irq_unlock(key);
+}
+
+static const epg_application_t *wrap(const epg_application_t *application)
+{
+    if (!IS_ENABLED(CONFIG_EPG_TICK_PICO_PWM)) {
+        return application;
+    }
+    wrapped = *application;
+    wrapped.write = write_uninterrupted;
+    return &wrapped;
 }
 
 static void cycle(void)
@@ -125,7 +150,7 @@ epg_zephyr_error_t epg_zephyr_control_start(const epg_zephyr_target_t *zephyr, e
 
     epg_zephyr_device_refused = false;
     epg_native_sim_starting();
-    epg_control_start(loop.control, application);
+    epg_control_start(loop.control, wrap(application));
     epg_native_sim_started();
     if (fault != EPG_FAULT_NONE) {
         epg_control_fault(loop.control, fault, EPG_NO_COMPONENT);

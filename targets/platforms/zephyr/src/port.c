@@ -9,6 +9,9 @@
 #include <zephyr/logging/log.h>
 
 #include "parts.h"
+#ifdef CONFIG_EPG_TICK_PICO_PWM
+#include "pwm_pico.h"
+#endif
 
 LOG_MODULE_DECLARE(epg, CONFIG_EPG_LOG_LEVEL);
 
@@ -50,16 +53,26 @@ uint64_t epg_port_time_ns(void)
     return clocks_to_ns(k_cycle_get_64());
 }
 
+/** From the interrupt that ends a sleep to the thread that slept, with others before it. */
+#define WAKING_NS 50000
+
+/**
+ * Ticks of the system clock that a sleep takes more than it is asked for: to the end of the one that has begun, and,
+ * when one ends between the kernel's reading the time and its setting the timer (z_add_timeout()), one more, for this
+ * timeout and for all that end in the same tick as the one it was set for.
+ */
+#define LONGER_TICKS 2
+
 void epg_port_wait_until(uint64_t time_ns)
 {
 #ifdef CONFIG_ARCH_POSIX
     ARG_UNUSED(time_ns); /* time is simulated */
 #else
-    /* The processor is for others until a tick of the system clock before; the rest is too short for that. */
-    const int64_t left = (int64_t)(time_ns - epg_port_time_ns());
+    /* The processor is for others until shortly before; the rest is too short for that. */
+    const int64_t left = (int64_t)(time_ns - epg_port_time_ns()) - WAKING_NS;
     const int64_t whole = left > 0 ? (int64_t)k_ns_to_ticks_floor32((uint32_t)MIN(left, UINT32_MAX)) : 0;
-    if (whole > 1) {
-        (void)k_sleep(K_TICKS((k_ticks_t)(whole - 1)));
+    if (whole > LONGER_TICKS) {
+        (void)k_sleep(K_TICKS((k_ticks_t)(whole - LONGER_TICKS)));
     }
     while (epg_port_time_ns() < time_ns) {
         arch_nop(); /* time passes, so this ends */
@@ -104,29 +117,36 @@ static int find_period(const epg_port_pwm_t *config)
     return error;
 }
 
-/** Sets the high time, as a level out of `top + 1`. */
-static int set_level(const epg_port_pwm_t *config, uint32_t level)
+/** The high time for a level out of `steps`, in clocks of the device. */
+static inline uint32_t pulse_of(uint32_t level, uint32_t steps, uint32_t period)
+{
+    return period == steps ? level : (uint32_t)((uint64_t)period * level / steps);
+}
+
+void epg_port_pwm_start(const epg_port_pwm_t *config)
+{
+    check(find_period(config));
+    size_t row = 0;
+    const epg_zephyr_pwm_t *pwm = find_pwm(config->block, config->unit, &row);
+    if (pwm != NULL) {
+        check(pwm_set_cycles(pwm->device, pwm->channel, periods[row], 0, pwm->flags));
+    }
+}
+
+void epg_port_pwm_write(const epg_port_pwm_t *config, uint32_t level)
 {
     size_t row = 0;
     const epg_zephyr_pwm_t *pwm = find_pwm(config->block, config->unit, &row);
     if (pwm == NULL) {
-        return -ENODEV;
+        return; /* the start said so */
     }
-    const uint32_t period = periods[row];
-    const uint32_t steps = config->top + 1U;
-    const uint32_t pulse = period == steps ? level : (uint32_t)((uint64_t)period * level / steps);
-    return pwm_set_cycles(pwm->device, pwm->channel, period, pulse, pwm->flags);
-}
-
-void epg_port_pwm_start(const epg_port_pwm_t *pwm)
-{
-    check(find_period(pwm));
-    check(set_level(pwm, 0));
-}
-
-void epg_port_pwm_write(const epg_port_pwm_t *pwm, uint32_t level)
-{
-    (void)set_level(pwm, level); /* what can be refused was refused at the start */
+    const uint32_t pulse = pulse_of(level, config->top + 1U, periods[row]);
+#ifdef CONFIG_EPG_TICK_PICO_PWM
+    if (epg_zephyr_pwm_take(pwm, pulse)) {
+        return;
+    }
+#endif
+    (void)pwm_set_cycles(pwm->device, pwm->channel, periods[row], pulse, pwm->flags); /* refusals came at the start */
 }
 
 /* Pins ------------------------------------------------------------------------------------------------------------ */

@@ -32,7 +32,10 @@ static bool receive(const struct device *device, epg_zephyr_lines_t *lines)
     return count > 0;
 }
 
-/** Sends what lies together in the ring; false when there is nothing more, or the device takes nothing more. */
+/**
+ * Sends what lies together in the ring; false when there is nothing more, or the device takes nothing more.  In pieces:
+ * USB's driver copies one with interrupts off, and the tick's would wait for that.
+ */
 static bool send(const struct device *device, epg_ring_t *ring)
 {
     const uint32_t count = epg_ring_count(ring);
@@ -40,7 +43,7 @@ static bool send(const struct device *device, epg_ring_t *ring)
         uart_irq_tx_disable(device);
         return false;
     }
-    const uint32_t together = MIN(count, ring->size - ring->taken_at);
+    const uint32_t together = MIN(MIN(count, ring->size - ring->taken_at), PIECE);
     const int taken = uart_fifo_fill(device, ring->bytes + ring->taken_at, (int)together);
     if (taken <= 0) {
         return false;

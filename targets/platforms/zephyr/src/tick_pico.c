@@ -115,9 +115,11 @@ void epg_zephyr_tick_stop(void)
 
 uint64_t epg_zephyr_tick_newest_ns(uint64_t *now_ns)
 {
+    /* In this order, so that what lies between the two, in a flash that may have to be read first, makes the tick later
+     * and not earlier: outputs wait for its time, and a level that were there before the wrap would act at that. */
     const unsigned int key = irq_lock();
-    *now_ns = epg_port_time_ns();
     const uint32_t count = pwm_hw->slice[state.slice].ctr;
+    *now_ns = epg_port_time_ns();
     irq_unlock(key);
     return *now_ns - (count * state.ns_per_count >> 24);
 }

@@ -1,0 +1,35 @@
+/**
+ * @file
+ * Levels of RP2040's and RP2350's PWM, by one register.
+ *
+ * Zephyr's driver sets polarity, TOP, level and divider of a channel at each call.  All but the level stay as they were
+ * at the start, so in a cycle that one register is enough: 0.3 us less of the time between an output's instant and the
+ * wrap at which it is to act, in which interrupts come too.
+ */
+#ifndef EPG_ZEPHYR_PWM_PICO_H
+#define EPG_ZEPHYR_PWM_PICO_H
+
+#include <zephyr/devicetree.h>
+
+#include <hardware/pwm.h>
+
+#include "epg/zephyr.h"
+
+#define EPG_PICO_PWM_NODE DT_NODELABEL(pwm)
+
+/** Where the devicetree has no divider, the driver computes one, and divides the level by it. */
+#define EPG_PICO_PWM_DIVIDED(slice, _) ((DT_PROP_OR(EPG_PICO_PWM_NODE, divider_int_##slice, 0) != 0 ? 1U : 0U) << slice)
+
+/** Takes over a high time in clocks that have been divided, after epg_port_pwm_start(); false: the driver has to. */
+static inline bool epg_zephyr_pwm_take(const epg_zephyr_pwm_t *pwm, uint32_t pulse)
+{
+    const uint32_t divided = LISTIFY(8, EPG_PICO_PWM_DIVIDED, (|));
+    const uint32_t slice = pwm->channel / 2U;
+    if (pwm->device != DEVICE_DT_GET(EPG_PICO_PWM_NODE) || (divided >> slice & 1U) == 0U || pulse > UINT16_MAX) {
+        return false;
+    }
+    pwm_set_chan_level(slice, pwm->channel % 2U, (uint16_t)pulse);
+    return true;
+}
+
+#endif
