@@ -20,7 +20,9 @@ from epg.connect.build_plan import make_plan
 from epg.connect.projects import Job
 from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
+from epg.load.tools import load_tools
 from epg.new_project import ProjectRequest, write_project
+from epg.project import make_catalog
 from tests.connect.builds import job_of, processes, run
 from tests.emulator.toolchain import arm_gcc, skip_if_missing
 
@@ -282,6 +284,19 @@ def test_the_commands_are_those_a_person_types(robot: Path, tmp_path: Path, monk
     assert commands[0] == ("--preset", "release", "-B", str(tmp_path / "new/build"), "-G", "Ninja")
     monkeypatch.setenv("CMAKE_GENERATOR", "Unix Makefiles")
     assert "-G" not in plan_of(job_of(tmp_path / "new"))[0][0], "who has said which, keeps it"
+
+
+def test_every_platform_says_what_builds_need_and_make() -> None:
+    catalog = make_catalog(targets_roots(()), Diagnostics())
+    tools = load_tools(targets_roots(()), Diagnostics())
+    targets = [target for name in catalog.target_names() if (target := catalog.find_target(name)) is not None]
+    assert len(targets) > 9
+    for target in targets:
+        platform = target.platform
+        assert {"cmake", "build_program"} <= set(platform.needs) <= set(tools), platform.name
+        assert platform.products and all(product.what for product in platform.products)
+        if platform.built_by == "west":
+            assert target.board.sdks[platform.sdk], "west needs the board's name"
 
 
 def test_nothing_of_this_process_reaches_the_build(
