@@ -40,6 +40,7 @@ class Start:
             "wires": {},
             "proposals": {},
             "candidates": {},
+            "fits": {},
             "diagnostics": [diagnostic_view(problem) for problem in self._problems],
             "hardware": [],
             "pictures": {"wiring": False, "application": False, "schedule": False},

@@ -9,6 +9,7 @@ from typing import Any
 
 from epg.check.configuration import Component, Configuration
 from epg.check.names import absolute_topic
+from epg.connect.fitting import fits
 from epg.connect.loaded import Loaded
 from epg.connect.places import Places
 from epg.diagnostics import Diagnostic
@@ -21,6 +22,7 @@ from epg.load.models.model import Model, Port
 from epg.quantity import normal_unit
 from epg.resolve.application import Step
 from epg.resolve.claims import TICK
+from epg.resolve.matching import Match
 from epg.resolve.wires import component_steps
 from epg.source import Span
 
@@ -44,6 +46,7 @@ def view_of(loaded: Loaded) -> Data:
             and (match.port.direction == "input" or match.reference not in taken)
         },
         "candidates": {name: list(match.candidates) for name, match in loaded.matches.items()},
+        "fits": {name: _fitting(match, loaded) for name, match in loaded.matches.items()},
         "diagnostics": [diagnostic_view(diagnostic, loaded.places) for diagnostic in loaded.diagnostics],
         "hardware": _hardware(loaded),
         "pictures": pictures(loaded),
@@ -145,6 +148,13 @@ def _wire(end: End, name: str, direction: str, loaded: Loaded) -> Data:
         "text": own,
         "from_tcf": given,
     }
+
+
+def _fitting(match: Match, loaded: Loaded) -> list[str]:
+    """Those of the candidates that agree with the port in type and unit too."""
+    direction = "source" if match.port.direction == "input" else "sink"
+    ends = {reference: _end(reference, direction, loaded.parts.configuration) for reference in match.candidates}
+    return [reference for reference, end in ends.items() if end is not None and fits(match.port, *end)]
 
 
 def _end(reference: str, direction: str, configuration: Configuration | None) -> tuple[Component, KindPort] | None:

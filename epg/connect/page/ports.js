@@ -6,7 +6,7 @@ import { handle, match, modelLabel } from "./handles.js";
 import { icon } from "./icons.js";
 import { inline } from "./problems.js";
 import { attempt, draw, ui } from "./ui.js";
-import { disconnect, endsOf, isUnconnected, replaceEnd, setEnds, unitMark } from "./wiring.js";
+import { disconnect, endsOf, fits, isUnconnected, replaceEnd, setEnds, unitMark } from "./wiring.js";
 
 export function modelHead(state) {
   const { model, proposals } = state;
@@ -147,7 +147,11 @@ function options(state, side, port, end, n) {
   }
   const references = [...(state.candidates[name] || [])];
   if (end && !references.includes(end.reference)) references.push(end.reference);
-  for (const reference of references) list.push(h("option", { key: `:${reference}`, value: `:${reference}` }, reference));
+  const option = (reference) => h("option", { key: `:${reference}`, value: `:${reference}` }, reference);
+  const good = references.filter((reference) => fits(state, side, name, reference));
+  const others = references.filter((reference) => !good.includes(reference));
+  list.push(...good.map(option));
+  if (others.length) list.push(h("optgroup", { key: "others", label: "other unit or type" }, others.map(option)));
   return list;
 }
 

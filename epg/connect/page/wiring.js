@@ -29,7 +29,7 @@ export const isUnconnected = (state, port) => port in state.wires && state.wires
 // Whether two ends fit by direction, type and unit, as the server says.
 export function fits(state, side, name, other) {
   const [port, reference] = ofModel(side) ? [name, other] : [other, name];
-  return (state.candidates[port] || []).includes(reference);
+  return (state.fits[port] || []).includes(reference);
 }
 
 export function unitText({ unit, type }) {

@@ -41,7 +41,7 @@ def take_pictures(folder: Path = PICTURES) -> None:
         page = browser.new_context(viewport=SIZE, reduced_motion="reduce").new_page()
         page.goto(epg.address)
         _start(page, folder)
-        _connect(page, epg, folder)
+        _wires(page, epg, folder)
         _build(page, epg, folder)
         browser.close()
     shutil.rmtree(place, ignore_errors=True)
@@ -56,7 +56,7 @@ def _start(page: Any, folder: Path) -> None:
     page.locator(".diagram").wait_for()
 
 
-def _connect(page: Any, epg: Served, folder: Path) -> None:
+def _wires(page: Any, epg: Served, folder: Path) -> None:
     _end(epg, "position_pan", reference="encoder_pan", scale="1/2", limits=["-1", "1"])
     page.get_by_role("button", name="Conversion from encoder_pan to position_pan: ×1/2").click()
     _take(page, folder, "conversion")
@@ -66,7 +66,7 @@ def _connect(page: Any, epg: Served, folder: Path) -> None:
         epg.act("disconnect", port=port)
     page.locator("path.wire.proposed").nth(1).wait_for(state="attached")
     page.evaluate("document.activeElement.blur()")
-    _take(page, folder, "connect")
+    _take(page, folder, "wires")
     _end(epg, "setpoint_tilt", reference="tilt_subscriber", unit="V")
     _end(epg, "pwm_tilt", reference="pwm_pan")
     page.get_by_text("2 errors").wait_for()

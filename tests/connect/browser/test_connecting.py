@@ -6,6 +6,7 @@ import json
 import subprocess
 import sys
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -13,18 +14,18 @@ import yaml
 
 from .acts import drag, field, handle, port, save, until
 from .conftest import Project
-from .served import ROOT
+from .served import ROOT, Served
 
 Open = Callable[..., Any]
 UNBOUND = ("  position_tilt: encoder_tilt\n", "")
 FREE = ("  pwm_tilt: pwm_tilt\n", "")
 
 
-def check_says(project: Project) -> list[dict[str, Any]]:
+def check_says(tcf: Path | str, folder: Path, bindings: Path) -> list[dict[str, Any]]:
     """What ``epg check`` says of the files on the disk."""
     command = [
-        sys.executable, "-m", "epg", "check", "--json", "--tcf", "host_jiwy.tcf",
-        "--model", str(project.folder / "model"), "--bindings", str(project.file),
+        sys.executable, "-m", "epg", "check", "--json", "--tcf", str(tcf),
+        "--model", str(folder / "model"), "--bindings", str(bindings),
     ]  # fmt: skip
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, encoding="utf-8", check=False)
     found: list[dict[str, Any]] = json.loads(done.stdout)["diagnostics"]
@@ -59,7 +60,7 @@ def test_connects_by_drag(jiwy: Project, open_page: Open, backwards: bool) -> No
     def marks() -> None:
         side = "sources" if backwards else "inputs"
         marked = page.locator(f'.port.fits[data-side="{side}"]')
-        candidates = jiwy.epg.state()["candidates"]
+        candidates = jiwy.epg.state()["fits"]
         if backwards:
             expected = set(candidates["position_tilt"])
         else:
@@ -101,7 +102,7 @@ def test_connects_by_list(jiwy: Project, open_page: Open) -> None:
     page = open_page(jiwy.address)
     options = field(page, "position_tilt").locator("option").all_inner_texts()
     assert options[0] == "(not connected)"
-    assert options[1:] == jiwy.epg.state()["candidates"]["position_tilt"]
+    assert options[1:] == jiwy.epg.state()["candidates"]["position_tilt"], "all fit"
     field(page, "position_tilt").select_option("encoder_pan")
     page.get_by_text("● Unsaved changes").wait_for()
     field(page, "setpoint_pan").select_option("")
@@ -187,7 +188,7 @@ def test_conflicts_have_the_words_of_the_command_line(
         drag(page, handle(page, side, name), handle(page, "sinks", other))
         page.get_by_text("● Unsaved changes").wait_for()
         save(page)
-    found = check_says(jiwy)
+    found = check_says("host_jiwy.tcf", jiwy.folder, jiwy.file)
     assert found
     for each in found:
         if each["id"].startswith("unbound"):
@@ -202,6 +203,48 @@ def test_conflicts_have_the_words_of_the_command_line(
     assert port(page, name).get_by_text(at_port["message"]).is_visible()
     page.locator(".problem-list").get_by_text(at_port["message"], exact=True).click()
     assert page.evaluate("document.activeElement.id") == field(page, name).get_attribute("id")
+
+
+def test_what_does_not_fit_can_be_dropped(browser: Any, open_page: Open, tmp_path: Path) -> None:
+    """A type and a unit that no list offers: marked as such while dragging, and judged by the command line's words."""
+    (tmp_path / "model").mkdir()
+    (tmp_path / "model/lamp.h").write_text(
+        "#include <stdbool.h>\ntypedef struct { bool on; double volts; } in_t;\n"
+        "typedef struct { double light; } out_t;\n"
+        "void lamp(const in_t *in, out_t *out);\n",
+        encoding="utf-8",
+    )
+    (tmp_path / "model/lamp.c").write_text('#include "lamp.h"\nvoid lamp(const in_t *in, out_t *out) {}\n', "utf-8")
+    (tmp_path / "model/model.yaml").write_text(
+        "version: 1\nstep: 1 ms\nheader: lamp.h\nsources: [lamp.c]\ntypes: {inputs: in_t, outputs: out_t}\n"
+        "functions: {step: lamp}\ninputs: {on: {type: boolean}, volts: {unit: V}}\noutputs: {light: {}}\n",
+        encoding="utf-8",
+    )
+    tcf, bindings = tmp_path / "lamp.tcf", tmp_path / "lamp.bindings.yaml"
+    tcf.write_text(
+        "version: 1\ntarget: host\nnode: lamp\ncontrol: {enable_at_start: true}\ncomponents:\n"
+        "  knob: {kind: quadrature_encoder, counts_per_revolution: 400}\n"
+        "  light: {kind: ros_publisher, topic: light}\n",
+        encoding="utf-8",
+    )
+    bindings.write_text("version: 1\nmodel: model\noutputs: {light: light}\n", encoding="utf-8")
+    with Served("--tcf", tcf, "--model", tmp_path / "model", "--bindings", bindings) as epg:
+        page = open_page(epg.address)
+
+        def marks() -> None:
+            assert page.locator(".port.fits").count() == 0
+            assert page.locator('.port.other[data-side="inputs"]').count() == 2
+
+        for name in ("on", "volts"):
+            assert port(page, name).locator("optgroup option").all_inner_texts() == ["knob"]
+            drag(page, handle(page, "sources", "knob"), handle(page, "inputs", name), halfway=marks)
+            until(page, f"document.getElementById('ends-{name}-0').value === ':knob'")
+        save(page)
+        found = check_says(tcf, tmp_path, bindings)
+        assert {each["id"] for each in found} == {"wrong-port-type", "unit-mismatch"}
+        for each, name in zip(found, ("on", "volts"), strict=True):
+            assert port(page, name).get_by_text(each["message"]).is_visible()
+            assert port(page, name).get_by_text(each["hint"]).is_visible()
 
 
 def test_a_message_without_a_port_shows_its_line(jiwy: Project, open_page: Open) -> None:
