@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import signal
 import sys
 import threading
 from pathlib import Path
@@ -73,6 +74,9 @@ def _serve(session: Session, options: argparse.Namespace) -> int:
     sys.stdout.flush()
     if not options.no_browser:
         threading.Thread(target=_open_browser, args=(server.address,), daemon=True).start()  # some wait for its end
+    for name in ("SIGTERM", "SIGHUP"):  # whoever ends this, a build ends with it
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), signal.default_int_handler)
     try:
         server.run(until_closed=options.until_closed)
     except KeyboardInterrupt:

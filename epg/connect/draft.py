@@ -62,6 +62,7 @@ class Draft:
         self._done: list[_Done] = []
         self._undone: list[tuple[Operation, Texts]] = []
         self._saved = 0  # how many operations the files hold
+        self._diverged = False  # from those: some were undone, and others came in their place
 
     @property
     def changed(self) -> bool:
@@ -83,6 +84,9 @@ class Draft:
     def do(self, operation: Operation, model: Model | None) -> None:
         """Applies ``operation``, or raises CannotEdit with the texts as they were."""
         after = self._applied(self.texts, operation, model)
+        if after == self.texts:
+            return
+        self._diverged |= len(self._done) < self._saved
         self._done.append(_Done(operation, self.texts))
         self._undone.clear()
         self.texts = after
@@ -102,26 +106,27 @@ class Draft:
         return [after for _, after in self._pairs()]
 
     def saved(self, after: Snapshot) -> None:
-        """One of the files is now this, and holds all of the draft that belongs to it."""
+        """One of the files is now this."""
         if after.path == self.bindings.path:
             self.bindings = after
         else:
             self.tcf = after
-        self._saved = len(self._done)
+        if not self.changed:
+            self._saved, self._diverged = len(self._done), False
 
     def rebase(self, bindings: Snapshot, tcf: Snapshot, model: Model | None) -> int:
         """The files are now these: applies what is not saved to them; how many operations that were.
 
         Raises CannotEdit, with everything as it was, where one of them does not fit the new text any more.
         """
-        if len(self._done) < self._saved and self.changed:
+        if self.changed and (self._diverged or len(self._done) < self._saved):
             raise CannotEdit("what was saved and then undone cannot be taken out of the new text")
         operations = [done.operation for done in self._done[self._saved :]]
         other = Draft(bindings, tcf, self._fresh)
         for operation in operations:
             other.do(operation, model)
         self.bindings, self.tcf, self.texts = bindings, tcf, other.texts
-        self._done, self._undone, self._saved = other._done, [], 0
+        self._done, self._undone, self._saved, self._diverged = other._done, [], 0, False
         return len(operations)
 
     def before_saving(self, path: Path) -> Snapshot:
@@ -155,12 +160,12 @@ class Draft:
             if isinstance(change, SetExtends):
                 if texts.tcf is None:
                     raise CannotEdit(f"'{self.tcf.path.name}' cannot be read")
-                texts = replace(texts, tcf=set_extends(texts.tcf, str(self.tcf.path), change.name))
+                texts = replace(texts, tcf=set_extends(texts.tcf, self.tcf.path.name, change.name))
             elif texts.bindings is None or model is None:
                 what = "the bindings" if texts.bindings is None else "the model"
                 raise CannotEdit(f"{what} must be right before ports can be connected: see the messages")
             else:
-                text = set_ends(texts.bindings, str(self.bindings.path), model, change.port, change.ends)
+                text = set_ends(texts.bindings, self.bindings.path.name, model, change.port, change.ends)
                 texts = replace(texts, bindings=text)
         return texts
 

@@ -229,14 +229,15 @@ def test_done_ends_the_program(project: Path) -> None:
         assert (process.returncode, out, err) == (0, "", "")
 
 
-def test_ctrl_c_ends_the_program(project: Path) -> None:
+@pytest.mark.parametrize("name", ["SIGINT"] if sys.platform == "win32" else ["SIGINT", "SIGTERM", "SIGHUP"])
+def test_a_signal_ends_the_program(name: str, project: Path) -> None:
     with program(str(project)) as (process, page):
         version = page.until(lambda state: state["configurations"])["version"]
         with socket.create_connection(("127.0.0.1", urlsplit(page.address).port or 0)) as waiting:
             path = f"{urlsplit(page.address).path}api/state?after={version}"
             waiting.sendall(f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n".encode())
             time.sleep(0.3)
-            process.send_signal(CTRL_C)
+            process.send_signal(CTRL_C if name == "SIGINT" else getattr(signal, name))
             out, err = process.communicate(timeout=20)
             assert process.returncode == 0 and err == "" and "Traceback" not in out
 

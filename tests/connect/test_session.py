@@ -206,6 +206,29 @@ def test_a_conflict_is_the_users_to_solve(page: Page, bindings: Path) -> None:
     assert "setpoint_pan: tilt_subscriber" in bindings.read_text()
 
 
+def test_what_was_saved_and_undone_is_not_lost(page: Page, bindings: Path) -> None:
+    """Changes that take something back which the file holds cannot be applied to another text: the user decides."""
+    page.connect("pan_logging", "pan_publisher", scale=2)
+    page.post("save")
+    page.post("undo")
+    page.connect("tilt_logging", "tilt_publisher", scale=3)
+    bindings.write_text(bindings.read_text() + "# by an editor\n")
+    state = page.until(lambda state: state["draft"]["conflict"] or state["draft"]["external"])
+    assert state["draft"]["conflict"] and "undone" in state["draft"]["conflict"]["message"]
+    scales = [state["wires"][port][0]["scale"] for port in ("pan_logging", "tilt_logging")]
+    assert scales == ["", "3"], "the draft is as it was"
+    page.post("save", anyway=True)
+    assert "by an editor" not in bindings.read_text() and "scale: 3" in bindings.read_text()
+
+
+def test_a_change_that_changes_nothing_is_none(page: Page) -> None:
+    state = page.connect("pwm_pan", "pwm_pan")
+    assert not state["draft"]["changed"] and not state["draft"]["can_undo"]
+    page.post("disconnect", port="pwm_pan")
+    page.post("disconnect", port="pwm_pan")
+    assert not page.post("undo")["draft"]["can_undo"]
+
+
 def test_a_conflict_ends_by_reloading(page: Page, bindings: Path) -> None:
     good = bindings.read_text()
     page.connect("setpoint_pan", "tilt_subscriber")
