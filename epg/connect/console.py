@@ -36,7 +36,7 @@ class Console:
     def say(self, text: str = "") -> None:
         """Prints lines as they are."""
         self.clear()
-        self._write(f"{text}\n")
+        self._write(f"{_visible(text)}\n")
 
     def fill(self, text: str, indent: str = "") -> None:
         """Prints a paragraph, wrapped."""
@@ -67,7 +67,7 @@ class Console:
     def over(self, text: str) -> None:
         """Shows ``text`` on a line that the next output replaces; nothing where nobody watches."""
         if self._output.isatty():
-            shown = text[: self.width - 1]
+            shown = _visible(text)[: self.width - 1]
             self._write("\r" + shown + " " * (self._over - len(shown)))
             self._over = len(shown)
 
@@ -80,13 +80,13 @@ class Console:
     def ask(self, question: str, default: str) -> str:
         """The answer, without blanks around it; ``default`` when it is empty.  Raises Ended at the end of the input."""
         self.clear()
-        self._write(f"{question} [{default}]: " if default else f"{question}: ")
+        self._write(_visible(f"{question} [{default}]: " if default else f"{question}: "))
         line = self._input.readline()
         if not line:
             self._write("\n")
             raise Ended
         if not self.is_terminal:
-            self._write(line.rstrip("\n") + "\n")
+            self._write(_visible(line.rstrip("\n")) + "\n")
         return line.strip() or default
 
     def agree(self, question: str, default: str = "y") -> bool:
@@ -102,3 +102,8 @@ class Console:
         encoding = getattr(self._output, "encoding", None) or "utf-8"
         self._output.write(text.encode(encoding, "replace").decode(encoding))
         self._output.flush()
+
+
+def _visible(text: str) -> str:
+    """Text of files without what a terminal would obey: escape sequences, movements of the cursor."""
+    return "".join(char if char.isprintable() or char in "\n\t" else "?" for char in text)

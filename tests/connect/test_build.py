@@ -204,7 +204,7 @@ def test_a_compiler_that_is_missing_is_named_as_doctor_does(
     for program in ("cmake", "ninja", "python3"):
         found = shutil.which(program)
         if found is None:
-            pytest.skip(f"{program} is not installed")
+            pytest.skip(f"{program} is not installed: 'epg doctor' says how to get it")
         (tmp_path / "bin" / program).symlink_to(os.path.realpath(found))
     monkeypatch.setenv("PATH", str(tmp_path / "bin"))
     monkeypatch.setenv("HOME", str(tmp_path / "home"))
@@ -280,7 +280,7 @@ def test_the_commands_are_those_a_person_types(robot: Path, tmp_path: Path, monk
     write_project(ProjectRequest("robot", tmp_path / "new", "host_jiwy", MODEL), Diagnostics())
     commands, _ = plan_of(job_of(tmp_path / "new"))
     if shutil.which("ninja") is None:
-        pytest.skip("ninja is not installed")
+        pytest.skip("ninja is not installed: apt install ninja-build")
     assert commands[0] == ("--preset", "release", "-B", str(tmp_path / "new/build"), "-G", "Ninja")
     monkeypatch.setenv("CMAKE_GENERATOR", "Unix Makefiles")
     assert "-G" not in plan_of(job_of(tmp_path / "new"))[0][0], "who has said which, keeps it"
@@ -339,7 +339,7 @@ def test_a_build_inside_a_build_is_no_part_of_it(robot: Path, tmp_path: Path) ->
     (tmp_path / "Makefile").write_text(f'all:\n\t+"$(PYTHON)" "{script}"\n')
     command = ["make", "-j2", "-C", str(tmp_path), f"PYTHON={sys.executable}"]
     if shutil.which("make") is None:
-        pytest.skip("make is not installed")
+        pytest.skip("make is not installed: apt install make")
     done = subprocess.run(
         command, capture_output=True, text=True, env={**os.environ, "CLICOLOR_FORCE": "1"}, check=False
     )

@@ -12,6 +12,7 @@ import pytest
 from epg.connect.messages import LIMIT, Message, Messages, plain
 
 ROOT = Path(__file__).resolve().parents[2]
+PACKAGES = {"arm-none-eabi-gcc": "gcc-arm-none-eabi", "ninja": "ninja-build"}
 
 
 def read(text: str, *folders: Path, failed: bool = True) -> list[Message]:
@@ -24,7 +25,7 @@ def read(text: str, *folders: Path, failed: bool = True) -> list[Message]:
 def said(folder: Path, *command: str) -> str:
     """What a program prints, both of its outputs together."""
     if shutil.which(command[0]) is None:
-        pytest.skip(f"{command[0]} is not installed")
+        pytest.skip(f"{command[0]} is not installed: apt install {PACKAGES.get(command[0], command[0])}")
     environment = {"PATH": "/usr/local/bin:/usr/bin:/bin", "LC_ALL": "C.UTF-8"}
     done = subprocess.run(
         command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment, check=False

@@ -17,6 +17,7 @@ from pathlib import Path
 import pytest
 
 from epg.cli.main import main
+from epg.connect.console import Console
 from epg.connect.session import Session
 from epg.connect.terminal import run
 from tests.connect.builds import processes
@@ -345,3 +346,12 @@ def test_lines_fit_80_columns_and_any_encoding(project: Path, bindings: Path) ->
     lines = raw.getvalue().decode("ascii").splitlines()
     assert [line for line in lines if len(line) > 80] == []
     assert any("?1/2" in line for line in lines), "a sign that the encoding has not"
+
+
+def test_a_terminal_obeys_no_text_of_a_file() -> None:
+    output = io.StringIO()
+    console = Console(io.StringIO("\x1b[2J\n"), output)
+    console.say("a\x1b[31m\rb")
+    console.table(("", ""), [("1", "c\x07")])
+    assert console.ask("d\x1b[0m", "") == "\x1b[2J"
+    assert output.getvalue() == "a?[31m?b\n1  c?\nd?[0m: ?[2J\n"
