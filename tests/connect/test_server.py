@@ -338,3 +338,17 @@ def test_a_browser_is_opened_where_there_is_one(project: Path, tmp_path: Path) -
         process.communicate(timeout=20)
         assert said.exists() == opens
     assert said.read_text() == f"{address}\n"
+
+
+def test_other_commands_load_nothing_of_it() -> None:
+    """CMake starts ``epg generate`` again and again: it must not pay for a page."""
+    jiwy = ROOT / "examples/jiwy"
+    arguments = ["check", "--tcf", "host_jiwy.tcf", "--model", str(jiwy / "model")]
+    arguments += ["--bindings", str(jiwy / "jiwy.bindings.yaml")]
+    lines = [f"import sys; sys.path.insert(0, {str(ROOT)!r})", "from epg.cli.main import main"]
+    lines += [f"status = main({arguments!r})", "print(status, *sorted(sys.modules))"]
+    done = subprocess.run([sys.executable, "-c", "\n".join(lines)], capture_output=True, text=True, timeout=60)
+    status, *modules = done.stdout.splitlines()[-1].split()
+    assert status == "0" and "epg.project" in modules
+    unwanted = ("epg.connect", "epg.emit.bindings_edit", "epg.emit.tcf_edit", "epg.new_project", "http", "socket")
+    assert not [name for name in modules if name.startswith(unwanted)]
