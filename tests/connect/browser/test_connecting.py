@@ -13,7 +13,7 @@ import pytest
 import yaml
 
 from .acts import drag, field, handle, port, save, until
-from .conftest import Project
+from .conftest import Project, copy_jiwy
 from .served import ROOT, Served
 
 Open = Callable[..., Any]
@@ -355,3 +355,41 @@ def test_state_elsewhere_keeps_focus_scroll_and_what_is_typed(jiwy: Project, ope
     assert page.evaluate("document.activeElement.name") == "offset"
     assert page.evaluate("document.getElementById('main').scrollTop") == 60
     assert page.evaluate("window.before === document.getElementById('ends-position_pan-0')")
+
+
+def test_several_targets_of_one_project(browser: Any, open_page: Open, tmp_path: Path) -> None:
+    """One at a time; what is not saved keeps one from leaving."""
+    folder = tmp_path / "two"
+    copy_jiwy(folder)
+    with (folder / "CMakeLists.txt").open("a", encoding="utf-8") as cmake:
+        cmake.write("epg_add_target(second TCF host_jiwy.tcf MODEL model BINDINGS second.bindings.yaml)\n")
+    text = (folder / "jiwy.bindings.yaml").read_text(encoding="utf-8")
+    second = text.replace("pan_logging: pan_publisher", "pan_logging: unconnected")
+    (folder / "second.bindings.yaml").write_text(second, encoding="utf-8")
+    with Served(folder) as epg:
+        page = open_page(epg.address)
+        chooser = page.get_by_role("combobox", name="Project")
+        assert chooser.locator("option").all_inner_texts() == ["jiwy", "second"]
+        assert field(page, "pan_logging").input_value() == ":pan_publisher"
+        field(page, "position_tilt").select_option("encoder_pan")
+        page.get_by_text("● Unsaved changes").wait_for()
+        chooser.select_option("second")
+        page.get_by_role("alert").get_by_text("not saved").wait_for()
+        assert chooser.input_value() == "jiwy"
+        save(page)
+        chooser.select_option("second")
+        until(page, "document.getElementById('ends-pan_logging-0').value === 'unconnected'")
+        assert page.title() == "second – EPG"
+
+
+def test_a_model_that_cannot_be_read(browser: Any, open_page: Open, tmp_path: Path) -> None:
+    """The page says what is wrong, and goes on when it is mended."""
+    folder = tmp_path / "jiwy"
+    copy_jiwy(folder)
+    (folder / "model").rename(folder / "away")
+    with Served(folder) as epg:
+        page = open_page(epg.address)
+        page.get_by_text("The model cannot be read. Problems, below").wait_for()
+        assert page.locator(".problem-list .message").count() == len(epg.state()["diagnostics"]) >= 1
+        (folder / "away").rename(folder / "model")
+        page.locator(".ports .port").first.wait_for()
