@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
+import urllib.request
 import zipfile
 from pathlib import Path
 
@@ -56,6 +58,22 @@ def test_the_wheel_holds_the_same_files_as_the_checkout(wheel: Path) -> None:
         assert archive.read("epg/_data/docs/errors.md") == (ROOT / "docs/errors.md").read_bytes()
     assert {"epg/__main__.py", "epg/emit/templates/app.c.j2", "epg/lock/generator.txt"} <= names
     assert any(name.endswith(".data/data/share/EPG/cmake/EPGConfig.cmake") for name in names)
+
+
+def test_a_wheel_has_the_page_of_connect(prefix: Path) -> None:
+    (site,) = prefix.glob("lib/*/site-packages")
+    jiwy = ROOT / "examples/jiwy"
+    files = ["--tcf", "host_jiwy.tcf", "--model", jiwy / "model", "--bindings", jiwy / "jiwy.bindings.yaml"]
+    command = [sys.executable, site / "epg", "connect", "--no-browser", "--json", *files]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        address = json.loads("".join(process.stdout.readline() for _ in range(3)))["address"]
+        for path in (ROOT / "epg/connect/page").iterdir():
+            with urllib.request.urlopen(address + path.name, timeout=30) as answer:
+                assert answer.read() == path.read_bytes()
+        with urllib.request.urlopen(f"{address}api/state", timeout=30) as answer:
+            assert json.load(answer)["diagnostics"] == []
+        process.terminate()
 
 
 def test_cmake_finds_a_wheel_by_its_prefix(prefix: Path, tmp_path: Path) -> None:
