@@ -26,7 +26,7 @@ from epg.load.middleware import Middleware
 from epg.load.models import Model, load_model
 from epg.load.tcf import predefined_tcf_names
 from epg.load.tools import load_tools
-from epg.project import Request, check_name, load_application, load_configuration, make_catalog
+from epg.project import Request, check_name, check_sdk_headers, load_application, load_configuration, make_catalog
 from epg.resolve.matching import Match, match_ports
 from epg.source import Span
 
@@ -89,6 +89,7 @@ def new_project(request: ProjectRequest, diagnostics: Diagnostics) -> NewProject
     model = load_model(request.model, diagnostics)
     if base is None or model is None:
         return None
+    check_sdk_headers(name, base.target, _argument(name), diagnostics)
     place, copied = _model_files(request, model, diagnostics)
     if diagnostics.has_errors:
         return None

@@ -17,7 +17,7 @@ from epg.check.configuration import Configuration, check_configuration
 from epg.check.names import STANDARD_HEADERS, STANDARD_TYPES, identifier_problem
 from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
-from epg.load.catalog import Catalog, load_catalog
+from epg.load.catalog import Catalog, Target, load_catalog
 from epg.load.models import load_model
 from epg.load.models.details import FmuExport
 from epg.load.models.model import Model
@@ -103,6 +103,9 @@ def load_parts(request: Request, diagnostics: Diagnostics, read_model: ModelRead
     check_name(request.name, request.caller or Span("command line"), diagnostics)
     catalog = make_catalog(request.roots, diagnostics)
     configuration = load_configuration(request, catalog, diagnostics)
+    if configuration is not None:
+        span = request.caller or Span("command line")
+        check_sdk_headers(request.name, configuration.target, span, diagnostics)
     model = read_model(request.model, diagnostics)
     bindings = load_bindings(request.bindings, diagnostics, request.caller, request.drafts)
     parts = Parts(configuration, model, bindings)
@@ -161,11 +164,22 @@ def check_model_names(model: Model, library: str, diagnostics: Diagnostics) -> N
             diagnostics.error("invalid-name", port.span, message, hint="rename the port or the target")
 
 
+def check_sdk_headers(name: str, target: Target, span: Span, diagnostics: Diagnostics) -> None:
+    """No generated header hides one of the SDK's."""
+    for header in sorted(_generated_headers(name).intersection(target.platform.headers)):
+        message = f"target '{name}' makes a header '{header}', which would hide one that {target.name} needs"
+        diagnostics.error("invalid-name", span, message, hint=f"choose another name, such as {name}_robot")
+
+
+def _generated_headers(name: str) -> set[str]:
+    ends = ("", "_version", "_model", "_model_export", "_model_names", "_plant", "_plant_export")
+    return {f"{name}{end}.h" for end in ends}
+
+
 def check_driver_headers(application: Application, diagnostics: Diagnostics) -> None:
     """No generated header is called like one of a driver that it is compiled with."""
     name = application.name
-    ends = ("", "_version", "_model", "_model_export", "_model_names", "_plant", "_plant_export")
-    generated = {f"{name}{end}.h" for end in ends}
+    generated = _generated_headers(name)
     for component in application.components:
         for header in sorted(generated.intersection(component.kind.headers)):
             message = f"component '{component.name}' needs a header '{header}', and target '{name}' makes one"

@@ -185,7 +185,8 @@ class Platform:
     ``tick_is_optional``.  With ``has_nodes`` a component can name a node of a devicetree instead of pins.  ``shared``
     are folders beside this one whose templates it uses too.
 
-    ``sdk`` is the SDK whose name for the board a build is given, "" where there is none; ``built_by`` "cmake" or
+    ``sdk`` is the SDK whose name for the board a build is given, "" where there is none, ``headers`` those of
+    its headers that are included by name alone; ``built_by`` "cmake" or
     "west"; ``program`` the CMake target of the executable where the SDK makes it; ``needs`` are tools by name,
     ``products`` what a build makes for people, the best first.
     """
@@ -204,6 +205,7 @@ class Platform:
     templates: tuple[str, ...]
     shared: tuple[str, ...]
     sdk: str
+    headers: tuple[str, ...]
     built_by: str
     program: str
     needs: tuple[str, ...]
@@ -319,6 +321,7 @@ def make_platform(node: Node, folder: Path) -> Platform:
         templates=texts_of(node, "templates"),
         shared=texts_of(node, "shared"),
         sdk=text_of(node, "sdk"),
+        headers=texts_of(node, "headers"),
         built_by=text_of(node, "built_by") or "cmake",
         program=text_of(node, "program"),
         needs=texts_of(node, "needs"),
