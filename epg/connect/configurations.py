@@ -30,7 +30,10 @@ from epg.resolve.resolve import allocate_hardware
 
 @dataclass(frozen=True)
 class Choice:
-    """A configuration by its name, or a target by itself: then ``configuration`` is None."""
+    """A configuration by its name, or a target by itself: then ``robot`` is empty.
+
+    ``configuration`` is None for a target, and where ``problem`` says what is wrong with a configuration.
+    """
 
     name: str
     robot: str
@@ -94,7 +97,7 @@ class Configurations:
             reason = _new_reason(choice, self._roots) if project is None else project.reason(choice)
             components = choice.configuration.components if choice.configuration is not None else {}
             ports = (*model.inputs, *model.outputs) if model is not None else ()
-            if choice.configuration is None:  # a topic for each port that a topic can serve
+            if not choice.robot:  # a topic for each port that a topic can serve
                 matches = sum(port.direction == "output" or port.type == "real" for port in ports)
             else:
                 matches = self._count(choice, model)
@@ -167,9 +170,9 @@ class Project:
         """Why ``choice`` cannot be taken; empty if it can."""
         if choice.name == self.chosen:
             return ""
-        if self.fixed:
-            return self.fixed
-        if choice.configuration is None:
+        if self.fixed or choice.problem:
+            return self.fixed or choice.problem
+        if not choice.robot:
             return f"it has no components yet: 'epg new DIR --target {choice.name} --model FOLDER' starts a project"
         now = self.target
         if now is not None and (now.platform.name, now.board.name) != _hardware_of(choice.target):
@@ -177,7 +180,7 @@ class Project:
                 f"this project is for {now.board.summary} with {now.platform.name}: "
                 f"'epg new DIR --target {choice.name} --model FOLDER' starts one for this"
             )
-        return choice.problem
+        return ""
 
 
 def _hardware_of(target: Target) -> tuple[str, str]:

@@ -6,11 +6,14 @@ import difflib
 import shutil
 import threading
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from epg.connect.projects import find_jobs
 from epg.connect.session import Session
+from epg.diagnostics import Diagnostics
 from tests.connect.page import Denied, Page, serving, session_of
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -322,6 +325,34 @@ def test_another_configuration_is_chosen(page: Page, project: Path) -> None:
     assert refusal.value.status == 409 and "epg new" in refusal.value.hint
 
 
+def test_configurations_of_the_user_are_listed(project: Path, tmp_path: Path) -> None:
+    """Right ones can be chosen, wrong ones say why not, and parts that others extend are no choice."""
+    robots = tmp_path / "targets/robots/mine"
+    robots.mkdir(parents=True)
+    (robots / "mine.tcf").write_text("version: 1\nextends: rpi_pico_bare_metal_jiwy.tcf\nnode: mine\n")
+    (robots / "wrong.tcf").write_text("version: 1\nextends: rpi_pico_bare_metal_jiwy.tcf\nnodes: mine\n")
+    (robots / "part.tcf").write_text("version: 1\nnode: mine\n")
+    (robots / "broken.tcf").write_text("{")
+    (robots / "loop.tcf").write_text("version: 1\nextends: loop.tcf\n")
+    jobs = find_jobs(project, Diagnostics())
+    jobs = [replace(job, request=replace(job.request, user_roots=(tmp_path / "targets",))) for job in jobs]
+    with serving(Session(jobs, user_roots=(tmp_path / "targets",))) as page:
+        state = page.until(lambda state: state["configurations"])
+        mine = {each["name"]: each for each in state["configurations"] if each["robot"] == "mine"}
+        assert set(mine) == {"mine", "wrong"}
+        assert mine["mine"]["possible"] and mine["mine"]["components"] == 10
+        assert not mine["wrong"]["possible"] and "unknown key 'nodes'" in mine["wrong"]["reason"]
+        assert not mine["wrong"]["picture"] and mine["wrong"]["matches"] == 0
+        page.get("picture/wiring.svg?configuration=mine")
+        for name in ("wrong", "part", "jiwy", "nothing"):
+            with pytest.raises(Denied) as refusal:
+                page.get(f"picture/wiring.svg?configuration={name}")
+            assert refusal.value.status == 404
+        state = page.post("choose", configuration="mine")
+        assert [each["name"] for each in state["configurations"] if each["chosen"]] == ["mine"]
+        assert state["diagnostics"] == []
+
+
 def test_a_predefined_configuration_stays() -> None:
     with serving(session_of(ROOT / "examples/jiwy")) as page:
         state = page.until(lambda state: state["configurations"])
@@ -366,12 +397,12 @@ def test_a_project_of_topics_is_created_for_a_target(tmp_path: Path) -> None:
     """A target by itself: every port is a topic, until somebody writes down what is wired to the board."""
     with serving(Session([], model=ROOT / "examples/jiwy/model")) as page:
         body = {"configuration": "rpi_pico_bare_metal", "folder": str(tmp_path / "pico"), "middleware": "console"}
-        state = page.post("create", name="pico", **body)
+        state = page.post("create", name="robot", **body)
         assert state["phase"] == "connect" and state["diagnostics"] == [] and len(state["wires"]) == 10
         state = page.until(lambda state: state["configurations"])
         assert not any(each["chosen"] for each in state["configurations"])
         reasons = {each["reason"] for each in state["configurations"]}
-        assert reasons == {"pico.tcf extends no other file: it says itself what the target is"}
+        assert reasons == {"robot.tcf extends no other file: it says itself what the target is"}
 
 
 def test_creating_replaces_nothing(tmp_path: Path) -> None:
