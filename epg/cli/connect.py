@@ -133,10 +133,16 @@ def _jobs(folder: Path, name: str | None, diagnostics: Diagnostics) -> list[Job]
 
 
 def _check_model(folder: Path, diagnostics: Diagnostics) -> None:
-    """Says what is wrong with a folder that holds neither a project nor a model."""
+    """Says what is wrong with a folder that holds neither a target nor a model."""
+    from epg.connect.projects import report_no_target
     from epg.load.models import load_model
 
-    load_model(folder, diagnostics)
+    problems = Diagnostics()
+    load_model(folder, problems)
+    if any(problem.id == "model-not-recognised" for problem in problems):
+        report_no_target(folder, diagnostics)
+    if not diagnostics.has_errors:
+        diagnostics.items.extend(problems)
 
 
 def _open_browser(address: str) -> None:

@@ -17,6 +17,7 @@ from epg.connect.cmake_walk import Call, Unknown, Walk
 from epg.data import data_folder
 from epg.diagnostics import Diagnostics
 from epg.project import Request
+from epg.source import Span
 
 FILE = "CMakeLists.txt"
 _ONE = ("TCF", "MODEL", "BINDINGS", "PLANT", "PLANT_BINDINGS", "NODE", "NAMESPACE")
@@ -78,6 +79,19 @@ def jobs_of_model(model: Path) -> list[Job]:
         if jobs:
             return jobs
     return []
+
+
+def report_no_target(folder: Path, diagnostics: Diagnostics) -> None:
+    """Says so where there is a project in ``folder``, or below it, but no target in ``folder`` itself."""
+    here = folder / FILE
+    below = [path.parent for path in sorted(folder.glob(f"*/{FILE}")) if find_jobs(path.parent, Diagnostics())]
+    if not here.is_file() and not below:
+        return
+    message = f"there is no epg_add_target() here, and '{folder.name}' is no model"
+    hint = f"start it for one of the folders below: {', '.join(path.name for path in below)}"
+    if not below:
+        hint = "add the call that docs/cmake.md shows, or start it for the folder of a model"
+    diagnostics.error("no-target", Span(str(here if here.is_file() else folder)), message, hint=hint)
 
 
 @dataclass
