@@ -13,7 +13,7 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import epg
 from epg.connect.body import Body, Refused, boolean, ends, names, text
@@ -24,14 +24,11 @@ from epg.connect.editor import Editor
 from epg.connect.files import Unsavable
 from epg.connect.pictures import draw
 from epg.connect.projects import Job
+from epg.connect.runs import Runs
 from epg.connect.source import excerpt
 from epg.connect.start import Start
 from epg.connect.targets import Targets
 from epg.emit.bindings_edit import CannotEdit, End
-from epg.source import Span
-
-if TYPE_CHECKING:
-    from epg.connect.build import Build
 
 __all__ = ["Refused", "Session", "State"]
 
@@ -39,16 +36,6 @@ LOOK = 0.5
 """Seconds between two looks at the files while somebody waits for a change."""
 
 State = dict[str, Any]
-NO_BUILD: State = {
-    "state": "idle",
-    "step": "",
-    "done": 0,
-    "total": 0,
-    "seconds": 0.0,
-    "messages": [],
-    "products": [],
-    "lines": 0,
-}
 
 
 class Session:
@@ -76,7 +63,7 @@ class Session:
         self._configurations = Configurations(self._user_roots)
         self._start = Start(model) if model is not None and not jobs else None
         self._editor = Editor(jobs[0]) if jobs else None
-        self._build: Build | None = None
+        self._runs = Runs(self._bump)
         self._actions: dict[str, Callable[[Body], None]] = {
             "connect": self._connect,
             "disconnect": self._disconnect,
@@ -87,12 +74,12 @@ class Session:
             "reload": self._reload,
             "choose": self._choose,
             "open": self._open,
+            "generate": self._generate,
             "done": lambda body: self.ended.set(),
         }
         self._unlocked: dict[str, Callable[[Body], None]] = {
             "create": self._create,
-            "generate": self._generate,
-            "cancel": lambda body: self._cancel(),
+            "cancel": lambda body: self._runs.cancel(),
         }
         self._shown: State = {}
         self._publish()
@@ -101,8 +88,9 @@ class Session:
     def state(self) -> State:
         """The state at this moment."""
         with self._changed:
+            places = self._editor.loaded.places if self._editor is not None else None
             shown = {"version": self._version, "epg": epg.__version__, **self._shown}
-            return shown | {"build": self._build_state()}
+            return shown | {"build": self._runs.state(places)}
 
     def wait(self, after: int, timeout: float) -> State:
         """The state as soon as its version is another than ``after``, or after ``timeout`` seconds."""
@@ -130,14 +118,13 @@ class Session:
         except CannotEdit as problem:
             raise Refused(str(problem)) from None
         except Unsavable as problem:
+            self._publish()  # one of two files may have been saved
             raise Refused(str(problem), status=409) from None
         return self.state()
 
     def log(self, start: int) -> dict[str, Any]:
         """What configuring and building have printed, from line ``start`` on."""
-        build = self._build
-        lines = build.lines(max(0, start)) if build is not None else []
-        return {"lines": lines, "next": max(0, start) + len(lines)}
+        return self._runs.log(max(0, start))
 
     def picture(self, name: str, configuration: str = "") -> str:
         """One of the pictures as SVG."""
@@ -160,9 +147,12 @@ class Session:
 
     def close(self) -> None:
         """Ends a build that still runs, with all that it has started."""
-        self._cancel()
-        if self._build is not None:
-            self._build.wait(10)
+        self._runs.close()
+
+    @property
+    def is_building(self) -> bool:
+        """Whether a build runs."""
+        return self._runs.running
 
     # what people do to the files
 
@@ -213,11 +203,9 @@ class Session:
             return
         if self._opened().draft.changed:
             raise Refused("there are changes that are not saved", "save them, or reload to throw them away", 409)
-        if self.is_building:
-            raise Refused("a build is running", "wait for it, or cancel it", 409)
-        self._editor, self._build = Editor(job), None
-
-    # what takes longer
+        self._runs.check_idle()
+        self._runs.forget()
+        self._editor = Editor(job)
 
     def _create(self, body: Body) -> None:
         start = self._start
@@ -230,43 +218,14 @@ class Session:
             self._publish()
 
     def _generate(self, body: Body) -> None:
-        from epg.connect.build import Build
-
-        self._look(at_once=True)
-        with self._changed:
-            self._opened()
-            if self.is_building:
-                raise Refused("a build is running", "wait for it, or cancel it", 409)
-            count = sum(problem["severity"] == "error" for problem in self._shown["diagnostics"])
-            if count:
-                what = "a mistake" if count == 1 else f"{count} mistakes"
-                raise Refused(f"there {'is' if count == 1 else 'are'} still {what}: nothing can be built", "", 409)
-            self._save({})
-            self._publish()
-            self._build = build = Build(self._opened().job, self._bump)
-        build.start()
-        self._bump()
-
-    def _cancel(self) -> None:
-        build = self._build
-        if build is not None:
-            build.cancel()
-
-    def _build_state(self) -> State:
-        """The build, with the ports that its messages about the bindings are about."""
-        if self._build is None:
-            return NO_BUILD
-        state = self._build.state()
-        if self._editor is not None:
-            for message in state["messages"]:
-                span = Span(message["file"], message["line"], message["column"])
-                message["port"] = self._editor.loaded.places.port_at(span)
-        return state
-
-    @property
-    def is_building(self) -> bool:
-        """Whether a build runs."""
-        return self._build is not None and self._build.state()["state"] == "running"
+        self._runs.check_idle()
+        self._opened()
+        count = sum(problem["severity"] == "error" for problem in self._shown["diagnostics"])
+        if count:
+            what = "is still a mistake" if count == 1 else f"are still {count} mistakes"
+            raise Refused(f"there {what}: nothing can be built", "messages say where", 409)
+        self._save({})
+        self._runs.start(self._opened().job)
 
     # how the state comes about
 

@@ -1,0 +1,78 @@
+"""The build of a session: the one that runs, or ran last."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from epg.connect.body import Refused
+from epg.connect.places import Places
+from epg.connect.projects import Job
+from epg.source import Span
+
+if TYPE_CHECKING:
+    from epg.connect.build import Build
+
+NONE: dict[str, Any] = {
+    "state": "idle",
+    "step": "",
+    "action": "",
+    "done": 0,
+    "total": 0,
+    "seconds": 0.0,
+    "messages": [],
+    "products": [],
+    "lines": 0,
+}
+
+
+class Runs:
+    """``changed`` is called, by any thread, when there is something new to show."""
+
+    def __init__(self, changed: Callable[[], None]) -> None:
+        self._changed = changed
+        self._build: Build | None = None
+
+    @property
+    def running(self) -> bool:
+        return self._build is not None and self._build.state()["state"] == "running"
+
+    def check_idle(self) -> None:
+        if self.running:
+            raise Refused("a build is running", "wait for it, or cancel it", 409)
+
+    def start(self, job: Job) -> None:
+        """Configures and builds ``job``."""
+        from epg.connect.build import Build
+
+        self.check_idle()
+        self._build = Build(job, self._changed)
+        self._build.start()
+
+    def cancel(self) -> None:
+        if self._build is not None:
+            self._build.cancel()
+
+    def close(self) -> None:
+        """Cancels what runs, and waits for its end."""
+        self.cancel()
+        if self._build is not None:
+            self._build.wait(10)
+
+    def forget(self) -> None:
+        self._build = None
+
+    def state(self, places: Places | None) -> dict[str, Any]:
+        """What there is to show; messages about the bindings with the port they are about."""
+        if self._build is None:
+            return NONE
+        state = self._build.state()
+        for message in state["messages"] if places is not None else ():
+            assert places is not None
+            message["port"] = places.port_at(Span(message["file"], message["line"], message["column"]))
+        return state
+
+    def log(self, start: int) -> dict[str, Any]:
+        """What was printed, from line ``start`` on."""
+        lines = self._build.lines(start) if self._build is not None else []
+        return {"lines": lines, "next": start + len(lines)}
