@@ -37,14 +37,26 @@ export function bars(state) {
       ),
     );
   } else if (state.phase === "connect" && draft.external && draft.external !== dismissed) {
-    list.push(bar("external", "note", draft.external, dismiss(() => (dismissed = draft.external))));
+    list.push(
+      bar(
+        "external",
+        "note",
+        draft.external,
+        dismiss(() => (dismissed = draft.external)),
+      ),
+    );
   }
   if (state.phase === "connect" && !state.editable) {
     list.push(bar("readonly", "warning", [h("b", null, "Connections cannot be changed here. "), state.why_not]));
   }
   if (ui.refused) {
     list.push(
-      bar("refused", "error", [h("b", null, ui.refused.message), ui.refused.hint ? ` ${ui.refused.hint}` : null], dismiss(() => (ui.refused = null))),
+      bar(
+        "refused",
+        "error",
+        [h("b", null, ui.refused.message), ui.refused.hint ? ` ${ui.refused.hint}` : null],
+        dismiss(() => (ui.refused = null)),
+      ),
     );
   }
   return list;

@@ -27,7 +27,9 @@ export async function generate() {
 }
 
 export function buildTitle(state) {
-  return { idle: "Build", running: "Build …", done: "Build ✓", failed: "Build ✕", cancelled: "Build" }[state.build.state];
+  return { idle: "Build", running: "Build …", done: "Build ✓", failed: "Build ✕", cancelled: "Build" }[
+    state.build.state
+  ];
 }
 
 // Called with every new State: says when a build has ended, and goes on with the log.
@@ -75,13 +77,21 @@ function outcome(state) {
 export function buildPanel(state) {
   const { build } = state;
   if (build.state === "idle") {
-    return h("p", { class: "empty" }, "Generate saves, configures and builds the firmware. Its progress and messages appear here.");
+    return h(
+      "p",
+      { class: "empty" },
+      "Generate saves, configures and builds the firmware. Its progress and messages appear here.",
+    );
   }
   return [
     h("div", { class: `outcome ${build.state}`, key: "outcome" }, status(state), progress(build)),
     build.products.length ? h("ul", { class: "products", key: "products" }, build.products.map(product)) : null,
     build.messages.length
-      ? h("ul", { class: "problem-list", key: "messages", "aria-label": "Messages of the build" }, build.messages.map(problem))
+      ? h(
+          "ul",
+          { class: "problem-list", key: "messages", "aria-label": "Messages of the build" },
+          build.messages.map(problem),
+        )
       : null,
     logPart(build),
   ];
@@ -95,8 +105,15 @@ function status(state) {
     { class: "outcome-text" },
     name ? icon(name) : null,
     h("b", null, outcome(state)),
-    build.state === "running" && build.step === "build" && build.total ? ` ${build.done} of ${build.total} steps` : null,
-    h("span", { class: "muted elapsed", id: "elapsed", keep: true, shown: (node) => (node.textContent = elapsed(build)) }),
+    build.state === "running" && build.step === "build" && build.total
+      ? ` ${build.done} of ${build.total} steps`
+      : null,
+    h("span", {
+      class: "muted elapsed",
+      id: "elapsed",
+      keep: true,
+      shown: (node) => (node.textContent = elapsed(build)),
+    }),
   );
 }
 

@@ -8,7 +8,10 @@ export function changes(state) {
   return h(
     "pre",
     { class: "diff" },
-    diff.replace(/\n$/, "").split("\n").map((line, n) => h("span", { key: n, class: kind(line) }, `${line}\n`)),
+    diff
+      .replace(/\n$/, "")
+      .split("\n")
+      .map((line, n) => h("span", { key: n, class: kind(line) }, `${line}\n`)),
   );
 }
 

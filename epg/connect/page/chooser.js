@@ -32,7 +32,11 @@ export function chooseTarget() {
     h(
       "div",
       { class: "buttons sticky" },
-      h("p", { class: "muted" }, `Changes 'extends' in ${shortFile(current().project?.files.tcf || "")}, and can be undone.`),
+      h(
+        "p",
+        { class: "muted" },
+        `Changes 'extends' in ${shortFile(current().project?.files.tcf || "")}, and can be undone.`,
+      ),
       h("span", { class: "space" }),
       h("button", { type: "button", onclick: () => closeDialog("target") }, "Cancel"),
       h(

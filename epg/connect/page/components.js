@@ -35,10 +35,18 @@ function card(state, side, component, direction, diagnostics, users) {
       h("span", { class: "kind", title: summary || null }, kind.replace(/_/g, " ")),
     ),
     facts.length && (first || ports.length === 0)
-      ? h("ul", { class: "facts" }, facts.map((fact, n) => h("li", { key: n }, fact)))
+      ? h(
+          "ul",
+          { class: "facts" },
+          facts.map((fact, n) => h("li", { key: n }, fact)),
+        )
       : null,
     ports.length
-      ? h("ul", { class: "port-list" }, ports.map((port) => row(state, side, port, users.get(port.reference) || [])))
+      ? h(
+          "ul",
+          { class: "port-list" },
+          ports.map((port) => row(state, side, port, users.get(port.reference) || [])),
+        )
       : null,
     ports.length === 0 || first ? inline(diagnostics.get(name) || []) : null,
   );
@@ -57,11 +65,26 @@ function row(state, side, port, users) {
       "data-name": reference,
       "data-wire-component": id("at", reference),
     },
-    handle(side, reference, componentLabel(state, side, port, users.map((user) => user.port)), users.length > 0),
+    handle(
+      side,
+      reference,
+      componentLabel(
+        state,
+        side,
+        port,
+        users.map((user) => user.port),
+      ),
+      users.length > 0,
+    ),
     h("span", { class: "port-name", title: port.summary || null }, name),
     unitMark(port),
     converted
-      ? h("span", { class: "tcf-label", key: "tcf", title: "conversion in the .tcf" }, h("span", { class: "muted" }, ".tcf "), converted)
+      ? h(
+          "span",
+          { class: "tcf-label", key: "tcf", title: "conversion in the .tcf" },
+          h("span", { class: "muted" }, ".tcf "),
+          converted,
+        )
       : null,
   );
 }

@@ -28,7 +28,11 @@ export function configurationCards(state, prefix, only = () => true) {
       : shown.length === 0
         ? h("p", { class: "empty" }, "No target matches. Clear the search to see all.")
         : null,
-    h("div", { class: "robots", role: "radiogroup", "aria-label": "Targets" }, grouped(shown).map((group) => robotGroup(group, prefix))),
+    h(
+      "div",
+      { class: "robots", role: "radiogroup", "aria-label": "Targets" },
+      grouped(shown).map((group) => robotGroup(group, prefix)),
+    ),
   );
 }
 
@@ -36,11 +40,12 @@ function isShown(configuration) {
   const { text, robot, fits } = ui.filter;
   if (robot && (configuration.robot || NO_ROBOT) !== robot) return false;
   if (fits && !isReady(configuration)) return false;
-  const words = `${configuration.name} ${configuration.robot} ${configuration.board} ${configuration.platform} ${configuration.summary}`;
+  const { name, board, platform, summary } = configuration;
+  const words = [name, configuration.robot, board, platform, summary].join(" ").toLowerCase();
   return text
     .toLowerCase()
     .split(/\s+/)
-    .every((word) => words.toLowerCase().includes(word));
+    .every((word) => words.includes(word));
 }
 
 const isReady = (configuration) => configuration.possible && configuration.missing.length === 0;
@@ -97,7 +102,11 @@ function filters(robots, prefix) {
     h(
       "label",
       { class: "check" },
-      h("input", { type: "checkbox", checked: ui.filter.fits, onchange: (event) => change({ fits: event.target.checked }) }),
+      h("input", {
+        type: "checkbox",
+        checked: ui.filter.fits,
+        onchange: (event) => change({ fits: event.target.checked }),
+      }),
       "Only what this computer can build now",
     ),
   );
@@ -110,7 +119,8 @@ function change(part) {
 
 function robotGroup({ robot, boards }, prefix) {
   const name = id(prefix, "robot", robot);
-  const summary = robot === NO_ROBOT ? "no robot yet: every port becomes a topic, and the .tcf is yours to go on with" : "";
+  const summary =
+    robot === NO_ROBOT ? "no robot yet: every port becomes a topic, and the .tcf is yours to go on with" : "";
   return h(
     "section",
     { class: "robot", key: robot, "aria-labelledby": name },
@@ -120,7 +130,11 @@ function robotGroup({ robot, boards }, prefix) {
         "div",
         { class: "board", key: board, role: "group", "aria-label": `${robot}, ${board}` },
         h("h4", null, board),
-        h("div", { class: "cards" }, list.map((each) => card(each, prefix))),
+        h(
+          "div",
+          { class: "cards" },
+          list.map((each) => card(each, prefix)),
+        ),
       ),
     ),
   );
@@ -146,16 +160,29 @@ function card(configuration, prefix) {
       },
     }),
     picture
-      ? h("img", { src: `picture/wiring.svg?configuration=${encodeURIComponent(name)}`, alt: "", loading: "lazy", width: "84", height: "84" })
+      ? h("img", {
+          src: `picture/wiring.svg?configuration=${encodeURIComponent(name)}`,
+          alt: "",
+          loading: "lazy",
+          width: "84",
+          height: "84",
+        })
       : h("span", { class: "no-picture", "aria-hidden": "true" }),
     h(
       "span",
       { class: "card-text" },
-      h("span", { class: "card-title" }, title[0].toUpperCase() + title.slice(1), chosen ? h("span", { class: "tag" }, "in use") : null),
+      h(
+        "span",
+        { class: "card-title" },
+        title[0].toUpperCase() + title.slice(1),
+        chosen ? h("span", { class: "tag" }, "in use") : null,
+      ),
       more.length ? h("span", { class: "card-line" }, more.join(", ")) : null,
       h("span", { class: "card-line name" }, breakable(name)),
       h("span", { class: "card-line" }, offer(components, matches, ports)),
-      missing.length ? h("span", { class: "card-line warning" }, icon("warning"), `This computer lacks ${missing.join(", ")}`) : null,
+      missing.length
+        ? h("span", { class: "card-line warning" }, icon("warning"), `This computer lacks ${missing.join(", ")}`)
+        : null,
       reason ? h("span", { class: "card-line warning" }, icon("warning"), reason) : null,
     ),
   );

@@ -61,7 +61,12 @@ export function editConversion(port, n) {
         text("unit", "Unit", end.unit, "of the value in the model, where it is not the port's", readonly),
       ),
       error
-        ? h("p", { class: "refusal", role: "alert" }, error.message, error.hint ? h("span", { class: "hint" }, error.hint) : null)
+        ? h(
+            "p",
+            { class: "refusal", role: "alert" },
+            error.message,
+            error.hint ? h("span", { class: "hint" }, error.hint) : null,
+          )
         : null,
       h(
         "div",

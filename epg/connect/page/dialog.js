@@ -42,7 +42,11 @@ function drawDialog(name) {
     "div",
     { class: "dialog-head", key: "head" },
     h("h2", { id: `${name}-title` }, title),
-    h("button", { type: "button", class: "quiet icon-button", "aria-label": "Close", onclick: () => element.close() }, icon("close")),
+    h(
+      "button",
+      { type: "button", class: "quiet icon-button", "aria-label": "Close", onclick: () => element.close() },
+      icon("close"),
+    ),
   );
   render(element, [head, h("div", { class: "dialog-body", key: "body" }, inside)]);
 }

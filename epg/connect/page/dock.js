@@ -30,17 +30,33 @@ export function dock(state) {
     h(
       "div",
       { class: "dock-head", key: "head" },
-      h("div", { role: "tablist", "aria-label": "Details", onkeydown: (event) => arrow(event, all, shown) }, all.map((each) => tab(each, each === shown))),
+      h(
+        "div",
+        { role: "tablist", "aria-label": "Details", onkeydown: (event) => arrow(event, all, shown) },
+        all.map((each) => tab(each, each === shown)),
+      ),
       h(
         "div",
         { class: "dock-size" },
-        sizeButton(ui.dock === "large" ? "Smaller" : "Larger", ui.dock === "large" ? "open" : "large", ui.dock === "large" ? "smaller" : "larger"),
+        sizeButton(
+          ui.dock === "large" ? "Smaller" : "Larger",
+          ui.dock === "large" ? "open" : "large",
+          ui.dock === "large" ? "smaller" : "larger",
+        ),
         sizeButton(isOpen ? "Hide details" : "Show details", isOpen ? "closed" : "open", isOpen ? "close" : "larger"),
       ),
     ),
     h(
       "div",
-      { class: `panel panel-${shown.name}`, key: `panel-${shown.name}`, role: "tabpanel", id: "panel", "aria-labelledby": `tab-${shown.name}`, tabindex: "0", hidden: !isOpen },
+      {
+        class: `panel panel-${shown.name}`,
+        key: `panel-${shown.name}`,
+        role: "tabpanel",
+        id: "panel",
+        "aria-labelledby": `tab-${shown.name}`,
+        tabindex: "0",
+        hidden: !isOpen,
+      },
       shown.content(state, shown.name),
     ),
   ];

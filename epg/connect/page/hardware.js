@@ -18,7 +18,15 @@ export function hardware(state) {
     "table",
     null,
     h("caption", { class: "unseen" }, "Pins and peripherals"),
-    h("thead", null, h("tr", null, columns.map(([name, title]) => h("th", { key: name, scope: "col" }, title)))),
+    h(
+      "thead",
+      null,
+      h(
+        "tr",
+        null,
+        columns.map(([name, title]) => h("th", { key: name, scope: "col" }, title)),
+      ),
+    ),
     h(
       "tbody",
       null,
@@ -27,7 +35,11 @@ export function hardware(state) {
           "tr",
           { key: n },
           columns.map(([name], column) =>
-            h(column === 0 ? "th" : "td", { key: name, scope: column === 0 ? "row" : null, class: `column-${name}` }, row[name]),
+            h(
+              column === 0 ? "th" : "td",
+              { key: name, scope: column === 0 ? "row" : null, class: `column-${name}` },
+              row[name],
+            ),
           ),
         ),
       ),

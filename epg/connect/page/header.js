@@ -11,7 +11,12 @@ export function header(state) {
   const brand = h("p", { class: "brand", key: "brand" }, icon("target"), h("span", null, "EPG"));
   const close = h("button", { class: "quiet", key: "close", onclick: () => attempt("done") }, "Close EPG");
   if (state.phase === "choose") {
-    return [brand, h("p", { class: "title", key: "title" }, "New project"), h("span", { class: "space", key: "space" }), close];
+    return [
+      brand,
+      h("p", { class: "title", key: "title" }, "New project"),
+      h("span", { class: "space", key: "space" }),
+      close,
+    ];
   }
   const { draft, build } = state;
   const running = build.state === "running";
@@ -57,7 +62,12 @@ function projectName(state) {
     h("h1", { class: "unseen" }, name),
     h(
       "select",
-      { "aria-label": "Project", title: folder, value: name, onchange: (event) => attempt("open", { target: event.target.value }) },
+      {
+        "aria-label": "Project",
+        title: folder,
+        value: name,
+        onchange: (event) => attempt("open", { target: event.target.value }),
+      },
       targets.map((each) => h("option", { key: each, value: each }, each)),
     ),
   );
@@ -68,7 +78,12 @@ function targetButton(state) {
   const name = chosen ? chosen.name : shortFile(state.project.files.tcf);
   return h(
     "button",
-    { class: "target", key: "target", onclick: chooseTarget, disabled: state.configurations.length === 0 || !state.editable },
+    {
+      class: "target",
+      key: "target",
+      onclick: chooseTarget,
+      disabled: state.configurations.length === 0 || !state.editable,
+    },
     h("span", { class: "muted" }, "Target "),
     name,
   );

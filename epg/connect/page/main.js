@@ -44,7 +44,10 @@ function diagram(state) {
     return [h("p", { class: "empty", key: "none" }, "The model cannot be read. Problems, below, says why.")];
   }
   const byPort = group(state.diagnostics, "port");
-  const byComponent = group(state.diagnostics.filter((each) => !each.port), "component");
+  const byComponent = group(
+    state.diagnostics.filter((each) => !each.port),
+    "component",
+  );
   const users = new Map();
   for (const [port, ends] of Object.entries(state.wires)) {
     for (const end of ends) users.set(end.reference, [...(users.get(end.reference) || []), { port, end }]);

@@ -19,8 +19,18 @@ export function picture(state, name) {
     ),
     h(
       "div",
-      { class: zoom ? "picture" : "picture fit", key: "picture", tabindex: "0", role: "region", "aria-label": "Picture, scrollable" },
-      h("img", { key: name, alt: description(state, name), shown: (image) => load(image, address(name, state.version), zoom) }),
+      {
+        class: zoom ? "picture" : "picture fit",
+        key: "picture",
+        tabindex: "0",
+        role: "region",
+        "aria-label": "Picture, scrollable",
+      },
+      h("img", {
+        key: name,
+        alt: description(state, name),
+        shown: (image) => load(image, address(name, state.version), zoom),
+      }),
     ),
   ];
 }
@@ -47,9 +57,12 @@ function load(image, wanted, zoom) {
 }
 
 function description(state, name) {
-  if (name === "application") return "The application: topics, components, conversions and ports. The lists of ports say the same.";
+  if (name === "application")
+    return "The application: topics, components, conversions and ports. The lists of ports say the same.";
   if (name === "schedule") return "One control cycle: what the target does between two ticks, in order.";
-  const wires = state.components.filter((each) => each.where?.length).map((each) => `${each.name}: ${each.where.join(", ")}`);
+  const wires = state.components
+    .filter((each) => each.where?.length)
+    .map((each) => `${each.name}: ${each.where.join(", ")}`);
   return `The board seen from above, with what is connected to its contacts. ${wires.join("; ")}.`;
 }
 

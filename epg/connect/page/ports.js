@@ -37,7 +37,9 @@ async function accept(name) {
 
 function stepText(step) {
   if (!step) return "no fixed step";
-  return step < 0.001 ? `step ${Number((step * 1e6).toPrecision(6))} µs` : `step ${Number((step * 1e3).toPrecision(6))} ms`;
+  return step < 0.001
+    ? `step ${Number((step * 1e6).toPrecision(6))} µs`
+    : `step ${Number((step * 1e3).toPrecision(6))} ms`;
 }
 
 export function modelPorts(state, side, diagnostics) {
@@ -48,7 +50,11 @@ export function modelPorts(state, side, diagnostics) {
     { class: `ports ${side}`, key: side, "aria-labelledby": `title-${side}` },
     h("h3", { id: `title-${side}` }, title, h("span", { class: "count" }, ` ${ports.length}`)),
     ports.length === 0 ? h("p", { class: "empty" }, `The model has no ${side}.`) : null,
-    h("ul", { class: "port-list" }, ports.map((port) => row(state, side, port, diagnostics.get(port.name) || []))),
+    h(
+      "ul",
+      { class: "port-list" },
+      ports.map((port) => row(state, side, port, diagnostics.get(port.name) || [])),
+    ),
   );
 }
 
@@ -57,7 +63,8 @@ function row(state, side, port, diagnostics) {
   const ends = endsOf(state, name);
   const proposal = name in state.wires ? null : state.proposals[name];
   const worst = diagnostics.some((each) => each.severity === "error") ? " has-error" : "";
-  const fields = ends.length === 0 ? [field(state, side, port, null, 0)] : ends.map((end, n) => field(state, side, port, end, n));
+  const fields =
+    ends.length === 0 ? [field(state, side, port, null, 0)] : ends.map((end, n) => field(state, side, port, end, n));
   if (ui.adding === name && ends.length > 0) fields.push(field(state, side, port, null, ends.length));
   const refused = ui.refused?.port === name ? { severity: "error", ...ui.refused } : null;
   return h(
@@ -103,7 +110,9 @@ function field(state, side, port, end, n) {
   return h(
     "div",
     { class: "end", key: `end-${n}`, "data-wire-model": id("wire", name, n) },
-    n === 0 ? handle(side, name, modelLabel(state, side, port), ends.length > 0) : h("span", { class: "tap", key: "handle" }),
+    n === 0
+      ? handle(side, name, modelLabel(state, side, port), ends.length > 0)
+      : h("span", { class: "tap", key: "handle" }),
     h(
       "select",
       {
@@ -141,7 +150,9 @@ function field(state, side, port, end, n) {
 function options(state, side, port, end, n) {
   const { name } = port;
   const more = n > 0 && end === null;
-  const list = [h("option", { key: "", value: "" }, more ? "(choose one more)" : n > 0 ? "(remove)" : "(not connected)")];
+  const list = [
+    h("option", { key: "", value: "" }, more ? "(choose one more)" : n > 0 ? "(remove)" : "(not connected)"),
+  ];
   if (side === "outputs" && n === 0) {
     list.push(h("option", { key: "unconnected", value: "unconnected" }, "unconnected on purpose"));
   }

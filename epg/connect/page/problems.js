@@ -19,7 +19,7 @@ function countText(errors, warnings) {
   return parts.join(", ") || "No problems";
 }
 
-export const severityIcon = (severity) => icon(severity in { error: 1, warning: 1 } ? severity : "note");
+const severityIcon = (severity) => icon(severity in { error: 1, warning: 1 } ? severity : "note");
 
 // Hints that only say what the list of the port offers already.
 const LISTED = new Set(["unbound-input", "unbound-output"]);
@@ -94,12 +94,12 @@ export function problem(message) {
   );
 }
 
-export function goTo(message) {
+function goTo(message) {
   if (message.port && focusPort(message.port)) return;
   if (message.file) showSource(message);
 }
 
-export function focusPort(port) {
+function focusPort(port) {
   if (ui.dock === "large") {
     ui.dock = "open";
     draw();

@@ -33,7 +33,12 @@ function heading(id, number, title, text) {
 }
 
 function modelStep(model) {
-  if (!model) return h("section", { class: "step step-model", key: "model" }, heading("step-model", 1, "Model", "No model was found."));
+  if (!model)
+    return h(
+      "section",
+      { class: "step step-model", key: "model" },
+      heading("step-model", 1, "Model", "No model was found."),
+    );
   const list = (title, ports) =>
     h(
       "div",
@@ -62,7 +67,11 @@ function projectStep(state) {
     const { folder, name } = event.target.elements;
     busy = true;
     draw();
-    const done = await attempt("create", { configuration: ui.chosen, folder: folder.value.trim(), name: name.value.trim() });
+    const done = await attempt("create", {
+      configuration: ui.chosen,
+      folder: folder.value.trim(),
+      name: name.value.trim(),
+    });
     busy = false;
     draw();
     if (done) document.getElementById("main").focus();
@@ -70,7 +79,12 @@ function projectStep(state) {
   return h(
     "section",
     { class: "step step-project", key: "project", "aria-labelledby": "step-project" },
-    heading("step-project", 3, "Project", "A folder with everything the firmware is built from. The model is copied into it."),
+    heading(
+      "step-project",
+      3,
+      "Project",
+      "A folder with everything the firmware is built from. The model is copied into it.",
+    ),
     h(
       "form",
       { onsubmit: create, autocomplete: "off" },
@@ -78,13 +92,27 @@ function projectStep(state) {
         "div",
         { class: "field" },
         h("label", { for: "create-name" }, "Name"),
-        h("input", { id: "create-name", name: "name", type: "text", required: true, spellcheck: "false", initial: state.create?.name }),
+        h("input", {
+          id: "create-name",
+          name: "name",
+          type: "text",
+          required: true,
+          spellcheck: "false",
+          initial: state.create?.name,
+        }),
       ),
       h(
         "div",
         { class: "field" },
         h("label", { for: "create-folder" }, "Folder"),
-        h("input", { id: "create-folder", name: "folder", type: "text", required: true, spellcheck: "false", initial: state.create?.folder }),
+        h("input", {
+          id: "create-folder",
+          name: "folder",
+          type: "text",
+          required: true,
+          spellcheck: "false",
+          initial: state.create?.folder,
+        }),
       ),
       h(
         "p",
@@ -92,9 +120,17 @@ function projectStep(state) {
         picked ? ["Target ", h("b", null, picked.name)] : h("span", { class: "muted" }, "No target is chosen yet."),
       ),
       picked?.missing.length
-        ? h("p", { class: "muted" }, `Connecting works now; generating needs ${picked.missing.join(", ")}. 'epg doctor' says how to get it.`)
+        ? h(
+            "p",
+            { class: "muted" },
+            `Connecting works now; generating needs ${picked.missing.join(", ")}. 'epg doctor' says how to get it.`,
+          )
         : null,
-      h("button", { type: "submit", class: "primary wide", disabled: !picked || busy }, busy ? "Creating…" : "Create project"),
+      h(
+        "button",
+        { type: "submit", class: "primary wide", disabled: !picked || busy },
+        busy ? "Creating…" : "Create project",
+      ),
       picked?.picture
         ? h("img", {
             key: "picture",

@@ -97,5 +97,6 @@ function curve(from, to) {
   const distance = to.x - from.x;
   const bend = Math.sign(distance || 1) * Math.max(Math.abs(distance) / 2, 40);
   const round = (value) => Math.round(value * 10) / 10;
-  return `M${round(from.x)} ${round(from.y)}C${round(from.x + bend)} ${round(from.y)} ${round(to.x - bend)} ${round(to.y)} ${round(to.x)} ${round(to.y)}`;
+  const places = [from.x, from.y, from.x + bend, from.y, to.x - bend, to.y, to.x, to.y].map(round);
+  return `M${places.slice(0, 2).join(" ")}C${places.slice(2).join(" ")}`;
 }

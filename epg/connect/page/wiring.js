@@ -17,12 +17,6 @@ export function modelPort(state, name) {
   return null;
 }
 
-export function componentPorts(state, direction) {
-  return state.components.flatMap((component) =>
-    component.ports.filter((port) => port.direction === direction).map((port) => ({ component, port })),
-  );
-}
-
 export const endsOf = (state, port) => state.wires[port] || [];
 export const isUnconnected = (state, port) => port in state.wires && state.wires[port].length === 0;
 
@@ -39,7 +33,11 @@ export function unitText({ unit, type }) {
 // The same beside a name; what has no unit gets a dash.
 export function unitMark(port) {
   const text = unitText(port);
-  return h("span", { class: "unit", title: port.unit ? null : text }, port.unit ? text : port.type === "real" ? "–" : port.type);
+  return h(
+    "span",
+    { class: "unit", title: port.unit ? null : text },
+    port.unit ? text : port.type === "real" ? "–" : port.type,
+  );
 }
 
 // The fields of an end that api/connect takes.
