@@ -64,7 +64,8 @@ function(_epg_key result)
     set(interpreter "${EPG_PYTHON} ${time} ${size}")
   endif()
   _epg_wanted_python(wanted)
-  string(SHA256 key "${ARGN}\n${EPG_TARGETS_PATH}\n$ENV{EPG_TARGETS_PATH}\n${generator}\n${interpreter}\n${wanted}")
+  _epg_user_folders(roots) # not where they are said: <name>_connect says those of a variable in the environment
+  string(SHA256 key "${ARGN}\n${roots}\n${generator}\n${interpreter}\n${wanted}")
   set(${result} "${key}" PARENT_SCOPE)
 endfunction()
 
