@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from epg.connect.cmake_blocks import Block, Tree, commands_of, tree_of
 from epg.connect.cmake_condition import condition
 from epg.connect.cmake_values import MAX_LENGTH, Variables, Word, expression
 from epg.load.cmake_file import Command, NotCMake, parse_cmake
@@ -25,7 +26,6 @@ MAX_DEPTH = 8
 _READ_ONLY = re.compile(
     r"(message|include|install|export|project|(add|target|set|enable|link|pico|epg|zephyr|cmake_policy|cmake_minimum)_.*)$"
 )
-_ENDS = {name: f"end{name}" for name in ("if", "foreach", "while", "function", "macro", "block")}
 
 
 @dataclass(frozen=True)
@@ -47,16 +47,6 @@ class Unknown:
     message: str
 
 
-@dataclass(frozen=True)
-class _Block:
-    """if, foreach, ... with what stands in it; an if has a part for each of its branches."""
-
-    parts: tuple[tuple[Command, tuple[Command | _Block, ...]], ...]
-
-
-_Tree = tuple["Command | _Block", ...]
-
-
 class Walk:
     """The calls of the project whose top folder is ``top``; ``cache`` holds variables of a build folder."""
 
@@ -73,7 +63,7 @@ class Walk:
         path = folder / "CMakeLists.txt"
         try:
             text = path.read_bytes().decode("utf-8-sig", "replace")
-            tree = _tree(parse_cmake(text, str(path)))
+            tree = tree_of(parse_cmake(text, str(path)))
         except (OSError, ValueError):
             return  # CMake says so when it configures
         except NotCMake as problem:
@@ -106,12 +96,12 @@ class _File:
     folder: Path
     depth: int
 
-    def run(self, tree: _Tree, variables: Variables, certain: bool) -> bool:
+    def run(self, tree: Tree, variables: Variables, certain: bool) -> bool:
         """Whether what comes after ``tree`` is reached: no return() was met."""
         for item in tree:
             if not self.walk.count():
                 return False
-            if isinstance(item, _Block):
+            if isinstance(item, Block):
                 going_on = self._block(item, variables, certain)
             else:
                 going_on = item.name != "return" or not certain
@@ -120,7 +110,7 @@ class _File:
                 return False
         return True
 
-    def _block(self, block: _Block, variables: Variables, certain: bool) -> bool:
+    def _block(self, block: Block, variables: Variables, certain: bool) -> bool:
         opening, body = block.parts[0]
         if opening.name == "if":
             return self._if(block, variables, certain)
@@ -128,14 +118,14 @@ class _File:
             return self._foreach(opening, body, variables, certain)
         if opening.name == "block":
             return self.run(body, variables, certain)
-        for command in _commands(body):
+        for command in commands_of(body):
             if command.name == "epg_add_target":
                 message = f"this call stands in a {opening.name}(): only CMake knows when it is made"
                 self.walk.unknown.append(Unknown(command.span, message))
             self._forget(command, variables)
         return True
 
-    def _if(self, block: _Block, variables: Variables, certain: bool) -> bool:
+    def _if(self, block: Block, variables: Variables, certain: bool) -> bool:
         ends: list[Variables] = []
         for command, body in block.parts:
             is_taken = command.name == "else" or _is_default(command, body, variables)
@@ -154,7 +144,7 @@ class _File:
         variables.become_any_of(ends)
         return True
 
-    def _foreach(self, opening: Command, body: _Tree, variables: Variables, certain: bool) -> bool:
+    def _foreach(self, opening: Command, body: Tree, variables: Variables, certain: bool) -> bool:
         words = variables.words(opening.arguments)
         name, items = (words[0].text if words else None), words[1:]
         values: list[str | None] | None = [word.text for word in items]
@@ -202,14 +192,14 @@ class _File:
                 variables.forget(argument.text)
 
 
-def _is_default(command: Command, body: _Tree, variables: Variables) -> bool:
+def _is_default(command: Command, body: Tree, variables: Variables) -> bool:
     """``if(NOT X)`` and ``if(NOT DEFINED X)`` around ``set(X ...)``, where nothing has set X before."""
     words = [argument.text for argument in command.arguments]
     if words[:1] != ["NOT"] or words[1:-1] not in ([], ["DEFINED"]) or variables.has(words[-1]):
         return False
     return any(
         inner.name == "set" and inner.arguments[:1] and inner.arguments[0].text == words[-1]
-        for inner in _commands(body)
+        for inner in commands_of(body)
     )
 
 
@@ -257,34 +247,3 @@ def _in_lists(items: Sequence[Word], variables: Variables) -> list[str | None] |
                 return None
             found += [part for part in text.split(";") if part]
     return found
-
-
-def _commands(tree: _Tree) -> list[Command]:
-    found: list[Command] = []
-    for item in tree:
-        if isinstance(item, Command):
-            found.append(item)
-        else:
-            found += [command for _, body in item.parts for command in _commands(body)]
-    return found
-
-
-def _tree(commands: Sequence[Command]) -> _Tree:
-    """The commands with blocks put together.  Raises :class:`NotCMake` where one is not closed."""
-    tree: list[Command | _Block] = []
-    stack: list[list[tuple[Command, list[Command | _Block]]]] = []
-    for command in commands:
-        inner = stack[-1][-1][1] if stack else tree
-        if command.name in _ENDS:
-            stack.append([(command, [])])
-        elif command.name in ("elseif", "else") and stack:
-            stack[-1].append((command, []))
-        elif stack and command.name == _ENDS[stack[-1][0][0].name]:
-            block = _Block(tuple((opening, tuple(body)) for opening, body in stack.pop()))
-            (stack[-1][-1][1] if stack else tree).append(block)
-        else:
-            inner.append(command)
-    if stack:
-        opening = stack[-1][0][0]
-        raise NotCMake(f"this {opening.name}() has no {_ENDS[opening.name]}()", opening.span)
-    return tuple(tree)
