@@ -79,12 +79,7 @@ function row(state, side, port, users) {
     h("span", { class: "port-name", title: port.summary || null }, name),
     unitMark(port),
     converted
-      ? h(
-          "span",
-          { class: "tcf-label", key: "tcf", title: "conversion in the .tcf" },
-          h("span", { class: "muted" }, ".tcf "),
-          converted,
-        )
+      ? h("span", { class: "tcf-label", key: "tcf", title: "The .tcf converts this value" }, ".tcf: ", converted)
       : null,
   );
 }

@@ -187,6 +187,12 @@ function conversionButton(port, side, end, n) {
       title: end.text || "Conversion on this wire",
       onclick: () => editConversion(port.name, n),
     },
-    end.text || icon("conversion"),
+    end.text ? steps(end.text) : icon("conversion"),
   );
+}
+
+// A long conversion breaks between its steps: scale, offset, limits.
+function steps(text) {
+  const parts = text.split(/ (?=[×+-]|in )/);
+  return parts.map((part, n) => [n > 0 ? " " : null, h("span", { class: "conversion-step" }, part)]);
 }

@@ -27,6 +27,9 @@ def test_start_page(started: Served, open_page: Open) -> None:
     page.locator(".card").first.wait_for()
     page.get_by_role("radio").and_(page.locator(":enabled")).first.check()
     assert violations(page) == []
+    page.set_viewport_size({"width": 800, "height": 600})
+    assert violations(page) == []
+    assert page.evaluate("document.documentElement.scrollWidth") <= 800
 
 
 def test_diagram_and_details(jiwy: Project, open_page: Open) -> None:
@@ -70,6 +73,7 @@ def test_fits_the_window(jiwy: Project, open_page: Open, width: int, height: int
     page = open_page(jiwy.address, viewport={"width": width, "height": height})
     assert page.evaluate("document.documentElement.scrollWidth") <= width
     assert page.evaluate("document.getElementById('main').scrollWidth") <= width
+    assert violations(page) == []
     field(page, "tilt_logging").select_option("unconnected on purpose")
     page.get_by_text("● Unsaved changes").wait_for()
     page.get_by_role("button", name="Generate", exact=True).scroll_into_view_if_needed()

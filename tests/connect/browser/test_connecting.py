@@ -283,6 +283,27 @@ def test_conversion(jiwy: Project, open_page: Open) -> None:
     assert written == {"from": "encoder_pan", "scale": "1/2", "offset": 0.1, "limits": [-1, 1]}
 
 
+def test_conversions_of_the_tcf_and_of_units(jiwy: Project, open_page: Open, tmp_path: Path) -> None:
+    """Those of the .tcf stand at its component, those of the wire on the wire, with the units between them."""
+    tcf = tmp_path / "deg.tcf"
+    tcf.write_text(
+        "version: 1\nextends: host_jiwy.tcf\ncomponents:\n  encoder_pan: {unit: deg}\n  pwm_pan: {scale: 0.5}\n",
+        encoding="utf-8",
+    )
+    with Served("--tcf", tcf, "--model", jiwy.folder / "model", "--bindings", jiwy.file) as epg:
+        page = open_page(epg.address)
+        wires = epg.state()["wires"]
+        (pan,), (duty,) = wires["position_pan"], wires["pwm_pan"]
+        assert pan["text"] == "deg → rad" and duty["from_tcf"] == "×0.5"
+        assert port(page, "position_pan").locator(".wire-label").inner_text() == pan["text"]
+        source = page.locator('.sources .port[data-name="encoder_pan"]')
+        assert source.locator(".unit").inner_text() == "deg"
+        assert source.locator(".tcf-label").inner_text() == f".tcf: {pan['from_tcf']}"
+        assert page.locator('.sinks .port[data-name="pwm_pan"] .tcf-label').inner_text() == ".tcf: ×0.5"
+        port(page, "pwm_pan").locator(".wire-label").click()
+        assert "×0.5" in page.get_by_role("dialog", name="pwm_pan → pwm_pan").inner_text()
+
+
 def test_undo_and_redo(jiwy: Project, open_page: Open) -> None:
     page = open_page(jiwy.address)
     field(page, "position_tilt").select_option("encoder_pan")
