@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from epg.cli.arguments import add_target_arguments, request_of, user_roots
-from epg.cli.report import to_json
+from epg.cli.report import format_diagnostics, to_json
 from epg.diagnostics import Diagnostics
 
 if TYPE_CHECKING:
@@ -119,7 +119,12 @@ def _jobs(folder: Path, name: str | None, diagnostics: Diagnostics) -> list[Job]
     from epg.diagnostics import did_you_mean
     from epg.source import Span
 
-    jobs = find_jobs(folder, diagnostics)
+    found = Diagnostics()
+    jobs = find_jobs(folder, found)
+    if found.has_errors:
+        diagnostics.items.extend(found)
+    else:  # now, not after hours with the page
+        sys.stderr.write(format_diagnostics(found))
     if not jobs and not diagnostics.has_errors:
         jobs = jobs_of_model(folder)
     if name is not None and jobs:

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import signal
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
-from tests.cmake.project import Project, compiled
+from tests.cmake.project import ROOT, Project, compiled
 from tests.connect.started import generate, started
 
 GENERATORS = ["Ninja", "Unix Makefiles"]
@@ -96,3 +98,14 @@ def test_where_configuring_fails_a_script_does_the_same(robot: Project) -> None:
         process.communicate(timeout=30)
     assert not script.exists()
     assert compiled(robot.build()) == set()
+
+
+def test_what_is_not_understood_is_said_at_once(tmp_path: Path) -> None:
+    """Before the page opens: it is about another target than the one that is shown."""
+    app = shutil.copytree(ROOT / "examples" / "zephyr_jiwy" / "app", tmp_path / "app")
+    command = [sys.executable, str(ROOT / "epg"), "connect", str(app)]
+    with started(command) as (page, process):
+        assert page.state()["project"]["name"] == "jiwy"
+        page.post("done")
+        rest = process.communicate(timeout=30)[0]
+    assert "[cmake-not-understood]" not in rest
