@@ -54,7 +54,13 @@ export function editConversion(port, n) {
       h(
         "div",
         { class: "fields" },
-        text("scale", "Scale", end.scale, "a number or a ratio such as 361/5625", readonly),
+        text(
+          "scale",
+          "Scale",
+          end.scale,
+          "a number or a ratio such as 361/5625; replaces the conversion of units",
+          readonly,
+        ),
         text("offset", "Offset", end.offset, "", readonly),
         text("low", "Lowest", end.limits?.[0], "", readonly),
         text("high", "Highest", end.limits?.[1], "", readonly),

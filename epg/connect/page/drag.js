@@ -65,7 +65,11 @@ function follow(start, handle) {
   const finish = () => {
     hover(null);
     cancelAnimationFrame(frame);
-    if (dragging) ui.held = null;
+    if (dragging) {
+      ui.held = null;
+      ui.dragged = true;
+      setTimeout(() => (ui.dragged = false));
+    }
     dragging = false;
     document.documentElement.classList.remove("dragging");
     for (const [name, listener] of Object.entries(listeners)) window.removeEventListener(name, listener, true);

@@ -52,7 +52,7 @@ function focus(element) {
   element.focus();
 }
 
-export function listenForKeys(root) {
+export function listenForPresses(root) {
   root.addEventListener("keydown", (event) => {
     const here = event.target.closest?.("[data-handle]");
     if (!here) return;
@@ -70,6 +70,12 @@ export function listenForKeys(root) {
     if (!(event.key in keys)) return;
     event.preventDefault();
     keys[event.key]();
+  });
+  // A click does what Enter does: so do screen readers, and whoever cannot drag. Elsewhere it puts the end back.
+  root.addEventListener("click", (event) => {
+    const here = event.target.closest?.("[data-handle]");
+    if (here && !ui.dragged) press(here.dataset.side, here.dataset.name);
+    else if (!here && ui.held?.by === "keyboard") putBack();
   });
   root.addEventListener("focusout", (event) => {
     // Tab leaves: what was held is put back.

@@ -7,7 +7,7 @@ import { drawDialogs } from "./dialog.js";
 import { dock } from "./dock.js";
 import { h, render } from "./dom.js";
 import { listenForDrags } from "./drag.js";
-import { drawStops, isKnown, listenForKeys } from "./handles.js";
+import { drawStops, isKnown, listenForPresses } from "./handles.js";
 import { header } from "./header.js";
 import { modelHead, modelPorts } from "./ports.js";
 import { current, follow, hasEnded } from "./server.js";
@@ -62,7 +62,7 @@ function diagram(state) {
       modelPorts(state, "outputs", byPort),
       componentColumn(state, "sinks", byComponent, users),
       h("svg", { id: "wires", key: "wires", keep: true, "aria-hidden": "true" }),
-      h("p", { class: "unseen", id: "handle-help", key: "help" }, "Enter picks the end of a wire up"),
+      h("p", { class: "unseen", id: "handle-help", key: "help" }, "Enter or a click picks the end of a wire up"),
     ),
   ];
 }
@@ -97,7 +97,7 @@ window.addEventListener("beforeunload", (event) => {
 });
 
 listenForDrags(part("main"));
-listenForKeys(part("main"));
+listenForPresses(part("main"));
 follow(() => {
   if (current() && !hasEnded()) followBuild(current());
   draw();

@@ -8,6 +8,7 @@ export const ui = {
   refused: null, // what the server said against the last action: {message, hint, port}
   adding: null, // output that is getting another end
   held: null, // end of a wire that somebody holds: {side, name}
+  dragged: false, // a drag ends at this moment: the click that follows means nothing
   filter: { text: "", robot: "", fits: false },
   chosen: null, // configuration picked on the start page, or in the dialog
   zoom: {}, // per picture

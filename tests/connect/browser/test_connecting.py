@@ -150,6 +150,20 @@ def test_connects_by_keyboard(jiwy: Project, open_page: Open) -> None:
     assert "pwm_tilt" not in jiwy.epg.state()["wires"]
 
 
+def test_connects_by_two_clicks(jiwy: Project, open_page: Open) -> None:
+    """For whoever cannot drag, and for screen readers, whose activation is a click."""
+    jiwy.write(FREE)
+    page = open_page(jiwy.address)
+    handle(page, "sinks", "pwm_tilt").click()
+    assert handle(page, "sinks", "pwm_tilt").get_attribute("aria-pressed") == "true"
+    page.locator(".model-head h2").click()
+    assert handle(page, "sinks", "pwm_tilt").get_attribute("aria-pressed") == "false", "put back"
+    handle(page, "sinks", "pwm_tilt").click()
+    handle(page, "outputs", "pwm_tilt").click()
+    until(page, "document.getElementById('ends-pwm_tilt-0').value === ':pwm_tilt'")
+    assert page.locator(".holding").count() == 0
+
+
 def test_takes_proposals(jiwy: Project, open_page: Open) -> None:
     jiwy.write(UNBOUND, FREE, ("  tilt_logging: tilt_publisher\n", ""))
     page = open_page(jiwy.address)
