@@ -26,6 +26,7 @@ export function bars(state) {
   }
   if (!state) return list;
   const { draft } = state;
+  if (!draft.external) dismissed = null;
   if (state.phase === "connect" && draft.conflict) {
     list.push(
       bar(

@@ -14,21 +14,30 @@ export const hasEnded = () => ended;
 export async function follow(whenChanged) {
   changed = whenChanged;
   while (!ended) {
+    const next = await newest();
+    if (ended) return;
+    const differs = lost !== (next === null);
+    lost = next === null;
     try {
-      // A server that was found again may count its versions anew.
-      const answer = await fetch(`api/state?after=${state === null || lost ? 0 : state.version}`);
-      if (!answer.ok) throw new Error(String(answer.status));
-      const found = lost;
-      lost = false;
-      take(await answer.json(), found);
-    } catch {
-      if (ended) return;
-      if (!lost) {
-        lost = true;
-        changed();
+      if (lost) {
+        if (differs) changed();
+      } else {
+        take(next, differs);
       }
-      await new Promise((resolve) => setTimeout(resolve, 1500));
+    } catch (error) {
+      reportError(error); // a mistake of the page is none of the connection
     }
+    if (lost) await new Promise((resolve) => setTimeout(resolve, 1500));
+  }
+}
+
+async function newest() {
+  try {
+    // After a loss the state may have been missed.
+    const answer = await fetch(`api/state?after=${state === null || lost ? 0 : state.version}`);
+    return answer.ok ? await answer.json() : null;
+  } catch {
+    return null;
   }
 }
 

@@ -67,23 +67,3 @@ def test_generates_shows_errors_and_cancels(jiwy: Project, open_page: Open) -> N
     page.get_by_role("button", name="Cancel", exact=True).click()
     page.locator(".outcome.cancelled").wait_for(timeout=PATIENT)
     source.write_text(original, encoding="utf-8")
-
-
-def test_says_that_the_connection_is_lost(browser: Any, open_page: Open, tmp_path: Path) -> None:
-    from .conftest import copy_jiwy
-    from .served import Served
-
-    copy_jiwy(tmp_path / "jiwy")
-    with Served(tmp_path / "jiwy") as epg:
-        page = open_page(epg.address)
-        field(page, "position_tilt").select_option("encoder_pan")
-        page.get_by_text("● Unsaved changes").wait_for()
-    page.get_by_role("alert").get_by_text("The connection to EPG is lost.").wait_for()
-    assert "epg connect" in page.get_by_role("alert").inner_text()
-    assert field(page, "position_tilt").is_visible(), "what was on the page stays to be read"
-
-    # Whoever leaves with unsaved changes is asked.
-    with page.expect_event("dialog") as leaving:
-        page.close(run_before_unload=True)
-    assert leaving.value.type == "beforeunload"
-    leaving.value.accept()
