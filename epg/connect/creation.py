@@ -17,10 +17,10 @@ def proposal(model: Path) -> dict[str, str]:
     around = model.resolve()
     around = around if around.is_dir() else around.parent
     words = [around.name.removesuffix(end) for end in ("_export", "-export") if around.name.endswith(end)]
-    folder = around.with_name(words[0] if words else f"{around.name}_project")
-    number = 2
+    name = words[0] if words else f"{around.name}_project"
+    folder, number = around.with_name(name), 2
     while os.path.lexists(folder):
-        folder, number = around.with_name(f"{around.name}_project{number}"), number + 1
+        folder, number = around.with_name(f"{name}_{number}"), number + 1
     return {"folder": str(folder), "name": project_name(folder)}
 
 

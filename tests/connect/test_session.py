@@ -201,7 +201,7 @@ def test_a_conflict_is_the_users_to_solve(page: Page, bindings: Path) -> None:
             page.post(action, port="pwm_pan")
         assert refusal.value.status == 409 and refusal.value.message == conflict["message"]
     assert bindings.read_text() == broken
-    version = page.state()["version"]
+    version = page.until(lambda state: state["configurations"])["version"]  # they come later, which is a version too
     time.sleep(1.2)
     assert page.json(f"api/state?after={version - 1}")["version"] == version, "a conflict is told once"
     state = page.post("save", anyway=True)
