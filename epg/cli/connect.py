@@ -56,7 +56,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     project = jobs[0].source_dir if jobs and not all(given) else None
     session = Session(jobs, folder=project, model=model, user_roots=user_roots())
     if options.terminal:
-        from epg.connect.terminal import run as run_terminal
+        from epg.connect.terminal.dialog import run as run_terminal
 
         return run_terminal(session, sys.stdin, sys.stdout)
     return _serve(session, options)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from epg.emit.bindings_edit import End
+from epg.edit.bindings import End
 
 _LONGEST = 1000
 _MOST_ENDS = 64

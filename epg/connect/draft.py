@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from epg.connect.files import Snapshot
-from epg.emit.bindings_edit import CannotEdit, End, set_ends
-from epg.emit.tcf_edit import set_extends
+from epg.edit.bindings import CannotEdit, End, set_ends
+from epg.edit.tcf import set_extends
 from epg.load.models.model import Model
 
 

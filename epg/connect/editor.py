@@ -15,8 +15,8 @@ from epg.connect.loaded import Models, load, tcf_path
 from epg.connect.projects import Job
 from epg.connect.view import view_of
 from epg.diagnostics import Diagnostics
-from epg.emit.bindings_edit import CannotEdit
-from epg.emit.yaml_text import scalar_text
+from epg.edit.bindings import CannotEdit
+from epg.edit.scalars import scalar_text
 from epg.load.models import load_model
 from epg.load.yaml_file import parse_yaml
 

@@ -11,7 +11,7 @@ from epg.connect.projects import Job
 from epg.source import Span
 
 if TYPE_CHECKING:
-    from epg.connect.build import Build
+    from epg.connect.build.run import Build
 
 NONE: dict[str, Any] = {
     "state": "idle",
@@ -43,7 +43,7 @@ class Runs:
 
     def start(self, job: Job) -> None:
         """Configures and builds ``job``."""
-        from epg.connect.build import Build
+        from epg.connect.build.run import Build
 
         self.check_idle()
         self._build = Build(job, self._changed)

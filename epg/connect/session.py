@@ -28,7 +28,7 @@ from epg.connect.runs import Runs
 from epg.connect.source import excerpt
 from epg.connect.start import Start
 from epg.connect.targets import Targets
-from epg.emit.bindings_edit import CannotEdit, End
+from epg.edit.bindings import CannotEdit, End
 
 __all__ = ["Refused", "Session", "State"]
 

@@ -13,7 +13,7 @@ from epg.connect.fitting import fits
 from epg.connect.loaded import Loaded
 from epg.connect.places import Places
 from epg.diagnostics import Diagnostic
-from epg.emit.bindings_edit import End, ends_of
+from epg.edit.bindings import End, ends_of
 from epg.emit.hardware import hardware_rows
 from epg.graph.application import conversion
 from epg.graph.wiring import wire_texts

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from epg.check.schema import load_schema, validate
 from epg.diagnostics import Diagnostics
-from epg.emit.bindings_section import add_open_port, add_port, comment_out_port, open_port, open_section
-from epg.emit.yaml_edit import CannotEdit
-from epg.emit.yaml_text import scalar_text
+from epg.edit.scalars import scalar_text
+from epg.edit.section import add_open_port, add_port, comment_out_port, open_port, open_section
+from epg.edit.yaml_edit import CannotEdit
 from epg.load.models.model import Model
 from epg.load.yaml_file import parse_yaml
 from epg.resolve.matching import Match
@@ -41,7 +41,7 @@ def updated_bindings(
 ) -> Change | None:
     """``text`` with lines for new ports and with removed ports commented out; None after reporting a mistake in it.
 
-    Raises :class:`~epg.emit.yaml_edit.CannotEdit` for a text that is written as EPG does not understand.
+    Raises :class:`~epg.edit.yaml_edit.CannotEdit` for a text that is written as EPG does not understand.
     """
     root = parse_yaml(text, file, diagnostics)
     if root is None or not validate(root, load_schema("bindings"), diagnostics):

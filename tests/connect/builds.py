@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from epg.connect.build import Build
+from epg.connect.build.run import Build
 from epg.connect.projects import Job, find_jobs
 from epg.diagnostics import Diagnostics
 

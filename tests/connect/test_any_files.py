@@ -17,7 +17,7 @@ from epg.connect.files import Unsavable
 from epg.connect.pictures import draw
 from epg.connect.projects import Job, find_jobs
 from epg.diagnostics import Diagnostics
-from epg.emit.bindings_edit import CannotEdit, End
+from epg.edit.bindings import CannotEdit, End
 
 PIECES = """{ } [ ] : # ' - null ~ é inputs: unconnected 1e999 &a !!x extends: target:""".split(" ")
 PIECES += ["\n", "\r\n", "\t", "\0", "components: 3\n", "extends: [a]\n", "extends: robot.tcf\n", "model: other\n"]

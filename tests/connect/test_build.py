@@ -14,9 +14,9 @@ from typing import Any
 
 import pytest
 
-from epg.connect import build as build_module
-from epg.connect.build import Build
-from epg.connect.build_plan import make_plan
+from epg.connect.build import run as build_module
+from epg.connect.build.plan import make_plan
+from epg.connect.build.run import Build
 from epg.connect.projects import Job
 from epg.data import targets_roots
 from epg.diagnostics import Diagnostics

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from epg.connect.build_plan import make_plan
+from epg.connect.build.plan import make_plan
 from epg.connect.projects import Job
 from epg.data import targets_roots
 from epg.diagnostics import Diagnostics

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from epg.connect.messages import LIMIT, Message, Messages, plain
+from epg.connect.build.messages import LIMIT, Message, Messages, plain
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = {"arm-none-eabi-gcc": "gcc-arm-none-eabi", "ninja": "ninja-build"}

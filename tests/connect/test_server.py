@@ -350,5 +350,5 @@ def test_other_commands_load_nothing_of_it() -> None:
     done = subprocess.run([sys.executable, "-c", "\n".join(lines)], capture_output=True, text=True, timeout=60)
     status, *modules = done.stdout.splitlines()[-1].split()
     assert status == "0" and "epg.project" in modules
-    unwanted = ("epg.connect", "epg.emit.bindings_edit", "epg.emit.tcf_edit", "epg.new_project", "http", "socket")
+    unwanted = ("epg.connect", "epg.edit.bindings", "epg.edit.tcf", "epg.new_project", "http", "socket")
     assert not [name for name in modules if name.startswith(unwanted)]

@@ -17,9 +17,9 @@ from pathlib import Path
 import pytest
 
 from epg.cli.main import main
-from epg.connect.console import Console
 from epg.connect.session import Session
-from epg.connect.terminal import run
+from epg.connect.terminal.console import Console
+from epg.connect.terminal.dialog import run
 from tests.connect.builds import processes
 from tests.connect.page import session_of
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from epg.check.bindings import UNCONNECTED
 from epg.diagnostics import Diagnostics
-from epg.emit.yaml_text import scalar_text
+from epg.edit.scalars import scalar_text
 from epg.load.yaml_file import parse_yaml
 from epg.source import Node
 

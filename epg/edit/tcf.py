@@ -13,9 +13,9 @@ from __future__ import annotations
 import yaml
 
 from epg.diagnostics import Diagnostics
-from epg.emit import yaml_edit
-from epg.emit.yaml_edit import CannotEdit, parse_map
-from epg.emit.yaml_text import scalar_text
+from epg.edit import yaml_edit
+from epg.edit.scalars import scalar_text
+from epg.edit.yaml_edit import CannotEdit, parse_map
 from epg.load.yaml_file import parse_yaml
 from epg.source import Node
 
@@ -25,7 +25,7 @@ KEY = "extends"
 def set_extends(text: str, file: str, value: str) -> str:
     """``text`` with ``extends: value``: in the place of the old name, or behind ``version`` where there was none.
 
-    ``file`` names the text in messages.  Raises :class:`~epg.emit.yaml_edit.CannotEdit` for a text that is no map, or
+    ``file`` names the text in messages.  Raises :class:`~epg.edit.yaml_edit.CannotEdit` for a text that is no map, or
     whose ``extends`` is something other than one name.
     """
     body = text.removeprefix("\ufeff")

@@ -12,10 +12,10 @@ import yaml
 
 from epg.check.bindings import UNCONNECTED
 from epg.diagnostics import Diagnostics
-from epg.emit import yaml_edit
-from epg.emit.bindings_ends import KEYS, REFERENCE, End, typed_value
-from epg.emit.yaml_edit import Steps
-from epg.emit.yaml_text import scalar_text
+from epg.edit import yaml_edit
+from epg.edit.ends import KEYS, REFERENCE, End, typed_value
+from epg.edit.scalars import scalar_text
+from epg.edit.yaml_edit import Steps
 from epg.load.yaml_file import parse_yaml
 
 

@@ -15,7 +15,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from epg.load.cmake_file import Argument
+from epg.load.cmake.syntax import Argument
 from epg.source import Span
 
 _REFERENCE = re.compile(r"\$(ENV|CACHE)?\{")

@@ -13,8 +13,8 @@ from itertools import takewhile
 
 import yaml
 
-from epg.emit import yaml_edit
-from epg.emit.yaml_text import scalar_text
+from epg.edit import yaml_edit
+from epg.edit.scalars import scalar_text
 
 ORDER = ("version", "model", "inputs", "outputs", "parameters")
 """Keys of a bindings file in the order in which EPG writes them."""

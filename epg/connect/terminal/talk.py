@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from epg.connect.console import Console
 from epg.connect.session import Refused, Session, State
-from epg.connect.terminal_create import Left
-from epg.connect.terminal_message import say_message
-from epg.connect.terminal_text import Port
+from epg.connect.terminal.console import Console
+from epg.connect.terminal.create import Left
+from epg.connect.terminal.message import say_message
+from epg.connect.terminal.text import Port
 
 OF_OPEN_PORTS = frozenset(("unbound-input", "unbound-output", "needs-bound", "unused-component"))
 """Messages that are there while ports are still to be asked for."""

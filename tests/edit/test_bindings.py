@@ -10,16 +10,16 @@ from pathlib import Path
 
 import pytest
 
-import epg.emit.bindings_edit
-import epg.emit.yaml_text
+import epg.edit.bindings
+import epg.edit.scalars
 from epg.check.bindings import load_bindings
 from epg.diagnostics import Diagnostics
-from epg.emit.bindings_edit import CannotEdit, End, ends_of, set_ends
+from epg.edit.bindings import CannotEdit, End, ends_of, set_ends
 from epg.load import yaml_file
 from epg.load.models.model import Model
 from epg.load.yaml_file import parse_yaml
 from epg.source import Node
-from tests.emit.servo import model_of
+from tests.edit.servo import model_of
 
 ROOT = Path(__file__).resolve().parents[2]
 SERVO = model_of(("angle", "go", "setpoint"), ("duty", "log", "reset"))
@@ -198,6 +198,6 @@ def test_all_examples_were_found() -> None:
 
 
 def test_docstrings() -> None:
-    assert doctest.testmod(epg.emit.yaml_text).failed == 0
-    globs = {**vars(epg.emit.bindings_edit), "model": model_of(("angle",), ())}
-    assert doctest.testmod(epg.emit.bindings_edit, extraglobs=globs).failed == 0
+    assert doctest.testmod(epg.edit.scalars).failed == 0
+    globs = {**vars(epg.edit.bindings), "model": model_of(("angle",), ())}
+    assert doctest.testmod(epg.edit.bindings, extraglobs=globs).failed == 0

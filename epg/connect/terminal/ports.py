@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from epg.connect.terminal_talk import Talk
-from epg.connect.terminal_text import (
+from epg.connect.terminal.talk import Talk
+from epg.connect.terminal.text import (
     UNCONNECTED,
     Port,
     candidate_rows,

@@ -12,12 +12,12 @@ import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from epg.connect.build_plan import Plan, make_plan
-from epg.connect.messages import Message, Messages, plain
-from epg.connect.process import Process
-from epg.connect.products import Made, ask, products
+from epg.connect.build.messages import Message, Messages, plain
+from epg.connect.build.plan import Plan, make_plan
+from epg.connect.build.process import Process
+from epg.connect.build.products import Made, ask, products
+from epg.connect.build.tools import MissingTool, missing_tools
 from epg.connect.projects import Job
-from epg.connect.tools import MissingTool, missing_tools
 from epg.diagnostics import Diagnostics
 from epg.load.hardware import Target
 from epg.project import load_configuration, make_catalog

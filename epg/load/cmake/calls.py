@@ -12,10 +12,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from epg.connect.cmake_blocks import Block, Tree, commands_of, tree_of
-from epg.connect.cmake_condition import condition
-from epg.connect.cmake_values import MAX_LENGTH, Variables, Word, expression
-from epg.load.cmake_file import Command, NotCMake, parse_cmake
+from epg.load.cmake.blocks import Block, Tree, commands_of, tree_of
+from epg.load.cmake.condition import condition
+from epg.load.cmake.syntax import Command, NotCMake, parse_cmake
+from epg.load.cmake.values import MAX_LENGTH, Variables, Word, expression
 from epg.source import Span
 
 MAX_COMMANDS = 20_000

@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from epg.connect.console import Console
 from epg.connect.session import Refused, Session
+from epg.connect.terminal.console import Console
 from epg.new_project import project_name
 
 WAIT = 60.0

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 from typing import TextIO
 
-from epg.connect.console import Console, Ended
 from epg.connect.session import Refused, Session
-from epg.connect.terminal_build import build
-from epg.connect.terminal_create import Left, create_project
-from epg.connect.terminal_ports import Ports
-from epg.connect.terminal_talk import Talk
-from epg.connect.terminal_text import is_open, ports_of
+from epg.connect.terminal.build import build
+from epg.connect.terminal.console import Console, Ended
+from epg.connect.terminal.create import Left, create_project
+from epg.connect.terminal.ports import Ports
+from epg.connect.terminal.talk import Talk
+from epg.connect.terminal.text import is_open, ports_of
 
 LEFT_UNSAVED, INTERRUPTED = 1, 130
 

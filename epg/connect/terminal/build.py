@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from epg.connect.console import Console
 from epg.connect.session import Session, State
-from epg.connect.terminal_message import say_message
+from epg.connect.terminal.console import Console
+from epg.connect.terminal.message import say_message
 
 LOOK = 1.0
 """Seconds between two looks at a build that says nothing."""

@@ -25,10 +25,10 @@ from typing import Any
 
 from epg.check.bindings import UNCONNECTED
 from epg.diagnostics import Diagnostics
-from epg.emit.bindings_ends import REFERENCE, End, data_of, ends_of, said_ends
-from epg.emit.bindings_section import add_port, remove_port
-from epg.emit.bindings_value import change_value, value_text
-from epg.emit.yaml_edit import CannotEdit, parse_map
+from epg.edit.ends import REFERENCE, End, data_of, ends_of, said_ends
+from epg.edit.section import add_port, remove_port
+from epg.edit.value import change_value, value_text
+from epg.edit.yaml_edit import CannotEdit, parse_map
 from epg.load.models.model import Model
 from epg.load.yaml_file import parse_yaml
 from epg.source import Node

@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from epg.connect.console import Console
 from epg.connect.session import Refused, Session
+from epg.connect.terminal.console import Console
 
 Excerpt = Callable[[Mapping[str, Any]], list[str]]
 

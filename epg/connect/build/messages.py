@@ -17,7 +17,7 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from epg.connect.cmake_message import CMakeMessage, starts_cmake_message
+from epg.connect.build.cmake_message import CMakeMessage, starts_cmake_message
 
 LIMIT = 100
 """Messages that are kept of one build; a header that is wrong can give thousands."""

@@ -9,8 +9,8 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from epg.connect.cmake_values import Variables, expression
-from epg.load.cmake_file import Argument
+from epg.load.cmake.syntax import Argument
+from epg.load.cmake.values import Variables, expression
 from epg.load.text_file import is_file, is_folder
 
 _TRUE = re.compile(r"(ON|YES|TRUE|Y|-?[0-9]*[1-9][0-9]*)$", re.IGNORECASE)

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-import epg.emit.tcf_edit
+import epg.edit.tcf
 from epg.diagnostics import Diagnostics
-from epg.emit.tcf_edit import set_extends
-from epg.emit.yaml_edit import CannotEdit
+from epg.edit.tcf import set_extends
+from epg.edit.yaml_edit import CannotEdit
 from epg.load.yaml_file import parse_yaml
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -74,4 +74,4 @@ def test_a_text_that_needs_an_editor(what: str) -> None:
 
 
 def test_docstring() -> None:
-    assert doctest.testmod(epg.emit.tcf_edit).failed == 0
+    assert doctest.testmod(epg.edit.tcf).failed == 0

@@ -9,13 +9,13 @@ from hypothesis import event, given, note, settings
 from hypothesis import strategies as st
 
 from epg.diagnostics import Diagnostics
-from epg.emit.bindings_edit import CannotEdit, End, ends_of, set_ends
-from epg.emit.bindings_ends import data_of
-from epg.emit.yaml_text import scalar_text
+from epg.edit.bindings import CannotEdit, End, ends_of, set_ends
+from epg.edit.ends import data_of
+from epg.edit.scalars import scalar_text
 from epg.load.yaml_file import parse_yaml
 from epg.source import Node
-from tests.emit.bindings_texts import PORTS, Text, bindings_texts, ends
-from tests.emit.servo import model_of
+from tests.edit.bindings_texts import PORTS, Text, bindings_texts, ends
+from tests.edit.servo import model_of
 from tests.fuzz.long_run import PROFILE, examples
 
 MODEL = model_of(PORTS["inputs"], PORTS["outputs"])

@@ -10,9 +10,9 @@ from dataclasses import dataclass, field
 import yaml
 from hypothesis import strategies as st
 
-from epg.emit.bindings_edit import End
-from epg.emit.bindings_section import open_port, open_section
-from epg.emit.yaml_text import scalar_text
+from epg.edit.bindings import End
+from epg.edit.scalars import scalar_text
+from epg.edit.section import open_port, open_section
 
 PORTS = {
     "inputs": ("angle", "Pan\\PID.u", "on", "x y", "set: point"),

@@ -1,0 +1,1 @@
+"""Builds that somebody watches: what is run, what it says and what it makes."""

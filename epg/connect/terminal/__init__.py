@@ -1,0 +1,1 @@
+"""``epg connect --terminal``: the page's questions as lines of text."""

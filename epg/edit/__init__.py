@@ -1,0 +1,1 @@
+"""Edits of files that people write: one value changes, everything else stays as it was written."""
