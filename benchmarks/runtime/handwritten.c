@@ -157,8 +157,9 @@ static void bridge_write(bridge_t *bridge, const epg_port_pwm_t *pwm, uint8_t pi
     const int8_t direction = level == 0 ? 0 : duty < 0.0 ? -1 : 1;
     if (direction != bridge->direction) {
         bridge_safe(bridge, pwm, pin_a, pin_b);
-        epg_port_output_write(pin_a, direction > 0);
-        epg_port_output_write(pin_b, direction < 0);
+        if (direction != 0) {
+            epg_port_output_write(direction > 0 ? pin_a : pin_b, true);
+        }
         bridge->direction = direction;
     }
     epg_port_pwm_write(pwm, level);

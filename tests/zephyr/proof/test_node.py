@@ -65,13 +65,13 @@ def test_agents_are_restarted(jiwy: ZephyrJiwy) -> None:
 def test_it_comes_back(jiwy: ZephyrJiwy, scenario: str) -> None:
     hold(jiwy)
     SCENARIOS[scenario](jiwy)
-    assert_is_back(jiwy, flooded=scenario == "flood")
+    assert_is_back(jiwy)
 
 
-def assert_is_back(jiwy: ZephyrJiwy, *, flooded: bool = False) -> None:
+def assert_is_back(jiwy: ZephyrJiwy) -> None:
     """Nothing has disturbed the loop; setpoints arrive, positions leave and say where the axes are."""
     assert_holds(jiwy)
-    assert_undisturbed(jiwy, flooded=flooded)
+    assert_undisturbed(jiwy)
     hold(jiwy, 0.3)
     for axis in AXES:
         assert jiwy.position(axis.name) == pytest.approx(0.3, abs=3 * axis.rad_per_count)

@@ -38,24 +38,27 @@ static struct {
 } loop;
 
 /**
- * The target's application.  On RP2040 and RP2350, where outputs act at the PWM's wraps and the tick is one too, no
- * interrupt comes between its writes, so that one that comes then makes no output miss its wrap.  Interrupts wait for
- * as long as that takes: for JIWY 3 us, and 13 us in a cycle in which both motors change their direction (RP2040 at
- * 125 MHz).  A driver of yours that sleeps in a write lets them in.
+ * The target's application.  On RP2040 and RP2350, where the tick is a wrap of the PWM at which outputs act too, no
+ * interrupt of a device comes between the tick and the end of reading, nor any at all between writes: inputs are read,
+ * and outputs written, at the same time in each cycle.  Interrupts wait for as long as that takes: for JIWY 50 us, and
+ * 3 us, or 13 us in a cycle in which both motors change their direction (RP2040 at 125 MHz).  A driver of yours that
+ * sleeps in a write lets them in.
  */
 static epg_application_t wrapped;
 
 static bool running; /* the thread is there */
 static atomic_bool stopping;
+static atomic_bool waiting; /* for a tick */
 
 /* Holding: asked for by the communication thread, answered after the cycle at hand. */
 static atomic_bool hold_requested;
 static atomic_bool hold_granted;
 static K_SEM_DEFINE(hold_answered, 0, 1);
 
-void epg_zephyr_control_tick(void)
+bool epg_zephyr_control_tick(void)
 {
     k_sem_give(&ticks);
+    return atomic_load(&waiting);
 }
 
 /** Ticks that have passed since `loop.due_ns`, the newest of which was at `newest_ns`. */
@@ -87,6 +90,12 @@ static bool held(void)
     return atomic_load(&hold_granted);
 }
 
+static void read_uninterrupted(void)
+{
+    loop.application->read();
+    epg_zephyr_tick_let_in();
+}
+
 static void write_uninterrupted(void)
 {
     const unsigned int key = irq_lock();
@@ -100,6 +109,7 @@ static const epg_application_t *wrap(const epg_application_t *application)
         return application;
     }
     wrapped = *application;
+    wrapped.read = read_uninterrupted;
     wrapped.write = write_uninterrupted;
     return &wrapped;
 }
@@ -127,12 +137,16 @@ static void run(void *first, void *second, void *third)
     ARG_UNUSED(second);
     ARG_UNUSED(third);
     for (;;) {
+        atomic_store(&waiting, true);
         (void)k_sem_take(&ticks, K_FOREVER);
+        atomic_store(&waiting, false);
         if (atomic_load(&stopping)) {
+            epg_zephyr_tick_let_in();
             loop.application->safe();
             return;
         }
         cycle();
+        epg_zephyr_tick_let_in(); /* where the cycle has read nothing */
     }
 }
 

@@ -37,14 +37,26 @@ void epg_zephyr_tick_stop(void);
  */
 uint64_t epg_zephyr_tick_newest_ns(uint64_t *now_ns);
 
+#ifdef CONFIG_EPG_TICK_PICO_PWM
+/** Enables the interrupts that a tick has disabled; nothing when it has disabled none.  Control thread. */
+void epg_zephyr_tick_let_in(void);
+#else
+static inline void epg_zephyr_tick_let_in(void)
+{
+}
+#endif
+
 /* control.c ------------------------------------------------------------------------------------------------------ */
 
 /** `fault`: what ended the run before this one; it is latched. */
 epg_zephyr_error_t epg_zephyr_control_start(const epg_zephyr_target_t *zephyr, epg_fault_t fault);
 void epg_zephyr_control_stop(void);
 
-/** A tick: from its interrupt. */
-void epg_zephyr_control_tick(void);
+/**
+ * A tick: from its interrupt.  True when the control thread waited for it, and so runs as soon as this interrupt is over;
+ * the tick may then disable other interrupts until epg_zephyr_tick_let_in().
+ */
+bool epg_zephyr_control_tick(void);
 
 /**
  * Runs no cycle until epg_zephyr_control_release(): ticks of this time are not missed.  Waits for the cycle at hand.
