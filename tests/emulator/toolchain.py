@@ -81,30 +81,35 @@ def node() -> str:
 
 
 def rp2040js() -> Path:
-    """Folder of the npm package, which is installed into EPG's cache by the committed lock file, once."""
-    version = json.loads((HERE / "package.json").read_text(encoding="utf-8"))["dependencies"]["rp2040js"]
-    folder = cache_folder() / f"rp2040js-{version}"
-    package = folder / "node_modules" / "rp2040js"
+    """Folder of the npm package."""
+    return npm_package(HERE, "rp2040js")
+
+
+def npm_package(locked_by: Path, name: str) -> Path:
+    """Folder of the npm package that the lock file in ``locked_by`` has; installed into EPG's cache once."""
+    version = json.loads((locked_by / "package.json").read_text(encoding="utf-8"))["dependencies"][name]
+    folder = cache_folder() / f"{name}-{version}"
+    package = folder / "node_modules" / name
     with locked(folder):
         if not (package / "package.json").is_file():
-            _install_package(folder)
+            _install_package(locked_by, name, folder)
     return package
 
 
-def _install_package(folder: Path) -> None:
+def _install_package(locked_by: Path, name: str, folder: Path) -> None:
     npm = shutil.which("npm")
     if npm is None:
         raise Missing("npm is not installed: apt install nodejs npm")
     if os.environ.get("EPG_NO_INSTALL"):
-        raise Missing(f"rp2040js is not in EPG's cache and EPG_NO_INSTALL is set: npm ci --prefix {folder}")
+        raise Missing(f"{name} is not in EPG's cache and EPG_NO_INSTALL is set: npm ci --prefix {folder}")
     folder.mkdir(parents=True, exist_ok=True)
-    for name in ("package.json", "package-lock.json"):
-        shutil.copy(HERE / name, folder / name)
+    for file in ("package.json", "package-lock.json"):
+        shutil.copy(locked_by / file, folder / file)
     command = [npm, "ci", "--no-audit", "--no-fund", "--ignore-scripts"]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     if done.returncode != 0:
         said = (done.stderr.strip().splitlines() or ["npm has failed"])[-1]
-        raise Missing(f"rp2040js could not be installed ({said}): npm ci --prefix {folder}")
+        raise Missing(f"{name} could not be installed ({said}): npm ci --prefix {folder}")
 
 
 def unicorn() -> Any:

@@ -2,44 +2,17 @@
 
 from __future__ import annotations
 
-import json
-import os
-import shutil
-import subprocess
 from pathlib import Path
 from typing import Any
 
-from epg.bootstrap import cache_folder
-from tests.emulator.toolchain import Missing, locked
+from tests.emulator.toolchain import npm_package
 
 HERE = Path(__file__).resolve().parent
 
 
 def axe_core() -> Path:
     """Its one file.  Raises Missing."""
-    version = json.loads((HERE / "package.json").read_text(encoding="utf-8"))["dependencies"]["axe-core"]
-    folder = cache_folder() / f"axe-core-{version}"
-    script = folder / "node_modules" / "axe-core" / "axe.min.js"
-    with locked(folder):
-        if not script.is_file():
-            _install(folder)
-    return script
-
-
-def _install(folder: Path) -> None:
-    npm = shutil.which("npm")
-    if npm is None:
-        raise Missing("npm is not installed: apt install nodejs npm")
-    if os.environ.get("EPG_NO_INSTALL"):
-        raise Missing(f"axe-core is not in EPG's cache and EPG_NO_INSTALL is set: npm ci --prefix {folder}")
-    folder.mkdir(parents=True, exist_ok=True)
-    for name in ("package.json", "package-lock.json"):
-        shutil.copy(HERE / name, folder / name)
-    command = [npm, "ci", "--no-audit", "--no-fund", "--ignore-scripts"]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        said = (done.stderr.strip().splitlines() or ["npm has failed"])[-1]
-        raise Missing(f"axe-core could not be installed ({said}): npm ci --prefix {folder}")
+    return npm_package(HERE, "axe-core") / "axe.min.js"
 
 
 def violations(page: Any) -> list[str]:

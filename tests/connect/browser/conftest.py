@@ -97,7 +97,7 @@ class Project:
             assert old in text, old
             text = text.replace(old, new)
         self.file.write_text(text, encoding="utf-8")
-        self.epg.act("reload")
+        self.epg.post("reload")
         return text
 
 

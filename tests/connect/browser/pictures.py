@@ -63,7 +63,7 @@ def _wires(page: Any, epg: Served, folder: Path) -> None:
     page.keyboard.press("Escape")
     _end(epg, "position_pan", reference="encoder_pan")
     for port in ("pwm_tilt", "tilt_logging"):
-        epg.act("disconnect", port=port)
+        epg.post("disconnect", port=port)
     page.locator("path.wire.proposed").nth(1).wait_for(state="attached")
     page.evaluate("document.activeElement.blur()")
     _take(page, folder, "wires")
@@ -75,7 +75,7 @@ def _wires(page: Any, epg: Served, folder: Path) -> None:
     page.get_by_role("tab", name="Changes").click()
     _take(page, folder, "dark")
     page.emulate_media(color_scheme="light")
-    epg.act("reload")
+    epg.post("reload")
 
 
 def _build(page: Any, epg: Served, folder: Path) -> None:
@@ -86,7 +86,7 @@ def _build(page: Any, epg: Served, folder: Path) -> None:
 
 
 def _end(epg: Served, port: str, **end: Any) -> None:
-    epg.act("connect", port=port, ends=[end])
+    epg.post("connect", port=port, ends=[end])
 
 
 def _take(page: Any, folder: Path, name: str) -> None:

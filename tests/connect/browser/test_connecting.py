@@ -384,7 +384,7 @@ def test_state_elsewhere_keeps_focus_scroll_and_what_is_typed(jiwy: Project, ope
     dialog.get_by_label("Offset").fill("0.2")
     page.evaluate("document.getElementById('main').scrollTop = 60")
     page.evaluate("window.before = document.getElementById('ends-position_pan-0')")
-    jiwy.epg.act("connect", port="position_tilt", ends=[{"reference": "encoder_pan"}])
+    jiwy.epg.post("connect", port="position_tilt", ends=[{"reference": "encoder_pan"}])
     until(page, "document.getElementById('ends-position_tilt-0').value === ':encoder_pan'")
     assert dialog.get_by_label("Offset").input_value() == "0.2"
     assert page.evaluate("document.activeElement.name") == "offset"

@@ -33,10 +33,10 @@ def test_says_that_the_connection_is_lost(browser: Any, open_page: Open, tmp_pat
 def test_goes_on_when_the_connection_is_back(jiwy: Project, open_page: Open) -> None:
     page = open_page(jiwy.address)
     page.context.set_offline(True)
-    jiwy.epg.act("connect", port="position_tilt", ends=[{"reference": "encoder_pan"}])
+    jiwy.epg.post("connect", port="position_tilt", ends=[{"reference": "encoder_pan"}])
     lost = page.get_by_role("alert").get_by_text("The connection to EPG is lost.")
     lost.wait_for()
-    jiwy.epg.act("connect", port="setpoint_tilt", ends=[{"reference": "pan_subscriber"}])
+    jiwy.epg.post("connect", port="setpoint_tilt", ends=[{"reference": "pan_subscriber"}])
     page.context.set_offline(False)
     lost.wait_for(state="detached")
     until(page, "document.getElementById('ends-setpoint_tilt-0').value === ':pan_subscriber'")
