@@ -94,13 +94,4 @@ static inline bool epg_dual_pwm_h_bridge_command(epg_dual_pwm_h_bridge_t *bridge
     return epg_bridge_command(&bridge->bridge, &config->bridge, config->forwards.top + 1U, duty);
 }
 
-/** Drives with `duty` at once. */
-static inline bool epg_dual_pwm_h_bridge_write(epg_dual_pwm_h_bridge_t *bridge,
-                                               const epg_dual_pwm_h_bridge_config_t *config, double duty)
-{
-    const bool limited = epg_dual_pwm_h_bridge_command(bridge, config, duty);
-    epg_dual_pwm_h_bridge_set(bridge, config);
-    return limited;
-}
-
 #endif

@@ -68,13 +68,4 @@ static inline bool epg_pwm_command(const epg_pwm_config_t *config, double duty, 
     return false;
 }
 
-/** Sets `duty` at once: epg_pwm_command() and epg_pwm_apply(). */
-static inline bool epg_pwm_write(const epg_pwm_config_t *config, double duty)
-{
-    uint32_t level;
-    const bool limited = epg_pwm_command(config, duty, &level);
-    epg_pwm_apply(config, level);
-    return limited;
-}
-
 #endif

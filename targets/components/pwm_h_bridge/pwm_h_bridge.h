@@ -69,13 +69,4 @@ static inline void epg_pwm_h_bridge_apply(epg_pwm_h_bridge_t *bridge, const epg_
     epg_port_pwm_write(&config->pwm, bridge->bridge.level);
 }
 
-/** Drives with `duty` at once: epg_pwm_h_bridge_command() and epg_pwm_h_bridge_apply(). */
-static inline bool epg_pwm_h_bridge_write(epg_pwm_h_bridge_t *bridge, const epg_pwm_h_bridge_config_t *config,
-                                          double duty)
-{
-    const bool limited = epg_pwm_h_bridge_command(bridge, config, duty);
-    epg_pwm_h_bridge_apply(bridge, config);
-    return limited;
-}
-
 #endif

@@ -34,7 +34,9 @@ static void begin_dual(epg_bridge_config_t bridge_config, bool slow_decay)
 
 static bool drive(double duty)
 {
-    return epg_pwm_h_bridge_write(&bridge, &config, duty);
+    const bool limited = epg_pwm_h_bridge_command(&bridge, &config, duty);
+    epg_pwm_h_bridge_apply(&bridge, &config);
+    return limited;
 }
 
 static void check_pins(bool a, bool b, unsigned int level)
@@ -46,7 +48,9 @@ static void check_pins(bool a, bool b, unsigned int level)
 
 static bool drive_dual(double duty)
 {
-    return epg_dual_pwm_h_bridge_write(&dual, &dual_config, duty);
+    const bool limited = epg_dual_pwm_h_bridge_command(&dual, &dual_config, duty);
+    epg_dual_pwm_h_bridge_set(&dual, &dual_config);
+    return limited;
 }
 
 static void check_levels(unsigned int forwards, unsigned int backwards)

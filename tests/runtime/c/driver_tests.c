@@ -215,7 +215,9 @@ static void begin_bridge(bool invert, double max_duty)
 
 static bool drive(double duty)
 {
-    return epg_pwm_h_bridge_write(&bridge, &bridge_config, duty);
+    const bool limited = epg_pwm_h_bridge_command(&bridge, &bridge_config, duty);
+    epg_pwm_h_bridge_apply(&bridge, &bridge_config);
+    return limited;
 }
 
 TEST(bridge_starts_coasting)
@@ -336,6 +338,14 @@ static const epg_pwm_config_t pwm = {.pwm = {.unit = 2, .top = 999}, .max_duty =
 static const epg_pwm_config_t pwm_inverted = {
     .pwm = {.unit = 2, .top = 999}, .invert = true, .max_duty = 1.0, .safe_duty = 0.0};
 
+static bool set_duty(const epg_pwm_config_t *config, double duty)
+{
+    uint32_t level;
+    const bool limited = epg_pwm_command(config, duty, &level);
+    epg_pwm_apply(config, level);
+    return limited;
+}
+
 TEST(pwm_starts_safe)
 {
     fake_port_reset();
@@ -349,19 +359,19 @@ TEST(pwm_limits_and_says_so)
 {
     fake_port_reset();
     epg_pwm_start(&pwm);
-    CHECK(!epg_pwm_write(&pwm, 0.5));
+    CHECK(!set_duty(&pwm, 0.5));
     CHECK_EQUAL(fake_port.levels[2], 500);
-    CHECK(!epg_pwm_write(&pwm, 0.5006));
+    CHECK(!set_duty(&pwm, 0.5006));
     CHECK_EQUAL(fake_port.levels[2], 501);
-    CHECK(!epg_pwm_write(&pwm, 0.5004));
+    CHECK(!set_duty(&pwm, 0.5004));
     CHECK_EQUAL(fake_port.levels[2], 500);
-    CHECK(!epg_pwm_write(&pwm, 0.8));
+    CHECK(!set_duty(&pwm, 0.8));
     CHECK_EQUAL(fake_port.levels[2], 800);
-    CHECK(epg_pwm_write(&pwm, 0.81));
+    CHECK(set_duty(&pwm, 0.81));
     CHECK_EQUAL(fake_port.levels[2], 800);
-    CHECK(epg_pwm_write(&pwm, -0.1));
+    CHECK(set_duty(&pwm, -0.1));
     CHECK_EQUAL(fake_port.levels[2], 0);
-    CHECK(!epg_pwm_write(&pwm, 0.0));
+    CHECK(!set_duty(&pwm, 0.0));
     epg_pwm_safe(&pwm);
     CHECK_EQUAL(fake_port.levels[2], 75);
 }
@@ -372,8 +382,8 @@ TEST(pwm_is_safe_on_a_duty_that_is_not_finite)
     epg_pwm_start(&pwm);
     const double wrong[] = {NAN, INFINITY, -INFINITY};
     for (int i = 0; i < 3; i++) {
-        epg_pwm_write(&pwm, 0.5);
-        CHECK(epg_pwm_write(&pwm, wrong[i]));
+        set_duty(&pwm, 0.5);
+        CHECK(set_duty(&pwm, wrong[i]));
         CHECK_EQUAL(fake_port.levels[2], 75);
     }
 }
@@ -382,9 +392,9 @@ TEST(pwm_inverted_is_the_complement)
 {
     fake_port_reset();
     epg_pwm_start(&pwm_inverted);
-    epg_pwm_write(&pwm_inverted, 0.25);
+    set_duty(&pwm_inverted, 0.25);
     CHECK_EQUAL(fake_port.levels[2], 750);
-    epg_pwm_write(&pwm_inverted, 1.0);
+    set_duty(&pwm_inverted, 1.0);
     CHECK_EQUAL(fake_port.levels[2], 0);
 }
 
@@ -393,7 +403,7 @@ TEST(pwm_of_the_longest_period)
     fake_port_reset();
     const epg_pwm_config_t longest = {.pwm = {.unit = 2, .top = 65535}, .max_duty = 1.0};
     epg_pwm_start(&longest);
-    CHECK(!epg_pwm_write(&longest, 1.0));
+    CHECK(!set_duty(&longest, 1.0));
     CHECK_EQUAL(fake_port.levels[2], 65536);
 }
 

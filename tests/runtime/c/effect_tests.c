@@ -101,12 +101,17 @@ static bool model_stopped(void)
     return wrong.stop;
 }
 
-static void write_outputs(void)
+static void prepare_outputs(void)
 {
-    if (epg_pwm_h_bridge_write(&bridge, &bridge_config, model.duty)) {
+    if (epg_pwm_h_bridge_command(&bridge, &bridge_config, model.duty)) {
         epg_control_count_clamped(&control);
     }
     epg_quadrature_encoder_reset(&encoder, &encoder_config, model.reset);
+}
+
+static void write_outputs(void)
+{
+    epg_pwm_h_bridge_apply(&bridge, &bridge_config);
 }
 
 static void safe_outputs(void)
@@ -149,6 +154,7 @@ static const epg_application_t application = {
     .model_step = model_step,
     .model_finite = model_finite,
     .model_stopped = model_stopped,
+    .prepare = prepare_outputs,
     .write = write_outputs,
     .safe = safe_outputs,
     .monitor = monitor,
