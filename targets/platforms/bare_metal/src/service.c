@@ -127,16 +127,20 @@ bool epg_pico_service_start(void (*serve)(void))
     return true;
 }
 
-void epg_pico_service_stop(void)
+bool epg_pico_service_stop(void)
 {
+    if (__get_current_exception() != 0U) {
+        return false; /* an interrupt: it may have come in the middle of the service, or be the service */
+    }
     if (service.serve != NULL) {
+        irq_set_enabled(service.irq, false);
+        service.serve = NULL;
         hardware_alarm_set_callback(service.alarm, NULL);
         hardware_alarm_unclaim(service.alarm);
-        irq_set_enabled(service.irq, false);
         irq_remove_handler(service.irq, on_service);
         user_irq_unclaim(service.irq);
-        service.serve = NULL;
     }
+    return true;
 }
 
 void epg_pico_service_stack(uint32_t *size, uint32_t *used)

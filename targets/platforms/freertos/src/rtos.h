@@ -13,8 +13,11 @@
 #if !configSUPPORT_STATIC_ALLOCATION
 #error "FreeRTOSConfig.h: EPG needs configSUPPORT_STATIC_ALLOCATION 1"
 #endif
-#if !INCLUDE_uxTaskGetStackHighWaterMark || !INCLUDE_vTaskDelete || !INCLUDE_xTaskGetSchedulerState
-#error "FreeRTOSConfig.h: EPG needs INCLUDE_uxTaskGetStackHighWaterMark, _vTaskDelete and _xTaskGetSchedulerState 1"
+#if !INCLUDE_uxTaskGetStackHighWaterMark || !INCLUDE_vTaskDelay || !INCLUDE_xTaskGetSchedulerState
+#error "FreeRTOSConfig.h: EPG needs INCLUDE_uxTaskGetStackHighWaterMark, _vTaskDelay and _xTaskGetSchedulerState 1"
+#endif
+#if !INCLUDE_xTaskGetCurrentTaskHandle && !configUSE_RECURSIVE_MUTEXES
+#error "FreeRTOSConfig.h: EPG needs INCLUDE_xTaskGetCurrentTaskHandle 1"
 #endif
 #if configNUMBER_OF_CORES != 1
 #error "FreeRTOSConfig.h: EPG needs configNUMBER_OF_CORES 1, since core 1 belongs to the control loop"

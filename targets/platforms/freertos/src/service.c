@@ -24,9 +24,18 @@
 #define EPG_FREERTOS_PRIORITY (tskIDLE_PRIORITY + 2)
 #endif
 
+/** PARKED: the task waits for a start.  PARKING: it shall park after its turn. */
+typedef enum state { PARKED, SERVING, PARKING } state_t;
+
+/*
+ * The task is made by the first start and is never deleted: interrupts notify it at any time, and in the middle of a
+ * turn it may own a mutex of TinyUSB, or write to flash.
+ */
 static StaticTask_t memory;
 static StackType_t stack[EPG_FREERTOS_STACK_WORDS];
 static TaskHandle_t task;
+static atomic_uint state = PARKED;
+static void (*service)(void);
 
 /** Asks for the service, from an interrupt of core 0. */
 void epg_pico_service_wake(void)
@@ -51,27 +60,52 @@ void epg_port_wait_for_bytes(void)
 
 static void run(void *argument)
 {
-    void (*const serve)(void) = *(void (**)(void))argument;
+    (void)argument;
     for (;;) {
-        serve();
-        rest();
+        switch (atomic_load(&state)) {
+        case SERVING:
+            service();
+            rest();
+            break;
+        case PARKING:
+            atomic_store(&state, PARKED);
+            break;
+        default:
+            (void)ulTaskNotifyTake(pdTRUE, portMAX_DELAY);
+            break;
+        }
     }
 }
 
 bool epg_pico_service_start(void (*serve)(void))
 {
-    static void (*argument)(void);
-    argument = serve;
-    task = xTaskCreateStatic(run, "epg", EPG_FREERTOS_STACK_WORDS, &argument, EPG_FREERTOS_PRIORITY, stack, &memory);
+    service = serve;
+    atomic_store(&state, SERVING);
+    if (task == NULL) {
+        task = xTaskCreateStatic(run, "epg", EPG_FREERTOS_STACK_WORDS, NULL, EPG_FREERTOS_PRIORITY, stack, &memory);
+    } else {
+        (void)xTaskNotifyGive(task);
+    }
     return task != NULL;
 }
 
-void epg_pico_service_stop(void)
+bool epg_pico_service_stop(void)
 {
-    if (task != NULL) {
-        vTaskDelete(task);
-        task = NULL;
+    const BaseType_t scheduler = xTaskGetSchedulerState();
+    if (scheduler == taskSCHEDULER_NOT_STARTED) {
+        atomic_store(&state, PARKED); /* the task has never run */
+        return true;
     }
+    if (scheduler == taskSCHEDULER_SUSPENDED || __get_current_exception() != 0U ||
+        xTaskGetCurrentTaskHandle() == task) {
+        return false;
+    }
+    atomic_store(&state, PARKING);
+    (void)xTaskNotifyGive(task);
+    while (atomic_load(&state) != PARKED) {
+        vTaskDelay(1);
+    }
+    return true;
 }
 
 void epg_pico_service_stack(uint32_t *size, uint32_t *used)

@@ -282,14 +282,20 @@ bool epg_host_start(const epg_host_target_t *host)
     return own.running;
 }
 
-void epg_host_stop(void)
+bool epg_host_stop(void)
 {
     if (own.running) {
+        const pthread_t caller = pthread_self();
+        if (pthread_equal(caller, own.control.thread) != 0 ||
+            (own.communicates && pthread_equal(caller, own.communication) != 0)) {
+            return false; /* a thread cannot wait for its own end */
+        }
         stop_communication();
         atomic_store(&own.control.stop, true);
         join_thread(&own.control);
         own.running = false;
     }
+    return true;
 }
 
 #else /* not Linux */
@@ -312,8 +318,9 @@ bool epg_host_start(const epg_host_target_t *host)
     return unavailable();
 }
 
-void epg_host_stop(void)
+bool epg_host_stop(void)
 {
+    return true;
 }
 
 #endif

@@ -108,7 +108,9 @@ void epg_pico_serve_others(void (*rest)(void));
 
 /** Calls `serve` on core 0 at least once per millisecond. */
 bool epg_pico_service_start(void (*serve)(void));
-void epg_pico_service_stop(void);
+
+/** `serve` is not running, nor called again, when this has returned true.  False when the caller cannot wait for it. */
+bool epg_pico_service_stop(void);
 
 /** Asks for `serve` at once; from any interrupt of core 0. */
 void epg_pico_service_wake(void);

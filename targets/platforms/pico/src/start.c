@@ -89,7 +89,8 @@ static epg_pico_error_t start(const epg_pico_target_t *pico)
     epg_serve_start_middleware(pico->target, pico->target->console, pico->console_transport);
     running = pico;
     if (!epg_pico_service_start(serve)) {
-        epg_pico_stop();
+        epg_pico_control_stop();
+        running = NULL;
         return EPG_PICO_ERROR_RESOURCE;
     }
     return EPG_PICO_OK;
@@ -101,13 +102,18 @@ bool epg_pico_start(const epg_pico_target_t *pico)
     return error == EPG_PICO_OK;
 }
 
-void epg_pico_stop(void)
+bool epg_pico_stop(void)
 {
-    if (running != NULL) {
-        epg_pico_service_stop();
-        epg_pico_control_stop();
-        running = NULL;
+    if (running == NULL) {
+        return true;
     }
+    if (!epg_pico_service_stop()) {
+        error = EPG_PICO_ERROR_CALLER;
+        return false;
+    }
+    epg_pico_control_stop();
+    running = NULL;
+    return true;
 }
 
 void epg_pico_status(epg_pico_status_t *status)

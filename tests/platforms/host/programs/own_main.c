@@ -1,9 +1,11 @@
 /*
- * A program with a main() of its own: starts the target in real time, talks to it, stops it, and does so twice.
+ * A program with a main() of its own: starts the target in real time, talks to it, stops it, and does so twice.  Its
+ * plant, which runs in the control thread, tries to stop the target, too.
  * Prints what it saw; a line "failed: ..." and status 1 if something is not as promised.
  */
 #define _POSIX_C_SOURCE 200809L
 #include <math.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <time.h>
 
@@ -11,6 +13,17 @@
 #include "epg/port.h"
 
 extern const epg_host_target_t epg_host_application;
+
+static atomic_bool plant_stops;
+static atomic_bool plant_was_refused;
+
+static void plant_step(void)
+{
+    if (atomic_exchange(&plant_stops, false)) {
+        atomic_store(&plant_was_refused, !epg_host_stop());
+    }
+    epg_host_application.plant->step();
+}
 
 static int failed(const char *what)
 {
@@ -30,10 +43,16 @@ static int run_once(void)
     double values[2] = {0.0, 0.0};
     double duty_moving = 0.0;
     epg_status_t status;
-    if (!epg_host_start(&epg_host_application)) {
+    epg_plant_t plant = *epg_host_application.plant;
+    epg_host_target_t target = epg_host_application;
+    plant.step = plant_step;
+    target.plant = &plant;
+    atomic_store(&plant_stops, true);
+    atomic_store(&plant_was_refused, false);
+    if (!epg_host_start(&target)) {
         return failed("start");
     }
-    if (epg_host_start(&epg_host_application)) {
+    if (epg_host_start(&target)) {
         return failed("started a second time while running");
     }
     epg_control_receive(control, 0, 2.0, epg_port_time_ns(), true);
@@ -44,8 +63,12 @@ static int run_once(void)
             printf("position %.3f setpoint %.3f cycles %u\n", values[0], values[1], (unsigned)status.statistics.cycles);
         }
     }
-    epg_host_stop();
-    epg_host_stop(); /* does nothing */
+    if (!atomic_load(&plant_was_refused)) {
+        return failed("the control thread has stopped itself");
+    }
+    if (!epg_host_stop() || !epg_host_stop()) { /* the second one does nothing */
+        return failed("stop");
+    }
     if (duty_moving < 0.5) {
         return failed("the motor was not driven");
     }

@@ -5,10 +5,14 @@
 static StaticTask_t memory;
 static StackType_t stack[512];
 
+/** Of the task below; a test raises it above communication's. */
+volatile uint32_t priority = 1;
+
 static void run(void *argument)
 {
     (void)argument;
     for (;;) {
+        vTaskPrioritySet(NULL, priority);
         obey();
         vTaskDelay(1);
     }

@@ -5,6 +5,7 @@
 #ifndef MISCHIEF_H
 #define MISCHIEF_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "hardware/flash.h"
@@ -19,11 +20,23 @@
 #define JOIN(one, two) JOIN_(one, two)
 #define CALL(function) JOIN(TARGET, function)
 
-enum { ORDER_NONE, ORDER_FAULT, ORDER_PANIC, ORDER_STUCK, ORDER_ENABLE, ORDER_DISABLE, ORDER_FLASH, ORDER_STOP, ORDER_START };
+enum {
+    ORDER_NONE,
+    ORDER_FAULT,
+    ORDER_PANIC,
+    ORDER_STUCK,
+    ORDER_ENABLE,
+    ORDER_DISABLE,
+    ORDER_FLASH,
+    ORDER_STOP,
+    ORDER_START,
+    ORDER_STOP_WITHIN
+};
 
 volatile uint32_t order;
 volatile int32_t answer = 1000;
 volatile uint32_t turns;
+volatile bool stops_within;
 epg_status_t status;
 
 static void write_flash(void *argument)
@@ -35,7 +48,9 @@ static void write_flash(void *argument)
 static void obey(void)
 {
     const uint32_t now = order;
-    order = ORDER_NONE;
+    if (now != ORDER_NONE) {
+        order = ORDER_NONE; /* not always: a test may have written it since */
+    }
     turns++;
     (void)CALL(status)(&status);
     switch (now) {
@@ -59,13 +74,27 @@ static void obey(void)
         answer = flash_safe_execute(write_flash, NULL, 10);
         break;
     case ORDER_STOP:
-        CALL(stop)();
+        answer = CALL(stop)() ? 1 : 0;
         break;
     case ORDER_START:
         answer = CALL(start)() ? 1 : 0;
         break;
+    case ORDER_STOP_WITHIN:
+        stops_within = true;
+        break;
     default:
         break;
+    }
+}
+
+/** TinyUSB calls this when a serial port has received something: within EPG's communication. */
+void tud_cdc_rx_cb(uint8_t number);
+void tud_cdc_rx_cb(uint8_t number)
+{
+    (void)number;
+    if (stops_within) {
+        stops_within = false;
+        answer = CALL(stop)() ? 1 : 0;
     }
 }
 

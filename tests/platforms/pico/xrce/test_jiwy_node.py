@@ -15,7 +15,8 @@ from .board import Jiwy
 from .checks import ENDS, assert_it_tracks, assert_undisturbed
 
 PAN, TILT = AXES
-"""Seconds between two messages of a topic, as in jiwy.tcf."""
+STOP, START = 7, 8
+"""Orders to the user's program."""
 
 
 @pytest.fixture(params=PLATFORMS)
@@ -73,3 +74,21 @@ def test_in_a_program_of_the_users(platform: str) -> None:
         assert len(span["passages"]) > 500
         assert span["flash_total"] == 0
         assert jiwy.stats()["missed"] == "0"
+
+
+@pytest.mark.parametrize("platform", PLATFORMS)
+def test_stopped_and_started_it_is_a_node_again(platform: str) -> None:
+    """The agent stays; while the target is stopped nothing leaves the board."""
+    skip_unless_emulated(platform)
+    with Jiwy(platform, "user_jiwy") as jiwy:
+        for _ in range(3):
+            jiwy.pico.write_word("order", STOP)
+            jiwy.agent.run(30)
+            stopped = jiwy.agent.now()
+            jiwy.agent.run(150)
+            assert jiwy.agent.heard("rt/pan_publisher", since=stopped) == []
+            jiwy.pico.write_word("order", START)
+            jiwy.agent.wait_for("rt/pan_publisher")
+            jiwy.agent.run(50)
+            assert jiwy.stats()["missed"] == "0"
+        assert not jiwy.faults()

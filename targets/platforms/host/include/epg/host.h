@@ -37,7 +37,10 @@ int epg_host_main(const epg_host_target_t *host, int argc, char **argv);
 /** Starts the control cycle in a thread of its own, in real time, and returns; false when that fails. */
 bool epg_host_start(const epg_host_target_t *host);
 
-/** Ends the thread started by epg_host_start() after the current cycle; outputs are safe then. */
-void epg_host_stop(void);
+/**
+ * Ends the threads started by epg_host_start(), the control thread after the current cycle; outputs are safe then.
+ * False, and everything goes on, when one of these threads is the caller.
+ */
+bool epg_host_stop(void);
 
 #endif

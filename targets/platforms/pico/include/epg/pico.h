@@ -48,19 +48,20 @@ typedef struct epg_pico_target {
     const epg_transport_t *console_transport; /**< for the console beside it; NULL: there is none */
 } epg_pico_target_t;
 
-/** Why epg_pico_start() did not start. */
+/** Why epg_pico_start() did not start, or epg_pico_stop() did not stop. */
 typedef enum epg_pico_error {
     EPG_PICO_OK = 0,
     EPG_PICO_ERROR_RUNNING,   /**< it runs already */
     EPG_PICO_ERROR_CLOCK,     /**< clk_sys is not what the generator computed all dividers for */
     EPG_PICO_ERROR_PLACEMENT, /**< code or tables of the control cycle lie in flash: another linker script? */
     EPG_PICO_ERROR_RESOURCE,  /**< a PIO block, an alarm or an interrupt is taken by somebody else */
-    EPG_PICO_ERROR_CORE       /**< core 1 did not answer */
+    EPG_PICO_ERROR_CORE,      /**< core 1 did not answer */
+    EPG_PICO_ERROR_CALLER     /**< epg_pico_stop() was called where it cannot wait */
 } epg_pico_error_t;
 
 /** What the port layer counts besides the statistics of the control cycle. */
 typedef struct epg_pico_status {
-    epg_pico_error_t error;      /**< of the newest start */
+    epg_pico_error_t error;      /**< of the newest start or stop */
     bool after_watchdog;         /**< the watchdog ended the run before this one */
     uint32_t control_stack_size; /**< bytes of core 1's stack, */
     uint32_t control_stack_used; /**< and how many of them have ever been used */
@@ -86,8 +87,14 @@ extern const epg_pico_outputs_t epg_pico_outputs;
  */
 bool epg_pico_start(const epg_pico_target_t *pico);
 
-/** Ends communication and control; outputs are safe and core 1 is in reset when this returns.  From core 0. */
-void epg_pico_stop(void);
+/**
+ * Ends communication and control; outputs are safe and core 1 is in reset when this returns.  epg_pico_start() may
+ * follow.  Call it from core 0; on FreeRTOS from a task, which waits until communication has come to the end of its turn.
+ *
+ * False, and everything goes on, when the caller is communication itself (a callback of TinyUSB, for example), an
+ * interrupt, or, on FreeRTOS, a task that has suspended the scheduler: these cannot wait for communication.
+ */
+bool epg_pico_stop(void);
 
 /** Fills `status`; takes as long as reading all stacks does, so not from an interrupt.  Core 0. */
 void epg_pico_status(epg_pico_status_t *status);

@@ -123,7 +123,8 @@ bool jiwy_start(void)
     return epg_zephyr_start(&zephyr);
 }
 
-void jiwy_stop(void)
+bool jiwy_stop(void)
 {
     epg_zephyr_stop();
+    return true;
 }
