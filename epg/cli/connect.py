@@ -65,15 +65,24 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
 def _serve(session: Session, options: argparse.Namespace) -> int:
     from epg.connect.server import Server
 
-    server = Server(session, options.port)
-    if options.json:
-        sys.stdout.write(to_json({"address": server.address}))
-    else:
-        print(f"epg connect: {server.address}")
-        print("Press Ctrl-C here, or 'Close EPG' in the page, to end.")
-    sys.stdout.flush()
-    if not options.no_browser:
-        threading.Thread(target=_open_browser, args=(server.address,), daemon=True).start()  # some wait for its end
+    shown = 0
+
+    def announce(address: str) -> None:
+        nonlocal shown
+        shown += 1
+        if options.json:
+            sys.stdout.write(to_json({"address": address}))
+        elif shown == 1:
+            print(f"epg connect: {address}")
+            print("Press Ctrl-C here, or 'Close EPG' in the page, to end.")
+        else:
+            print(f"epg connect: for another page: {address}")
+        sys.stdout.flush()
+
+    server = Server(session, options.port, announce=announce)
+    if not options.no_browser:  # with an address of its own: others can see which programs run with which arguments
+        address = server.new_address()
+        threading.Thread(target=_open_browser, args=(address,), daemon=True).start()  # some wait for its end
     for name in ("SIGTERM", "SIGHUP"):  # whoever ends this, a build ends with it
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), signal.default_int_handler)

@@ -1,15 +1,18 @@
-"""The page's server: HTTP on this computer alone, for whoever has the address.
+"""The page's server: HTTP on this computer alone, for the page whose address it gave out.
 
-Everything lies below a secret token, so that no other page and no other user of the computer gets anywhere; answers
-are never stored; POST must say that it is JSON, which no form of another page can.
+The page itself is public; all that it shows and does needs a secret in a header, which the page gets once for the token
+in its address (``keys.py``).  A header is not a cookie: browsers send a cookie to every port of 127.0.0.1.  Requests of
+other users of this computer (``peer.py``), of other pages (``Origin``) and under a name that is not this computer's
+(``Host``) are refused whatever they know.  The token stands behind ``#``, so no browser sends it by itself.
 
->>> # server = Server(session); print(server.address); server.run()
+>>> # server = Server(session); print(server.new_address()); server.run()
 """
 
 from __future__ import annotations
 
+import base64
+import hashlib
 import json
-import secrets
 import sys
 import threading
 import time
@@ -20,7 +23,11 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qs, unquote, urlsplit
 
+from epg.connect.body import text
+from epg.connect.keys import Keys
+from epg.connect.peer import is_another_user
 from epg.connect.session import Refused, Session
+from epg.graph.svg import style_sheet
 
 PAGE = Path(__file__).resolve().parent / "page"
 TYPES = {
@@ -29,13 +36,22 @@ TYPES = {
     ".css": "text/css; charset=utf-8",
     ".svg": "image/svg+xml",
 }
+_PICTURES_STYLE = base64.b64encode(hashlib.sha256(style_sheet().encode()).digest()).decode()
+"""By this hash a picture that is opened by itself may have its own style: the page's policy holds for it, too."""
 HEADERS = {
-    "Content-Security-Policy": "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; "
+    "Content-Security-Policy": "default-src 'none'; script-src 'self'; "
+    f"style-src 'self' 'sha256-{_PICTURES_STYLE}'; img-src 'self' blob:; "
     "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
     "Cache-Control": "no-store",
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Cross-Origin-Resource-Policy": "same-origin",
     "Referrer-Policy": "no-referrer",
     "X-Content-Type-Options": "nosniff",
 }
+SECRET = "X-EPG-Secret"
+"""The header that each request for more than the page itself must have."""
+NAMES = ("127.0.0.1", "localhost")
+"""Names of this computer in ``Host``.  The port may differ: a tunnel may begin at another one."""
 LONGEST_WAIT = 20.0
 """Seconds that a request for the next state waits."""
 MOST_BYTES = 1 << 20
@@ -48,10 +64,17 @@ class Server:
     """Serves ``session`` on 127.0.0.1; ``port`` 0 takes any that is free."""
 
     def __init__(
-        self, session: Session, port: int = 0, *, closed: float = CLOSED, opened: float = NEVER_OPENED
+        self,
+        session: Session,
+        port: int = 0,
+        *,
+        closed: float = CLOSED,
+        opened: float = NEVER_OPENED,
+        announce: Callable[[str], None] | None = None,
     ) -> None:
+        """``announce`` gets an address at once, and the next one as soon as a page was opened by the last."""
         self.session = session
-        self.token = secrets.token_urlsafe(24)
+        self.keys = Keys()
         self._closed, self._until_opened = closed, opened
         self._http = _Http(("127.0.0.1", port), _Handler)
         self._http.owner = self
@@ -60,10 +83,28 @@ class Server:
         self._started = time.monotonic()
         self._lock = threading.Lock()
         self.assets = {path.name: path for path in PAGE.iterdir() if path.suffix in TYPES}
+        self._announce = announce
+        self._announced = ""
+        if announce is not None:
+            self._announce_next(announce)
 
-    @property
-    def address(self) -> str:
-        return f"http://127.0.0.1:{self._http.server_address[1]}/{self.token}/"
+    def new_address(self) -> str:
+        """An address that opens one page."""
+        return f"http://127.0.0.1:{self._http.server_address[1]}/#{self.keys.new_token()}"
+
+    def exchange(self, token: str) -> str:
+        """The secret for the token of an address; raises :class:`Refused` for one that is used or was never given."""
+        secret = self.keys.exchange(token)
+        if secret is None:
+            hint = "open the address that 'epg connect' printed last"
+            raise Refused("an address of EPG opens one page, and this one was opened already", hint, 401)
+        if self._announce is not None and self._announced.endswith(f"#{token}"):
+            self._announce_next(self._announce)
+        return secret
+
+    def _announce_next(self, announce: Callable[[str], None]) -> None:
+        self._announced = self.new_address()
+        announce(self._announced)
 
     def run(self, *, until_closed: bool = False) -> None:
         """Serves until the session ends, or, with ``until_closed``, until no page is open any more."""
@@ -118,7 +159,13 @@ class _Handler(BaseHTTPRequestHandler):
     timeout = 60
     server: _Http
 
+    def setup(self) -> None:
+        super().setup()
+        self._is_foreign = is_another_user(self.client_address, self.request.getsockname())
+
     def do_GET(self) -> None:
+        if "Content-Length" in self.headers or "Transfer-Encoding" in self.headers:
+            self.close_connection = True  # nobody reads the body, which would count as the next request
         self._answer(self._get)
 
     def do_POST(self) -> None:
@@ -135,13 +182,12 @@ class _Handler(BaseHTTPRequestHandler):
     def _answer(self, respond: Callable[[str, Mapping[str, str]], None]) -> None:
         try:
             try:
+                self._check_sender()
                 parts = urlsplit(self.path)
-                token, _, path = unquote(parts.path, errors="strict")[1:].partition("/")
+                path = unquote(parts.path, errors="strict").removeprefix("/")
                 query = {key: values[-1] for key, values in parse_qs(parts.query, errors="strict").items()}
             except ValueError:
                 raise Refused("no such address", status=404) from None
-            if not secrets.compare_digest(token.encode(), self.server.owner.token.encode()):
-                raise Refused("no such address", status=404)
             respond(path, query)
         except Refused as problem:
             self.close_connection = True  # what is left of a body that nobody has read
@@ -155,8 +201,29 @@ class _Handler(BaseHTTPRequestHandler):
             error = {"message": "this is a bug in EPG", "hint": "the terminal says more; please report it"}
             self._send(500, "application/json", json.dumps({"error": error}).encode())
 
+    def _check_sender(self) -> None:
+        """Refuses requests that cannot come from the page, whatever they know."""
+        if self._is_foreign:
+            raise Refused("this page belongs to another user of the computer", status=403)
+        hosts = self.headers.get_all("Host", [])
+        name, _, port = hosts[0].partition(":") if len(hosts) == 1 else ("", "", "")
+        if name not in NAMES or not (port or "0").isdecimal():
+            raise Refused("a request must name 127.0.0.1 or localhost as its host", status=403)
+        if any(origin != f"http://{hosts[0]}" for origin in self.headers.get_all("Origin", [])):
+            raise Refused("a request of another page", status=403)
+
+    def _check_secret(self) -> None:
+        given = self.headers.get_all(SECRET, [])
+        if len(given) != 1 or not self.server.owner.keys.is_secret(given[0]):
+            raise Refused("this page is not known", "open the address that 'epg connect' printed last", 401)
+
     def _get(self, path: str, query: Mapping[str, str]) -> None:
         owner = self.server.owner
+        asset = owner.assets.get(path or "index.html")
+        if asset is not None:
+            self._send(200, TYPES[asset.suffix], asset.read_bytes())
+            return
+        self._check_secret()
         if path == "api/state":
             self._json(owner.state(_integer(query, "after", 0)))
         elif path == "api/log":
@@ -168,22 +235,29 @@ class _Handler(BaseHTTPRequestHandler):
             svg = owner.session.picture(name, query.get("configuration", ""))
             self._send(200, TYPES[".svg"], svg.encode())
         else:
-            asset = owner.assets.get(path or "index.html")
-            if asset is None:
-                raise Refused("no such address", status=404)
-            self._send(200, TYPES[asset.suffix], asset.read_bytes())
+            raise Refused("no such address", status=404)
 
     def _post(self, path: str, query: Mapping[str, str]) -> None:
-        if not path.startswith("api/"):
-            raise Refused("no such address", status=404)
+        if path != "exchange":
+            self._check_secret()
+            if not path.startswith("api/"):
+                raise Refused("no such address", status=404)
+        body = self._body()
+        if path == "exchange":
+            self._json({"secret": self.server.owner.exchange(text(body, "token"))})
+        else:
+            self._json(self.server.owner.session.act(path.removeprefix("api/"), body))
+
+    def _body(self) -> dict[str, object]:
+        """The object that a request holds.  That it must be JSON keeps out what forms of other pages can send."""
         if self.headers.get_content_type() != "application/json":
             raise Refused("a request must be application/json", status=415)
-        if self.headers.get("Transfer-Encoding"):
+        lengths = self.headers.get_all("Content-Length", [])
+        length = lengths[0].strip() if len(lengths) == 1 else ""
+        if self.headers.get("Transfer-Encoding") or not length.isascii() or not length.isdigit():
             raise Refused("a request must say how long it is", status=411)
-        length = self.headers.get("Content-Length", "")
-        if not length.isascii() or not length.isdigit():
-            raise Refused("a request must say how long it is", status=411)
-        if int(length) > MOST_BYTES:
+        length = length.lstrip("0") or "0"
+        if len(length) > len(str(MOST_BYTES)) or int(length) > MOST_BYTES:
             raise Refused("a request is larger than 1 MB", status=413)
         try:
             body = json.loads(self.rfile.read(int(length)).decode("utf-8"))
@@ -191,7 +265,7 @@ class _Handler(BaseHTTPRequestHandler):
             raise Refused("a request must be JSON") from None
         if not isinstance(body, dict):
             raise Refused("a request must be an object")
-        self._json(self.server.owner.session.act(path.removeprefix("api/"), body))
+        return body
 
     def _json(self, data: object) -> None:
         self._send(200, "application/json", json.dumps(data).encode())

@@ -119,18 +119,12 @@ class Picture:
         """The whole file."""
         x, y = self._left - _MARGIN, self._top - _MARGIN
         wide, high = self._right - x + _MARGIN, self._bottom - y + _MARGIN
-        style, dark = _STYLE, _DARK
-        for index, (light, night) in enumerate(_COLOURS):
-            style += (
-                f".w{index} {{ fill: none; stroke: {light}; stroke-width: 2.2; }}\n.t{index} {{ fill: {light}; }}\n"
-            )
-            dark += f".w{index} {{ stroke: {night}; }}\n.t{index} {{ fill: {night}; }}\n"
         lines = [
             f'<svg xmlns="http://www.w3.org/2000/svg" width="{_n(wide)}" height="{_n(high)}" '
             f'viewBox="{_n(x)} {_n(y)} {_n(wide)} {_n(high)}" role="img" aria-labelledby="title description">',
             f'<title id="title">{escape(self.title)}</title>',
             f'<desc id="description">{escape(self.description)}</desc>',
-            f"<style>{style}@media (prefers-color-scheme: dark) {{{dark}}}\n</style>",
+            f"<style>{style_sheet()}</style>",
             f'<rect x="{_n(x)}" y="{_n(y)}" width="{_n(wide)}" height="{_n(high)}" class="back"/>',
             *self._shapes,
             "</svg>",
@@ -145,6 +139,15 @@ class Picture:
     def _reach(self, left: float, top: float, right: float, bottom: float) -> None:
         self._left, self._top = min(self._left, left), min(self._top, top)
         self._right, self._bottom = max(self._right, right), max(self._bottom, bottom)
+
+
+def style_sheet() -> str:
+    """What stands in <style>: the same in every picture, so that a page's policy can allow just that by its hash."""
+    style, dark = _STYLE, _DARK
+    for index, (light, night) in enumerate(_COLOURS):
+        style += f".w{index} {{ fill: none; stroke: {light}; stroke-width: 2.2; }}\n.t{index} {{ fill: {light}; }}\n"
+        dark += f".w{index} {{ stroke: {night}; }}\n.t{index} {{ fill: {night}; }}\n"
+    return f"{style}@media (prefers-color-scheme: dark) {{{dark}}}\n"
 
 
 def _n(value: float) -> str:

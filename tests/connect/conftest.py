@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
 from epg.diagnostics import Diagnostics
 from epg.new_project import ProjectRequest, write_project
-from tests.connect.page import Page, serving, session_of
+from tests.connect.page import Page, serving_pages, session_of
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 
@@ -35,6 +35,12 @@ def bindings(project: Path) -> Path:
 
 
 @pytest.fixture
-def page(project: Path) -> Iterator[Page]:
-    with serving(session_of(project)) as opened:
-        yield opened
+def page(pages: Callable[[], Page]) -> Page:
+    return pages()
+
+
+@pytest.fixture
+def pages(project: Path) -> Iterator[Callable[[], Page]]:
+    """Opens pages of one session."""
+    with serving_pages(session_of(project)) as open_page:
+        yield open_page

@@ -8,15 +8,18 @@ import threading
 import time
 import urllib.error
 import urllib.request
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
+from urllib.parse import urldefrag
 
 from epg.connect.projects import find_jobs
-from epg.connect.server import Server
+from epg.connect.server import SECRET, Server
 from epg.connect.session import Session
 from epg.diagnostics import Diagnostics
+
+JSON = {"Content-Type": "application/json"}
 
 
 class Denied(Exception):
@@ -28,14 +31,22 @@ class Denied(Exception):
 
 
 class Page:
-    """One page that is open at ``address``."""
+    """One page, opened by an address that nobody has used before."""
 
     def __init__(self, address: str) -> None:
-        self.address = address
+        self.site, token = urldefrag(address)
+        self.secret = ""
+        self.secret = json.loads(self._open("exchange", json.dumps({"token": token}).encode(), JSON)[0])["secret"]
 
     def get(self, path: str) -> tuple[bytes, http.client.HTTPMessage]:
+        return self._open(path)
+
+    def _open(
+        self, path: str, data: bytes | None = None, headers: dict[str, str] | None = None
+    ) -> tuple[bytes, http.client.HTTPMessage]:
+        request = urllib.request.Request(self.site + path, data, {SECRET: self.secret, **(headers or {})})
         try:
-            with urllib.request.urlopen(self.address + path, timeout=60) as answer:
+            with urllib.request.urlopen(request, timeout=60) as answer:
                 return answer.read(), answer.headers
         except urllib.error.HTTPError as problem:
             raise Denied(problem.code, json.loads(problem.read())["error"]) from None
@@ -56,15 +67,7 @@ class Page:
         return state
 
     def post(self, action: str, **body: object) -> dict[str, Any]:
-        return self.send(action, json.dumps(body).encode(), {"Content-Type": "application/json"})
-
-    def send(self, action: str, data: bytes, headers: dict[str, str]) -> dict[str, Any]:
-        request = urllib.request.Request(f"{self.address}api/{action}", data, headers, method="POST")
-        try:
-            with urllib.request.urlopen(request, timeout=60) as answer:
-                return json.loads(answer.read())
-        except urllib.error.HTTPError as problem:
-            raise Denied(problem.code, json.loads(problem.read())["error"]) from None
+        return json.loads(self._open(f"api/{action}", json.dumps(body).encode(), JSON)[0])
 
     def connect(self, port: str, *references: str, **conversion: object) -> dict[str, Any]:
         return self.post("connect", port=port, ends=[{"reference": name, **conversion} for name in references])
@@ -73,11 +76,18 @@ class Page:
 @contextmanager
 def serving(session: Session) -> Iterator[Page]:
     """A page of ``session``, on a server of its own."""
+    with serving_pages(session) as open_page:
+        yield open_page()
+
+
+@contextmanager
+def serving_pages(session: Session) -> Iterator[Callable[[], Page]]:
+    """Opens pages of ``session``, all on one server."""
     server = Server(session)
     thread = threading.Thread(target=server.run)
     thread.start()
     try:
-        yield Page(server.address)
+        yield lambda: Page(server.new_address())
     finally:
         session.ended.set()
         thread.join(20)

@@ -32,7 +32,7 @@ def started(command: Sequence[str], folder: Path | None = None) -> Iterator[tupl
     try:
         for line in process.stdout:
             said += line
-            if match := re.search(r"http://127\.0\.0\.1:\d+/\S+/", line):
+            if match := re.search(r"http://127\.0\.0\.1:\d+/#\S+", line):
                 yield Page(match[0]), process
                 return
         raise AssertionError(said)

@@ -19,6 +19,8 @@ from urllib.parse import urlsplit
 import pytest
 
 from epg.cli.main import main
+from epg.connect.keys import Keys
+from epg.connect.peer import owner
 from epg.connect.server import HEADERS, Server
 from epg.connect.session import Session
 from tests.connect.page import Denied, Page, serving, session_of
@@ -27,12 +29,17 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 CTRL_C = signal.CTRL_C_EVENT if sys.platform == "win32" else signal.SIGINT
 
 
-def ask(page: Page, method: str, path: str, body: bytes = b"", **headers: str) -> tuple[int, dict[str, str], bytes]:
-    """A request as no browser would make it: nothing about ``path`` is tidied up."""
-    connection = http.client.HTTPConnection("127.0.0.1", urlsplit(page.address).port, timeout=30)
-    connection.putrequest(method, path, skip_accept_encoding=True)
-    for name, value in {"Content_Length": str(len(body)), **headers}.items():
-        connection.putheader(name.replace("_", "-"), value)
+def ask(
+    page: Page, method: str, path: str, body: bytes = b"", skip: tuple[str, ...] = (), **headers: str
+) -> tuple[int, dict[str, str], bytes]:
+    """A request as no browser would make it: nothing about ``path`` is tidied up, headers in ``skip`` are missing."""
+    port = urlsplit(page.site).port
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=30)
+    connection.putrequest(method, path, skip_host=True, skip_accept_encoding=True)
+    usual = {"Host": f"127.0.0.1:{port}", "Content_Length": str(len(body)), "X_EPG_Secret": page.secret}
+    for name, value in {**usual, **headers}.items():
+        if name not in skip:
+            connection.putheader(name.replace("_", "-"), value)
     connection.endheaders(body)
     answer = connection.getresponse()
     data = answer.read()
@@ -40,43 +47,143 @@ def ask(page: Page, method: str, path: str, body: bytes = b"", **headers: str) -
     return answer.status, dict(answer.getheaders()), data
 
 
-def token(page: Page) -> str:
-    return urlsplit(page.address).path.strip("/")
+EXCHANGE = {"Content_Type": "application/json", "skip": ("X_EPG_Secret",)}
+DISCONNECT = json.dumps({"port": "position_pan"}).encode()
 
 
-def test_nothing_is_answered_without_the_token(page: Page, bindings: Path) -> None:
-    good = token(page)
+def test_nothing_is_answered_without_the_secret(page: Page) -> None:
+    good = page.secret
     assert len(good) >= 32
     wrong = good[:-1] + ("A" if good[-1] != "A" else "B")
-    for path in (
-        "",
-        "/",
-        "/api/state",
-        f"/{wrong}/",
-        f"/{wrong}/api/state",
-        f"/{good}x/",
-        "/%00/",
-        "/%ff/",
-    ):
-        status, _, data = ask(page, "GET", path or "/")
-        assert status == 404 and good not in data.decode(), path
-    body = json.dumps({"port": "position_pan"}).encode()
-    for path in ("/api/disconnect", f"/{wrong}/api/disconnect"):
-        assert ask(page, "POST", path, body, Content_Type="application/json")[0] == 404
+    for path in ("/api/state", "/api/log", "/api/source", "/picture/wiring.svg", "/nothing", "/%00/", "/server.py"):
+        for secret in (wrong, good + "x", "", "\xff", good.upper()):
+            status, _, data = ask(page, "GET", path, X_EPG_Secret=secret)
+            assert status == 401 and good not in data.decode(), path
+        assert ask(page, "GET", path, skip=("X_EPG_Secret",))[0] == 401
+    for cookie in (f"X-EPG-Secret={good}", f"epg-secret={good}"):
+        assert ask(page, "GET", "/api/state", skip=("X_EPG_Secret",), Cookie=cookie)[0] == 401
+    for path in (f"/api/state?secret={good}", f"/{good}/api/state"):
+        assert ask(page, "GET", path, skip=("X_EPG_Secret",))[0] == 401
+    assert ask(page, "POST", "/api/disconnect", DISCONNECT, **EXCHANGE)[0] == 401
     assert "position_pan" in page.state()["wires"]
 
 
-def test_tokens_differ(project: Path) -> None:
-    session = session_of(project)
-    servers = [Server(session), Server(session)]
-    assert servers[0].token != servers[1].token
-    for server in servers:
-        server._http.server_close()
+def test_an_address_opens_one_page(project: Path) -> None:
+    said: list[str] = []
+    server = Server(session_of(project), announce=said.append)
+    thread = threading.Thread(target=server.run)
+    thread.start()
+    try:
+        first, other = Page(said[0]), server.new_address()
+        assert len(said) == 2, "the next page's address is said as soon as the last one is used"
+        for used in (said[0], said[0] + "x", said[0].partition("#")[0], said[0].partition("#")[0] + "#"):
+            with pytest.raises(Denied) as refusal:
+                Page(used)
+            assert refusal.value.status in (400, 401)
+        second = Page(other)
+        assert len(said) == 2, "the address of the browser that EPG starts is not the one that was printed"
+        third = Page(said[1])
+        assert len(said) == 3 and len({first.secret, second.secret, third.secret}) == 3
+        for page in (first, second, third):
+            assert page.state()["phase"] == "connect"
+            token = urlsplit(said[0]).fragment
+            assert page.secret not in "".join(said) and ask(page, "GET", "/api/state", X_EPG_Secret=token)[0] == 401
+    finally:
+        server.session.ended.set()
+        thread.join(20)
+
+
+def test_of_two_at_once_one_gets_in() -> None:
+    keys = Keys()
+    token = keys.new_token()
+    got: list[str | None] = []
+    threads = [threading.Thread(target=lambda: got.append(keys.exchange(token))) for _ in range(20)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len([secret for secret in got if secret]) == 1
+
+
+def test_only_this_computers_names_are_answered(page: Page) -> None:
+    """A page elsewhere can have its own name lead to 127.0.0.1 (DNS rebinding)."""
+    port = urlsplit(page.site).port
+    for host in (
+        "example.org",
+        f"example.org:{port}",
+        "127.0.0.1.example.org",
+        "",
+        "localhost:x",
+        "127.0.0.2",
+        "[::1]",
+    ):
+        for path in ("/", "/main.js", "/api/state"):
+            assert ask(page, "GET", path, Host=host)[0] == 403, host
+    assert ask(page, "GET", "/api/state", skip=("Host",))[0] == 403
+    # As through a tunnel that begins at another port.
+    for host in ("127.0.0.1:9999", f"localhost:{port}", "localhost"):
+        assert ask(page, "GET", "/api/state", Host=host, Origin=f"http://{host}")[0] == 200, host
+
+
+def test_requests_of_other_pages_are_refused(page: Page) -> None:
+    """Also of those on another port of this computer."""
+    port = urlsplit(page.site).port
+    for origin in (
+        "http://127.0.0.1",
+        "http://127.0.0.1:1",
+        f"http://localhost:{port}",
+        "null",
+        "",
+        "http://example.org",
+    ):
+        for path in ("/", "/api/state", "/picture/wiring.svg"):
+            assert ask(page, "GET", path, Origin=origin)[0] == 403, origin
+        post = {"Content_Type": "application/json", "Origin": origin}
+        assert ask(page, "POST", "/api/disconnect", DISCONNECT, **post)[0] == 403
+        assert ask(page, "POST", "/exchange", b'{"token": ""}', **post)[0] == 403
+    assert ask(page, "GET", "/api/state", Origin=f"http://127.0.0.1:{port}")[0] == 200
+    assert "position_pan" in page.state()["wires"]
+
+
+@pytest.mark.skipif(
+    not sys.platform.startswith("linux") or os.geteuid() != 0, reason="EPG: being another user needs Linux and root"
+)
+def test_other_users_are_refused_whatever_they_know(page: Page) -> None:
+    """They may be first with an address that they have read on a browser's command line."""
+    script = (
+        "import os, socket, sys\n"
+        "os.setgid(4321); os.setuid(int(sys.argv[3]))\n"
+        "server = socket.socket(); server.connect(('127.0.0.1', int(sys.argv[1])))\n"
+        "server.sendall(sys.argv[2].encode()); print(server.recv(9999).decode('ascii', 'replace'))\n"
+    )
+    port = urlsplit(page.site).port
+    for path in ("/", "/api/state"):
+        request = f"GET {path} HTTP/1.0\r\nHost: 127.0.0.1\r\nX-EPG-Secret: {page.secret}\r\n\r\n"
+        for user, status in (("0", " 200 "), ("4321", " 403 ")):
+            command = [sys.executable, "-c", script, str(port), request, user]
+            said = subprocess.run(command, capture_output=True, text=True, timeout=60, check=True).stdout
+            assert status in said.splitlines()[0], said
+
+
+def test_the_owner_of_a_connection_is_read_from_the_kernels_table(tmp_path: Path) -> None:
+    table = tmp_path / "tcp"
+    here, peer = ("127.0.0.1", 8123), ("127.0.0.1", 40000)
+    entry = f"{int.from_bytes(socket.inet_aton('127.0.0.1'), sys.byteorder):08X}"
+    rest = "00000000:00000000 00:00000000 00000000"
+    table.write_text(
+        "  sl  local_address rem_address   st tx_queue rx_queue tr tm->when retrnsmt   uid  timeout inode\n"
+        f"   0: {entry}:1FBB {entry}:9C40 01 {rest}  1000        0 11 1\n"
+        f"   1: {entry}:9C40 {entry}:1FBB 01 {rest}  1001        0 12 1\n",
+        encoding="ascii",
+    )
+    assert owner(peer, here, table) == 1001 and owner(here, peer, table) == 1000
+    assert owner(("127.0.0.1", 40001), here, table) is None
+    assert owner(peer, here, tmp_path / "none") is None
 
 
 def test_only_this_computer_is_served(page: Page) -> None:
-    port = urlsplit(page.address).port
-    assert urlsplit(page.address).hostname == "127.0.0.1" and port
+    port = urlsplit(page.site).port
+    assert urlsplit(page.site).hostname == "127.0.0.1" and port
     for address in ("127.0.0.2", "::1"):
         family = socket.AF_INET6 if ":" in address else socket.AF_INET
         with socket.socket(family) as other, pytest.raises(OSError):
@@ -85,19 +192,17 @@ def test_only_this_computer_is_served(page: Page) -> None:
 
 
 def test_every_answer_says_what_browsers_may_do(page: Page) -> None:
-    for path in ("/", f"/{token(page)}/", f"/{token(page)}/api/state", f"/{token(page)}/picture/wiring.svg"):
+    for path in ("/", "/nothing", "/main.js", "/api/state", "/picture/wiring.svg"):
         _, headers, _ = ask(page, "GET", path)
         assert {name: headers[name] for name in HEADERS} == HEADERS, path
     policy = HEADERS["Content-Security-Policy"]
-    assert policy.startswith(
-        "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'"
-    )
+    assert policy.startswith("default-src 'none'; script-src 'self'; style-src 'self' 'sha256-")
+    assert "img-src 'self' blob:; connect-src 'self'; base-uri 'none'" in policy
     assert "unsafe" not in policy and "http" not in policy
     assert HEADERS["Cache-Control"] == "no-store"
 
 
 def test_only_files_of_the_page_are_given_out(page: Page) -> None:
-    good = token(page)
     assert b"<html" in page.get("")[0]
     for path in (
         "../server.py",
@@ -111,7 +216,7 @@ def test_only_files_of_the_page_are_given_out(page: Page) -> None:
         "page/index.html",
         "robot.tcf",
     ):
-        assert ask(page, "GET", f"/{good}/{path}")[0] == 404, path
+        assert ask(page, "GET", f"/{path}")[0] == 404, path
 
 
 def test_every_file_of_the_page_is_there(page: Page) -> None:
@@ -124,7 +229,7 @@ def test_every_file_of_the_page_is_there(page: Page) -> None:
 def test_requests_must_be_json_of_the_page_itself(page: Page) -> None:
     """What forms of other pages can send is refused: they cannot say that it is JSON without asking first."""
     body = json.dumps({"port": "position_pan"}).encode()
-    path = f"/{token(page)}/api/disconnect"
+    path = "/api/disconnect"
     for kind in ("text/plain", "application/x-www-form-urlencoded", "multipart/form-data; boundary=x", ""):
         assert ask(page, "POST", path, body, Content_Type=kind)[0] == 415, kind
     assert ask(page, "GET", path)[0] == 404
@@ -132,9 +237,14 @@ def test_requests_must_be_json_of_the_page_itself(page: Page) -> None:
         assert ask(page, method, path, body, Content_Type="application/json")[0] == 404, method
     for wrong in (b"", b"{", b"[]", b'"text"', b"\xff", b"[" * 100_000):
         assert ask(page, "POST", path, wrong, Content_Type="application/json")[0] == 400, wrong[:10]
-    assert ask(page, "POST", path, Content_Type="application/json", Content_Length="1048577")[0] == 413
-    assert ask(page, "POST", path, Content_Type="application/json", Content_Length="-1")[0] == 411
-    assert ask(page, "POST", path, Content_Type="application/json", Content_Length="x")[0] == 411
+    lengths = {"1048577": 413, "9" * 5000: 413, "0" * 5000 + "9" * 5000: 413, "1" + "0" * 5000: 413}
+    lengths |= dict.fromkeys(("-1", "+1", "x", "", "1_0", "²", "1.0", "0x10", "1, 1"), 411)
+    for length, status in lengths.items():
+        for target in (path, "/exchange"):
+            answered = ask(page, "POST", target, Content_Type="application/json", Content_Length=length)
+            assert answered[0] == status, length[:10]
+    assert ask(page, "POST", path, Content_Type="application/json", Content_Length="0" * 5000)[0] == 400
+    assert ask(page, "POST", path, Content_Type="application/json", skip=("Content_Length",))[0] == 411
     assert ask(page, "POST", path, Content_Type="application/json", Transfer_Encoding="chunked")[0] == 411
     with pytest.raises(Denied) as refusal:
         page.post("no_such_action")
@@ -175,7 +285,7 @@ def test_a_page_waits_for_the_next_state(page: Page) -> None:
     version = page.until(lambda state: state["configurations"])["version"]
     assert page.state(version - 1)["version"] == version
     begin = time.monotonic()
-    later = threading.Timer(0.7, lambda: Page(page.address).connect("setpoint_pan", "tilt_subscriber"))
+    later = threading.Timer(0.7, lambda: page.connect("setpoint_pan", "tilt_subscriber"))
     later.start()
     assert page.state(version)["version"] > version
     assert 0.5 < time.monotonic() - begin < 10
@@ -226,16 +336,17 @@ def test_done_ends_the_program(project: Path) -> None:
         assert page.state()["project"]["name"] == "robot"
         page.post("done")
         out, err = process.communicate(timeout=20)
-        assert (process.returncode, out, err) == (0, "", "")
+        assert (process.returncode, err) == (0, "")
+        assert out.startswith("epg connect: for another page: http://127.0.0.1:") and out.count("\n") == 1
 
 
 @pytest.mark.parametrize("name", ["SIGINT"] if sys.platform == "win32" else ["SIGINT", "SIGTERM", "SIGHUP"])
 def test_a_signal_ends_the_program(name: str, project: Path) -> None:
     with program(str(project)) as (process, page):
         version = page.until(lambda state: state["configurations"])["version"]
-        with socket.create_connection(("127.0.0.1", urlsplit(page.address).port or 0)) as waiting:
-            path = f"{urlsplit(page.address).path}api/state?after={version}"
-            waiting.sendall(f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n".encode())
+        with socket.create_connection(("127.0.0.1", urlsplit(page.site).port or 0)) as waiting:
+            headers = f"Host: 127.0.0.1\r\nX-EPG-Secret: {page.secret}\r\n"
+            waiting.sendall(f"GET /api/state?after={version} HTTP/1.1\r\n{headers}\r\n".encode())
             time.sleep(0.3)
             process.send_signal(CTRL_C if name == "SIGINT" else getattr(signal, name))
             out, err = process.communicate(timeout=20)
@@ -301,9 +412,9 @@ def test_it_ends_when_no_page_is_open_any_more(project: Path) -> None:
     thread.start()
     time.sleep(1.5)
     assert thread.is_alive(), "the page has not been opened yet"
-    page = Page(server.address)
+    page = Page(server.new_address())
     version = page.until(lambda state: state["configurations"])["version"]
-    threading.Timer(2.5, lambda: Page(server.address).post("disconnect", port="pwm_pan")).start()
+    threading.Timer(2.5, lambda: page.post("disconnect", port="pwm_pan")).start()
     page.state(version)
     assert thread.is_alive(), "a page that waits is open"
     thread.join(10)
@@ -334,10 +445,10 @@ def test_a_browser_is_opened_where_there_is_one(project: Path, tmp_path: Path) -
         end = time.monotonic() + (10 if opens else 1)
         while not said.exists() and time.monotonic() < end:
             time.sleep(0.05)
-        Page(address).post("done")
-        process.communicate(timeout=20)
         assert said.exists() == opens
-    assert said.read_text() == f"{address}\n"
+        Page(said.read_text().strip() if opens else address).post("done")
+        assert "another page" not in process.communicate(timeout=20)[0] or not opens
+    assert said.read_text() != f"{address}\n", "what others can see of the browser is not what is printed here"
 
 
 def test_other_commands_load_nothing_of_it() -> None:

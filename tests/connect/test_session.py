@@ -6,6 +6,7 @@ import difflib
 import shutil
 import threading
 import time
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -130,8 +131,8 @@ def test_reload_throws_the_draft_away(page: Page) -> None:
     assert state["wires"] == before and not state["draft"]["changed"] and not state["draft"]["can_undo"]
 
 
-def test_two_pages_see_the_same(page: Page) -> None:
-    other = Page(page.address)
+def test_two_pages_see_the_same(pages: Callable[[], Page]) -> None:
+    page, other = pages(), pages()
     version = other.until(lambda state: state["configurations"])["version"]
     seen = {}
     waiting = threading.Thread(target=lambda: seen.update(other.state(version)))
@@ -142,14 +143,15 @@ def test_two_pages_see_the_same(page: Page) -> None:
     assert seen == done == page.state()
 
 
-def test_two_pages_at_once_lose_nothing(page: Page) -> None:
+def test_two_pages_at_once_lose_nothing(pages: Callable[[], Page]) -> None:
     """Each changes ports of its own, both at the same time."""
     problems: list[BaseException] = []
 
     def change(port: str, count: int) -> None:
         try:
+            page = pages()
             for number in range(1, count + 1):
-                Page(page.address).connect(port, "pan_subscriber", scale=number)
+                page.connect(port, "pan_subscriber", scale=number)
         except BaseException as problem:
             problems.append(problem)
 
@@ -159,6 +161,7 @@ def test_two_pages_at_once_lose_nothing(page: Page) -> None:
     for thread in threads:
         thread.join(60)
     assert not problems
+    page = pages()
     wires = page.state()["wires"]
     assert [wires[port][0]["scale"] for port in ("setpoint_pan", "setpoint_tilt")] == ["8", "8"]
     for _ in range(16):

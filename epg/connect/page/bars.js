@@ -2,6 +2,7 @@
 
 import { h } from "./dom.js";
 import { icon } from "./icons.js";
+import { whyLocked } from "./key.js";
 import { hasEnded, isLost } from "./server.js";
 import { attempt, draw, ui } from "./ui.js";
 
@@ -10,7 +11,16 @@ let dismissed = null; // the note about an edit elsewhere that was read already
 export function bars(state) {
   if (hasEnded()) return [];
   const list = [];
-  if (isLost()) {
+  if (whyLocked()) {
+    list.push(
+      bar("locked", "error", [
+        h("b", null, whyLocked()),
+        " Open the address that ",
+        h("code", null, "epg connect"),
+        " printed last, where it was started.",
+      ]),
+    );
+  } else if (isLost()) {
     const folder = state?.project?.folder;
     list.push(
       bar("lost", "error", [

@@ -2,6 +2,7 @@
 
 import { h, id } from "./dom.js";
 import { icon } from "./icons.js";
+import { wiringPicture } from "./pictures.js";
 import { draw, ui } from "./ui.js";
 
 const NO_ROBOT = "Board only";
@@ -160,13 +161,7 @@ function card(configuration, prefix) {
       },
     }),
     picture
-      ? h("img", {
-          src: `picture/wiring.svg?configuration=${encodeURIComponent(name)}`,
-          alt: "",
-          loading: "lazy",
-          width: "84",
-          height: "84",
-        })
+      ? wiringPicture(name, { alt: "", width: "84", height: "84" })
       : h("span", { class: "no-picture", "aria-hidden": "true" }),
     h(
       "span",

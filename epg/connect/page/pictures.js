@@ -1,12 +1,14 @@
 // Pictures that the server draws, to look at and to zoom into.
 
 import { h } from "./dom.js";
+import { getPicture } from "./server.js";
 import { draw, ui } from "./ui.js";
 
 const STEPS = [0.25, 0.5, 0.75, 1, 1.5, 2, 3, 4];
 
 export function picture(state, name) {
   const zoom = ui.zoom[name] || 0; // 0: as wide and high as there is room
+  const shown = newest(name, `picture/${name}.svg?version=${state.version}`);
   return [
     h(
       "div",
@@ -15,7 +17,7 @@ export function picture(state, name) {
       button("−", () => change(name, step(zoom, -1)), false, "Zoom out"),
       h("span", { class: "zoom-value", role: "status" }, zoom ? `${zoom * 100} %` : "fit"),
       button("+", () => change(name, step(zoom, 1)), false, "Zoom in"),
-      h("a", { href: address(name, state.version), target: "_blank", rel: "noopener" }, "Open by itself"),
+      h("a", { href: shown, target: "_blank", rel: "noopener" }, "Open by itself"),
     ),
     h(
       "div",
@@ -29,31 +31,73 @@ export function picture(state, name) {
       h("img", {
         key: name,
         alt: description(state, name),
-        shown: (image) => load(image, address(name, state.version), zoom),
+        src: shown,
+        shown: (image) => {
+          const size = () => (image.style.width = zoom ? `${image.naturalWidth * zoom}px` : "");
+          image.onload = size;
+          size();
+        },
       }),
     ),
   ];
 }
 
-const address = (name, version) => `picture/${name}.svg?version=${version}`;
+const pictures = new Map(); // name -> {wanted, shown}
 
-// A new version is loaded aside, so that the old one stays until it is there.
-function load(image, wanted, zoom) {
-  const size = () => {
-    image.style.width = zoom ? `${image.naturalWidth * zoom}px` : "";
-  };
-  if (image.epgWanted === wanted) {
-    size();
-    return;
+// The address of a picture's newest version that is there; null before the first. The old one stays meanwhile.
+function newest(name, wanted) {
+  const entry = pictures.get(name) || { wanted: "", shown: null };
+  pictures.set(name, entry);
+  if (entry.wanted !== wanted) {
+    entry.wanted = wanted;
+    fetchNewest(entry, wanted);
   }
-  image.epgWanted = wanted;
-  const next = new Image();
-  next.onload = () => {
-    if (image.epgWanted !== wanted) return;
-    image.onload = size;
-    image.src = wanted;
-  };
-  next.src = wanted;
+  return entry.shown;
+}
+
+async function fetchNewest(entry, wanted) {
+  let address;
+  try {
+    address = await getPicture(wanted);
+  } catch {
+    return; // problems, or the lost connection, are said elsewhere
+  }
+  const old = entry.wanted === wanted ? entry.shown : address;
+  if (entry.wanted === wanted) entry.shown = address;
+  draw();
+  if (old) URL.revokeObjectURL(old);
+}
+
+const wirings = new Map(); // configuration -> promise of its picture's address
+
+// An <img> of a configuration's wiring, fetched once it is in sight.
+export function wiringPicture(configuration, attributes) {
+  return h("img", {
+    ...attributes,
+    shown: (image) => {
+      if (image.epgWiring === configuration) return;
+      image.epgWiring = configuration;
+      sight.unobserve(image);
+      sight.observe(image);
+    },
+  });
+}
+
+const sight = new IntersectionObserver((entries) => {
+  for (const { target, isIntersecting } of entries) if (isIntersecting) fetchWiring(target);
+});
+
+async function fetchWiring(image) {
+  sight.unobserve(image);
+  const name = image.epgWiring;
+  const address = `picture/wiring.svg?configuration=${encodeURIComponent(name)}`;
+  if (!wirings.has(name)) wirings.set(name, getPicture(address));
+  try {
+    const shown = await wirings.get(name);
+    if (image.epgWiring === name) image.src = shown;
+  } catch {
+    wirings.delete(name);
+  }
 }
 
 function description(state, name) {

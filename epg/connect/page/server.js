@@ -1,8 +1,10 @@
-// The other end: the newest State by long polling, and actions. Addresses are relative, because the page's own holds
-// the token.
+// The other end: the newest State by long polling, and actions.
+
+import { lock, sign, unlock, whyLocked } from "./key.js";
 
 let state = null;
 let lost = false;
+let locked = null;
 let ended = false;
 let changed = () => {};
 
@@ -13,11 +15,15 @@ export const hasEnded = () => ended;
 // Calls `whenChanged` with every new State, and when the connection is lost or found again; never returns.
 export async function follow(whenChanged) {
   changed = whenChanged;
+  await unlock();
+  // An address that is opened in the tab of another one of EPG's only changes what stands behind its #.
+  window.addEventListener("hashchange", unlock);
   while (!ended) {
     const next = await newest();
     if (ended) return;
-    const differs = lost !== (next === null);
+    const differs = lost !== (next === null) || locked !== whyLocked();
     lost = next === null;
+    locked = whyLocked();
     try {
       if (lost) {
         if (differs) changed();
@@ -32,9 +38,10 @@ export async function follow(whenChanged) {
 }
 
 async function newest() {
+  if (whyLocked()) return null;
   try {
     // After a loss the state may have been missed.
-    const answer = await fetch(`api/state?after=${state === null || lost ? 0 : state.version}`);
+    const answer = await request(`api/state?after=${state === null || lost ? 0 : state.version}`);
     return answer.ok ? await answer.json() : null;
   } catch {
     return null;
@@ -51,7 +58,7 @@ function take(next, always = false) {
 export async function act(action, body = {}) {
   let answer, data;
   try {
-    answer = await fetch(`api/${action}`, {
+    answer = await request(`api/${action}`, {
       method: "POST",
       headers: { "Content-Type": "application/json" },
       body: JSON.stringify(body),
@@ -78,7 +85,20 @@ export async function act(action, body = {}) {
 }
 
 export async function getJson(address) {
-  const answer = await fetch(address);
+  const answer = await request(address);
   if (!answer.ok) throw new Error(await answer.text());
   return answer.json();
+}
+
+// A picture of the server as an address that <img> and links can have: they cannot send the secret themselves.
+export async function getPicture(address) {
+  const answer = await request(address);
+  if (!answer.ok) throw new Error(await answer.text());
+  return URL.createObjectURL(await answer.blob());
+}
+
+async function request(address, options = {}) {
+  const answer = await fetch(address, { ...options, headers: { ...options.headers, ...sign() } });
+  if (answer.status === 401) lock();
+  return answer;
 }

@@ -2,6 +2,7 @@
 
 import { configurationCards } from "./configurations.js";
 import { h } from "./dom.js";
+import { wiringPicture } from "./pictures.js";
 import { attempt, draw, ui } from "./ui.js";
 import { unitMark } from "./wiring.js";
 
@@ -132,10 +133,9 @@ function projectStep(state) {
         busy ? "Creating…" : "Create project",
       ),
       picked?.picture
-        ? h("img", {
+        ? wiringPicture(picked.name, {
             key: "picture",
             class: "picked-picture",
-            src: `picture/wiring.svg?configuration=${encodeURIComponent(picked.name)}`,
             alt: `Board of ${picked.name} with its wiring`,
           })
         : null,

@@ -51,7 +51,7 @@ def open_page(browser: Any) -> Iterator[Callable[..., Any]]:
             wrong.append(f"{response.status} {response.url}")
 
     def leave(request: Any) -> None:
-        if not request.url.startswith(("http://127.0.0.1:", "data:")):
+        if not request.url.startswith(("http://127.0.0.1:", "blob:http://127.0.0.1:", "data:")):
             wrong.append(f"a request to {request.url}")
 
     def make(address: str, **arguments: Any) -> Any:
@@ -81,7 +81,10 @@ class Project:
         copy_jiwy(folder)
         self.folder = folder
         self.epg = Served(folder)
-        self.address = self.epg.address
+
+    @property
+    def address(self) -> str:
+        return self.epg.address
 
     @property
     def file(self) -> Path:

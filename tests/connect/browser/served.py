@@ -25,9 +25,20 @@ class Served(Page):
         environment = {**os.environ, "PYTHONPATH": os.pathsep.join(packages), "EPG_PATH": str(ROOT)}
         self._process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, encoding="utf-8", env=environment)
         assert self._process.stdout is not None
-        line = self._process.stdout.readline()
-        assert line.startswith("epg connect: http://127.0.0.1:"), line
-        super().__init__(line.split()[-1])
+        self._lines = 0
+        super().__init__(self.address)
+
+    @property
+    def address(self) -> str:
+        """An address that nobody has used; the next one is printed when this one has been used."""
+        assert self._process.stdout is not None
+        before = ("epg connect: ", "Press ", "epg connect: for another page: ")
+        while True:
+            line = self._process.stdout.readline()
+            assert line.startswith(before[min(self._lines, 2)]), line
+            self._lines += 1
+            if "http" in line:
+                return line.split()[-1]
 
     def __enter__(self) -> Served:
         return self

@@ -1,0 +1,45 @@
+"""The user at the other end of a connection on this computer, as Linux says it.
+
+/proc/net/tcp lists both ends of such a connection, each with the user who owns it (proc_pid_net(5)).
+"""
+
+from __future__ import annotations
+
+import os
+import socket
+import sys
+from pathlib import Path
+
+TABLE = Path("/proc/net/tcp")
+_OVERFLOW = 65534
+"""Any user from outside the user namespace that this program runs in (user_namespaces(7))."""
+
+
+def is_another_user(peer: tuple[str, int], here: tuple[str, int]) -> bool:
+    """True if another user owns the end ``peer`` of the connection to ``here``; False also where nobody can tell.
+
+    The superuser does not count, who may do everything anyway, nor does the user who has started this by sudo.
+    """
+    user = owner(peer, here)
+    own = {0, _OVERFLOW, os.geteuid(), _sudo_user()} if user is not None else set()
+    return user is not None and user not in own
+
+
+def owner(peer: tuple[str, int], here: tuple[str, int], table: Path = TABLE) -> int | None:
+    """The number of the user who owns the end ``peer``; None if it is not in the table, or there is no table."""
+    try:
+        lines = table.read_text(encoding="ascii").splitlines()[1:]
+    except (OSError, ValueError):
+        return None
+    wanted = [_entry(*peer), _entry(*here)]
+    return next((int(fields[7]) for fields in map(str.split, lines) if fields[1:3] == wanted), None)
+
+
+def _entry(address: str, port: int) -> str:
+    """As the kernel writes it: the address as a number of this computer's byte order."""
+    return f"{int.from_bytes(socket.inet_aton(address), sys.byteorder):08X}:{port:04X}"
+
+
+def _sudo_user() -> int | None:
+    number = os.environ.get("SUDO_UID", "")
+    return int(number) if os.geteuid() == 0 and number.isdecimal() and len(number) < 12 else None
