@@ -1,7 +1,8 @@
 """The files of an FMU: an unpacked folder, or a ``.fmu``, which is a zip archive.
 
 An archive is read and never unpacked here.  It may come from anybody: names that lead out of it, links, encrypted or
-doubled entries, and contents that grow beyond any model's size are refused before anything of it is used.
+doubled entries, methods of compression that no FMU uses, and contents that grow beyond any model's size are refused
+before anything of it is used.
 """
 
 from __future__ import annotations
@@ -32,6 +33,8 @@ MAX_DIRECTORY = 8 << 20  # bytes of the zip's own list of files
 MAX_UNPACKED = 64 << 20  # bytes of the description and the sources together
 MAX_DEPTH = 8  # folders below sources/
 
+_STORED, _DEFLATED = 0, 8  # methods of compression: section 4.4.5; FMI 2.0.4, section 2.3, allows deflate alone
+_METHODS = {9: "deflate64", 12: "bzip2", 14: "LZMA", 20: "Zstandard", 93: "Zstandard", 95: "XZ", 98: "PPMd"}
 _END = struct.Struct("<4s4H2LH")  # end of central directory record: APPNOTE.TXT 6.3.10, section 4.3.16
 _END64_LOCATOR = b"PK\x06\x07"  # section 4.3.15
 _BAD_NAME = re.compile(r'[\\:*?"<>|;$\[\]]')  # what no Windows file is called either, or CMake cannot have in lists
@@ -132,13 +135,15 @@ def _archive(path: Path) -> FmuFiles:
             contents: dict[str, bytes] = {}
             left = MAX_UNPACKED
             for name, entry in sorted(wanted.items()):
-                with archive.open(entry) as file:
-                    data = file.read(min(left, MAX_BYTES) + 1)  # what the entry says of its size may be a lie
-                if len(data) > MAX_BYTES:
+                if entry.file_size > MAX_BYTES:
                     raise _Refused(f"'{name}' in it is larger than {MAX_BYTES >> 20} MiB", "is this the right file?")
-                left -= len(data)
+                left -= entry.file_size
                 if left < 0:
                     raise _Refused(f"its sources are larger than {MAX_UNPACKED >> 20} MiB", "is this the right file?")
+                with archive.open(entry) as file:
+                    data = file.read(entry.file_size + 1)  # what the entry says of its size may be a lie
+                if len(data) != entry.file_size:
+                    raise _Refused(f"'{name}' in it does not have the size that the archive says")
                 contents[name] = data
     except (zipfile.BadZipFile, zlib.error, EOFError, struct.error, OverflowError, ValueError) as error:
         text = str(error).split("\n", 1)[0][:120]
@@ -177,6 +182,8 @@ def _entries(archive: zipfile.ZipFile) -> tuple[dict[str, zipfile.ZipInfo], set[
     wanted: dict[str, zipfile.ZipInfo] = {}
     platforms: set[str] = set()
     seen: dict[str, str] = {}
+    if len(archive.infolist()) > MAX_ENTRIES:  # the number at the end of the archive may be a lie
+        raise _Refused(f"it holds more than {MAX_ENTRIES} files", "is this the right file?")
     for entry in archive.infolist():
         name = entry.orig_filename
         parts = name.rstrip("/").split("/")
@@ -193,6 +200,10 @@ def _entries(archive: zipfile.ZipFile) -> tuple[dict[str, zipfile.ZipInfo], set[
             raise _Refused(f"it holds '{shown}' twice")
         if entry.flag_bits & 0x1:
             raise _Refused(f"'{shown}' in it is encrypted", "pack it without a password")
+        if entry.compress_type not in (_STORED, _DEFLATED):
+            # Others can grow a thousand times as much for each byte that is read, or are not in every Python.
+            method = _METHODS.get(entry.compress_type, f"method {entry.compress_type}")
+            raise _Refused(f"'{shown}' in it is packed with {method}, which FMUs must not use", "pack it with deflate")
         wanted[name] = entry
     folders = {"/".join(name.split("/")[:depth]) for name in wanted for depth in range(1, name.count("/") + 1)}
     for name in sorted(wanted):

@@ -293,6 +293,36 @@ def binary_source() -> bytes:
     return archive(("modelDescription.xml", DESCRIPTION), *((f"sources/{name}", d) for name, d in sources.items()))
 
 
+def packed_by(method: int, data: bytes = b"int x;\n" * 999) -> bytes:
+    """An FMU of which one source is packed by another method than deflate."""
+    output = io.BytesIO()
+    with zipfile.ZipFile(output, "w", zipfile.ZIP_DEFLATED) as packed:
+        packed.writestr("modelDescription.xml", DESCRIPTION)
+        packed.writestr("sources/x.c", data, method)
+    return output.getvalue()
+
+
+def corrupt_lzma() -> bytes:
+    data = packed_by(zipfile.ZIP_LZMA)
+    at = data.find(b"sources/x.c") + len("sources/x.c")
+    return data[: at + 4] + bytes(b ^ 0xFF for b in data[at + 4 : at + 30]) + data[at + 30 :]
+
+
+def hidden_entries() -> bytes:
+    """More entries than allowed, in an archive whose end says that there is one."""
+    data = archive(*((f"r/{n}", b"") for n in range(20_001)))
+    return data[:-14] + struct.pack("<2H", 1, 1) + data[-10:]
+
+
+def claims_more() -> bytes:
+    """The list of files says that a stored file is 3 bytes longer than it is."""
+    output = io.BytesIO()
+    with zipfile.ZipFile(output, "w") as packed:
+        packed.writestr("modelDescription.xml", DESCRIPTION)
+        packed.writestr("sources/x.c", b"int x;\n" * 9)
+    return output.getvalue().replace(struct.pack("<2L", 63, 63), struct.pack("<2L", 63, 66))
+
+
 HOSTILE: dict[str, tuple[Callable[[], bytes], str]] = {
     "up": (lambda: with_source("sources/../../../evil.c"), "fmu-unreadable"),
     "up-hidden": (lambda: with_source("sources/a/../../evil.c"), "fmu-unreadable"),
@@ -323,6 +353,12 @@ HOSTILE: dict[str, tuple[Callable[[], bytes], str]] = {
     ),
     "binary-source": (binary_source, "model-unreadable"),
     "no-description": (lambda: archive(("sources/a.c", b"")), "fmu-unreadable"),
+    "bzip2": (lambda: packed_by(zipfile.ZIP_BZIP2), "fmu-unreadable"),
+    "bzip2-bomb": (lambda: packed_by(zipfile.ZIP_BZIP2, bytes(200 << 20)), "fmu-unreadable"),
+    "lzma": (lambda: packed_by(zipfile.ZIP_LZMA), "fmu-unreadable"),
+    "corrupt-lzma": (corrupt_lzma, "fmu-unreadable"),
+    "hidden-entries": (hidden_entries, "fmu-unreadable"),
+    "claims-more": (claims_more, "fmu-unreadable"),
     "method": (lambda: edited(with_source("sources/x.c"), b"\x08\x00", b"\x63\x00"), "fmu-unreadable"),
 }
 
@@ -343,6 +379,15 @@ def test_hostile_archives(kind: str, tmp_path: Path) -> None:
     assert tracemalloc.get_traced_memory()[1] < 200 << 20
     tracemalloc.stop()
     assert sorted(tmp_path.rglob("*")) == before
+
+
+@pytest.mark.parametrize(
+    ("method", "name"), [(zipfile.ZIP_BZIP2, "bzip2"), (zipfile.ZIP_LZMA, "LZMA")], ids=["bzip2", "lzma"]
+)
+def test_other_methods_of_compression_are_named(method: int, name: str, tmp_path: Path) -> None:
+    path = tmp_path / "servo.fmu"
+    path.write_bytes(packed_by(method))
+    assert only_error(path)[1] == f"'sources/x.c' in it is packed with {name}, which FMUs must not use"
 
 
 @pytest.mark.parametrize("folder", [FMU2, FMU3], ids=["fmi2", "fmi3"])
