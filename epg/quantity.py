@@ -64,21 +64,48 @@ SPELLINGS = {
 
 _NUMBER = r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][-+]?[0-9]+)?"
 _QUANTITY = re.compile(rf"({_NUMBER})\s*(\S.*?)?\s*")
+_DECIMAL_COMMA = re.compile(r"[-+]?[0-9]+,[0-9]+(\s*[A-Za-zµμ%][\w./%]*)?")
 _LONGEST = 200
 _RATIO = re.compile(rf"({_NUMBER})\s*/\s*({_NUMBER})")
 
 
 class QuantityError(ValueError):
-    """The text is no quantity of the wanted dimension; the message says what is wrong, ``hint`` what to write."""
+    """The text is not a quantity of the wanted dimension; the message says what is wrong, ``hint`` what to write."""
 
     def __init__(self, message: str, hint: str = "") -> None:
         super().__init__(message)
         self.hint = hint
 
 
+def decimal_comma(text: str) -> str:
+    """The hint for a number with a decimal comma, with or without a unit; "" for other text."""
+    if len(text) > _LONGEST or not _DECIMAL_COMMA.fullmatch(text.strip()):
+        return ""
+    return f"write '{text.strip().replace(',', '.')}', with a decimal point"
+
+
+def number_hint(text: str) -> str:
+    """How a number must be written that someone wrote as ``text``: ``1,5``, ``80%``, ``"3"``; "" if it is unclear."""
+    if decimal_comma(text):
+        return decimal_comma(text)
+    percent = re.fullmatch(r"\s*([-+]?[0-9]{1,9}(?:\.[0-9]{0,9})?)\s*%\s*", text)
+    if percent:
+        return f"write {float(Fraction(percent[1]) / 100):g} for {text.strip()}"
+    try:
+        float(text.replace("_", ""))
+    except ValueError:
+        return ""
+    return f"write {text.replace('_', '')} without quotes or underscores"
+
+
 def units_of(dimension: str) -> list[str]:
     """All units of a dimension, smallest first: ``["ns", "us", "ms", "s", "min"]``."""
     return sorted((u for u, (d, _) in UNITS.items() if d == dimension and u), key=lambda u: float(UNITS[u][1]))
+
+
+def base_unit(dimension: str) -> str:
+    """The unit of a dimension that EPG computes in: "s", "Hz", "rad"."""
+    return next(unit for unit in units_of(dimension) if UNITS[unit][1] == 1)
 
 
 def normal_unit(unit: str) -> str:
@@ -106,8 +133,9 @@ def conversion_factor(source: str, target: str) -> float:
 
 def parse_ratio(value: object) -> Fraction:
     """A ratio written as a number or as ``5625/361``, exact.  Raises :class:`QuantityError`."""
+    problem = QuantityError("this is not a ratio", "write a number or a ratio such as 5625/361")
     if isinstance(value, bool):
-        raise QuantityError("this is no ratio", "write a number or a ratio such as 5625/361")
+        raise problem
     if isinstance(value, int):
         return Fraction(value)
     if isinstance(value, float) and math.isfinite(value):
@@ -116,36 +144,42 @@ def parse_ratio(value: object) -> Fraction:
         match = _RATIO.fullmatch(value.strip()) if len(value) <= _LONGEST else None
         if match and _is_small(match[1]) and _is_small(match[2]) and Fraction(match[2]) != 0:
             return Fraction(match[1]) / Fraction(match[2])
-    raise QuantityError("this is no ratio", "write a number or a ratio such as 5625/361")
+        problem.hint = number_hint(value) or problem.hint
+    raise problem
 
 
 def parse_quantity(value: object, dimension: str) -> Fraction | float:
     """A quantity in the base unit of its dimension (s, Hz, rad, m, V, A, ...), exact unless the unit is not.
 
-    Raises :class:`QuantityError` for text that is no quantity, a unit of another dimension, or a bare number.
+    Raises :class:`QuantityError` for text that is not a quantity, a unit of another dimension, or a bare number.
     """
     units = units_of(dimension)
-    example = f"write a number and a unit ({', '.join(units)})"
+    wanted = f"{'an' if dimension[0] in 'aeiou' else 'a'} {dimension}"
+    hint = f"write a number and a unit ({', '.join(units)})"
     if dimension == "ratio" and isinstance(value, (int, float)) and not isinstance(value, bool):
         return parse_ratio(value)
     if isinstance(value, (int, float)) and not isinstance(value, bool):
-        common = {"time": "ms", "frequency": "kHz", "angle": "deg"}.get(dimension, units[len(units) // 2])
-        raise QuantityError(
-            f"{dimension} without a unit", f"write for example '{value} {common}'; units: {', '.join(units)}"
-        )
+        if not math.isfinite(value):
+            raise QuantityError(f"{value} is not {wanted}", hint)
+        written = int(value) if value == int(value) and abs(value) < 1e15 else value
+        example = f"write for example '{written} {base_unit(dimension)}'; units: {', '.join(units)}"
+        raise QuantityError(f"{dimension} without a unit", example)
     if not isinstance(value, str):
-        raise QuantityError(f"this is no {dimension}", example)
+        raise QuantityError(f"this is not {wanted}", hint)
+    if decimal_comma(value):
+        raise QuantityError(f"'{value.strip()}' is written with a decimal comma", decimal_comma(value))
     match = _QUANTITY.fullmatch(value.strip()) if len(value) <= _LONGEST else None
     if not match or not _is_small(match[1]):
-        raise QuantityError(f"'{value if len(value) <= 60 else value[:57] + '...'}' is no {dimension}", example)
+        shown = value if len(value) <= 60 else value[:57] + "..."
+        raise QuantityError(f"'{shown}' is not {wanted}", hint)
     unit = normal_unit(match[2] or "")
     if unit not in UNITS or (not unit and dimension != "ratio"):
         if not unit:
-            raise QuantityError(f"{dimension} without a unit", example)
+            raise QuantityError(f"{dimension} without a unit", hint)
         raise QuantityError(f"unknown unit '{unit}'", _unit_hint(unit, units))
     found, factor = UNITS[unit]
     if found != dimension:
-        raise QuantityError(f"'{unit}' is a unit of {found}, not of {dimension}", example)
+        raise QuantityError(f"'{unit}' is a unit of {found}, not of {dimension}", hint)
     number = Fraction(match[1])
     return number * factor if isinstance(factor, Fraction) else float(number) * factor
 

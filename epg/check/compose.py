@@ -13,7 +13,7 @@ from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.load.items import map_of, texts_of
 from epg.load.kind import Kind, KindParameter, make_parameter
 from epg.load.middleware import Middleware
-from epg.quantity import QuantityError, parse_quantity, parse_ratio
+from epg.quantity import QuantityError, number_hint, parse_quantity, parse_ratio
 from epg.source import Node, Span
 
 COMMON_PARAMETERS = ("kind", "node", "scale", "offset", "unit", "limits")
@@ -236,10 +236,10 @@ def _value(parameter: KindParameter, written: object) -> Fraction | float | int 
         except OverflowError:
             return math.inf
     if parameter.type == "number":
-        raise QuantityError(f"'{written}' is no number")
+        raise QuantityError(f"'{written}' is not a number", number_hint(str(written)))
     if parameter.type == "integer":
         if isinstance(written, bool) or not isinstance(written, (int, float)) or written != int(written):
-            raise QuantityError(f"'{written}' is no whole number")
+            raise QuantityError(f"'{written}' is not a whole number")
         return int(written)
     assert isinstance(written, (str, bool))
     return parameter.aliases.get(written, written) if isinstance(written, str) else written

@@ -12,6 +12,7 @@ a diagnostic at the value, or key, that is wrong.  Two annotations of ours (igno
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path as FilePath
@@ -20,7 +21,7 @@ from typing import Any
 from epg.check.accept import accepts
 from epg.data import data_folder
 from epg.diagnostics import Diagnostics, Note, did_you_mean
-from epg.quantity import QuantityError, parse_quantity, parse_ratio
+from epg.quantity import QuantityError, number_hint, parse_quantity, parse_ratio
 from epg.source import Node, Path, Span
 
 _TYPE_NAMES = {
@@ -74,6 +75,11 @@ def _report(error: Any, root: Node, diagnostics: Diagnostics) -> None:
     notes = extended_from(node)
     keyword = str(error.validator)
     if "propertyNames" in error.absolute_schema_path:
+        if keyword == "enum":
+            hint = did_you_mean(str(error.instance), error.validator_value, "known keys")
+            message = f"unknown key '{error.instance}'{_where(path)}"
+            diagnostics.error("unknown-key", node.key_span(str(error.instance)), message, hint=hint, notes=notes)
+            return
         message = f"'{error.instance}' {schema.get('x-message', 'is no valid name')}"
         diagnostics.error("invalid-name", node.key_span(str(error.instance)), message, notes=notes)
         return
@@ -112,8 +118,12 @@ def _explain(keyword: str, error: Any, node: Node, schema: Mapping[str, Any]) ->
                 parse_quantity(value, schema["x-quantity"])
         except QuantityError as problem:
             return "wrong-unit" if "unit" in str(problem) else "wrong-quantity", str(problem), problem.hint
+        if keyword == "pattern":
+            return "out-of-range", f"{_shown(value)} has a sign", "write the number without a sign"
     if "x-message" in schema and keyword in ("pattern", "anyOf", "oneOf", "not"):
         return "wrong-value", f"{_shown(value)} {schema['x-message']}", str(schema.get("x-hint", ""))
+    if keyword == "pattern":
+        return "wrong-value", f"{_shown(value)} does not have the form that this needs", _form(schema)
     if keyword == "type":
         wanted = [limit] if isinstance(limit, str) else list(limit)
         names = " or ".join(_TYPE_NAMES.get(name, name) for name in wanted)
@@ -136,6 +146,11 @@ def _explain(keyword: str, error: Any, node: Node, schema: Mapping[str, Any]) ->
         return "wrong-type", f"expected {expected}, found {_shown(value)}", ""
     if keyword == "uniqueItems":
         return "wrong-value", "something stands twice in this list", "remove one of the two"
+    if keyword in ("minItems", "maxItems") and isinstance(value, list) and value:
+        bound = "at least" if keyword == "minItems" else "at most"
+        comma = keyword == "maxItems" and all(isinstance(item, (int, float)) for item in value)
+        hint = "write 1.5 for one and a half: a comma begins the next number" if comma else ""
+        return "wrong-value", f"expected {bound} {limit} values, found {len(value)}", hint
     if keyword in ("minProperties", "minItems", "minLength"):
         return "wrong-value", "this is empty", ""
     return "wrong-value", f"{_shown(value)} is not possible here ({keyword} {limit})", ""
@@ -152,17 +167,22 @@ def _fitting_alternative(error: Any) -> list[Any]:
     return []
 
 
+def _form(schema: Mapping[str, Any]) -> str:
+    """The form of a text in words, for a pattern without ``x-message``: of parameters, which kinds describe."""
+    example = next((f", for example '{example}'" for example in schema.get("examples", ())), "")
+    return f"{schema.get('description', '')}{example}"
+
+
 def _type_hint(value: object, wanted: list[str]) -> str:
     if "boolean" in wanted and isinstance(value, str) and value.casefold() in ("on", "off", "yes", "no", "y", "n"):
         return (
             f"YAML 1.2 has only true and false: write {'true' if value.casefold() in ('on', 'yes', 'y') else 'false'}"
         )
     if isinstance(value, str) and {"number", "integer"} & set(wanted):
-        try:
-            float(value.replace("_", ""))
-        except ValueError:
-            return ""
-        return f"write {value.replace('_', '')} without quotes or underscores"
+        return number_hint(value)
+    if isinstance(value, str) and "object" in wanted:
+        key = re.match(r"([A-Za-z_]\w*)\s*[=\s:]", value)
+        return f"write ':' after each key, for example '{key[1]}: ...'" if key else ""
     if "string" in wanted and isinstance(value, (int, float, bool)):
         return "put it in quotes if it is meant as text"
     return ""

@@ -113,3 +113,36 @@ def test_epgs_own_files_are_accepted_without_jsonschema() -> None:
     for path in sorted(Path(targets / "robots").glob("*/*.tcf")):
         node = load_yaml(path, Diagnostics())
         assert node is not None and accepts(node.plain(), load_schema("tcf"), partial=True), path
+
+
+def _patterns(schema: Any, place: str) -> list[tuple[str, dict[str, Any]]]:
+    """The schemas with a pattern in ``schema``, and where each stands."""
+    if isinstance(schema, list):
+        return [found for number, child in enumerate(schema) for found in _patterns(child, f"{place}/{number}")]
+    if not isinstance(schema, dict):
+        return []
+    own = [(place, schema)] if isinstance(schema.get("pattern"), str) else []
+    return own + [found for key, child in schema.items() for found in _patterns(child, f"{place}/{key}")]
+
+
+def test_every_pattern_is_explained_in_words() -> None:
+    """A regular expression tells a user nothing: a sentence stands beside it, or the dimension of a quantity."""
+    schemas = {path.name: json.loads(path.read_text()) for path in data_folder("schemas").glob("*.schema.json")}
+    found = [each for name, schema in schemas.items() for each in _patterns(schema, name)]
+    assert len(found) > 30
+    assert [place for place, schema in found if not {"x-message", "x-quantity"} & schema.keys()] == []
+
+
+def test_every_pattern_of_a_kind_is_explained_in_words() -> None:
+    """The message about a parameter that does not match is what the kind says about it."""
+    folders = [
+        *data_folder("targets").glob("components/*/*.yaml"),
+        *data_folder("targets").glob("middlewares/*/*.yaml"),
+    ]
+    found = []
+    for path in folders:
+        node = load_yaml(path, Diagnostics())
+        assert node is not None
+        found += _patterns(node.plain(), path.parent.name)
+    assert found
+    assert [place for place, parameter in found if not parameter.get("description")] == []

@@ -32,15 +32,20 @@ def test_quantities(text: object, dimension: str, value: Fraction | float) -> No
 @pytest.mark.parametrize(
     ("text", "dimension", "message", "hint"),
     [
-        (1, "time", "time without a unit", "1 ms"),
+        (1, "time", "time without a unit", "'1 s'"),
+        (0.001, "time", "time without a unit", "'0.001 s'"),
+        (1e3, "frequency", "frequency without a unit", "'1000 Hz'"),
+        (math.nan, "frequency", "nan is not a frequency", "write a number and a unit (Hz"),
+        ("1,5 ms", "time", "'1,5 ms' is written with a decimal comma", "'1.5 ms'"),
+        ("fast", "angle", "'fast' is not an angle", "number"),
         ("1", "time", "time without a unit", "ms"),
         ("1 Ms", "time", "unknown unit 'Ms'", "did you mean 'ms'?"),
         ("1 kHz", "time", "'kHz' is a unit of frequency, not of time", "ms"),
-        ("one ms", "time", "'one ms' is no time", "number"),
+        ("one ms", "time", "'one ms' is not a time", "number"),
         ("12:30:00", "time", "unknown unit ':30:00'", "ms"),
-        (True, "time", "this is no time", "number"),
-        ("1e999999999 s", "time", "'1e999999999 s' is no time", "number"),
-        ("nan s", "time", "'nan s' is no time", "number"),
+        (True, "time", "this is not a time", "number"),
+        ("1e999999999 s", "time", "'1e999999999 s' is not a time", "number"),
+        ("nan s", "time", "'nan s' is not a time", "number"),
     ],
 )
 def test_no_quantities(text: object, dimension: str, message: str, hint: str) -> None:
