@@ -78,7 +78,9 @@ def load_tcf_chain(
     while True:
         path = find_tcf(name, beside, roots)
         if path is None:
-            known = [*predefined_tcf_names(roots), *(p.name for p in sorted(beside.glob("*.tcf")))]
+            read = {file.path.resolve() for file in chain}  # a file that extends itself is no way out
+            others = [file.name for file in sorted(beside.glob("*.tcf")) if file.resolve() not in read]
+            known = [*predefined_tcf_names(roots), *others]
             span = wanted_by or Span(name)
             diagnostics.error("tcf-not-found", span, f"there is no file '{name}'", hint=did_you_mean(name, known))
             return ()
