@@ -8,7 +8,8 @@ holds before anything recurses, and no anchors, aliases or tags.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
 
@@ -16,6 +17,8 @@ import yaml
 
 from epg.diagnostics import Diagnostics, Note
 from epg.load.text_file import NO_DRAFTS, Drafts, read_text
+from epg.load.yaml_mistakes import LINE_END, find_mistake, foreign_comment, missing_colon
+from epg.quantity import decimal_comma
 from epg.source import Node, Scalar, Span
 
 MAX_DEPTH = 32
@@ -42,21 +45,27 @@ def load_yaml(
 
 def parse_yaml(text: str, file: str, diagnostics: Diagnostics) -> Node | None:
     """The one document in ``text``; ``file`` is the name its positions carry."""
-    builder = _Builder(file, diagnostics)
+    builder = _Builder(file, text, diagnostics)
     try:
         for event in yaml.parse(text, Loader=LOADER):
             if not builder.feed(event):
                 return None
     except yaml.MarkedYAMLError as error:
+        if builder.mistaken:
+            return None
         mark = error.problem_mark or error.context_mark
         line, column = (mark.line + 1, mark.column + 1) if mark else (1, 1)
+        mistake = find_mistake(text, line)
+        if mistake is not None:
+            span = Span(file, mistake.line, mistake.column, mistake.end)
+            diagnostics.error("yaml-syntax", span, mistake.message, hint=mistake.hint)
+            return None
         problem = (error.problem or str(error)).replace("\n", " ")
-        hint = "indent with blanks" if "\\t" in problem or "'\t'" in problem else ""
         notes = []
         if error.context and error.context_mark and error.context_mark is not mark:
             where = Span(file, error.context_mark.line + 1, error.context_mark.column + 1)
             notes.append(Note(str(error.context), where))
-        diagnostics.error("yaml-syntax", Span(file, line, column), f"YAML: {problem}", hint=hint, notes=notes)
+        diagnostics.error("yaml-syntax", Span(file, line, column), f"YAML: {problem}", notes=notes)
         return None
     except (yaml.YAMLError, ValueError, RecursionError) as error:
         diagnostics.error("yaml-syntax", Span(file, 1, 1), f"YAML: {str(error).splitlines()[0]}")
@@ -72,21 +81,29 @@ class _Collection:
 
     span: Span
     mapping: bool
+    flow: bool
     children: list[Node] = field(default_factory=list)
     entries: dict[str, Node] = field(default_factory=dict)
     keys: dict[str, Span] = field(default_factory=dict)
     key: str | None = None
+    key_mark: yaml.Mark | None = None  # where the key ends
     skip: bool = False  # the value of a refused key
 
 
 class _Builder:
-    def __init__(self, file: str, diagnostics: Diagnostics) -> None:
+    def __init__(self, file: str, text: str, diagnostics: Diagnostics) -> None:
         self.file = file
+        self.text = text
         self.diagnostics = diagnostics
         self.stack: list[_Collection] = []
         self.root: Node | None = None
         self.documents = 0
         self.failed = False
+        self.mistaken = False  # an error was reported that may be why the parser cannot go on
+
+    @cached_property
+    def lines(self) -> list[str]:
+        return LINE_END.split(self.text)
 
     def feed(self, event: yaml.Event) -> bool:
         """Takes one event; False when reading on makes no sense."""
@@ -110,7 +127,7 @@ class _Builder:
                 return self._refuse(
                     event, "yaml-key", "a key must be a word, not a list or a map", "quote it if it is text"
                 )
-            self.stack.append(_Collection(self._span(event), mapping))
+            self.stack.append(_Collection(self._span(event), mapping, bool(event.flow_style)))
         elif isinstance(event, (yaml.MappingEndEvent, yaml.SequenceEndEvent)):
             done = self.stack.pop()
             if done.mapping:
@@ -124,8 +141,10 @@ class _Builder:
     def _scalar(self, event: yaml.ScalarEvent) -> None:
         span = self._span(event)
         top = self.stack[-1] if self.stack else None
+        if not event.style and (self._foreign_comment(event) or self._key_without_colon(event, top)):
+            self.failed = self.mistaken = True
         if top is not None and top.mapping and top.key is None:
-            top.key = event.value
+            top.key, top.key_mark = event.value, event.end_mark
             if event.value in top.keys:
                 top.skip = self.failed = True
                 first = Note("first written here", top.keys[event.value])
@@ -138,6 +157,41 @@ class _Builder:
         if event.implicit[0] and not event.style:
             value = self._plain_value(event.value, span)
         self._add(Node(value, span))
+
+    def _foreign_comment(self, event: yaml.ScalarEvent) -> bool:
+        """Reports ``//`` in plain text, which a person meant as a comment; True if there is one."""
+        if "/" not in event.value:
+            return False
+        start = event.start_mark
+        for number, line in enumerate(LINE_END.split(self.text[start.index : event.end_mark.index])):
+            comment = foreign_comment(line)
+            if comment is not None:
+                first = start.column + 1 if number == 0 else 1
+                span = Span(self.file, start.line + 1 + number, first + comment[0], first + len(line))
+                self.diagnostics.error("yaml-syntax", span, comment[1], hint=comment[2])
+                return True
+        return False
+
+    def _key_without_colon(self, event: yaml.ScalarEvent, top: _Collection | None) -> bool:
+        """Reports ``{period 1 ms}``, where all is a key, and the decimal comma in ``{period: 1,5 ms}``; True if so."""
+        start, end = event.start_mark, event.end_mark
+        if event.value or top is None or not top.flow or top.key is None or top.key_mark is None or top.skip:
+            return False
+        if start.index != top.key_mark.index or self.text[end.index - 1] == ":":
+            return False
+        key = top.keys[top.key]
+        before = next(reversed(top.entries.values()), None)
+        if before is not None and before.span.line == key.line:
+            whole = replace(before.span, end=key.end)
+            number = self.lines[key.line - 1][whole.column - 1 : whole.end - 1]
+            hint = decimal_comma(number)
+            if hint:
+                self.diagnostics.error("yaml-syntax", whole, f"'{number}' is written with a decimal comma", hint=hint)
+                return True
+        found = missing_colon(top.key)
+        if found is not None:
+            self.diagnostics.error("yaml-syntax", key, found[0], hint=found[1])
+        return found is not None
 
     def _plain_value(self, text: str, span: Span) -> Scalar:
         if text in _NULL:

@@ -1,0 +1,294 @@
+"""Mistakes in YAML that people make, in words: ``key value``, a tab, wrong indentation, ``//``.
+
+A parser says where it could not go on, which is often a line too late, and in terms of its own grammar.
+:func:`find_mistake` reads the lines as a person does.  It is asked only about text that the parser has refused, so
+it may be wrong about rare forms of YAML: then the parser's own message is used.
+
+>>> find_mistake("version: 1\\ntarget host\\nnode: a", 3)
+Mistake(line=2, column=1, end=12, message="'target host' has no ':'", hint="write 'target: host'")
+"""
+
+from __future__ import annotations
+
+import itertools
+import re
+from collections import Counter
+from dataclasses import dataclass
+
+LINE_END = re.compile("\r\n|\r|\n|\x85|\u2028|\u2029")
+_ENTRY = re.compile(r"""(?P<key>"(?:[^"\\]|\\.)*"|'[^']*'|[^\s'"{\[#](?:(?! \#).)*?)\s*:(?:\s+(?P<value>.*)|$)""")
+_WITHOUT_COLON = re.compile(r"(?P<key>[A-Za-z_][\w.]*)(?P<between>\s*=\s*|\s*:|\s+|$)(?P<value>.*)")
+_COMMENT = re.compile(r"(?:^|(?<=\s))(?://+|/\*)")
+_LONGEST = 1000  # a longer line was not written by a person; searching it would take time
+_QUOTES = "\"'"
+_CLOSING = {"{": "}", "[": "]", '"': '"', "'": "'"}
+_WHAT_OPENS_TEXT = "{[,:"
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """A mistake, on one line; numbers count from 1, ``end`` is one past the last column."""
+
+    line: int
+    column: int
+    end: int
+    message: str
+    hint: str
+
+
+def missing_colon(text: str) -> tuple[str, str] | None:
+    """Message and hint for ``key value``, ``key = value`` and ``key:value``, or None for other text."""
+    match = _WITHOUT_COLON.fullmatch(text.strip())
+    if match is None or (match["between"] == ":" and match["value"].startswith(("/", ":"))):
+        return None
+    meant = f"{match['key']}: {match['value']}".rstrip()
+    if "=" in match["between"]:
+        return f"'{_short(text)}' has a '=' where ':' must be", f"write '{_short(meant)}'"
+    if ":" in match["between"]:
+        return f"'{_short(text)}' has no space after ':'", f"write '{_short(meant)}'"
+    return f"'{_short(text)}' has no ':'", f"write '{_short(meant)}'"
+
+
+def foreign_comment(text: str) -> tuple[int, str, str] | None:
+    """Where in one line of text ``//`` or ``/*`` begins a comment, message and hint; None if there is none."""
+    match = _COMMENT.search(text)
+    if match is None:
+        return None
+    comment = _short(text[match.end() :].strip().removesuffix("*/"))
+    return match.start(), f"'{match[0]}' does not begin a comment in YAML", f"write '# {comment}'"
+
+
+def find_mistake(text: str, last: int) -> Mistake | None:
+    """The first mistake in ``text``, which the parser has refused at line number ``last``; None if it is another."""
+    return _Reader(LINE_END.split(text)).read(last)
+
+
+@dataclass
+class _Level:
+    """Entries that are indented alike."""
+
+    indent: int
+    line: int  # of its first entry
+    kind: str  # "map", "list" or "text": lines without ':', which may be a value of several lines
+    count: int = 0
+    wants: bool = False  # the last entry has no value yet: deeper lines may follow
+
+
+class _Reader:
+    def __init__(self, lines: list[str]) -> None:
+        self.lines = lines
+        self.levels: list[_Level] = []
+        self.open: list[tuple[str, int, int]] = []  # brackets and quotes: character, line, column from 0
+        self.block: int | None = None  # the indentation of the key whose value is a block of text
+
+    def read(self, last: int) -> Mistake | None:
+        for number, line in enumerate(self.lines[:last], 1):
+            content = line.lstrip(" \t")
+            if self.open and len(line) <= _LONGEST:
+                mistake = self._unclosed(number, line) or self._value(number, line, 0)
+            elif not content or content.startswith("#") or self._is_text(line, content):
+                continue
+            elif len(line) > _LONGEST or content.startswith(("? ", "---", "...", "%")):
+                return None
+            else:
+                self.block = None
+                mistake = self._line(number, line, content)
+            if mistake is not None:
+                return mistake
+        return self._never_closed(last) if self.open else None
+
+    def _is_text(self, line: str, content: str) -> bool:
+        """Whether a line belongs to a block of text, or begins the document."""
+        in_block = self.block is not None and len(line) - len(content) > self.block
+        return in_block or (content.startswith("---") and not self.levels)
+
+    def _line(self, number: int, line: str, content: str) -> Mistake | None:
+        indent = len(line) - len(content)
+        if "\t" in line[:indent]:
+            column = line.index("\t") + 1
+            hint = "write spaces instead: YAML does not allow tabs here"
+            return Mistake(number, column, indent + 1, "this line is indented with a tab", hint)
+        comment = foreign_comment(content)
+        if comment and comment[0] == 0:
+            return Mistake(number, indent + 1, len(line) + 1, *comment[1:])
+        mistake = self._place(number, indent, content)
+        if mistake is not None or not self.levels:
+            return mistake
+        while content == "-" or content.startswith("- "):
+            self.levels[-1].wants = content == "-"
+            rest = content[1:].lstrip(" ")
+            indent += len(content) - len(rest)
+            content = rest
+            if content.startswith("- ") or _ENTRY.match(content):
+                kind = "list" if content.startswith("- ") else "map"
+                self.levels.append(_Level(indent, number, kind))
+        entry = _ENTRY.match(content)
+        if entry is None or self.levels[-1].kind != "map":
+            return self._value(number, line, indent)
+        value = entry["value"] or ""
+        self.levels[-1].wants = not value or re.match(r"#|[&!]\S*\s*$", value) is not None
+        if value[:1] in ("|", ">"):
+            self.block = self.levels[-1].indent
+            return None
+        return self._value(number, line, indent + entry.start("value")) if value else None
+
+    def _place(self, number: int, indent: int, content: str) -> Mistake | None:
+        """Finds the level of a line by its indentation."""
+        entry = _ENTRY.match(content)
+        kind = "list" if re.match(r"-(\s|$)", content) else "map" if entry else "text"
+        left: list[_Level] = []
+        while self.levels and indent < self.levels[-1].indent:
+            left.append(self.levels.pop())
+        top = self.levels[-1] if self.levels else None
+        if top is None:
+            if left:
+                return self._indented(left[-1].line, f"write no space before it, as in line {number}")
+        elif indent > top.indent:
+            if left and not (top.kind == "list" and top.wants):
+                return self._between(number, indent, top, left[-1])
+            if top.kind == "text" and kind == "map":
+                return self._without_colon(top.line)
+            if not top.wants:
+                if kind == "map":
+                    return self._indented(number, _write_spaces(top.indent, top.line))
+                return None
+        elif kind == "list" and top.kind == "map" and top.wants:
+            pass  # a list may be indented as its key is
+        else:
+            if kind == "map" and top.kind == "list" and len(self.levels) > 1 and self.levels[-2].indent == indent:
+                top = self.levels.pop() and self.levels[-1]
+            if kind == "map" and top.kind == "text":
+                return self._without_colon(top.line)
+            if kind == "text" and top.kind == "map":
+                return self._without_colon(number)
+            top.count += 1
+            return None
+        self.levels.append(_Level(indent, number, kind, 1))
+        return None
+
+    def _between(self, number: int, indent: int, above: _Level, left: _Level) -> Mistake:
+        """The line is indented more than ``above``, less than ``left``: it or the first line of ``left`` is wrong."""
+        alike = 0
+        for line in self.lines[number - 1 :]:
+            content = line.lstrip(" ")
+            if content and not content.startswith("#"):
+                if len(line) - len(content) <= above.indent:
+                    break
+                alike += len(line) - len(content) == indent
+        step = self._usual_step()
+        usual = indent - above.indent == step != left.indent - above.indent
+        if left.count == 1 and (alike > 1 or usual):
+            return self._indented(left.line, _write_spaces(indent, number))
+        return self._indented(number, _write_spaces(left.indent, left.line))
+
+    def _usual_step(self) -> int:
+        indents = [len(line) - len(line.lstrip(" ")) for line in self.lines if line.strip()]
+        steps = Counter(b - a for a, b in itertools.pairwise(indents) if b > a)
+        return steps.most_common(1)[0][0] if steps else 2
+
+    def _indented(self, number: int, hint: str) -> Mistake:
+        line = self.lines[number - 1]
+        content = line.lstrip(" ")
+        indent = len(line) - len(content)
+        entry = _ENTRY.match(content)
+        end = indent + (entry.end("key") if entry else len(content)) + 1
+        spaces = "1 space" if indent == 1 else f"{indent} spaces" if indent else "no space"
+        return Mistake(number, indent + 1, end, f"wrong indentation: {spaces} before this line", hint)
+
+    def _without_colon(self, number: int) -> Mistake | None:
+        line = self.lines[number - 1]
+        content = re.sub(r"\s#.*", "", line.strip()).rstrip()
+        found = missing_colon(content)
+        column = len(line) - len(line.lstrip()) + 1
+        return Mistake(number, column, column + len(content), *found) if found else None
+
+    def _value(self, number: int, line: str, start: int) -> Mistake | None:
+        """Reads on at ``start``, where a value begins or, with brackets or quotes open, goes on."""
+        if not self.open:
+            if line[start : start + 1] not in ("{", "[", '"', "'"):
+                return self._plain(number, line, start)
+            self.open.append((line[start], number, start))
+            start += 1
+        end = self._close(number, line, start)
+        rest = line[end:].lstrip() if end is not None else ""
+        if end is None or not rest or rest.startswith("#"):
+            return None
+        column = len(line) - len(rest) + 1
+        comment = foreign_comment(rest)
+        if comment and comment[0] == 0:
+            return Mistake(number, column, len(line) + 1, *comment[1:])
+        if rest.startswith(":"):
+            return None
+        return Mistake(
+            number, column, len(line) + 1, f"'{_short(rest)}' stands after the end of the value", "remove it"
+        )
+
+    def _plain(self, number: int, line: str, start: int) -> Mistake | None:
+        value = re.sub(r"\s#.*", "", line[start:]).rstrip()
+        comment = foreign_comment(value)
+        if comment:
+            return Mistake(number, start + comment[0] + 1, start + len(value) + 1, *comment[1:])
+        if value[:1] in tuple("@`%*&!") and value:
+            message = f"a value cannot begin with '{value[0]}'"
+            return Mistake(number, start + 1, start + len(value) + 1, message, f'write it in quotes: "{_short(value)}"')
+        colon = re.search(r":(\s|$)", value)
+        if colon and self.levels and self.levels[-1].kind == "map":
+            column = start + colon.start() + 1
+            return Mistake(
+                number, column, column + 1, "a second ':' in this line", "quote the text, or begin a new line"
+            )
+        return None
+
+    def _close(self, number: int, line: str, start: int) -> int | None:
+        """Where in the line the value ends that is open, or None if it goes on in the next line."""
+        at = start
+        while at < len(line):
+            character, opened = line[at], self.open[-1][0]
+            if opened in _QUOTES:
+                if (opened == '"' and character == "\\") or (opened == "'" and line[at : at + 2] == "''"):
+                    at += 1
+                elif character == opened:
+                    self.open.pop()
+            elif character == "#" and line[at - 1 : at].strip() == "":
+                return None
+            elif character in "{[" or (character in _QUOTES and line[:at].rstrip()[-1:] in _WHAT_OPENS_TEXT):
+                self.open.append((character, number, at))
+            elif character == _CLOSING[opened]:
+                self.open.pop()
+            at += 1
+            if not self.open:
+                return at
+        return None
+
+    def _unclosed(self, number: int, line: str) -> Mistake | None:
+        """A key that is indented as the line in which a bracket is open: the bracket was to end before."""
+        _, opened, _ = self.open[0]
+        first = self.lines[opened - 1]
+        entry = _ENTRY.match(line.lstrip(" "))
+        if entry is None or len(line) - len(line.lstrip(" ")) > len(first) - len(first.lstrip(" ")):
+            return None
+        return self._open_mistake()
+
+    def _never_closed(self, last: int) -> Mistake | None:
+        for number, line in enumerate(self.lines[last:], last + 1):
+            if len(line) > _LONGEST:
+                return None
+            mistake = self._unclosed(number, line)
+            if mistake or self._close(number, line, 0) is not None:
+                return mistake
+        return self._open_mistake()
+
+    def _open_mistake(self) -> Mistake:
+        character, line, column = self.open[-1]
+        message = f"this {'quote' if character in _QUOTES else 'bracket'} is not closed"
+        return Mistake(line, column + 1, column + 2, message, f"write {_CLOSING[character]} where it ends")
+
+
+def _write_spaces(indent: int, line: int) -> str:
+    spaces = "1 space" if indent == 1 else f"{indent} spaces" if indent else "no space"
+    return f"write {spaces} before it, as in line {line}"
+
+
+def _short(text: str) -> str:
+    text = text.strip()
+    return text if len(text) <= 60 else text[:57] + "..."
