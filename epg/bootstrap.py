@@ -29,19 +29,20 @@ REQUIREMENTS: dict[str, dict[str, tuple[str, tuple[int, ...]]]] = {
     "generator": {"yaml": ("PyYAML", (5, 4)), "jinja2": ("Jinja2", (3, 0)), "jsonschema": ("jsonschema", (4, 10))},
     "plot": {"matplotlib": ("matplotlib", (3, 5)), "numpy": ("numpy", (1, 23))},
     "ros": {"cyclonedds": ("cyclonedds", (0, 10, 5))},
-    "test": {
-        "pytest": ("pytest", (8, 0)),
-        "pytest_cmake": ("pytest-cmake", (1, 6)),
-        "hypothesis": ("hypothesis", (6, 100)),
-        "hatchling": ("hatchling", (1, 24)),
-        "editables": ("editables", (0, 5)),
-        "cyclonedds": ("cyclonedds", (0, 10, 5)),
-        "matplotlib": ("matplotlib", (3, 5)),
-        "playwright": ("playwright", (1, 45)),
-        "yaml": ("PyYAML", (5, 4)),
-        "jinja2": ("Jinja2", (3, 0)),
-        "jsonschema": ("jsonschema", (4, 10)),
-    },
+}
+REQUIREMENTS["test"] = {
+    "pytest": ("pytest", (8, 0)),
+    "pytest_cmake": ("pytest-cmake", (1, 6)),
+    "hypothesis": ("hypothesis", (6, 100)),
+    **REQUIREMENTS["generator"],
+}
+REQUIREMENTS["test_all"] = {
+    "hatchling": ("hatchling", (1, 24)),
+    "editables": ("editables", (0, 5)),
+    "playwright": ("playwright", (1, 45)),
+    **REQUIREMENTS["test"],
+    **REQUIREMENTS["plot"],
+    **REQUIREMENTS["ros"],
 }
 
 
@@ -155,16 +156,24 @@ def _install(group: str, folder: Path, missing: list[str]) -> None:
         temporary = Path(tempfile.mkdtemp(dir=folder.parent, prefix=f".{folder.name}."))
     except OSError as error:
         raise MissingPackages(_remedy(missing, f"EPG's cache cannot be written: {error}")) from error
-    command = [sys.executable, "-m", "pip", "--disable-pip-version-check", "install", "--quiet", "--no-input"]
-    command += ["--require-hashes", "--only-binary", ":all:", "--target", str(temporary)]
+    command = [sys.executable, "-m", "pip", "--disable-pip-version-check", "install", "--no-input"]
+    command += ["--progress-bar", "off", "--require-hashes", "--only-binary", ":all:", "--target", str(temporary)]
     command += ["--requirement", str(LOCKS / f"{group}.txt")]
     environment = {key: value for key, value in os.environ.items() if not key.startswith("PYTHON")}
     environment["PIP_ROOT_USER_ACTION"] = "ignore"
+    environment["PYTHONUNBUFFERED"] = "1"
     try:
-        done = subprocess.run(command, capture_output=True, text=True, errors="replace", env=environment)
-        if done.returncode != 0:
-            tail = "\n".join(line for line in done.stderr.strip().splitlines()[-6:])
-            raise MissingPackages(_remedy(missing, f"pip could not install them:\n{tail}"))
+        with tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as errors:
+            pip = subprocess.Popen(
+                command, stdout=subprocess.PIPE, stderr=errors, text=True, errors="replace", env=environment
+            )
+            assert pip.stdout is not None
+            for line in pip.stdout:
+                _show_progress(line)
+            if pip.wait() != 0:
+                errors.seek(0)
+                tail = "\n".join(errors.read().strip().splitlines()[-6:])
+                raise MissingPackages(_remedy(missing, f"pip could not install them:\n{tail}"))
         try:
             os.rename(temporary, folder)
         except OSError:
@@ -172,6 +181,18 @@ def _install(group: str, folder: Path, missing: list[str]) -> None:
                 raise
     finally:
         shutil.rmtree(temporary, ignore_errors=True)
+
+
+def _show_progress(line: str) -> None:
+    """Repeats a line of pip's output in a few words, so that a download of a minute is not a minute of silence."""
+    words = line.split()
+    if line.startswith(("Collecting ", "Processing ")) and len(words) > 1:
+        # "Collecting jinja2==3.1.6", or "Processing /a/folder/jinja2-3.1.6-py3-none-any.whl"
+        name, _, version = Path(words[1]).name.replace("==", "-").partition("-")
+        sys.stderr.write(f"EPG:   {name} {version.partition('-')[0]}\n")
+    elif line.startswith("Installing collected packages:"):
+        sys.stderr.write("EPG:   unpacking\n")
+    sys.stderr.flush()
 
 
 def _remedy(missing: list[str], reason: str) -> str:

@@ -1,9 +1,11 @@
-"""What all tests share: EPG on the module path, and skips that ctest and .ci/run can see."""
+"""What all tests share: EPG on the module path, and a log of outcomes that tests/run.py reads."""
 
 from __future__ import annotations
 
+import json
 import os
 import sys
+from collections import defaultdict
 from pathlib import Path
 
 import pytest
@@ -11,18 +13,37 @@ import pytest
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
+from tests.tiers import table  # noqa: E402
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Marks every test with its tier, so that ``-m check_all`` selects that tier."""
+    tiers = table()
+    for item in items:
+        item.add_marker(tiers.tier(item.nodeid))
+
 
 @pytest.hookimpl(trylast=True)
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, exitstatus: int) -> None:
-    """Says how many tests were skipped, for ctest, and writes which ones, for .ci/run."""
-    skipped = terminalreporter.stats.get("skipped", [])
-    log = os.environ.get("EPG_SKIP_LOG")
-    if log and skipped:
-        with open(log, "a", encoding="utf-8") as file:
-            for report in skipped:
+    """Tells ctest if every test was skipped, and appends all outcomes to the file that ``EPG_TEST_LOG`` names."""
+    seconds: dict[str, float] = defaultdict(float)
+    skipped: dict[str, str] = {}
+    for outcome, reports in terminalreporter.stats.items():
+        for report in reports:
+            if not isinstance(report, (pytest.TestReport, pytest.CollectReport)):
+                continue
+            seconds[report.nodeid] += getattr(report, "duration", 0.0)
+            if outcome == "skipped":
                 reason = report.longrepr[2] if isinstance(report.longrepr, tuple) else str(report.longrepr)
-                # Parameters of a test are any text: with ": " in them, nobody could tell where the reason begins.
-                name = report.nodeid.partition("[")[0]
-                file.write(f"{name}: {reason.removeprefix('Skipped: ')}\n")
-    if skipped and exitstatus in (0, 5):
-        terminalreporter.write_line(f"EPG: {len(skipped)} tests skipped")
+                skipped[report.nodeid] = reason.removeprefix("Skipped: ")
+    log = os.environ.get("EPG_TEST_LOG")
+    if log and seconds:
+        lines = [
+            json.dumps({"test": test, "seconds": round(duration, 3), "skipped": skipped.get(test, "")})
+            for test, duration in seconds.items()
+        ]
+        with open(log, "a", encoding="utf-8") as file:
+            file.write("".join(f"{line}\n" for line in lines))
+    if skipped and not terminalreporter.stats.get("passed") and exitstatus in (0, 5):
+        terminalreporter.write_line(f"EPG: all {len(skipped)} tests were skipped")

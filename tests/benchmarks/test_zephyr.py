@@ -7,12 +7,8 @@ import subprocess
 import sys
 from functools import partial
 
-import pytest
-
 from tests.emulator.toolchain import ROOT, arm_gcc, node, rp2040js, skip_if_missing, tool
 from tests.zephyr.workspace import c_library, workspace
-
-pytestmark = pytest.mark.long
 
 
 def test_it_runs_and_prints_its_tables() -> None:

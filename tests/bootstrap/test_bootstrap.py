@@ -35,6 +35,9 @@ def test_packages_are_installed_once_and_found_again(bare_python: Path, tmp_path
     first = run(bare_python, tmp_path, *EPG)
     assert first.returncode == 0, first.stderr
     assert f"EPG: installing Jinja2, PyYAML, jsonschema for {bare_python} into {tmp_path}" in first.stderr
+    # Every package is named when its download begins: pip alone would be silent for up to a minute.
+    progress = [line for line in first.stderr.splitlines() if line.startswith("EPG:   ")]
+    assert {line.split()[1].lower() for line in progress} >= {"jinja2", "pyyaml", "jsonschema", "unpacking"}
     assert "host" in first.stdout
     folders = [path.name for path in tmp_path.iterdir()]
     assert len(folders) == 1

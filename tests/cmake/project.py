@@ -10,9 +10,12 @@ import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).resolve().parent.parent.parent
 PROJECTS = Path(__file__).resolve().parent / "projects"
 CMAKE_DIR = ROOT / "cmake"
+NINJA = shutil.which("ninja")
 
 
 @dataclass
@@ -34,8 +37,11 @@ class Project:
     def build_folder(self) -> Path:
         return self.folder / "build"
 
-    def configure(self, *arguments: str, generator: str = "Ninja", epg_dir: bool = True, check: bool = True) -> str:
-        """Configures; returns all that was printed."""
+    def configure(self, *arguments: str, generator: str = "", epg_dir: bool = True, check: bool = True) -> str:
+        """Configures; returns all that was printed.  Without ``generator``: Ninja where it is installed, else Make."""
+        generator = generator or ("Ninja" if NINJA else "Unix Makefiles")
+        if generator.startswith("Ninja") and not NINJA:
+            pytest.skip("Ninja is not installed: apt install ninja-build")
         command = ["cmake", "-S", str(self.source), "-B", str(self.build_folder), "-G", generator, *arguments]
         command += [f"-DPython3_EXECUTABLE={sys.executable}"] if not any("Python3_" in a for a in arguments) else []
         command += [f"-DEPG_DIR={CMAKE_DIR}"] if epg_dir else []

@@ -20,8 +20,6 @@ from tests.connect.builds import job_of, run
 from tests.emulator.toolchain import arm_gcc, pico_sdk, skip_if_missing
 from tests.zephyr.workspace import NATIVE, Missing, workspace
 
-pytestmark = pytest.mark.long
-
 MODEL = Path(__file__).resolve().parents[2] / "examples/jiwy/model"
 
 

@@ -264,7 +264,6 @@ def test_the_input_of_a_script_is_carried_out_to_its_end(jiwy_host: Path) -> Non
     assert "\r" not in done.stdout
 
 
-@pytest.mark.long
 def test_both_sides_race_for_nothing(jiwy_host_for_races: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """All that control and communication side share, under ThreadSanitizer."""
     monkeypatch.setenv("TSAN_OPTIONS", "halt_on_error=1 exitcode=66")

@@ -13,7 +13,6 @@ import pytest
 
 from tests.twenty_sim.generate import FOLDER
 
-pytestmark = pytest.mark.long
 NAME = "open_in_epg.cmd"
 needs_wine = pytest.mark.skipif(
     shutil.which("wine") is None, reason="Wine is not installed: apt-get install --no-install-recommends wine wine64"

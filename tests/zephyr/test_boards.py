@@ -4,14 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import pytest
-
 from tests.emulator.toolchain import arm_gcc, skip_if_missing
 
 from .twister import statuses_of
 from .workspace import c_library, need_twister, workspace
-
-pytestmark = pytest.mark.long
 
 
 def test_boards(tmp_path: Path) -> None:

@@ -14,8 +14,6 @@ from tests.emulator.toolchain import ROOT, arm_gcc, skip_if_missing
 from .west_workspace import BOARDS, fresh_workspace, west, west_build, west_sysbuild
 from .workspace import c_library, workspace
 
-pytestmark = pytest.mark.long
-
 
 @pytest.fixture(scope="module")
 def place(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:

@@ -21,6 +21,8 @@ MODEL = HERE.parent.parent / "models" / "pid_c"
 #: prefix of the cross compiler; the host's own stands in where there is none
 CROSS = "arm-none-eabi-" if shutil.which("arm-none-eabi-gcc") else ""
 
+CMAKES = ("oldest", "newest")
+
 GENERATORS = ("Ninja", "Unix Makefiles", "Ninja Multi-Config")
 
 #: at the end of ``find_epg.cmake``: which EPG was found
@@ -72,17 +74,16 @@ ALL = [
     Cell(way, convention, version, generator)
     for way in WAYS
     for convention in CONVENTIONS
-    for version in ("oldest", "newest")
+    for version in CMAKES
     for generator in GENERATORS
 ]
 
-WAYS_AND_CONVENTIONS = [cell for cell in ALL if cell.generator == "Ninja"]
-
-GENERATORS_AND_CMAKES = [
-    cell
-    for cell in ALL
-    if cell.generator != "Ninja" and cell.convention in ("native", "zephyr") and cell.way in ("wheel", "import_path")
+PAIRWISE = [
+    Cell(way, convention, CMAKES[(row + column // 2) % 2], GENERATORS[(row + column) % 3])
+    for row, way in enumerate(WAYS)
+    for column, convention in enumerate(CONVENTIONS)
 ]
+"""Cells in which every two values of different columns (way, convention, CMake, generator) meet at least once."""
 
 
 def check(cell: Cell, have: Installations, folder: Path) -> None:

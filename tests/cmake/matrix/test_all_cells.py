@@ -1,4 +1,4 @@
-"""The rest of the matrix: all ways, conventions, CMakes and generators.  Takes minutes: ``pytest -m long``."""
+"""The rest of the matrix: all ways, conventions, CMakes and generators.  Part of ``check_long``: it takes minutes."""
 
 from __future__ import annotations
 
@@ -6,12 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.cmake.matrix.cells import ALL, GENERATORS_AND_CMAKES, WAYS_AND_CONVENTIONS, Cell, check
+from tests.cmake.matrix.cells import ALL, PAIRWISE, Cell, check
 from tests.cmake.matrix.ways import Installations
 
-pytestmark = pytest.mark.long
-
-REST = [cell for cell in ALL if cell not in WAYS_AND_CONVENTIONS and cell not in GENERATORS_AND_CMAKES]
+REST = [cell for cell in ALL if cell not in PAIRWISE]
 
 
 @pytest.mark.parametrize("cell", REST, ids=str)

@@ -1,15 +1,24 @@
-"""Every way of finding EPG, under every toolchain convention, with the oldest CMake and the newest."""
+"""Every way of finding EPG, toolchain convention, CMake and generator, each together with each other's."""
 
 from __future__ import annotations
 
+from itertools import combinations, product
 from pathlib import Path
 
 import pytest
 
-from tests.cmake.matrix.cells import WAYS_AND_CONVENTIONS, Cell, check
+from tests.cmake.matrix.cells import ALL, PAIRWISE, Cell, check
 from tests.cmake.matrix.ways import Installations
 
 
-@pytest.mark.parametrize("cell", WAYS_AND_CONVENTIONS, ids=str)
+@pytest.mark.parametrize("cell", PAIRWISE, ids=str)
 def test_way(cell: Cell, installations: Installations, tmp_path: Path) -> None:
     check(cell, installations, tmp_path)
+
+
+def test_every_pair_of_values_meets() -> None:
+    columns = ("way", "convention", "cmake", "generator")
+    for one, other in combinations(columns, 2):
+        met = {(getattr(cell, one), getattr(cell, other)) for cell in PAIRWISE}
+        possible = product({getattr(cell, one) for cell in ALL}, {getattr(cell, other) for cell in ALL})
+        assert met == set(possible), (one, other)

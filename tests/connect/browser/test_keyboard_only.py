@@ -6,12 +6,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import pytest
-
 from .acts import until
 from .served import Served
-
-pytestmark = pytest.mark.long
 
 Open = Callable[..., Any]
 

@@ -11,8 +11,6 @@ from tests.xrce_agent import Agent
 from .board import Board
 from .conftest import build
 
-pytestmark = pytest.mark.long
-
 
 @pytest.fixture(scope="module")
 def robot_for_races(tmp_path_factory: pytest.TempPathFactory) -> Path:

@@ -5,13 +5,9 @@ from __future__ import annotations
 import statistics
 from pathlib import Path
 
-import pytest
-
 from tests.xrce_agent import Agent
 
 from .reconnecting import check, reconnect
-
-pytestmark = pytest.mark.long
 
 
 def test_a_thousand_restarts_of_the_agent(robot: Path, agent: Agent) -> None:

@@ -7,8 +7,6 @@ import pytest
 from tests.platforms.pico.compiled import own_sources, problems
 from tests.platforms.pico.images import TARGETS, images, size_of, skip_unless_buildable
 
-pytestmark = pytest.mark.long
-
 
 @pytest.mark.parametrize("middleware", ["none", "console", "xrce", "xrce_console"])
 @pytest.mark.parametrize(("board", "platform"), TARGETS)

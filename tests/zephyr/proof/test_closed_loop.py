@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import pytest
-
 from tests.emulator.toolchain import ROOT
 from tests.platforms.pico.closed_loop.checks import assert_all_is_well
 from tests.platforms.pico.closed_loop.comparison import compare_image
@@ -30,7 +28,6 @@ def test_it_homes_and_follows_as_the_host_does(tmp_path: Path) -> None:
     assert_all_is_well(compared, latest=LATEST, largest=LARGEST_COUNTS)
 
 
-@pytest.mark.long
 def test_the_whole_motion_profile(tmp_path: Path) -> None:
     """18 simulated seconds."""
     skip_unless_emulated()

@@ -18,8 +18,6 @@ from tests.zephyr.proof.test_h743 import ENCODERS, OUTPUTS
 from tests.zephyr.stm32h743 import Stm32h743
 from tests.zephyr.workspace import build, c_library, workspace
 
-pytestmark = pytest.mark.long
-
 CYCLES = 200
 STEPS = 12_000
 """Of the PWM: 240 MHz by 20 kHz."""

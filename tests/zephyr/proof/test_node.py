@@ -60,7 +60,6 @@ def test_agents_are_restarted(jiwy: ZephyrJiwy) -> None:
     assert_is_back(jiwy)
 
 
-@pytest.mark.long
 @pytest.mark.parametrize("scenario", SCENARIOS)
 def test_it_comes_back(jiwy: ZephyrJiwy, scenario: str) -> None:
     hold(jiwy)

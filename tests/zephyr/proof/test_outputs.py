@@ -12,8 +12,6 @@ from tests.zephyr.workspace import build, c_library
 from .board import APPLICATION, ZephyrJiwy, skip_unless_emulated
 from .checks import LATEST_WRITE
 
-pytestmark = pytest.mark.long
-
 SECONDS = 20
 IMAGES: dict[str, dict[str, str]] = {
     "shipped": {},

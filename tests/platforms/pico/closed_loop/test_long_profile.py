@@ -12,8 +12,6 @@ from tests.platforms.pico.images import PLATFORMS, skip_unless_emulated
 from .checks import assert_all_is_well
 from .comparison import compare
 
-pytestmark = pytest.mark.long
-
 SCENARIO = ROOT / "examples" / "jiwy" / "tracking.yaml"
 
 

@@ -15,8 +15,6 @@ from tests.platforms.pico.xrce.scenarios import SCENARIOS, SILENCE, assert_is_ba
 
 from .firmware import MicroRosJiwy, firmware, library
 
-pytestmark = pytest.mark.long
-
 
 def test_all_that_happens_to_xrce() -> None:
     with MicroRosJiwy() as jiwy:

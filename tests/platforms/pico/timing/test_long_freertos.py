@@ -11,8 +11,6 @@ from .many import measure_many
 from .measure import LOADS, Load
 from .programs import generated
 
-pytestmark = pytest.mark.long
-
 
 @pytest.mark.parametrize("load", [load for load in LOADS if not load.flooded], ids=lambda load: load.title)
 def test_every_cycle_is_on_time(load: Load) -> None:

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-import pytest
-
 from tests.platforms.pico.images import skip_unless_emulated
 
 from .board import Jiwy
 from .scenarios import SCENARIOS, assert_is_back, hold
-
-pytestmark = pytest.mark.long
 
 
 def test_all_of_them() -> None:

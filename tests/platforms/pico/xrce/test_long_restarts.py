@@ -9,8 +9,6 @@ from tests.platforms.pico.images import PLATFORMS, skip_unless_emulated
 from .board import Jiwy
 from .scenarios import assert_is_back, hold, restart
 
-pytestmark = pytest.mark.long
-
 RESTARTS = 200
 
 

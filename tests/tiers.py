@@ -1,0 +1,107 @@
+"""Which tests belong to which tier, and how they are grouped into tests of ctest.
+
+``tests/tiers.txt`` names the tests of ``check_all`` and ``check_long``; all others belong to ``check``.
+``tests/costs.txt`` says how long the files take.
+
+>>> table = read_table("check_all  tests/ros2\\ncheck_long tests/ros2/test_a.py::test_hours\\n")
+>>> table.tier("tests/ros2/test_a.py::test_minutes[3]"), table.tier("tests/ros2/test_a.py::test_hours[3]")
+('check_all', 'check_long')
+"""
+
+from __future__ import annotations
+
+import sys
+from collections import defaultdict
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+TESTS = Path(__file__).resolve().parent
+TIERS = ("check", "check_all", "check_long")
+ALONE = 15.0
+"""A file that takes longer than this (seconds) is a test of ctest by itself; a start of pytest takes one second."""
+
+
+@dataclass(frozen=True)
+class Table:
+    """Beginnings of test names, as pytest writes them, and their tiers."""
+
+    tiers: Mapping[str, str]
+
+    def tier(self, test: str) -> str:
+        """The tier of a test: the longest beginning of its name decides."""
+        found = [path for path in self.tiers if begins(test, path)]
+        return self.tiers[max(found, key=len)] if found else TIERS[0]
+
+    def tiers_in(self, file: str) -> set[str]:
+        """The tiers to which tests of a file belong."""
+        return {self.tier(file)} | {tier for path, tier in self.tiers.items() if path.startswith(f"{file}::")}
+
+
+@dataclass(frozen=True)
+class Group:
+    """Files whose tests of one tier ctest runs as one test."""
+
+    name: str
+    tier: str
+    cost: float
+    """How long they take, in seconds."""
+    files: tuple[str, ...]
+
+
+def begins(test: str, path: str) -> bool:
+    """Whether ``path`` is the whole beginning of a test's name: a folder, a file, a function or a parameter."""
+    return test == path or (test.startswith(path) and test[len(path)] in "/:[")
+
+
+def read_table(text: str) -> Table:
+    """Lines of ``tier path``; empty lines and lines that begin with ``#`` mean nothing.  Raises :class:`ValueError`."""
+    tiers = {}
+    for line in text.splitlines():
+        if line and not line.startswith("#"):
+            tier, path = line.split(maxsplit=1)
+            if tier not in TIERS:
+                raise ValueError(f"tests/tiers.txt: there is no tier {tier!r}: {line}")
+            tiers[path] = tier
+    return Table(tiers)
+
+
+def table() -> Table:
+    """The table of this project."""
+    return read_table((TESTS / "tiers.txt").read_text(encoding="utf-8"))
+
+
+def read_costs(text: str) -> dict[tuple[str, str], float]:
+    """Seconds by tier and file, from lines of ``tier seconds file``."""
+    rows = (line.split(maxsplit=2) for line in text.splitlines() if line and not line.startswith("#"))
+    return {(tier, file): float(seconds) for tier, seconds, file in rows}
+
+
+def groups(files: Iterable[str], tiers: Table, costs: Mapping[tuple[str, str], float]) -> list[Group]:
+    """All tests of ctest: cheap files of a folder share one, the others have one each."""
+    together: dict[tuple[str, str], list[str]] = defaultdict(list)
+    for file in sorted(files):
+        for tier in sorted(tiers.tiers_in(file)):
+            alone = costs.get((tier, file), 0.0) > ALONE
+            name = file.removesuffix(".py") if alone else str(Path(file).parent.as_posix())
+            together[name, tier].append(file)
+    result = []
+    for (name, tier), members in together.items():
+        words = [word.removeprefix("test_") for word in name.split("/")]
+        suffix = {"check": "", "check_all": ".all", "check_long": ".long"}[tier]
+        cost = sum(costs.get((tier, file), 1.0) for file in members)
+        result.append(Group(".".join(words) + suffix, tier, cost, tuple(members)))
+    return sorted(result, key=lambda group: (TIERS.index(group.tier), -group.cost, group.name))
+
+
+def main() -> int:
+    """Prints ``name|tier|cost|file,file`` per group, for tests/CMakeLists.txt."""
+    files = [f"tests/{path.relative_to(TESTS).as_posix()}" for path in TESTS.rglob("test_*.py")]
+    costs = read_costs((TESTS / "costs.txt").read_text(encoding="utf-8"))
+    for group in groups(files, table(), costs):
+        print(f"{group.name}|{group.tier}|{group.cost:.0f}|{','.join(group.files)}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
