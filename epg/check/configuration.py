@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
+from types import MappingProxyType
 
 from epg.check.bindings import Conversion, conversion_of
 from epg.check.compose import (
@@ -130,7 +131,7 @@ def check_configuration(
     target = catalog.target(str(target_node.value), target_node.span, diagnostics)
     components = _components(root, target, catalog, diagnostics)
     communication = _communication(root, target, components, catalog, diagnostics)
-    control = _control(root["control"], components, communication, diagnostics)
+    control = _control(root, components, communication, diagnostics)
     check_names(root["node"], root.get("namespace"), _topics(components, control, communication), diagnostics)
     if target is None or communication is None or diagnostics.error_count > errors:
         return None
@@ -205,9 +206,11 @@ def _components(root: Node, target: Target | None, catalog: Catalog, diagnostics
 
 
 def _control(
-    node: Node, components: Mapping[str, Component], communication: Communication | None, diagnostics: Diagnostics
+    root: Node, components: Mapping[str, Component], communication: Communication | None, diagnostics: Diagnostics
 ) -> Control:
-    period = node.get("period")
+    """The control loop; all of it may be left out, and then the target starts disabled."""
+    node = root.get("control") or Node(MappingProxyType({}), root.span)
+    period, at_start = node.get("period"), node.get("enable_at_start")
     seconds = _time(period, diagnostics)
     if period is not None and seconds is not None and seconds <= 0:
         diagnostics.error("out-of-range", period.span, "the control period must be more than 0")
@@ -221,7 +224,7 @@ def _control(
         period_span=period.span if period else node.span,
         output_delay=_time(delay, diagnostics),
         output_delay_span=delay.span if delay else node.span,
-        enable_at_start=bool(node["enable_at_start"].value),
+        enable_at_start=at_start is not None and at_start.value is True,
         overrun_limit=limit.value if limit is not None and isinstance(limit.value, int) else 10,
         enable_topic=(str(topic.value) if topic.value is not False else None) if topic else default_topic,
         enable_topic_span=topic.span if topic else node.span,
