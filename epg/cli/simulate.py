@@ -10,7 +10,7 @@ from pathlib import Path
 from epg.diagnostics import Diagnostics
 
 EXIT_LIMITS = 5
-"""Exit status when the run ended well but a limit of the scenario does not hold."""
+"""Exit status when a limit of the scenario does not hold, or the run did not end in the state that it expects."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -43,6 +43,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
             "statistics": asdict(result.statistics),
             "windows": [asdict(window) for window in result.windows],
             "checks": [asdict(check) for check in result.checks],
+            "ending": asdict(result.ending),
             "passed": result.passed,
             "files": [file.name for file in result.files],
         }

@@ -23,6 +23,7 @@ from epg.emit.service import MiddlewareView, service_of
 from epg.emit.template import environment
 from epg.emit.text import CMakeCode, Code, DevicetreeCode, Escaped, KconfigCode, double, identifier
 from epg.emit.topics import Topics, topics_of
+from epg.load.models.details import HandWritten
 from epg.resolve.application import Application, ResolvedComponent, Step, Wire
 from epg.resolve.conversion import folded
 
@@ -130,6 +131,15 @@ class OutputPin:
     high: Code
 
 
+@dataclass(frozen=True)
+class InputPin:
+    """A pin that the component ``name`` reads; ``invert``: as 1 when it is low."""
+
+    name: str
+    pin: int
+    invert: bool
+
+
 LANGUAGES: Mapping[str, type[Escaped]] = {
     ".overlay": DevicetreeCode,
     ".Kconfig": KconfigCode,
@@ -196,6 +206,7 @@ class Emitter:
             "outputs": [self._output(wire) for wire in app.outputs if wire.component.name not in publishers],
             "monitor": [self._output(wire) for wire in app.outputs if wire.component.name in publishers],
             "output_pins": self._output_pins(),
+            "input_pins": self._input_pins(),
             "claims": claims_of(app),
             "gpios": gpios_of(app),
             "tick": tick_of(app),
@@ -208,6 +219,7 @@ class Emitter:
             "version": __version__,
             "hash": LITERAL,
             "fail_safe": None,
+            "plant_starts_by_step": False,
             "plant_inputs": [],
             "plant_outputs": [],
         }
@@ -215,6 +227,8 @@ class Emitter:
             port = next(p for p in app.fail_safe.kind.ports if p.direction == "source" and p.type == "boolean")
             context["fail_safe"] = self._expression(app.fail_safe, "read", port.name)
         if app.plant is not None:
+            details = app.plant.model.details
+            context["plant_starts_by_step"] = isinstance(details, HandWritten) and not details.init
             context["plant_inputs"] = [self._plant_input(wire) for wire in app.plant.inputs]
             context["plant_outputs"] = [self._plant_output(wire) for wire in app.plant.outputs]
         return context
@@ -317,6 +331,15 @@ class Emitter:
             for claim in component.kind.claims
             if claim.resource_class in OUTPUT_CLASSES
             for signal, pin in sorted(component.claims[claim.name].pins.items())
+        ]
+
+    def _input_pins(self) -> list[InputPin]:
+        return [
+            InputPin(component.name, pin, bool(component.parameters.get("invert", False)))
+            for component in self.app.components
+            for claim in component.kind.claims
+            if claim.resource_class == "digital_input"
+            for pin in component.claims[claim.name].pins.values()
         ]
 
     def _safe_level(self, component: ResolvedComponent, claim: str) -> Code:

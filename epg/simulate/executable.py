@@ -7,12 +7,12 @@ import json
 import subprocess
 import time
 from array import array
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NoReturn
 
-from epg.diagnostics import Diagnostics, UserError, did_you_mean
+from epg.diagnostics import Diagnostics, UserError
 from epg.source import Span
 
 Progress = Callable[[str], None]
@@ -42,6 +42,7 @@ class Statistics:
     faults: int
     enabled: bool
     fault: str
+    fault_component: str
     scheduler: str
 
 
@@ -69,19 +70,30 @@ def run_executable(
         ):
             if not _wait(process, duration, realtime, progress):
                 process.kill()
-                _fail(executable, f"'{executable.name}' did not end", f"killed after {_patience(duration):.0f} s")
+                fail(executable, f"'{executable.name}' did not end", f"killed after {patience(duration):.0f} s")
             status = process.returncode
     except OSError as error:
-        _fail(executable, f"cannot run '{executable.name}': {error.strerror}", "build it first")
+        fail(executable, f"cannot run '{executable.name}': {error.strerror}", "build it first")
     if status != 0:
-        said = log.read_text(encoding="utf-8", errors="replace").strip().splitlines()[-10:]
-        _fail(executable, f"'{executable.name}' ended with status {status}", "\n".join(said))
+        message, hint = _said(log.read_text(encoding="utf-8", errors="replace"))
+        fail(executable, f"'{executable.name}' ended with status {status}{message and ': '}{message}", hint)
     log.unlink()
+
+
+def _said(text: str) -> tuple[str, str]:
+    """The first error that a program printed, and the hint that follows it; else what it said last."""
+    lines = [line.strip() for line in text.splitlines() if line.strip()]
+    for number, line in enumerate(lines):
+        _, found, message = line.rpartition("error: ")
+        if found:
+            following = lines[number + 1] if number + 1 < len(lines) else ""
+            return message, following.removeprefix("hint: ") if following.startswith("hint: ") else ""
+    return lines[-1] if lines else "", ""
 
 
 def _wait(process: subprocess.Popen[bytes], duration: float, realtime: bool, progress: Progress) -> bool:
     begin = time.monotonic()
-    while (elapsed := time.monotonic() - begin) < _patience(duration):
+    while (elapsed := time.monotonic() - begin) < patience(duration):
         try:
             process.wait(1.0)
             return True
@@ -90,12 +102,13 @@ def _wait(process: subprocess.Popen[bytes], duration: float, realtime: bool, pro
     return False
 
 
-def _patience(duration: float) -> float:
+def patience(duration: float) -> float:
     """Time after which a run counts as hanging: three times real time, and a minute for slow starts."""
     return 60.0 + 3.0 * duration
 
 
-def _fail(executable: Path, message: str, hint: str) -> NoReturn:
+def fail(executable: Path, message: str, hint: str) -> NoReturn:
+    """Raises UserError: the program did not do what it should."""
     diagnostics = Diagnostics()
     diagnostics.error("simulation-failed", Span(executable.name), message, hint=hint)
     raise UserError(diagnostics)
@@ -107,22 +120,12 @@ def read_statistics(path: Path) -> Statistics:
     return Statistics(**{name: found[name] for name in Statistics.__dataclass_fields__})
 
 
-def read_trace(path: Path, wanted: Sequence[tuple[str, Span]]) -> dict[str, array[float]]:
-    """The columns ``time`` and ``wanted`` (signal and where it is asked for) of a trace.
-
-    Raises UserError for a signal the target does not have.
-    """
+def read_trace(path: Path, wanted: Iterable[str]) -> dict[str, array[float]]:
+    """The columns ``time`` and ``wanted`` (signals that the target has) of a trace."""
     with path.open(encoding="utf-8", newline="") as file:
         rows = csv.reader(file)
         header = next(rows)
-        diagnostics = Diagnostics()
-        for name, span in wanted:
-            if name not in header:
-                signals = [column for column in header if "." in column]
-                message = f"the target has no signal '{name}'"
-                diagnostics.error("unknown-signal", span, message, hint=did_you_mean(name, signals, "signals"))
-        diagnostics.stop_if_errors()
-        columns = {name: header.index(name) for name in sorted({"time", *(name for name, _ in wanted)})}
+        columns = {name: header.index(name) for name in sorted({"time", *wanted})}
         values: dict[str, array[float]] = {name: array("d") for name in columns}
         for row in rows:
             for name, index in columns.items():

@@ -11,7 +11,7 @@ from epg.diagnostics import Diagnostics, did_you_mean
 from epg.load.yaml_file import load_yaml
 from epg.quantity import QuantityError, dimension_of, normal_unit, parse_quantity
 from epg.simulate.scenario import Axis, Event, Homing, Part, Profile, Scenario, Window
-from epg.source import Node
+from epg.source import Node, Span
 
 #: shape -> keys it needs beside shape and start
 _SHAPES = {
@@ -21,7 +21,7 @@ _SHAPES = {
     "step": ("to",),
     "sine": ("duration", "height", "frequency"),
 }
-_ACTIONS = ("enable", "setpoint", "lost", "stall", "pin")
+_ACTIONS = ("enable", "setpoint", "lost", "stall", "component")
 MAX_SETPOINTS = 2_000_000
 
 
@@ -40,6 +40,7 @@ class _Reader:
 
     def __init__(self, diagnostics: Diagnostics) -> None:
         self.diagnostics = diagnostics
+        self.names: list[tuple[str, str, Span]] = []
 
     def scenario(self, path: Path, root: Node) -> Scenario:
         duration = self.time(root["duration"], positive=True)
@@ -49,12 +50,13 @@ class _Reader:
             node = root.get("interval") or root["duration"]
             message = f"this makes more than {MAX_SETPOINTS} setpoints"
             self.error("too-many-setpoints", node, message, "use a longer interval")
+        self.names += [("topic", topic, setpoints.key_span(topic)) for topic, _ in setpoints.items()]
         profiles = {topic: self.profile(node, duration) for topic, node in setpoints.items()}
         reference = root.get("reference")
         if reference is not None and not (path.parent / str(reference.value)).is_file():
             hint = did_you_mean(str(reference.value), [file.name for file in path.parent.glob("*.py")])
             self.error("file-not-found", reference, f"there is no file '{reference.value}'", hint)
-        events = root.get("events")
+        events, ends = root.get("events"), root.get("ends")
         return Scenario(
             path=path,
             duration=duration,
@@ -63,6 +65,8 @@ class _Reader:
             profiles=profiles,
             events=tuple(self.event(node, duration, profiles) for node in (events.elements() if events else ())),
             axes=tuple(self.axis(name, node, duration, profiles) for name, node in root["axes"].items()),
+            ends=str(ends.value) if ends is not None else "enabled",
+            names=tuple(self.names),
         )
 
     def profile(self, node: Node, duration: Fraction) -> Profile:
@@ -108,7 +112,7 @@ class _Reader:
             self.error("wrong-event", node["at"], message, f"write one of {', '.join(_ACTIONS)}")
             return Event(at, "none")
         action = actions[0]
-        needed = {"setpoint": "topic", "pin": "level"}.get(action)
+        needed = {"setpoint": "topic", "component": "level"}.get(action)
         if needed and needed not in node:
             self.error("missing-key", node[action], f"'{needed}' is missing beside '{action}'")
             return Event(at, "none")
@@ -122,8 +126,10 @@ class _Reader:
             return Event(at, "enable" if node["enable"].value else "disable")
         if action == "setpoint":
             return Event(at, "setpoint", topic, self.value(node["setpoint"], finite=False))
-        if action == "pin":
-            return Event(at, "pin", pin=int(str(node["pin"].value)), value=float(bool(node["level"].value)))
+        if action == "component":
+            name, level = str(node["component"].value), node["level"].value
+            self.names.append(("input", name, node["component"].span))
+            return Event(at, action, component=name, level=str(int(level)) if isinstance(level, bool) else str(level))
         return Event(at, action, topic, duration=self.time(node[action], positive=True))
 
     def axis(self, name: str, node: Node, duration: Fraction, profiles: Mapping[str, Profile]) -> Axis:
@@ -145,8 +151,13 @@ class _Reader:
             unit=normal_unit(str(unit.value)) if unit else "rad",
             homing=self.homing(homing, duration) if homing else None,
             windows=windows,
-            signals=tuple((str(signal.value), signal.span) for signal in (node["position"], duty) if signal),
+            signals=self.signals(node["position"], duty),
         )
+
+    def signals(self, *nodes: Node | None) -> tuple[str, ...]:
+        named = tuple((str(node.value), node.span) for node in nodes if node is not None)
+        self.names += [("signal", name, span) for name, span in named]
+        return tuple(name for name, _ in named)
 
     def homing(self, node: Node, duration: Fraction) -> Homing:
         duty = node.get("duty")

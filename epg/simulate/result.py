@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics
+from epg.simulate.ends import Ending
 from epg.simulate.executable import Statistics
 from epg.simulate.tracking import Check, WindowResult
 
@@ -15,6 +16,7 @@ class Result:
     """``files`` lists what was written, ``diagnostics`` holds warnings only."""
 
     statistics: Statistics
+    ending: Ending
     windows: tuple[WindowResult, ...]
     checks: tuple[Check, ...]
     files: tuple[Path, ...]
@@ -22,5 +24,5 @@ class Result:
 
     @property
     def passed(self) -> bool:
-        """Whether every limit of the scenario holds."""
-        return all(check.passed for check in self.checks)
+        """Whether the run ended in the state that the scenario expects, and every limit holds."""
+        return not self.ending.problem and all(check.passed for check in self.checks)

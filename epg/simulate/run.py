@@ -6,7 +6,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics
+from epg.simulate.ends import how_it_ended
 from epg.simulate.executable import read_statistics, read_trace, run_executable
+from epg.simulate.interface import check_names, read_interface
 from epg.simulate.load_scenario import load_scenario
 from epg.simulate.plot import plot
 from epg.simulate.reference import load_reference
@@ -30,8 +32,8 @@ def simulate(
     ``statistics.json``, ``tracking.csv`` and, with matplotlib, ``tracking.png``.  Files of an earlier run are
     replaced.  ``progress`` gets short messages, about one per second.
 
-    Raises UserError for a wrong scenario, an executable that fails, or a signal it does not have.  Limits that do not
-    hold are no error: see ``Result.passed``.
+    Raises UserError for a wrong scenario, an executable that fails, or a name it does not have.  Limits that do not
+    hold and a run that ends disabled are not errors: see ``Result.passed``.
     """
     diagnostics = Diagnostics()
     read = load_scenario(scenario, diagnostics)
@@ -40,6 +42,8 @@ def simulate(
     reference = load_reference(read.reference) if read.reference else None
     if realtime and any(event.kind == "stall" for event in read.events):
         diagnostics.warning("no-stall", Span(str(scenario)), "cycles are stalled in simulated time only")
+    check_names(read, read_interface(executable), diagnostics)
+    diagnostics.stop_if_errors()
     output.mkdir(parents=True, exist_ok=True)
     names = ("setpoints.csv", "topics.csv", "trace.csv", "statistics.json", "tracking.csv", "tracking.png")
     files = [output / name for name in names]
@@ -48,7 +52,7 @@ def simulate(
 
     write_setpoints(setpoint_rows(read, realtime=realtime), files[0])
     run_executable(executable, output, float(read.duration), files[0], realtime=realtime, progress=progress)
-    columns = read_trace(output / "trace.csv", [signal for axis in read.axes for signal in axis.signals])
+    columns = read_trace(output / "trace.csv", ["enabled", *(signal for axis in read.axes for signal in axis.signals)])
     progress("evaluating")
     trackings = [track(axis, read.profiles[axis.setpoint], columns, reference) for axis in read.axes]
     write_tracking(trackings, output / "tracking.csv")
@@ -56,8 +60,10 @@ def simulate(
         files.pop()
     windows = [evaluate(tracking) for tracking in trackings]
     checks = [held for tracking, results in zip(trackings, windows) for held in check(tracking, results)]
+    statistics = read_statistics(output / "statistics.json")
     return Result(
-        statistics=read_statistics(output / "statistics.json"),
+        statistics=statistics,
+        ending=how_it_ended(read.ends, columns["enabled"], statistics),
         windows=tuple(result for results in windows for result in results),
         checks=tuple(checks),
         files=tuple(files),

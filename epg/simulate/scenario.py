@@ -65,14 +65,18 @@ class Profile:
 
 @dataclass(frozen=True)
 class Event:
-    """``kind``: enable, disable, setpoint, lost, stall or pin.  ``topic`` empty: all.  ``duration`` of lost, stall."""
+    """``kind``: enable, disable, setpoint, lost, stall or component.
+
+    ``topic`` empty: all.  ``duration`` of lost and stall.  ``level`` of ``component``: "0", "1", "open" or "plant".
+    """
 
     at: Fraction
     kind: str
     topic: str = ""
     value: float = 0.0
     duration: Fraction = Fraction(0)
-    pin: int = 0
+    component: str = ""
+    level: str = ""
 
 
 @dataclass(frozen=True)
@@ -96,7 +100,7 @@ class Homing:
 class Axis:
     """What is evaluated: signal ``position`` against the profile of topic ``setpoint``.
 
-    ``signals`` says for each signal of the axis where it is named.
+    ``signals`` are all signals of the axis.
     """
 
     name: str
@@ -106,11 +110,15 @@ class Axis:
     unit: str
     homing: Homing | None
     windows: tuple[Window, ...]
-    signals: tuple[tuple[str, Span], ...]
+    signals: tuple[str, ...]
 
 
 @dataclass(frozen=True)
 class Scenario:
+    """``ends``: enabled, disabled or never_enabled.  ``names`` are all that only the target can know: what is named,
+    and where: a "topic", an "input" or a "signal".
+    """
+
     path: Path
     duration: Fraction
     interval: Fraction
@@ -118,3 +126,5 @@ class Scenario:
     profiles: dict[str, Profile]
     events: tuple[Event, ...]
     axes: tuple[Axis, ...]
+    ends: str = "enabled"
+    names: tuple[tuple[str, str, Span], ...] = ()

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from epg.simulate.scenario import Event, Scenario
 
-Row = tuple[Fraction, str, float]
+Row = tuple[Fraction, str, "float | str"]
 
 
 def setpoint_rows(scenario: Scenario, *, realtime: bool = False) -> list[Row]:
@@ -31,12 +31,13 @@ def _event_rows(event: Event, realtime: bool) -> list[Row]:
         return [(event.at, event.topic, event.value)]
     if event.kind == "stall" and not realtime:
         return [(event.at, "$stall", float(event.duration))]
-    if event.kind == "pin":
-        return [(event.at, f"$pin:{event.pin}", event.value)]
+    if event.kind == "component":
+        return [(event.at, f"$component:{event.component}", event.level)]
     return []
 
 
 def write_setpoints(rows: list[Row], path: Path) -> None:
     """Numbers are written with as few digits as give the same double again."""
-    lines = ["time,topic,value\n", *(f"{float(time)!r},{topic},{value!r}\n" for time, topic, value in rows)]
+    shown = ((time, topic, value if isinstance(value, str) else repr(value)) for time, topic, value in rows)
+    lines = ["time,topic,value\n", *(f"{float(time)!r},{topic},{value}\n" for time, topic, value in shown)]
     path.write_text("".join(lines), encoding="utf-8", newline="\n")

@@ -14,6 +14,10 @@ def format_table(result: Result) -> str:
     if result.windows:
         lines += ["", f"{'axis':<8}{'window':<16}{'RMS error':>14}{'largest error':>16}{'RMS to ideal':>16}"]
         lines += [_window(window) for window in result.windows]
+    if result.ending.problem:
+        lines += ["", f"FAILED: {result.ending.problem}", f"hint: {result.ending.hint}"][
+            : 3 if result.ending.hint else 2
+        ]
     failed = [check for check in result.checks if not check.passed]
     if failed:
         lines.append("")

@@ -102,13 +102,20 @@ def test_events_become_rows(tmp_path: Path) -> None:
   - {at: 0.2 s, setpoint: .nan, topic: pan}
   - {at: 0.25 s, setpoint: 90 deg, topic: pan}
   - {at: 0.4 s, stall: 5 ms}
-  - {at: 0.5 s, pin: 7, level: true}
+  - {at: 0.5 s, component: button, level: true}
+  - {at: 0.7 s, component: button, level: open}
   - {at: 0.55 s, lost: 250 ms, topic: pan}
 """
     scenario = load(tmp_path, HEAD + "setpoints: {pan: {}, tilt: {}}\n" + events + AXES)
     rows = setpoint_rows(scenario)
     special = [(float(time), topic, value) for time, topic, value in rows if topic.startswith("$")]
-    assert special == [(0.15, "$enable", 0.0), (0.4, "$stall", 0.005), (0.5, "$pin:7", 1.0), (0.9, "$enable", 1.0)]
+    assert special == [
+        (0.15, "$enable", 0.0),
+        (0.4, "$stall", 0.005),
+        (0.5, "$component:button", "1"),
+        (0.7, "$component:button", "open"),
+        (0.9, "$enable", 1.0),
+    ]
     assert [float(time) for time, topic, _ in rows if topic == "pan"] == [
         0,
         0.1,
@@ -122,7 +129,7 @@ def test_events_become_rows(tmp_path: Path) -> None:
         0.9,
     ]
     assert len([row for row in rows if row[1] == "tilt"]) == 10, "lost on one topic only"
-    assert any(math.isnan(value) for _, _, value in rows)
+    assert any(isinstance(value, float) and math.isnan(value) for _, _, value in rows)
     assert (Fraction(1, 4), "pan", math.pi / 2) in rows
     assert [row[0] for row in rows] == sorted(row[0] for row in rows)
     assert not [row for row in setpoint_rows(scenario, realtime=True) if row[1] == "$stall"]

@@ -11,9 +11,12 @@ from typing import Any
 
 import pytest
 
+from epg.cli.report import format_diagnostics
 from epg.diagnostics import UserError
-from epg.simulate import executable as executable_module
 from epg.simulate import format_table, simulate
+from epg.simulate import interface as interface_module
+
+from .motor import compile_motor
 
 PROFILE = "setpoints: {motor_setpoint: {profile: [{shape: move, start: 0.5 s, duration: 1 s, to: 2 rad}]}}\n"
 AXIS = "axes: {motor: {setpoint: motor_setpoint, position: inputs.position, duty: outputs.duty%s}}\n"
@@ -136,11 +139,107 @@ def test_a_signal_the_target_does_not_have(motor: Path, tmp_path: Path) -> None:
 
 def test_a_topic_the_target_does_not_have(motor: Path, tmp_path: Path) -> None:
     path = scenario(tmp_path)
-    path.write_text(path.read_text().replace("motor_setpoint", "motor_speed"), encoding="utf-8")
+    path.write_text(path.read_text().replace("motor_setpoint", "motor_stpoint"), encoding="utf-8")
     with pytest.raises(UserError) as error:
         simulate(motor, path, tmp_path / "out")
-    assert problems(error) == ["simulation-failed: 'motor_host' ended with status 2"]
-    assert "unknown topic 'motor_speed'" in next(iter(error.value.diagnostics)).hint
+    text = format_diagnostics(error.value.diagnostics).splitlines()
+    message = "error: the target does not subscribe to 'motor_stpoint' [unknown-topic]"
+    assert text[0].endswith(f"scenario.yaml:3:13: {message}")
+    assert text[-1] == "hint: did you mean 'motor_setpoint'?"
+
+
+def test_components_the_target_does_not_have(motor: Path, tmp_path: Path) -> None:
+    events = """events:
+  - {at: 1 s, component: emergency_stpo, level: false}
+  - {at: 1.1 s, component: encoder, level: false}
+"""
+    with pytest.raises(UserError) as error:
+        simulate(motor, scenario(tmp_path, events), tmp_path / "out")
+    found = error.value.diagnostics
+    assert [(item.id, item.span.line, item.span.column, item.message, item.hint) for item in found] == [
+        (
+            "unknown-component", 5, 26, "the target has no component 'emergency_stpo'",
+            "did you mean 'emergency_stop'?",
+        ),
+        (
+            "unknown-component", 6, 28,
+            "'encoder' is not a digital input: only the level of a digital input can be forced",
+            "its digital inputs: emergency_stop",
+        ),
+    ]  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def held_motor(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The motor whose plant says in every cycle that the emergency stop is not pressed, and that starts disabled."""
+    output = tmp_path_factory.mktemp("held_motor") / "held_motor"
+    return compile_motor(output, "PLANT_HOLDS_INPUT", "ENABLE_AT_START=false")
+
+
+ENABLE = "events: [{at: 0.1 s, enable: true}, {at: 1 s, component: emergency_stop, level: false}]\n"
+
+
+def test_a_forced_component_wins_over_the_plant(held_motor: Path, tmp_path: Path) -> None:
+    result = simulate(held_motor, scenario(tmp_path, ENABLE + "ends: disabled\n"), tmp_path / "out")
+    assert result.passed
+    assert (result.statistics.enabled, result.statistics.fault) == (False, "fail-safe")
+    enabled = table(tmp_path / "out" / "trace.csv")["enabled"]
+    assert (enabled[99], enabled[100], enabled[999], enabled[1000]) == ("0", "1", "1", "0")
+
+
+@pytest.mark.parametrize(
+    ("text", "problem", "hint"),
+    [
+        ("", "the target was never enabled", "write 'events: [{at: 0 s, enable: true}]' into the scenario"),
+        (ENABLE, "the target ended disabled (fail-safe: emergency_stop)", "write 'ends: disabled' into it"),
+        ("ends: disabled\n", "the target was never enabled", "it starts disabled"),
+        (
+            "ends: disabled\nevents: [{at: 0 s, enable: true}]\n",
+            "the target ended enabled, and the scenario says 'ends: disabled'",
+            "",
+        ),
+        (
+            "ends: never_enabled\nevents: [{at: 1 s, enable: true}]\n",
+            "the target was enabled, and the scenario says 'ends: never_enabled'",
+            "",
+        ),
+        (
+            "events: [{at: 0 s, component: emergency_stop, level: false}, {at: 0.1 s, enable: true}]\n",
+            "the target was never enabled",
+            "a fault keeps it disabled: fail-safe: emergency_stop",
+        ),
+    ],
+)
+def test_a_run_that_does_not_end_as_expected(
+    held_motor: Path, tmp_path: Path, text: str, problem: str, hint: str
+) -> None:
+    result = simulate(held_motor, scenario(tmp_path, text), tmp_path / "out")
+    assert not result.passed
+    assert result.ending.problem == problem
+    assert hint in result.ending.hint
+    assert f"FAILED: {problem}" in format_table(result)
+
+
+def test_a_run_that_is_to_stay_disabled(held_motor: Path, tmp_path: Path) -> None:
+    assert simulate(held_motor, scenario(tmp_path, "ends: never_enabled\n"), tmp_path / "out").passed
+
+
+def test_a_plant_that_diverges(tmp_path: Path) -> None:
+    program = compile_motor(tmp_path / "motor_host", "PLANT_DIVERGES=1e300")
+    with pytest.raises(UserError) as error:
+        simulate(program, scenario(tmp_path), tmp_path / "out")
+    (item,) = error.value.diagnostics
+    assert item.message == (
+        "'motor_host' ended with status 1: the plant has diverged: plant.outputs.angle is 1e+300 at 0.143 s"
+    )
+    assert item.hint.startswith("an output of a plant must be finite")
+
+
+def test_an_executable_of_an_earlier_version(tmp_path: Path) -> None:
+    program = script(tmp_path, "import sys; sys.exit(\"error: unknown option '--interface'\")\n")
+    with pytest.raises(UserError) as error:
+        simulate(program, scenario(tmp_path), tmp_path / "out")
+    assert problems(error) == ["simulation-failed: 'program' does not say which topics and signals it has"]
 
 
 def script(folder: Path, text: str) -> Path:
@@ -157,7 +256,7 @@ def test_an_executable_that_is_none(tmp_path: Path) -> None:
 
 
 def test_an_executable_that_hangs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(executable_module, "_patience", lambda duration: 0.5)
+    monkeypatch.setattr(interface_module, "patience", lambda duration: 0.5)
     with pytest.raises(UserError) as error:
         simulate(script(tmp_path, "import time; time.sleep(60)\n"), scenario(tmp_path), tmp_path / "out")
     assert problems(error) == ["simulation-failed: 'program' did not end"]

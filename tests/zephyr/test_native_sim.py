@@ -140,12 +140,12 @@ def test_stalls_and_events_have_the_hosts_numbers(image: Path, host: Path, tmp_p
         (["--realtime", "--agent=no.such.host.invalid:1"], 1, "error: there is no host 'no.such.host.invalid'"),
         (["--duration=1", "--trace=/no/such/folder/t"], 1, "/no/such/folder/t: error: cannot write this file: "),
         (["--duration=1", "--setpoints=wrong.csv"], 2, "wrong.csv:2: error: unknown topic 'roll'\n"),
-        (["--duration=1", "--setpoints=pin.csv"], 2, "pin.csv:2: error: pin 0 is no digital input of this target\n"),
+        (["--duration=1", "--setpoints=pin.csv"], 2, "pin.csv:2: error: the target has no digital input 'pwm_pan'\n"),
     ],
 )
 def test_mistakes(image: Path, tmp_path: Path, options: list[str], status: int, message: str) -> None:
     (tmp_path / "wrong.csv").write_text("time,topic,value\n0,roll,1\n")
-    (tmp_path / "pin.csv").write_text("time,topic,value\n0,$pin:0,1\n")
+    (tmp_path / "pin.csv").write_text("time,topic,value\n0,$component:pwm_pan,1\n")
     found, errors = run(image, *options, cwd=tmp_path)
     assert found == status and errors.startswith(message), errors
 

@@ -13,6 +13,10 @@ void epg_plant_start(epg_plant_run_t *run, const epg_plant_t *plant, uint64_t pe
     run->steps = 0;
     if (plant != NULL) {
         plant->init();
+        if (plant->starts_by_step) {
+            plant->step();
+            run->steps = 1;
+        }
         plant->sense();
     }
 }

@@ -36,12 +36,9 @@ def call(program: Program, *arguments: str) -> tuple[int, str, str]:
         ("0.1,motor_setpoint,infinity", "'infinity' is no number"),
         ("0.1,$enable,2", "'2' is neither 0 nor 1"),
         ("0.1,motor_enable,nan", "'nan' is neither 0 nor 1"),
-        ("0.1,$pin:5,0.5", "'0.5' is neither 0 nor 1"),
-        ("0.1,$pin:x,1", "'x' is no pin number"),
-        ("0.1,$pin:,1", "'' is no pin number"),
-        ("0.1,$pin:256,1", "'256' is no pin number"),
-        ("0.1,$pin:-1,1", "'-1' is no pin number"),
-        ("0.1,$pin:6,1", "pin 6 is no digital input of this target"),
+        ("0.1,$component:emergency_stop,0.5", "'0.5' must be one of 0, 1, open, plant"),
+        ("0.1,$component:emergency_stop,off", "'off' must be one of 0, 1, open, plant"),
+        ("0.1,$component:emergency_stop,", "'' must be one of 0, 1, open, plant"),
         ("0.1,$stall,-1", "'-1' is no time in seconds"),
         ("0.1,$stall,inf", "'inf' is no time in seconds"),
     ],
@@ -58,9 +55,29 @@ def test_unknown_topic_lists_the_known_ones(motor: Program, tmp_path: Path) -> N
     assert run.status == 2
     assert run.stderr == (
         f"{tmp_path / 'setpoints.csv'}:2: error: unknown topic 'motor_setpiont'\n"
-        "hint: the target subscribes to 'motor_setpoint', 'motor_enable', and has '$enable', '$pin:<number>' and "
+        "hint: the target subscribes to 'motor_setpoint', 'motor_enable', and has '$enable', '$component:<name>' and "
         "'$stall'\n"
     )
+
+
+def test_a_name_that_is_wrong_in_many_rows_is_one_mistake(motor: Program, tmp_path: Path) -> None:
+    events = [f"{k / 100},{name},1" for k in range(50) for name in ("motor_speed", "$component:emergency")]
+    run = motor.run(tmp_path, 0.2, rows(*events))
+    assert run.status == 2
+    assert [line.split(": ", 1)[1] for line in run.stderr.splitlines()] == [
+        "error: unknown topic 'motor_speed'",
+        "the target subscribes to 'motor_setpoint', 'motor_enable', and has '$enable', '$component:<name>' and "
+        "'$stall'",
+        "error: the target has no digital input 'emergency'",
+        "its digital inputs: 'emergency_stop'",
+    ]
+
+
+def test_names_for_programs(motor: Program) -> None:
+    status, stdout, stderr = call(motor, "--interface")
+    assert (status, stderr) == (0, "")
+    lines = stdout.splitlines()
+    assert lines[:4] == ["topic,motor_setpoint", "topic,motor_enable", "input,emergency_stop", "signal,inputs.position"]
 
 
 def test_times_must_not_fall(motor: Program, tmp_path: Path) -> None:

@@ -96,7 +96,13 @@ def test_slow_cycles_miss_ticks_but_keep_the_phase(motor: Program, tmp_path: Pat
 
 
 def test_events_act_in_real_time(patient_motor: Program, tmp_path: Path) -> None:
-    events = rows("0,motor_setpoint,5", "0.2,$pin:5,0", "0.3,$pin:5,1", "0.4,motor_enable,1", "0.5,motor_setpoint,nan")
+    events = rows(
+        "0,motor_setpoint,5",
+        "0.2,$component:emergency_stop,0",
+        "0.3,$component:emergency_stop,1",
+        "0.4,motor_enable,1",
+        "0.5,motor_setpoint,nan",
+    )
     run = patient_motor.run_good(tmp_path, 0.6, events, "--realtime")
     enabled = dict(zip((round(now * 1000) for now in run.trace["time"]), run.trace["enabled"]))
     changes = [(ms, state) for (_, before), (ms, state) in pairwise(sorted(enabled.items())) if state != before]
@@ -184,7 +190,11 @@ def test_no_data_race(tmp_path: Path) -> None:
     sources = [PROGRAMS / "motor.c", *platform_sources()]
     program = compile_program(tmp_path / "motor", sources, sanitize=THREAD_SANITIZER)
     (tmp_path / "in.csv").write_text(
-        rows(*(f"{k / 100},motor_setpoint,{k % 7}" for k in range(90)), "0.95,$enable,0", "0.96,$pin:5,0")
+        rows(
+            *(f"{k / 100},motor_setpoint,{k % 7}" for k in range(90)),
+            "0.95,$enable,0",
+            "0.96,$component:emergency_stop,0",
+        )
     )
     done = run_checked(
         program, "--realtime", "--duration", "1", "--setpoints", str(tmp_path / "in.csv"),

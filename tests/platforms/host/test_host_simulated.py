@@ -100,11 +100,48 @@ def test_enabling_and_disabling(motor: Program, tmp_path: Path) -> None:
 
 
 def test_digital_input_from_the_file(motor: Program, tmp_path: Path) -> None:
-    run = motor.run_good(tmp_path, 0.3, rows("0,motor_setpoint,5", "0.1,$pin:5,0", "0.2,$pin:5,1", "0.25,$enable,1"))
+    stop = "$component:emergency_stop"
+    events = rows("0,motor_setpoint,5", f"0.1,{stop},0", f"0.2,{stop},1", "0.25,$enable,1")
+    run = motor.run_good(tmp_path, 0.3, events)
     assert run.trace["enabled"] == [1.0] * 100 + [0.0] * 150 + [1.0] * 50
     assert set(run.trace["plant.inputs.duty"][100:250]) == {0.0}
     assert run.statistics["faults"] == 1
     assert run.statistics["fault"] == "none"
+
+
+@pytest.fixture(scope="module")
+def held_motor(tmp_path_factory: pytest.TempPathFactory) -> Program:
+    """The motor whose plant says in every cycle that the emergency stop is not pressed."""
+    sources = [PROGRAMS / "motor.c", *platform_sources()]
+    output = tmp_path_factory.mktemp("held_motor") / "motor"
+    return Program(compile_program(output, sources, defines=["PLANT_HOLDS_INPUT"]))
+
+
+def test_a_forced_input_wins_over_the_plant(held_motor: Program, tmp_path: Path) -> None:
+    stop = "$component:emergency_stop"
+    events = rows("0,motor_setpoint,5", f"0.1,{stop},0", f"0.2,{stop},plant", "0.25,$enable,1")
+    run = held_motor.run_good(tmp_path, 0.3, events)
+    assert run.trace["enabled"] == [1.0] * 100 + [0.0] * 150 + [1.0] * 50
+    assert run.statistics["faults"] == 1
+
+
+def test_an_open_wire_has_the_level_of_the_pull_resistor(held_motor: Program, tmp_path: Path) -> None:
+    # The motor's input has a pull-up: it reads 1 when its wire is broken, and nothing stops the motor.
+    run = held_motor.run_good(tmp_path, 0.3, rows("0.1,$component:emergency_stop,open"))
+    assert run.trace["enabled"] == [1.0] * 300
+
+
+@pytest.mark.parametrize(("value", "shown"), [("(double)NAN", "nan"), ("1e300", "1e+300"), ("-2e12", "-2000000000000")])
+def test_a_plant_that_diverges_ends_the_run(tmp_path: Path, value: str, shown: str) -> None:
+    sources = [PROGRAMS / "motor.c", *platform_sources()]
+    program = Program(compile_program(tmp_path / "motor", sources, defines=[f"PLANT_DIVERGES={value}"]))
+    for more in ((), ("--realtime",)):
+        run = program.run(tmp_path, 0.5, rows("0,motor_setpoint,5"), *more)
+        assert run.status == 1
+        # 1000 of 7 plant steps each control period of 1 ms
+        assert f"error: the plant has diverged: plant.outputs.angle is {shown} at 0.143 s\nhint: " in run.stderr
+        assert len(run.trace["time"]) == 143
+        assert set(run.trace["inputs.position"]) > {0.0}
 
 
 def test_non_finite_setpoints_are_dropped_and_counted(motor: Program, tmp_path: Path) -> None:

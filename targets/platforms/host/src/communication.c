@@ -57,8 +57,8 @@ static void deliver(epg_host_communication_t *communication, uint64_t time_ns)
     case EPG_HOST_ENABLE:
         epg_control_request(communication->target->control, event->value > 0.5);
         break;
-    case EPG_HOST_PIN:
-        epg_plant_input_set((uint8_t)event->index, event->value > 0.5);
+    case EPG_HOST_INPUT:
+        epg_plant_input_force((uint8_t)event->index, (epg_plant_force_t)event->value);
         break;
     case EPG_HOST_STALL:
     default:

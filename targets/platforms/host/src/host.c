@@ -76,16 +76,19 @@ static int run_target(const epg_host_target_t *host, const epg_host_options_t *o
         return FAILED;
     }
     epg_host_run_start(&run, options->realtime ? target->application : epg_host_prepare_simulated(&run));
-    int status = epg_host_check_pins(options->setpoints, events) ? DONE : WRONG_INPUT;
-    if (status == DONE && options->realtime) {
+    int status = DONE;
+    if (options->realtime) {
         status = epg_host_run_realtime(&run) ? DONE : FAILED;
-    } else if (status == DONE) {
+    } else {
         epg_host_run_simulated(&run);
     }
     epg_host_trace_end(&run.trace);
     epg_host_communication_end(&run.communication);
     if (status == DONE && outputs->statistics != NULL) {
         epg_host_write_statistics(outputs->statistics, &run);
+    }
+    if (run.diverged != NULL) {
+        status = FAILED;
     }
     if (status == DONE && !options->quiet && !options->console) {
         epg_host_print_summary(&run);
@@ -177,9 +180,12 @@ int epg_host_main(const epg_host_target_t *host, int argc, char **argv)
         epg_host_print_help(host->target->application->name);
         return DONE;
     }
+    if (options.interface) {
+        epg_host_print_interface(host);
+        return DONE;
+    }
     epg_host_events_t events = {NULL, 0};
-    if (options.setpoints != NULL &&
-        !epg_host_read_setpoints(options.setpoints, host->target, options.realtime, &events)) {
+    if (options.setpoints != NULL && !epg_host_read_setpoints(options.setpoints, host, options.realtime, &events)) {
         return WRONG_INPUT;
     }
     epg_host_store_open(options.store);

@@ -31,9 +31,11 @@ void epg_host_print_help(const char *name)
            "  --trace FILE         writes all signals, one row per control cycle\n"
            "  --statistics FILE    writes the run's statistics as JSON\n"
            "  --quiet              prints no summary\n"
+           "  --interface          prints the names of topics, digital inputs and signals, for programs\n"
            "  --help               prints this text\n"
            "\n"
-           "Exit status: 0 done; 1 could not run or write a file; 2 wrong options or setpoint file;\n"
+           "Exit status: 0 done; 1 could not run or write a file, or the plant diverged; 2 wrong options or setpoint "
+           "file;\n"
            "130 interrupted (files are written up to there).\n",
            name, name, name);
 }
@@ -119,13 +121,21 @@ bool epg_host_read_options(int argc, char **argv, bool connected, epg_host_optio
     *options = (epg_host_options_t){0};
     const char *duration = NULL;
     const option_t known[] = {
-        {"--help", &options->help, NULL},           {"--quiet", &options->quiet, NULL},
-        {"--realtime", &options->realtime, NULL},   {"--duration", NULL, &duration},
-        {"--setpoints", NULL, &options->setpoints}, {"--topics", NULL, &options->topics},
-        {"--trace", NULL, &options->trace},         {"--statistics", NULL, &options->statistics},
-        {"--console", &options->console, NULL},     {"--console-pty", NULL, &options->console_pty},
-        {"--store", NULL, &options->store},         {"--serial", NULL, &options->serial},
-        {"--agent", NULL, &options->agent},         {"--serial-device", NULL, &options->device},
+        {"--help", &options->help, NULL},
+        {"--quiet", &options->quiet, NULL},
+        {"--realtime", &options->realtime, NULL},
+        {"--duration", NULL, &duration},
+        {"--setpoints", NULL, &options->setpoints},
+        {"--topics", NULL, &options->topics},
+        {"--trace", NULL, &options->trace},
+        {"--statistics", NULL, &options->statistics},
+        {"--console", &options->console, NULL},
+        {"--console-pty", NULL, &options->console_pty},
+        {"--store", NULL, &options->store},
+        {"--serial", NULL, &options->serial},
+        {"--interface", &options->interface, NULL},
+        {"--agent", NULL, &options->agent},
+        {"--serial-device", NULL, &options->device},
     };
     for (int i = 1; i < argc; i++) {
         const option_t *option = find(known, sizeof known / sizeof known[0], argv[i]);
@@ -137,7 +147,7 @@ bool epg_host_read_options(int argc, char **argv, bool connected, epg_host_optio
             return false;
         }
     }
-    return options->help || epg_host_complete_options(duration, connected, options);
+    return options->help || options->interface || epg_host_complete_options(duration, connected, options);
 }
 
 bool epg_host_complete_options(const char *duration, bool connected, epg_host_options_t *options)

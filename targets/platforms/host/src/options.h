@@ -10,6 +10,7 @@
 
 typedef struct epg_host_options {
     bool help;
+    bool interface; /**< only the names that setpoint files may use */
     bool quiet;
     bool realtime;
     bool console;            /**< on standard input and output */

@@ -6,8 +6,6 @@
  * enough to name one.  Every word is a relaxed atomic, because in real time a second thread may set an input or look
  * at an output while the control thread runs; no order between two signals is promised, as on real pins.
  */
-#include "port.h"
-
 #include <stdatomic.h>
 
 #include "epg/plant.h"
@@ -15,8 +13,9 @@
 
 enum { UNITS = UINT8_MAX + 1, PINS = UINT8_MAX + 1 };
 
-/** What drives an input pin. */
+/** What drives an input pin; all pins begin with 0. */
 enum { UNDRIVEN, DRIVEN_LOW, DRIVEN_HIGH };
+enum { NOT_FORCED, FORCED_OPEN, FORCED_LOW, FORCED_HIGH };
 
 static struct {
     _Atomic int64_t signal; /* as the plant sets it */
@@ -31,7 +30,7 @@ static struct {
 
 static _Atomic uint8_t driven[PINS];
 static _Atomic uint8_t pulls[PINS];
-static atomic_bool inputs[PINS];
+static _Atomic uint8_t forced[PINS]; /* in place of what the plant drives */
 static atomic_bool outputs[PINS];
 
 #define GET(object) atomic_load_explicit(&(object), memory_order_relaxed)
@@ -107,12 +106,12 @@ bool epg_plant_output(uint8_t pin)
 void epg_port_input_start(uint8_t pin, epg_port_pull_t pull)
 {
     SET(pulls[pin], (uint8_t)pull);
-    SET(inputs[pin], true);
 }
 
 bool epg_port_input_read(uint8_t pin)
 {
-    const uint8_t driver = GET(driven[pin]);
+    const uint8_t force = GET(forced[pin]);
+    const uint8_t driver = force == NOT_FORCED ? GET(driven[pin]) : (uint8_t)(force - FORCED_OPEN);
     return driver == UNDRIVEN ? GET(pulls[pin]) == EPG_PULL_UP : driver == DRIVEN_HIGH;
 }
 
@@ -121,7 +120,11 @@ void epg_plant_input_set(uint8_t pin, bool level)
     SET(driven[pin], level ? DRIVEN_HIGH : DRIVEN_LOW);
 }
 
-bool epg_host_is_input(uint8_t pin)
+void epg_plant_input_force(uint8_t pin, epg_plant_force_t force)
 {
-    return GET(inputs[pin]);
+    static const uint8_t states[] = {[EPG_PLANT_FORCE_LOW] = FORCED_LOW,
+                                     [EPG_PLANT_FORCE_HIGH] = FORCED_HIGH,
+                                     [EPG_PLANT_FORCE_OPEN] = FORCED_OPEN,
+                                     [EPG_PLANT_FORCE_NONE] = NOT_FORCED};
+    SET(forced[pin], states[force]);
 }

@@ -43,6 +43,7 @@ typedef struct control_thread {
     sem_t ready;       /* posted when start_ns is known */
     uint64_t start_ns; /* monotonic time of the first tick */
     atomic_bool stop;
+    atomic_bool ended; /* by itself */
 } control_thread_t;
 
 /** Sleeps until monotonic time `time_ns`; may return before when a signal arrives. */
@@ -72,7 +73,7 @@ static void control_loop(control_thread_t *self)
     uint64_t tick_ns = 0; /* since the first tick, as all times of a run */
     uint64_t next_ns = 0;
     uint32_t missed = 0;
-    while (next_ns < run->end_ns && !atomic_load(&self->stop)) {
+    while (next_ns < run->end_ns && !atomic_load(&self->stop) && epg_host_plant_is_sound(run, next_ns)) {
         tick_ns = next_ns;
         const uint64_t due_ns = self->start_ns + tick_ns;
         while (sleep_until(due_ns) == EINTR) {
@@ -86,7 +87,9 @@ static void control_loop(control_thread_t *self)
         epg_plant_advance(&run->plant, tick_ns + period_ns);
         next_ns = epg_host_next_tick(tick_ns, period_ns, epg_host_monotonic_ns() - self->start_ns, &missed);
         epg_plant_advance(&run->plant, next_ns);
-        epg_plant_sense(&run->plant);
+        if (epg_host_plant_is_sound(run, next_ns)) {
+            epg_plant_sense(&run->plant);
+        }
     }
     epg_host_run_end(run, tick_ns, next_ns);
 }
@@ -102,6 +105,7 @@ static void *control_main(void *argument)
     self->start_ns = epg_host_monotonic_ns() + START_DELAY_NS;
     sem_post(&self->ready);
     control_loop(self);
+    atomic_store(&self->ended, true);
     return NULL;
 }
 
@@ -149,6 +153,7 @@ static bool start_thread(control_thread_t *self, epg_host_run_t *run)
     sigset_t before;
     self->run = run;
     atomic_init(&self->stop, false);
+    atomic_init(&self->ended, false);
     sem_init(&self->ready, 0, 0);
     /* Signals are for the other threads: the control thread inherits this mask. */
     sigfillset(&all);
@@ -198,7 +203,7 @@ bool epg_host_run_realtime(epg_host_run_t *run)
     uint64_t now_ns = 0;
     run->communication.start_ns = start_ns;
     sleep_until(start_ns);
-    while (now_ns < run->end_ns && !ended(run)) {
+    while (now_ns < run->end_ns && !ended(run) && !atomic_load(&control.ended)) {
         uint64_t until_ns = epg_host_communication_next(&run->communication);
         until_ns = until_ns < now_ns + LONGEST_SLEEP_NS ? until_ns : now_ns + LONGEST_SLEEP_NS;
         sleep_or_serve(run, start_ns + (until_ns < run->end_ns ? until_ns : run->end_ns));

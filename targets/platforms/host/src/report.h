@@ -1,6 +1,6 @@
 /**
  * @file
- * What is said about a run after its end.
+ * What is said about a target, and about a run after its end.
  */
 #ifndef EPG_HOST_REPORT_H
 #define EPG_HOST_REPORT_H
@@ -8,6 +8,9 @@
 #include <stdio.h>
 
 #include "run.h"
+
+/** Prints the names that scenarios and setpoint files may use, one line `kind,name` each, for programs. */
+void epg_host_print_interface(const epg_host_target_t *host);
 
 /** Writes the statistics as one JSON object; times in seconds.  `docs/host.md` lists the members. */
 void epg_host_write_statistics(FILE *file, const epg_host_run_t *run);

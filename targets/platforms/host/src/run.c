@@ -4,6 +4,11 @@
  */
 #include "run.h"
 
+#include <stdio.h>
+
+#include "epg/finite.h"
+#include "number.h"
+
 volatile sig_atomic_t epg_host_interrupted;
 
 void epg_host_run_start(epg_host_run_t *run, const epg_application_t *application)
@@ -14,6 +19,31 @@ void epg_host_run_start(epg_host_run_t *run, const epg_application_t *applicatio
     epg_plant_actuate(&run->plant);
 }
 
+bool epg_host_plant_is_sound(epg_host_run_t *run, uint64_t time_ns)
+{
+    const epg_host_target_t *host = run->host;
+    for (size_t i = 0; i < host->plant_output_count && run->diverged == NULL; i++) {
+        const double value = *host->plant_outputs[i].value;
+        if (!epg_is_finite(value) || value > EPG_HOST_PLANT_LARGEST || value < -EPG_HOST_PLANT_LARGEST) {
+            run->diverged = &host->plant_outputs[i];
+            run->diverged_value = value;
+            run->diverged_ns = time_ns;
+        }
+    }
+    return run->diverged == NULL;
+}
+
+static void tell_diverged(const epg_host_run_t *run)
+{
+    fprintf(stderr, "error: the plant has diverged: %s is ", run->diverged->name);
+    epg_host_write_number(stderr, run->diverged_value);
+    fputs(" at ", stderr);
+    epg_host_write_number(stderr, epg_host_seconds(run->diverged_ns));
+    fputs(" s\nhint: an output of a plant must be finite and within +-1e12: check the plant's step size and its "
+          "parameters; --trace records the way there\n",
+          stderr);
+}
+
 void epg_host_run_end(epg_host_run_t *run, uint64_t tick_ns, uint64_t next_ns)
 {
     const epg_application_t *application = run->host->target->application;
@@ -22,4 +52,7 @@ void epg_host_run_end(epg_host_run_t *run, uint64_t tick_ns, uint64_t next_ns)
     run->missed_at_end = complete ? (run->end_ns - 1 - tick_ns) / application->period_ns : 0;
     application->safe();
     epg_plant_actuate(&run->plant);
+    if (run->diverged != NULL) {
+        tell_diverged(run);
+    }
 }

@@ -28,6 +28,9 @@ typedef struct epg_host_run {
     uint64_t ran_ns;        /**< how far the run came */
     uint64_t missed_at_end; /**< ticks missed that no later cycle could count */
     uint64_t wall_time_ns;
+    const epg_host_signal_t *diverged; /**< the plant's output that ended the run; NULL: none */
+    double diverged_value;
+    uint64_t diverged_ns;         /**< when */
     const char *scheduler;        /**< "simulated", "SCHED_FIFO" or "SCHED_OTHER" */
     const char *scheduler_reason; /**< why it is not SCHED_FIFO; NULL otherwise */
     bool memory_locked;
@@ -51,9 +54,18 @@ static inline uint64_t epg_host_next_tick(uint64_t tick_ns, uint64_t period_ns, 
 /** Starts the plant, then the application, both at time 0.  `application` is the target's own or a copy of it. */
 void epg_host_run_start(epg_host_run_t *run, const epg_application_t *application);
 
+/** A plant whose output is farther from 0 than this has diverged, whatever its unit. */
+#define EPG_HOST_PLANT_LARGEST 1e12
+
+/**
+ * False when an output of the plant is not finite or too large: it must not reach a sensor, and the run must end.
+ * `time_ns` is the time since time 0.
+ */
+bool epg_host_plant_is_sound(epg_host_run_t *run, uint64_t time_ns);
+
 /**
  * After the last cycle, that of `tick_ns`, when the next would have been that of `next_ns`: counts the ticks lost up
- * to the end, and makes the outputs safe.
+ * to the end, makes the outputs safe, and says so if the plant has ended the run.
  */
 void epg_host_run_end(epg_host_run_t *run, uint64_t tick_ns, uint64_t next_ns);
 

@@ -11,8 +11,8 @@
 #include <string.h>
 
 #include "epg/finite.h"
+#include "epg/plant.h"
 #include "number.h"
-#include "port.h"
 
 enum { ERRORS_SHOWN = 20, FIELDS = 3 };
 
@@ -21,11 +21,13 @@ static const char header[] = "time,topic,value";
 /** One pass over one file. */
 typedef struct reader {
     const char *path;
-    const epg_target_t *target;
+    const epg_host_target_t *host;
     bool realtime;
     unsigned line;
     unsigned errors;
     uint64_t previous_ns;
+    const char *unknown[ERRORS_SHOWN]; /* names that were reported: each once */
+    size_t unknown_count;
 } reader_t;
 
 #if defined(__GNUC__)
@@ -113,10 +115,27 @@ static size_t split(char *line, char *fields[FIELDS])
     return count;
 }
 
-/** Names of all subscriptions, for the hint after an unknown topic. */
+/** Whether `name` is reported for the first time.  A name that is wrong in thousands of rows is one mistake. */
+static bool is_new(reader_t *reader, const char *name)
+{
+    for (size_t i = 0; i < reader->unknown_count; i++) {
+        if (strcmp(reader->unknown[i], name) == 0) {
+            return false;
+        }
+    }
+    if (reader->unknown_count < ERRORS_SHOWN) {
+        reader->unknown[reader->unknown_count++] = name;
+    }
+    return true;
+}
+
+/** With the names of all subscriptions as the hint. */
 static bool fail_topic(reader_t *reader, const char *topic)
 {
-    const epg_target_t *target = reader->target;
+    const epg_target_t *target = reader->host->target;
+    if (!is_new(reader, topic)) {
+        return false;
+    }
     fail(reader, "unknown topic '%s'", topic);
     if (reader->errors <= ERRORS_SHOWN) {
         fputs("hint: the target subscribes to ", stderr);
@@ -126,28 +145,65 @@ static bool fail_topic(reader_t *reader, const char *topic)
                 fprintf(stderr, "'%s', ", epg_topic_value_name(subscription, k));
             }
         }
-        fputs("and has '$enable', '$pin:<number>' and '$stall'\n", stderr);
+        fputs("and has '$enable', '$component:<name>' and '$stall'\n", stderr);
     }
     return false;
 }
 
-static bool read_pin(reader_t *reader, const char *topic, epg_host_event_t *event)
+static bool fail_component(reader_t *reader, const char *name)
 {
-    const char *number = strchr(topic, ':') + 1;
-    const size_t length = strlen(number);
-    const long pin = strtol(number, NULL, 10);
-    if (length == 0 || length > 3 || strspn(number, "0123456789") != length || pin > UINT8_MAX) {
-        return fail(reader, "'%s' is no pin number", number);
+    const epg_host_target_t *host = reader->host;
+    if (!is_new(reader, name)) {
+        return false;
     }
-    event->kind = EPG_HOST_PIN;
-    event->index = (size_t)pin;
+    fail(reader, "the target has no digital input '%s'", name);
+    if (reader->errors <= ERRORS_SHOWN) {
+        fputs(host->input_count > 0 ? "hint: its digital inputs: " : "hint: it has no digital input at all", stderr);
+        for (size_t i = 0; i < host->input_count; i++) {
+            fprintf(stderr, "%s'%s'", i > 0 ? ", " : "", host->inputs[i].name);
+        }
+        fputc('\n', stderr);
+    }
+    return false;
+}
+
+static const epg_host_input_t *find_input(const reader_t *reader, const char *name)
+{
+    for (size_t i = 0; i < reader->host->input_count; i++) {
+        if (strcmp(reader->host->inputs[i].name, name) == 0) {
+            return &reader->host->inputs[i];
+        }
+    }
+    return NULL;
+}
+
+/** What a row makes of the pin of a digital input. */
+static bool read_force(reader_t *reader, const char *name, const char *text, epg_host_event_t *event)
+{
+    const epg_host_input_t *input = find_input(reader, name);
+    double level = 0.0;
+    epg_plant_force_t force = EPG_PLANT_FORCE_NONE;
+    if (input == NULL) {
+        return fail_component(reader, name);
+    }
+    if (strcmp(text, "open") == 0) {
+        force = EPG_PLANT_FORCE_OPEN;
+    } else if (strcmp(text, "plant") != 0) {
+        if (!epg_host_parse_number(text, &level) || (level != 0.0 && level != 1.0)) {
+            return fail(reader, "'%s' must be one of 0, 1, open, plant", text);
+        }
+        force = (level > 0.5) != input->invert ? EPG_PLANT_FORCE_HIGH : EPG_PLANT_FORCE_LOW;
+    }
+    event->kind = EPG_HOST_INPUT;
+    event->index = input->pin;
+    event->value = (double)force;
     return true;
 }
 
 /** Kind and index of what `topic` names. */
 static bool read_topic(reader_t *reader, const char *topic, epg_host_event_t *event)
 {
-    const epg_target_t *target = reader->target;
+    const epg_target_t *target = reader->host->target;
     for (size_t i = 0; i < target->subscription_count; i++) {
         const epg_topic_t *subscription = &target->subscriptions[i];
         for (size_t k = 0; k < subscription->count; k++) {
@@ -161,9 +217,6 @@ static bool read_topic(reader_t *reader, const char *topic, epg_host_event_t *ev
     if (strcmp(topic, "$enable") == 0) {
         event->kind = EPG_HOST_ENABLE;
         return true;
-    }
-    if (strncmp(topic, "$pin:", strlen("$pin:")) == 0) {
-        return read_pin(reader, topic, event);
     }
     if (strcmp(topic, "$stall") == 0) {
         event->kind = EPG_HOST_STALL;
@@ -180,11 +233,11 @@ static bool read_value(reader_t *reader, const char *text, epg_host_event_t *eve
     }
     switch (event->kind) {
     case EPG_HOST_ENABLE:
-    case EPG_HOST_PIN:
         return event->value == 0.0 || event->value == 1.0 ? true : fail(reader, "'%s' is neither 0 nor 1", text);
     case EPG_HOST_STALL:
         return epg_host_parse_time(text, &stall_ns) ? true : fail(reader, "'%s' is no time in seconds", text);
     case EPG_HOST_SETPOINT:
+    case EPG_HOST_INPUT:
     default:
         return true;
     }
@@ -205,6 +258,10 @@ static bool read_event(reader_t *reader, char *line, epg_host_event_t *event)
     }
     reader->previous_ns = event->time_ns;
     event->line = reader->line;
+    static const char component[] = "$component:";
+    if (strncmp(fields[1], component, strlen(component)) == 0) {
+        return read_force(reader, fields[1] + strlen(component), fields[2], event);
+    }
     return read_topic(reader, fields[1], event) && read_value(reader, fields[2], event);
 }
 
@@ -255,7 +312,7 @@ static void read_lines(reader_t *reader, char *text, epg_host_events_t *events)
     }
 }
 
-bool epg_host_read_setpoints(const char *path, const epg_target_t *target, bool realtime, epg_host_events_t *events)
+bool epg_host_read_setpoints(const char *path, const epg_host_target_t *host, bool realtime, epg_host_events_t *events)
 {
     *events = (epg_host_events_t){0};
     char *text = read_text(path);
@@ -268,7 +325,7 @@ bool epg_host_read_setpoints(const char *path, const epg_target_t *target, bool 
         free(text);
         return false;
     }
-    reader_t reader = {.path = path, .target = target, .realtime = realtime};
+    reader_t reader = {.path = path, .host = host, .realtime = realtime};
     read_lines(&reader, text, events);
     free(text);
     if (reader.errors > ERRORS_SHOWN) {
@@ -280,20 +337,6 @@ bool epg_host_read_setpoints(const char *path, const epg_target_t *target, bool 
     }
     mark_published(events);
     return true;
-}
-
-bool epg_host_check_pins(const char *path, const epg_host_events_t *events)
-{
-    bool good = true;
-    for (size_t i = 0; i < events->count; i++) {
-        const epg_host_event_t *event = &events->events[i];
-        if (event->kind == EPG_HOST_PIN && !epg_host_is_input((uint8_t)event->index)) {
-            fprintf(stderr, "%s:%u: error: pin %u is no digital input of this target\n", path, event->line,
-                    (unsigned)event->index);
-            good = false;
-        }
-    }
-    return good;
 }
 
 void epg_host_free_setpoints(epg_host_events_t *events)

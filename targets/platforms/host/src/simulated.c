@@ -79,6 +79,9 @@ void epg_host_run_simulated(epg_host_run_t *run)
     while (next_ns < run->end_ns && !epg_host_interrupted) {
         tick_ns = next_ns;
         move_on(simulation.now_ns > tick_ns ? simulation.now_ns : tick_ns);
+        if (!epg_host_plant_is_sound(run, simulation.now_ns)) {
+            break;
+        }
         epg_plant_sense(&run->plant);
         cycle(run, tick_ns, missed);
         next_ns = epg_host_next_tick(tick_ns, period_ns, simulation.now_ns, &missed);

@@ -11,6 +11,7 @@
 #include <zephyr/kernel.h>
 
 #include "parts.h"
+#include "report.h"
 #include "serial.h"
 #include "setpoints.h"
 #include "store.h"
@@ -60,6 +61,7 @@ static void add_options(void)
         VALUE("topics", "FILE", topics, "EPG: writes what is published, in the same form"),
         VALUE("trace", "FILE", trace, "EPG: writes all signals, one row per control cycle"),
         VALUE("statistics", "FILE", statistics, "EPG: writes the run's statistics as JSON"),
+        FLAG(interface, "EPG: prints the names of topics, digital inputs and signals, for programs"),
         FLAG(quiet, "EPG: prints no summary"),
         ARG_TABLE_ENDMARKER,
     };
@@ -93,11 +95,15 @@ static bool complete(void)
 static void read_options(void)
 {
     const epg_host_options_t *options = &epg_native_sim_options;
+    if (options->interface) {
+        epg_host_print_interface(epg_native_sim_target);
+        posix_exit(DONE);
+    }
     if (!complete()) {
         posix_exit(WRONG_INPUT);
     }
     if (options->setpoints != NULL &&
-        !epg_host_read_setpoints(options->setpoints, epg_native_sim_target->target, false, &epg_native_sim_events)) {
+        !epg_host_read_setpoints(options->setpoints, epg_native_sim_target, false, &epg_native_sim_events)) {
         posix_exit(WRONG_INPUT);
     }
 #ifndef CONFIG_EPG_STORE

@@ -30,7 +30,7 @@ bool epg_native_sim_all_emulated(void);
 /** From now on shafts turn; before, they are only where they are. */
 void epg_native_sim_shafts_turn(void);
 
-/** Drives the pins again that the plant had driven before they were inputs. */
+/** Drives the pins again that were driven before they were inputs. */
 void epg_native_sim_drive_pins(void);
 
 /* transports.c --------------------------------------------------------------------------------------------------- */

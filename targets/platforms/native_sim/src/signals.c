@@ -14,16 +14,17 @@
 #include "epg/plant.h"
 #include "epg/zephyr.h"
 #include "parts.h"
-#include "port.h"
 
 enum { UNITS = UINT8_MAX + 1, PINS = UINT8_MAX + 1 };
 
-/** What drives an input pin. */
+/** What drives an input pin; all pins begin with 0. */
 enum { UNDRIVEN, DRIVEN_LOW, DRIVEN_HIGH };
+enum { NOT_FORCED, FORCED_OPEN, FORCED_LOW, FORCED_HIGH };
 
 static bool turning;
 static int64_t counts[UNITS]; /* where the shafts are */
 static uint8_t driven[PINS];
+static uint8_t forced[PINS]; /* in place of what the plant drives */
 
 /* Devices -------------------------------------------------------------------------------------------------------- */
 
@@ -154,25 +155,39 @@ bool epg_plant_output(uint8_t pin)
     return is_configured(gpio, GPIO_OUTPUT) && gpio_emul_output_get(gpio->port, gpio->pin) > 0;
 }
 
-void epg_plant_input_set(uint8_t pin, bool level)
+/** Gives the emulated pin the level of what drives it, else that of its pull resistor. */
+static void drive(uint8_t pin)
 {
     const struct gpio_dt_spec *gpio = gpio_of(pin);
-    driven[pin] = level ? DRIVEN_HIGH : DRIVEN_LOW;
-    if (is_configured(gpio, GPIO_INPUT)) {
-        (void)gpio_emul_input_set(gpio->port, gpio->pin, level ? 1 : 0);
+    const uint8_t driver = forced[pin] == NOT_FORCED ? driven[pin] : (uint8_t)(forced[pin] - FORCED_OPEN);
+    gpio_flags_t flags = 0;
+    if (is_configured(gpio, GPIO_INPUT) && gpio_emul_flags_get(gpio->port, gpio->pin, &flags) == 0) {
+        const bool high = driver == UNDRIVEN ? (flags & GPIO_PULL_UP) != 0 : driver == DRIVEN_HIGH;
+        (void)gpio_emul_input_set(gpio->port, gpio->pin, high ? 1 : 0);
     }
+}
+
+void epg_plant_input_set(uint8_t pin, bool level)
+{
+    driven[pin] = level ? DRIVEN_HIGH : DRIVEN_LOW;
+    drive(pin);
+}
+
+void epg_plant_input_force(uint8_t pin, epg_plant_force_t force)
+{
+    static const uint8_t states[] = {[EPG_PLANT_FORCE_LOW] = FORCED_LOW,
+                                     [EPG_PLANT_FORCE_HIGH] = FORCED_HIGH,
+                                     [EPG_PLANT_FORCE_OPEN] = FORCED_OPEN,
+                                     [EPG_PLANT_FORCE_NONE] = NOT_FORCED};
+    forced[pin] = states[force];
+    drive(pin);
 }
 
 void epg_native_sim_drive_pins(void)
 {
     for (unsigned int pin = 0; pin < PINS; pin++) {
-        if (driven[pin] != UNDRIVEN) {
-            epg_plant_input_set((uint8_t)pin, driven[pin] == DRIVEN_HIGH);
+        if (driven[pin] != UNDRIVEN || forced[pin] != NOT_FORCED) {
+            drive((uint8_t)pin);
         }
     }
-}
-
-bool epg_host_is_input(uint8_t pin)
-{
-    return is_configured(gpio_of(pin), GPIO_INPUT);
 }

@@ -33,11 +33,23 @@ bool epg_plant_output(uint8_t pin);
 /** Drives input `pin`; before the first call it has the level of its pull resistor. */
 void epg_plant_input_set(uint8_t pin, bool level);
 
+/** What a test makes of an input pin, whatever the plant says. */
+typedef enum epg_plant_force {
+    EPG_PLANT_FORCE_LOW,
+    EPG_PLANT_FORCE_HIGH,
+    EPG_PLANT_FORCE_OPEN, /**< nothing drives the pin, as with a broken wire: it has the level of its pull resistor */
+    EPG_PLANT_FORCE_NONE  /**< the plant drives the pin again */
+} epg_plant_force_t;
+
+/** Input `pin` is forced until the next call, whatever epg_plant_input_set() says meanwhile. */
+void epg_plant_input_force(uint8_t pin, epg_plant_force_t force);
+
 /* The plant ---------------------------------------------------------------------------------------------------- */
 
 /** The generated connection to the plant model; `steps_per_period` calls of `step` make one control period. */
 typedef struct epg_plant {
     uint32_t steps_per_period;
+    bool starts_by_step; /**< `init` does not compute the outputs: the first step is made at time 0, to have some */
     void (*init)(void);
     void (*actuate)(void); /**< PWM and pin levels to the plant's inputs; once per control period */
     void (*step)(void);    /**< the plant moves on by one of its steps */

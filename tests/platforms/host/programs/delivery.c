@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "communication.h"
+#include "epg/plant.h"
 #include "epg/port.h"
 
 enum { START_NS = 5000 };
@@ -54,6 +55,8 @@ static const epg_target_t target = {
     .publications = publications,
 };
 
+static const epg_host_target_t host = {.target = &target};
+
 static uint64_t milliseconds(const char *text)
 {
     return (uint64_t)(atof(text) * 1e6 + 0.5);
@@ -63,7 +66,7 @@ int main(int argc, char **argv)
 {
     epg_host_events_t events;
     epg_host_communication_t communication;
-    if (argc < 4 || !epg_host_read_setpoints(argv[1], &target, false, &events)) {
+    if (argc < 4 || !epg_host_read_setpoints(argv[1], &host, false, &events)) {
         return 2;
     }
     if (!epg_host_communication_start(&communication, &target, &events, milliseconds(argv[3]), stdout)) {

@@ -138,6 +138,7 @@ static const epg_application_t application = {
     .safe = safe,
     .monitor = monitor,
     .fail_safe = fail_safe,
+    .fail_safe_component = 2,
     .setpoint_count = 1,
     .setpoints = setpoints,
     .samples = samples,
@@ -154,6 +155,8 @@ static const epg_topic_t subscriptions[2] = {
 static const epg_topic_t publications[2] = {{.name = "motor_position", .count = 1},
                                             {.name = "motor_echo", .index = 1, .count = 1}};
 
+static const char *const components[] = {"encoder", "motor", "emergency_stop"};
+
 static const epg_target_t target = {
     .control = &control,
     .application = &application,
@@ -164,6 +167,8 @@ static const epg_target_t target = {
     .subscriptions = subscriptions,
     .publication_count = 2,
     .publications = publications,
+    .component_count = sizeof components / sizeof components[0],
+    .components = components,
 };
 
 /* The plant: a motor that reaches 20 rad/s at full duty with a time constant of 50 ms. */
@@ -189,10 +194,18 @@ static void plant_step(void)
     speed += step * (20.0 * plant_duty - speed) / 0.05;
     angle += step * speed;
     plant_steps += 1.0;
+#ifdef PLANT_DIVERGES
+    if (plant_steps > 1000.0) {
+        angle = PLANT_DIVERGES;
+    }
+#endif
 }
 
 static void plant_sense(void)
 {
+#ifdef PLANT_HOLDS_INPUT
+    epg_plant_input_set(FAIL_SAFE, true);
+#endif
     epg_plant_quadrature_set(0, (int64_t)floor(angle / RADIANS_PER_COUNT));
 }
 
@@ -211,6 +224,8 @@ static const epg_host_signal_t signals[] = {
     {"model.steps", &cycle_count},
 };
 
+static const epg_host_input_t inputs[] = {{.name = "emergency_stop", .pin = FAIL_SAFE}};
+
 extern const epg_host_target_t epg_host_application;
 const epg_host_target_t epg_host_application = {
     .target = &target,
@@ -219,4 +234,8 @@ const epg_host_target_t epg_host_application = {
 #endif
     .signal_count = sizeof signals / sizeof signals[0],
     .signals = signals,
+    .plant_output_count = 1,
+    .plant_outputs = &signals[4],
+    .input_count = sizeof inputs / sizeof inputs[0],
+    .inputs = inputs,
 };

@@ -16,7 +16,6 @@ from epg.bootstrap import cache_folder
 from epg.simulate.executable import read_trace, run_executable
 from epg.simulate.scenario import Scenario
 from epg.simulate.setpoints import setpoint_rows, write_setpoints
-from epg.source import Span
 from tests.emulator.toolchain import locked
 
 from .recording import Recording
@@ -77,5 +76,5 @@ def _run(program: Path, duration: float, signals: list[str], folder: Path) -> Co
     run_executable(
         program, folder, duration, folder / "setpoints.csv", realtime=False, progress=lambda message: None
     )  # fmt: skip
-    trace = read_trace(folder / "trace.csv", [(signal, Span(program.name)) for signal in signals])
+    trace = read_trace(folder / "trace.csv", signals)
     return {name: list(values) for name, values in trace.items()}

@@ -21,12 +21,23 @@ typedef struct epg_host_signal {
     const double *value;
 } epg_host_signal_t;
 
+/** A component that reads one input pin. */
+typedef struct epg_host_input {
+    const char *name; /**< of the component */
+    uint8_t pin;
+    bool invert; /**< the component reads 1 when the pin is low */
+} epg_host_input_t;
+
 /** All the host needs to run one target.  `plant` is NULL when there is none: then sensors stand still. */
 typedef struct epg_host_target {
     const epg_target_t *target;
     const epg_plant_t *plant;
     size_t signal_count;
     const epg_host_signal_t *signals;
+    size_t plant_output_count;
+    const epg_host_signal_t *plant_outputs; /**< those of `signals` that the plant computes */
+    size_t input_count;
+    const epg_host_input_t *inputs;
     const char *agent;  /**< where the agent of the target's middleware is: HOST:PORT, or a terminal; NULL: no agent */
     uint32_t baud_rate; /**< of that terminal */
 } epg_host_target_t;

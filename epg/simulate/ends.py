@@ -1,0 +1,44 @@
+"""Whether a run ended in the state that its scenario expects: enabled, unless it says otherwise."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from epg.simulate.executable import Statistics
+
+
+@dataclass(frozen=True)
+class Ending:
+    """``problem`` is empty when the run ended as expected."""
+
+    problem: str = ""
+    hint: str = ""
+
+
+def how_it_ended(expected: str, enabled: Sequence[float], statistics: Statistics) -> Ending:
+    """``expected``: as ``Scenario.ends``.  ``enabled``: column of the trace."""
+    ever = any(enabled)
+    if expected == "never_enabled":
+        return Ending("the target was enabled, and the scenario says 'ends: never_enabled'") if ever else Ending()
+    if not ever:
+        hint = "it starts disabled: write 'events: [{at: 0 s, enable: true}]' into the scenario"
+        if statistics.fault != "none":
+            hint = f"a fault keeps it disabled: {_reason(statistics)}"
+        return Ending("the target was never enabled", hint + "; or expect it by 'ends: never_enabled'")
+    if expected == "disabled":
+        return (
+            Ending("the target ended enabled, and the scenario says 'ends: disabled'")
+            if statistics.enabled
+            else Ending()
+        )
+    if not statistics.enabled:
+        problem = f"the target ended disabled ({_reason(statistics)})"
+        return Ending(problem, "if that is what the scenario tests, write 'ends: disabled' into it")
+    return Ending()
+
+
+def _reason(statistics: Statistics) -> str:
+    if statistics.fault == "none":
+        return "by request"
+    return f"{statistics.fault}: {statistics.fault_component}" if statistics.fault_component else statistics.fault
