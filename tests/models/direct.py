@@ -6,6 +6,7 @@ import re
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
+from epg.emit.model.fmi_headers import fmi_headers
 from tests.models.harness import SIGNAL, compile_file, link, run
 
 
@@ -71,7 +72,10 @@ static {name} model;
 
 
 def run_fmu(sources: Path, folder: Path, inputs: list[str], outputs: list[str], steps: int) -> str:
-    """The C sources of an FMU, through its FMI 2.0 functions; ``inputs`` and ``outputs`` are names of variables."""
+    """The C sources of an FMU of 20-sim, through its FMI 2.0 functions, step by step at the sum of its steps.
+
+    ``inputs`` and ``outputs`` are names of variables.
+    """
     description = ElementTree.parse(sources.parent / "modelDescription.xml").getroot()
     variables = {v.attrib["name"]: v for v in description.iter("ScalarVariable")}
     step = description.find("DefaultExperiment").attrib["stepSize"]  # type: ignore[union-attr]
@@ -103,7 +107,7 @@ int main(void)
     double time = 0.0;
     for (int k = 0; k < {steps}; k++) {{
         {take}
-        if (fmi2DoStep(c, time, {step} / 2, 1) != fmi2OK) {{ return 1; }}
+        if (fmi2DoStep(c, time, {step}, 1) != fmi2OK) {{ return 1; }}
         time += {step};
         {show} puts("");
     }}
@@ -112,8 +116,13 @@ int main(void)
     return 0;
 }}
 """
-    files = sorted(sources.glob("*.c"))
-    return _run_c(text, files, [sources], folder, ["-DNO_FUNCTION_PREFIX"])
+    listed = [sources / file.attrib["name"] for file in description.iter("File")]
+    files = listed or sorted(sources.glob("*.c"))
+    headers = folder / "standard"  # searched last: the FMU's own go first
+    headers.mkdir(parents=True, exist_ok=True)
+    for name, header in fmi_headers(2).items():
+        (headers / name).write_text(header)
+    return _run_c(text, files, [sources, headers], folder, ["-DNO_FUNCTION_PREFIX"])
 
 
 def _main(inputs: int, outputs: int, steps: int, init: str, calculate: str, terminate: str) -> str:

@@ -10,6 +10,8 @@ import re
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from tests.models.exports_fmu import GUID, as_fmu, fmi2_functions, model_description, with_instance, with_output_time
+
 STATES = 2
 PARAMETERS = (
     ("PI1\\kp", "2.5", ""),
@@ -68,9 +70,9 @@ class Export:
         ``describe`` is the file that names the ports: tokens.xml, ModelConfiguration.xml or modelDescription.xml.
         """
         files = {name: text for name, text in replace(self, tokens=False).c_files().items() if name != "xxmain.c"}
-        files = _as_fmu(files, len(self.parameters))
+        files = as_fmu(files, len(self.parameters))
         if instance:
-            files = _with_instance(files, self.step)
+            files = with_instance(files, self.step)
         base = len(self.parameters) + STATES
         ports = [(name, "input", 4 + i) for i, (name, _) in enumerate(self.inputs)]
         ports += [(name, "output", i) for i, (name, _) in enumerate(self.outputs)]
@@ -92,6 +94,27 @@ class Export:
             text = f"<fmiModelDescription><ModelVariables>{variables}</ModelVariables></fmiModelDescription>"
             files["../modelDescription.xml"] = text
         return self._save(folder / "sources", files)
+
+    def write_whole_fmu(self, folder: Path, form: str) -> Path:
+        """Writes an FMU with the functions of FMI 2.0.
+
+        ``form`` is "globals" (4.5), "instance" (4.6), or "output time" (since 4.6.3 of July 2017): its integration
+        methods get the time of the next output and do not step over it.
+        """
+        files = {name: text for name, text in replace(self, tokens=False).c_files().items() if name != "xxmain.c"}
+        files = as_fmu(files, len(self.parameters))
+        if form != "globals":
+            files = with_instance(files, self.step)
+        if form == "output time":
+            files = with_output_time(files, self.method)
+        base = len(self.parameters) + STATES
+        ports = [(name, "input", base + 4 + i) for i, (name, _) in enumerate(self.inputs)]
+        ports += [(name, "output", base + i) for i, (name, _) in enumerate(self.outputs)]
+        files["fmi2Functions.c"] = fmi2_functions(self, form)
+        files["fmiGUID.h"] = f'#define FMI_GUID "{GUID}"\n'
+        files["../modelDescription.xml"] = model_description(self, ports)
+        self._save(folder / "sources", files)
+        return folder
 
     def write_tokens(self, folder: Path) -> Path:
         """Writes ``tokens.xml`` alone."""
@@ -371,12 +394,20 @@ int main (void)
         each = f"for (index = 0; index < {v}STATE_SIZE; index++)"
         s, r, q, h = f"{v}s{x}[index]", f"{v}R{x}[index]", f"{v}q{x}[index]", f"{v}step_size{x}"
         again = f"\t{v}major{x} = XXFALSE;\n\t{f}CalculateDynamic{x} ();\n"
+        half, k = f"{v}time{x} = start + 0.5 * {h};\n{again}", f"{v}k{x}"
         bodies = {
             "Discrete": f"\t{each} {s} = {r};\n\t{v}time{x} += {h};\n",
             "Euler": f"\t{each} {s} = {s} + {r} * {h};\n\t{v}time{x} += {h};\n",
             "RungeKutta2": (
-                f"\t{each} {q} = {s};\n\t{each} {s} = {q} + {r} * 0.5 * {h};\n\t{v}time{x} += 0.5 * {h};\n{again}"
-                f"\t{each} {s} = {q} + {r} * {h};\n\t{v}time{x} += 0.5 * {h};\n"
+                f"\t{each} {q} = {s};\n\t{each} {s} = {q} + {r} * 0.5 * {h};\n\t{half}"
+                f"\t{each} {s} = {q} + {r} * {h};\n\t{v}time{x} = start + {h};\n"
+            ),
+            "RungeKutta4": (
+                f"\t{each} {{ {q} = {s}; {k}[index] = {r}; {s} = {q} + 0.5 * {h} * {r}; }}\n\t{half}"
+                f"\t{each} {{ {k}[index] += 2.0 * {r}; {s} = {q} + 0.5 * {h} * {r}; }}\n{again}"
+                f"\t{each} {{ {k}[index] += 2.0 * {r}; {s} = {q} + {h} * {r}; }}\n"
+                f"\t{v}time{x} = start + {h};\n{again}"
+                f"\t{each} {s} = {q} + {h} * ({k}[index] + {r}) / 6.0;\n"
             ),
         }
         body = bodies.get(m, bodies["Euler"])
@@ -387,7 +418,7 @@ int main (void)
 
 #define {v}STATE_SIZE {STATES}
 
-static XXDouble {v}q{x}[{STATES}];
+static XXDouble {v}q{x}[{STATES}], {v}k{x}[{STATES}];
 
 void {f}{m}Initialize{x} (void)
 {{
@@ -402,6 +433,7 @@ void {f}{m}Terminate{x} (void)
 void {f}{m}Step{x} (void)
 {{
 \tXXInteger index;
+\tXXDouble start = {v}time{x};
 {body}\t{v}major{x} = XXTRUE;
 \t{f}CalculateDynamic{x} ();
 }}
@@ -738,71 +770,3 @@ void {m}::Step ()
 
 def _told(name: str, unit: str) -> str:
     return f"{name} {{{unit}}}" if unit else name
-
-
-def _as_fmu(files: dict[str, str], parameters: int) -> dict[str, str]:
-    """Takes the port vectors out of a C export and lays its arrays into one memory, as 4.5 does for FMUs."""
-    result = {}
-    for name, text in files.items():
-        text = text.replace("XXDouble *u, XXDouble *y, ", "")
-        text = re.sub(r"void XXCopy\w+ \(XXDouble \*[uy]\)\s*\{.*?\n\}\n", "", text, flags=re.DOTALL)
-        text = re.sub(r"\tXXCopy\w+ \([uy]\);\n", "", text)
-        text = re.sub(r"XXInteger xx_number_of_\w+ = \d+;\n", "", text)
-        sizes = {"P": parameters, "I": STATES, "V": 8, "s": STATES, "R": STATES}
-        at = 0
-        for array, size in sizes.items():
-            text = re.sub(rf"\nXXDouble xx_{array}\[[^;]*;", f"\nXXDouble* xx_{array} = xx_MEMORY + {at};", text)
-            text = text.replace(f"extern XXDouble xx_{array}[];", f"extern XXDouble* xx_{array};")
-            at += size
-        text = text.replace(
-            "XXDouble* xx_P = xx_MEMORY", f"XXDouble xx_MEMORY[{at} + 1];\nXXDouble* xx_P = xx_MEMORY", 1
-        )
-        result[name] = text
-    return result
-
-
-def _with_instance(files: dict[str, str], step: str) -> dict[str, str]:
-    """Moves the global variables of an FMU into an instance, as since 4.6."""
-    scalars = ("start_time", "finish_time", "step_size", "time", "steps", "initialize", "major", "stop_simulation")
-    macros = "".join(f"#define xx_{name} model_instance->{name}\n" for name in (*"PIVsR", *scalars))
-    counts = "".join(
-        f"#define xx_{name} {size}\n"
-        for name, size in (("parameter_count", 4), ("initialvalue_count", 2), ("variable_count", 8), ("state_count", 2))
-    )
-    struct = f"""{counts}
-typedef struct xx_ModelInstance
-{{
-\tXXDouble start_time, finish_time, step_size, time;
-\tXXInteger steps;
-\tXXBoolean initialize, major, stop_simulation;
-\tXXDouble MEMORY[xx_parameter_count + xx_initialvalue_count + xx_variable_count + 2 * xx_state_count + 1];
-\tXXDouble* P;
-\tXXDouble* I;
-\tXXDouble* V;
-\tXXDouble* s;
-\tXXDouble* R;
-}} xx_ModelInstance;
-{macros}"""
-    result = {}
-    for name, text in files.items():
-        text = re.sub(r"(\n|^)(extern )?XX\w+\*? xx_\w+( = [^;]*|\[[^;]*)?;", "", text)
-        text = re.sub(r"(?<=\w) \(void\)", " (xx_ModelInstance* model_instance)", text)
-        text = re.sub(
-            r"(XX(?:Initialize|Calculate|Terminate)Submodel) \(XXDouble t\)",
-            r"\1 (xx_ModelInstance* model_instance, XXDouble t)",
-            text,
-        )
-        text = re.sub(r"(\tXX\w+) \(\);", r"\1 (model_instance);", text)
-        text = text.replace("\tXXModelInitialize (model_instance);\n", "")
-        if name == "xxmodel.h":
-            text = text.replace('#include "xxtypes.h"\n', f'#include "xxtypes.h"\n{struct}', 1)
-        if name == "xxinteg.h":
-            text = text.replace('#include "xxtypes.h"', '#include "xxtypes.h"\n#include "xxmodel.h"')
-        if name == "xxfuncs.c":
-            text = text.replace("xx_stop_simulation = XXTRUE", "(void) message")
-        result[name] = text
-    result["fmi2Functions.c"] = (
-        f'#include "xxsubmod.h"\nvoid *fmi2Instantiate (xx_ModelInstance* model_instance)\n{{\n'
-        f"\tmodel_instance->step_size = {step};\n\tmodel_instance->P = model_instance->MEMORY;\n\treturn 0;\n}}\n"
-    )
-    return result

@@ -183,7 +183,7 @@ class FmuExport:
     parameters: tuple[FmuParameter, ...]
     states: tuple[int, ...]  # value references of continuous states
     state_count: int  # of their values: arrays have several
-    step_argument: Fraction  # of DoStep, in seconds
+    own_step: Fraction | None  # of 20-sim's FMUs, in seconds: each call of DoStep asks for one of these
     endless: bool  # an end of the experiment is given, far away: without it the FMU takes its own
     terminated: bool  # fmi2GetBooleanStatus exists
     heap: int  # bytes of each instance; 0: the FMU allocates nothing

@@ -6,12 +6,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from fractions import Fraction
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics
-from epg.load.models.assignments import number
+from epg.load.models.assignments import exact_number, is_step, number
 from epg.load.models.details import FmuExport, FmuParameter, FmuPorts
 from epg.load.models.fmu_description import Description, read_description
 from epg.load.models.fmu_features import check_fmu, uses_heap
@@ -29,6 +30,7 @@ HEAP = 16 << 10
 """Bytes of heap of each instance, where nothing else is said: 20-sim's FMUs take what their variables need."""
 
 _HINT = "export the FMU again"
+_STEP_SIZE = re.compile(r"(?<!\w)(\w{1,64}(?:->|_))?step_size\s{0,80}=(?!=)\s{0,80}([^=;]{1,40});", re.ASCII)
 _TYPES = {**TYPES_2, **TYPES_3}
 
 
@@ -56,8 +58,9 @@ def load_fmu(
     description = read_description(root, diagnostics) if root is not None else None
     if description is None:
         return None
-    step = _step(description, step, step_span, diagnostics)
     sources = find_sources(files, description, diagnostics)
+    own_step = _own_step(description, sources) if sources is not None else None
+    step = _step(description, own_step, step, step_span, diagnostics)
     if sources is None:
         return None
     check_fmu(sources.linked, description.standard, diagnostics)
@@ -102,8 +105,8 @@ def load_fmu(
             parameters=places,
             states=tuple(sorted(states)),
             state_count=sum(states.values()),
-            step_argument=_step_argument(description, step),
-            endless=description.is_20sim,
+            own_step=own_step,
+            endless=own_step is not None,
             terminated="fmi2GetBooleanStatus" in {f.name for _, f in sources.linked.functions()},
             heap=(HEAP if heap is None else heap) if needed else 0,
             instantiable=not description.once,
@@ -111,32 +114,46 @@ def load_fmu(
     )
 
 
+def _own_step(description: Description, sources: FmuSources) -> Fraction | None:
+    """The step of the integration method in an FMU of 20-sim; None for other FMUs.
+
+    The sources set it, as ``xx_step_size = 0.001`` (4.5) or ``model_instance->step_size = 0.001``.
+    """
+    names = {function.name for _, function in sources.linked.functions()}
+    if description.standard != 2 or not (
+        description.is_20sim or any(name.endswith("CalculateSubmodel") for name in names)
+    ):
+        return None
+    found = set()
+    for code in sources.codes.values():
+        for match in _STEP_SIZE.finditer(code.file.code):
+            value = exact_number(match[2])
+            if value is not None and is_step(value) and not re.search("initial|max|min", match[1] or ""):
+                found.add(value)
+    return found.pop() if len(found) == 1 else description.step
+
+
 def _step(
-    description: Description, wanted: Fraction | None, wanted_span: Span | None, diagnostics: Diagnostics
+    description: Description,
+    own_step: Fraction | None,
+    wanted: Fraction | None,
+    wanted_span: Span | None,
+    diagnostics: Diagnostics,
 ) -> Fraction | None:
-    """The time between two calls, after checking that the FMU can keep to it."""
+    """The time between two steps of the model, after checking that the FMU can keep to it."""
     step = wanted or description.step
     if step is None:
         message = "the FMU does not say its step: there is no stepSize in its DefaultExperiment"
         hint = "write a model.yaml with 'version: 1', 'fmu: <its file or folder>' and 'step: 1 ms', and name that"
         diagnostics.error("fmu-step", description.step_span, message, hint=hint)
         return None
-    base = description.internal_step or (description.step if description.is_20sim else None)
+    base = description.internal_step or own_step
     if base is not None and (step / base).denominator != 1:
         message = f"the step {float(step):g} s is no multiple of the FMU's internal step, {float(base):g} s"
         span = wanted_span or description.step_span
         diagnostics.error("fmu-step", span, message, hint="export it with the step that the target has")
         return None
     return step
-
-
-def _step_argument(description: Description, step: Fraction) -> Fraction:
-    """The step that is passed to DoStep.
-
-    20-sim's FMUs step until the sum of their steps has reached the end of the one asked for: a sum that is off by a
-    rounding error makes one too many or too few.  Half a step less, there is no doubt.
-    """
-    return step - description.step / 2 if description.is_20sim and description.step is not None else step
 
 
 # ports and parameters ------------------------------------------------------------------------------------------------

@@ -16,6 +16,8 @@ from random import Random
 import pytest
 import yaml
 
+from epg.load.models.details import FmuExport
+from tests.models.exports import Export
 from tests.models.fmus import FMU2, FMU3, changed, pack
 from tests.models.harness import load, loaded
 
@@ -212,10 +214,25 @@ def test_the_step_must_suit_20sim(tmp_path: Path) -> None:
     folder = changed(
         FMU2, tmp_path / "fmu", "modelDescription.xml", ('generationTool="tests"', 'generationTool="20-sim"')
     )
-    assert loaded(folder).details.step_argument == Fraction(1, 2000)  # type: ignore[union-attr]
+    assert loaded(folder).details.own_step == Fraction(1, 1000)  # type: ignore[union-attr]
     model = loaded(settings(tmp_path / "model", fmu="../fmu", step="3 ms"))
-    assert model.details.step_argument == Fraction(5, 2000)  # type: ignore[union-attr]
+    assert (model.step, model.details.own_step) == (Fraction(3, 1000), Fraction(1, 1000))  # type: ignore[union-attr]
     assert only_error(settings(tmp_path / "model", fmu="../fmu", step="1.5 ms"))[0] == "fmu-step"
+
+
+def test_the_step_of_20sims_method_is_read_from_the_sources(tmp_path: Path) -> None:
+    """Whatever the description says, and whether or not it names 20-sim."""
+    for form in ("globals", "instance", "output time"):
+        folder = Export(step="0.0005").write_whole_fmu(tmp_path / form, form)
+        description = folder / "modelDescription.xml"
+        text = description.read_text().replace('stepSize="0.0005"', 'stepSize="0.002"')
+        description.write_text(text.replace(' generationTool="20-sim"', ""))
+        model = loaded(folder)
+        assert isinstance(model.details, FmuExport)
+        assert (model.step, model.details.own_step) == (Fraction(2, 1000), Fraction(1, 2000))
+        description.write_text(text.replace("0.002", "0.0007"))
+        assert only_error(folder)[0] == "fmu-step"
+    assert loaded(FMU2).details.own_step is None  # type: ignore[union-attr]
 
 
 # hostile archives ----------------------------------------------------------------------------------------------------

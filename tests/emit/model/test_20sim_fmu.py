@@ -1,0 +1,84 @@
+"""FMUs of 20-sim take one step of their own at each step of the library, whatever their integration method promises."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.models.direct import run_c_vectors, run_fmu
+from tests.models.exports import Export
+from tests.models.harness import build, loaded, run_program, run_wrapper, values
+
+STEPS = 1500
+METHODS = ("Discrete", "Euler", "RungeKutta2", "RungeKutta4")
+PORTS = (["in", "position"], ["corr", "out"])
+
+
+def c_function(export: Export, work: Path) -> str:
+    """What the C function target of the same controller gives, called by its own main program."""
+    folder = export.write(work / "c")
+    sources = [path for path in sorted(folder.glob("*.c")) if path.name != "xxmain.c"]
+    return run_c_vectors(sources, [folder], work, (2, 2), STEPS)
+
+
+@pytest.mark.parametrize(
+    ("form", "method"),
+    [("globals", "RungeKutta4"), ("instance", "Discrete"), *(("output time", method) for method in METHODS)],
+)
+def test_one_step_at_a_time(form: str, method: str, tmp_path: Path) -> None:
+    """1 ms is no sum of powers of two: a method that gets the time of the next output must get the very sum."""
+    export = Export(method=method)
+    folder = export.write_whole_fmu(tmp_path / "fmu", form)
+    library = build(loaded(folder), "pan", tmp_path)
+    assert run_wrapper(library, STEPS, True) == run_fmu(folder / "sources", tmp_path / "own", *PORTS, STEPS)
+    found, expected = run_wrapper(library, STEPS), c_function(export, tmp_path)
+    if form != "output time":
+        assert found == expected
+        return
+    # the last step is as long as the time that is left: another rounding of 1 ms
+    for row, other in zip(values(found), values(expected), strict=True):
+        assert row == pytest.approx(other, rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize("method", ["Discrete", "RungeKutta4"])
+def test_sources_of_an_fmu_that_get_the_time_of_the_next_output(method: str, tmp_path: Path) -> None:
+    """Named as what they are, without FMI."""
+    folder = Export(method=method).write_whole_fmu(tmp_path / "fmu", "output time")
+    library = build(loaded(folder / "sources"), "pan", tmp_path)
+    assert run_wrapper(library, STEPS, True) == run_fmu(folder / "sources", tmp_path / "own", *PORTS, STEPS)
+
+
+SLOWER = """
+#include "fast.h"
+#include "slow.h"
+#include <stdio.h>
+int main(void)
+{
+    static fast_inputs_t in = {0.5, 0.1};
+    static slow_inputs_t slow_in = {0.5, 0.1};
+    fast_outputs_t out;
+    slow_outputs_t slow_out;
+    fast_init(fast_instance(0), &in, &out);
+    slow_init(slow_instance(0), &slow_in, &slow_out);
+    for (int k = 0; k < 600; k++) {
+        fast_step(fast_instance(0), &in, &out);
+        if (k % 3 == 2) {
+            slow_step(slow_instance(0), &slow_in, &slow_out);
+            printf("%a %a %a %a\\n", out.corr, slow_out.corr, out.out, slow_out.out);
+            in.in = slow_in.in = 0.5 - 0.001 * k;
+        }
+    }
+    return 0;
+}
+"""
+
+
+def test_several_steps_of_the_method_in_one_of_the_model(tmp_path: Path) -> None:
+    folder = Export(method="RungeKutta2").write_whole_fmu(tmp_path / "fmu", "output time")
+    (tmp_path / "slow").mkdir()
+    (tmp_path / "slow" / "model.yaml").write_text("version: 1\nfmu: ../fmu\nstep: 3 ms\n")
+    libraries = [build(loaded(folder), "fast", tmp_path), build(loaded(tmp_path / "slow"), "slow", tmp_path)]
+    rows = [line.split() for line in run_program(tmp_path / "run", SLOWER, libraries).splitlines()]
+    assert len(rows) == 200 and len({row[0] for row in rows}) == 200
+    assert all(row[0] == row[1] and row[2] == row[3] for row in rows)
