@@ -47,11 +47,21 @@ def test_cmakes_paragraphs_are_put_together_again_and_the_remedy_is_the_hint(tmp
     command = (
         "git clone --depth 1 --branch 2.2.0 --recurse-submodules=lib/tinyusb https://example.org/sdk.git /a/folder"
     )
-    text = f'message(SEND_ERROR "{long}\n  set(X 1)\n  set(Y 2)\nAnother.\n\nThe last.\nGet it: {command}")\n'
+    text = f'message(SEND_ERROR "{long}\n  set(X 1)\n  set(Y 2)\nAnother.\n\nThe last. Get it:\n  {command}")\n'
     (found,) = read(cmake(tmp_path, text), tmp_path)
     assert (found.severity, found.file, found.line) == ("error", str(tmp_path / "CMakeLists.txt"), 3)
     assert found.message == f"{long}\n\n  set(X 1)\n  set(Y 2)\n\nAnother.\n\nThe last."
     assert found.hint == f"get it: {command}"
+
+
+def test_a_message_about_several_missing_parts_is_one_for_each(tmp_path: Path) -> None:
+    text = 'message(SEND_ERROR "This lacks parts.\nOne was not found. Get it:\n  get one\n'
+    text += 'Another was not found. Get it:\n  get  another\nThen configure again.")\n'
+    found = read(cmake(tmp_path, text), tmp_path)
+    assert [(each.message, each.hint) for each in found] == [
+        ("One was not found.", "get it: get one"),
+        ("Another was not found.", "get it: get  another"),
+    ]
 
 
 def test_an_error_inside_a_library_stands_where_the_project_calls_it(tmp_path: Path) -> None:
@@ -115,6 +125,52 @@ def test_linkers(linker: str, tmp_path: Path) -> None:
             "multiple definition of `other'",
             "undefined reference to `gone'",
         ]
+
+
+# `gcc -g -nostartfiles a.c b.c c.c`, and without -g, as the linkers of Debian 12 and 13 print it
+BINUTILS_2_40 = """\
+/usr/bin/ld: /tmp/ccVa.o:/project/c.c:1: multiple definition of `other'; /tmp/ccgW.o:/project/b.c:1: first defined here
+/usr/bin/ld: /tmp/ccmy7B0y.o: in function `main':
+/project/a.c:4: undefined reference to `gone'
+/usr/bin/ld: /project/a.c:5: undefined reference to `gone'
+collect2: error: ld returned 1 exit status
+"""
+BINUTILS_2_44 = """\
+/usr/bin/ld: /tmp/ccnY.o:/project/c.c:1: multiple definition of `other'; /tmp/cchi.o:/project/b.c:1: first defined here
+/usr/bin/ld: /tmp/ccJ8ZRQ7.o: in function `main':
+/project/a.c:4:(.text+0x5): undefined reference to `gone'
+/usr/bin/ld: /project/a.c:5:(.text+0xa): undefined reference to `gone'
+collect2: error: ld returned 1 exit status
+"""
+WITHOUT_LINES = """\
+/usr/bin/ld: /tmp/ccHD.o:(.data+0x0): multiple definition of `other'; /tmp/cciS.o:(.data+0x0): first defined here
+/usr/bin/ld: /tmp/ccOs9f7b.o: in function `main':
+a.c:(.text+0x5): undefined reference to `gone'
+/usr/bin/ld: a.c:(.text+0xa): undefined reference to `gone'
+collect2: error: ld returned 1 exit status
+"""
+MAKE = """\
+gmake[2]: *** [CMakeFiles/own.dir/build.make:97: own] Error 1
+gmake[1]: *** [CMakeFiles/Makefile2:83: CMakeFiles/own.dir/all] Error 2
+gmake[1]: *** Waiting for unfinished jobs....
+gmake: *** [Makefile:91: all] Error 2
+"""
+
+
+@pytest.mark.parametrize("after", ["", MAKE], ids=["ninja", "make"])
+@pytest.mark.parametrize(("text", "lines"), [(BINUTILS_2_40, (1, 4)), (BINUTILS_2_44, (1, 4)), (WITHOUT_LINES, (0, 0))])
+def test_linkers_as_they_were_recorded(text: str, lines: tuple[int, int], after: str) -> None:
+    found = read(text + after)
+    assert [(each.message.split(";")[0], each.line) for each in found] == [
+        ("multiple definition of `other'", lines[0]),
+        ("undefined reference to `gone'", lines[1]),
+    ]
+    assert Path(found[1].file).name == "a.c"
+
+
+def test_make_adds_nothing_to_a_failure_that_nobody_understands() -> None:
+    (found,) = read("the moon is in the wrong quarter\n" + MAKE)
+    assert (found.id, found.message) == ("build-failed", "the moon is in the wrong quarter")
 
 
 def test_a_memory_that_is_too_small(tmp_path: Path) -> None:

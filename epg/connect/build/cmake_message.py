@@ -3,8 +3,10 @@
 ::
 
     CMake Error at /opt/epg/cmake/EPGSdk.cmake:17 (message):
-      The Raspberry Pi Pico SDK was not found.
-      Get it: git clone https://github.com/raspberrypi/pico-sdk.git
+      Raspberry Pi Pico SDK was not found.  Get it:
+
+        git clone https://github.com/raspberrypi/pico-sdk.git
+
     Call Stack (most recent call first):
       CMakeLists.txt:12 (epg_import_pico_sdk)
 """
@@ -20,7 +22,7 @@ _START = re.compile(
     r"(?:: (?P<text>.+)| (?:at|in) (?P<file>(?:[A-Za-z]:)?[^:]+)(?::(?P<line>\d+))?(?: \([^)]*\))?:)"
 )
 _CALL = re.compile(r"  (?P<file>(?:[A-Za-z]:)?[^:]+):(?P<line>\d+) \([^)]*\)")
-_GET = re.compile(r"^Get it: (.*)$", re.MULTILINE)
+_GET = re.compile(r"(?:^|\s+)Get it:\n+ +(?P<command>\S.*)$", re.MULTILINE)
 
 
 def starts_cmake_message(line: str) -> bool:
@@ -64,14 +66,22 @@ class CMakeMessage:
         return True
 
     @property
-    def text(self) -> str:
-        """The paragraphs, without the command that gets something."""
-        return re.sub(r"\n{3,}", "\n\n", _GET.sub("", self._whole)).strip()
+    def problems(self) -> list[tuple[str, str]]:
+        """What is wrong, and the command that gets what is missing, or "".
 
-    @property
-    def hint(self) -> str:
-        match = _GET.search(self._whole)
-        return f"get it: {match[1]}" if match is not None else ""
+        A message with several commands is one problem for each: the paragraph that ends with "Get it:".
+        """
+        commands = list(_GET.finditer(self._whole))
+        if len(commands) <= 1:
+            hint = f"get it: {commands[0]['command']}" if commands else ""
+            return [(re.sub(r"\n{3,}", "\n\n", _GET.sub("", self._whole)).strip(), hint)]
+        problems = []
+        start = 0
+        for match in commands:
+            text = self._whole[start : match.start()].strip().rpartition("\n")[2]
+            problems.append((text, f"get it: {match['command']}"))
+            start = match.end()
+        return problems
 
     @property
     def _whole(self) -> str:
@@ -80,7 +90,7 @@ class CMakeMessage:
         go_on = False
         for line in (line.rstrip() for line in self._lines):
             filled = bool(line) and not line.startswith(" ")
-            if filled and go_on and not line.startswith("Get it: "):
+            if filled and go_on:
                 paragraphs[-1] += f" {line}"
             else:
                 paragraphs.append(line)

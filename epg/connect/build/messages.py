@@ -57,7 +57,7 @@ _MICROSOFT = re.compile(
 _REFERENCE = re.compile(
     r"(?:\S*\bld(?:\.\w+)?(?:\.exe)?: )?(?:(?:[A-Za-z]:)?[^:\n]+\.o(?:bj)?:)?"
     + _FILE
-    + r":(?:(?P<line>\d+)|\([^)]*\)): "
+    + r":(?:(?P<line>\d+)(?::\([^)]*\))?|\([^)]*\)): "  # binutils 2.44: file.c:4:(.text+0x5)
     r"(?P<text>(?:undefined reference to|multiple definition of|relocation truncated) .*)"
 )
 _LINKER = re.compile(r"(?:\S*[\\/])?(?:[\w.]+-)*ld(?:\.\w+)?(?:\.exe)?: (?:(?P<severity>error|warning): )?(?P<text>.*)")
@@ -67,6 +67,8 @@ _DEVICETREE = re.compile(
 _DTC = re.compile(r"Error: (?P<file>[^:\s]+):(?P<line>\d+)\.(?P<column>\d+)(?:-[\d.]+)? (?P<text>.*)")
 _KCONFIG = re.compile(r"(?P<severity>error|warning): (?P<text>.*)")
 _PROGRAM = re.compile(r"(?:ninja: (?:error|fatal): |g?make(?:\[\d+\])?: \*\*\* |(?:FATAL )?ERROR: )(?P<text>.*)")
+_MAKE_STOPS = re.compile(r"g?make(?:\[\d+\])?: \*\*\* (?:\[.*\] (?:Error \d+|Terminated|Interrupt)|Waiting for )")
+"""Make says so after each command that has failed, for each Makefile around it."""
 _DRIVER = re.compile(r"(?:\S*[\\/])?[\w.+-]+: (?:fatal )?error: (?P<text>.*)")  # collect2: error: ..., cc1: error: ...
 _CAUSED = re.compile(
     r"was not generated; the messages above say why|subcommand failed|failed with return code|Child return code"
@@ -148,7 +150,8 @@ class Messages:
             if not re.search(r"in function [`'\"‘].*:$", line):
                 self._add(Message(match["severity"] or _severity_of(match["text"]), _without_path(match["text"])))
         elif match := _DRIVER.fullmatch(line) or _PROGRAM.fullmatch(line):
-            self._add(Message("error", match["text"]))
+            if not _MAKE_STOPS.match(line):
+                self._add(Message("error", match["text"]))
         else:
             return False
         return True
@@ -191,7 +194,8 @@ class Messages:
             if block.read(line):
                 return True
             file, number = block.place(self._folders[0])
-            self._add(Message(block.severity, block.text, self._place(file), number, hint=block.hint))
+            for text, hint in block.problems:
+                self._add(Message(block.severity, text, self._place(file), number, hint=hint))
             return False
 
         self._more = more
