@@ -130,8 +130,7 @@ function(_epg_check_version json folder version wanted)
     if(NOT none)
       string(REPLACE "${tested}" "${wanted}" remedy "${remedy}")
     endif()
-    message(FATAL_ERROR "This project is written for version ${wanted} of the ${title}, and the one in ${folder} is ${version}.
-${remedy}
+    message(FATAL_ERROR "This project is written for version ${wanted} of the ${title}, and the one in ${folder} is ${version}. ${remedy}
 Or write ${version} in place of ${wanted} in CMakeLists.txt.")
   endif()
 endfunction()

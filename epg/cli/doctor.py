@@ -10,7 +10,7 @@ import importlib.util
 import os
 import platform
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from importlib import metadata
 from pathlib import Path
@@ -23,7 +23,7 @@ from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
 from epg.load.find_tool import Finding, Surroundings, find_tool, read_cmake_cache
 from epg.load.remedy import command_for, package_manager, privileged
-from epg.load.tools import load_tools
+from epg.load.tools import Tool, load_tools
 
 HOST = "host"
 
@@ -54,6 +54,7 @@ class Item:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--build", type=Path, metavar="FOLDER", help="a build folder whose CMake variables count too")
+    parser.add_argument("--project", type=Path, metavar="FOLDER", help="only what the targets of this project need")
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
@@ -61,12 +62,17 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     tools = load_tools(targets_roots(user_roots()), diagnostics)
     diagnostics.stop_if_errors()
     where = Surroundings.here(bootstrap.cache_folder(), cmake)
+    found = {
+        name: _item(find_tool(tool, where), where, tools) for name, tool in _wanted(tools, options.project).items()
+    }
+    if options.project:
+        return _report_project(list(found.values()), options.json)
     items = [
         Item("python", "Python", HOST, True, "found", platform.python_version(), sys.executable),
         *(_package("generator", *package, required=True) for package in bootstrap.REQUIREMENTS["generator"].values()),
         *(_package("plot", *package, required=False) for package in bootstrap.REQUIREMENTS["plot"].values()),
         *(_package("ros", *package, required=False) for package in bootstrap.REQUIREMENTS["ros"].values()),
-        *(_item(find_tool(tool, where), where.cache) for tool in tools.values()),
+        *found.values(),
     ]
     host = all(item.good for item in items if item.needed_for == HOST and item.required)
     if options.json:
@@ -81,6 +87,27 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         print("\n".join(_lines(items)))
         print("\nthe host target can be built" if host else "\nthe host target cannot be built")
     return 0 if host else 4
+
+
+def _wanted(tools: Mapping[str, Tool], project: Path | None) -> Mapping[str, Tool]:
+    """All tools, or those that the targets of a project need."""
+    if project is None:
+        return tools
+    bootstrap.ensure()  # the project's files are YAML
+    from epg.connect.build.tools import tools_of_project
+
+    return {name: tools[name] for name in tools_of_project(project) if name in tools}
+
+
+def _report_project(items: list[Item], as_json: bool) -> int:
+    """What one project needs; a tool that is missing there is no bar to other projects."""
+    if as_json:
+        sys.stdout.write(to_json({"items": [asdict(item) for item in items]}))
+    elif items:
+        print("\n".join(_lines(items)))
+    else:
+        print("no target was found whose files can be read: 'epg doctor' shows all tools")
+    return 0 if all(item.good for item in items) else 4
 
 
 def _home() -> str:
@@ -120,15 +147,15 @@ def _package(group: str, name: str, oldest: tuple[int, ...], *, required: bool) 
     return Item(name.lower(), name, HOST, required, "old" if old else "missing", old, note=note, remedy=remedy)
 
 
-def _item(finding: Finding, cache: Path) -> Item:
+def _item(finding: Finding, where: Surroundings, tools: Mapping[str, Tool]) -> Item:
     tool = finding.tool
     if finding.status == "wrong":
         wanted = f"no {tool.holds}" if tool.holds else f"no {' or '.join(tool.programs)}"
         note, remedy = f"there is {wanted} there", f"correct {finding.source}, or leave it unset"
     elif finding.status == "missing":
-        note, remedy = f"looked in {', '.join(finding.looked)}; get it with:", command_for(tool, cache)
+        note, remedy = f"looked in {', '.join(finding.looked)}; get it with:", command_for(tool, where, tools)
     elif finding.status == "old":
-        note, remedy = f"{tool.oldest} or newer is needed; get it with:", command_for(tool, cache)
+        note, remedy = f"{tool.oldest} or newer is needed; get it with:", command_for(tool, where, tools)
     else:
         differs = tool.tested and finding.version and not f"{finding.version}.".startswith(f"{tool.tested}.")
         note, remedy = f"tested with {tool.tested}" if differs else "", ""

@@ -23,7 +23,8 @@ class Middleware:
 
     ``platforms`` are those that it offers itself to, with transports, besides those that name it.
     ``connection`` is "stream" (bytes, by a transport that the platform has), "own" or "none".  ``uses`` names what the
-    generator makes for it: "node", "signals", "parameters", "capture", "jog".  ``symbol`` is its ``epg_middleware_t``
+    generator makes for it: "node", "signals", "parameters", "capture", "jog".  ``needs`` are tools by name, besides
+    those of the platform.  ``symbol`` is its ``epg_middleware_t``
     in C, empty when nothing runs.  ``headers`` and ``sources`` are files in ``folder``.  ``stack`` in bytes.
     """
 
@@ -32,6 +33,7 @@ class Middleware:
     connection: str
     platforms: Mapping[str, tuple[str, ...]]
     uses: tuple[str, ...]
+    needs: tuple[str, ...]
     options: tuple[KindParameter, ...]
     symbol: str
     headers: tuple[str, ...]
@@ -66,6 +68,7 @@ def make_middleware(node: Node, folder: Path) -> Middleware:
         connection=text_of(node, "connection"),
         platforms=MappingProxyType({name: texts_of(node, "platforms", name) for name in map_of(node, "platforms")}),
         uses=texts_of(node, "uses"),
+        needs=texts_of(node, "needs"),
         options=make_parameters(node.get("options")),
         symbol=text_of(node["driver"], "symbol") if "driver" in node else "",
         headers=texts_of(node, "driver", "headers"),

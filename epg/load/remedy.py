@@ -3,22 +3,38 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
-from pathlib import Path
+from collections.abc import Mapping
 
+from epg.load.find_tool import Surroundings, find_tool
 from epg.load.tools import Tool
 
 MANAGERS = {"apt": "apt-get", "dnf": "dnf", "pacman": "pacman", "brew": "brew", "winget": "winget"}
 """Package managers, and the program that shows that a computer has them."""
 
 
-def command_for(tool: Tool, cache: Path) -> str:
-    """The command that gets ``tool``; EPG's ``cache`` is where some of them go."""
+def command_for(tool: Tool, where: Surroundings, tools: Mapping[str, Tool]) -> str:
+    """The command that gets ``tool``; it may name EPG's cache and the folders of other ``tools``."""
     manager = package_manager()
     command = tool.get.get(manager) if manager else None
     prefix = privileged(manager) if command else ""
-    folder = f'"{cache.as_posix()}"' if " " in cache.as_posix() else cache.as_posix()
-    return prefix + (command or tool.get["any"]).replace("{cache}", folder)
+
+    def folder(match: re.Match[str]) -> str:
+        path = where.cache.as_posix() if match[1] == "cache" else _folder_of(tools[match[1]], where)
+        # Quotes around a part of a word do for a shell.
+        return f'"{path}"' if " " in path else path
+
+    names = "|".join(("cache", *map(re.escape, tools)))
+    return prefix + re.sub(rf"\{{({names})\}}", folder, command or tool.get["any"])
+
+
+def _folder_of(tool: Tool, where: Surroundings) -> str:
+    """Where ``tool`` is, or where its command will put it."""
+    found = find_tool(tool, where)
+    if found.status == "found" and found.path is not None:
+        return found.path.as_posix()
+    return (where.cache / tool.cached.replace("*", tool.tested)).as_posix()
 
 
 def package_manager() -> str:

@@ -109,6 +109,38 @@ def test_commands_put_sdks_into_the_cache(bare: Path, capsys: pytest.CaptureFixt
     assert items["pico_sdk"]["remedy"].endswith(f" {(bare / 'cache').as_posix()}/pico-sdk-2.2.0")
 
 
+def test_picotool_is_built_with_an_sdk_and_with_usb(bare: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Its build needs the SDK's folder, and without libusb `picotool load` finds no board."""
+    program(bare, "apt-get", "")
+    _, items, _ = doctor(capsys)
+    sdk = (bare / "cache/pico-sdk-2.2.0").as_posix()
+    assert items["pico_sdk"]["remedy"].endswith(sdk)
+    assert f" -DPICO_SDK_PATH={sdk} " in items["picotool"]["remedy"]
+    assert " libusb-1.0-0-dev && " in items["picotool"]["remedy"]
+    assert "NO_LIBUSB" not in items["picotool"]["remedy"]
+    here = bare / "home/.pico-sdk/sdk/2.1.1"
+    here.mkdir(parents=True)
+    (here / "pico_sdk_init.cmake").touch()
+    _, items, _ = doctor(capsys)
+    assert f" -DPICO_SDK_PATH={here.as_posix()} " in items["picotool"]["remedy"]
+
+
+def test_one_project(bare: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (bare / "CMakeLists.txt").write_text(
+        f"project(x C)\nepg_add_target(jiwy TCF rpi_pico_freertos_jiwy.tcf MODEL {ROOT}/examples/jiwy/model\n"
+        f"  BINDINGS {ROOT}/examples/jiwy/jiwy.bindings.yaml SET communication.middleware=xrce)\n"
+    )
+    assert main(["doctor", "--project", str(bare)]) == 4
+    text = capsys.readouterr().out
+    assert "Micro-CDR" in text and "FreeRTOS kernel" in text and "Zephyr" not in text
+    assert main(["doctor", "--json", "--project", str(bare)]) == 4
+    items = {item["name"]: item for item in json.loads(capsys.readouterr().out)["items"]}
+    assert {"arm_gcc", "pico_sdk", "freertos_kernel", "micro_cdr", "micro_xrce_dds_client"} <= set(items)
+    (bare / "CMakeLists.txt").write_text("project(x C)\n")
+    main(["doctor", "--project", str(bare)])
+    assert "no target was found" in capsys.readouterr().out
+
+
 def test_a_variable_that_leads_nowhere(
     bare: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

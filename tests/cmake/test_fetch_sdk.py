@@ -57,6 +57,7 @@ class World:
 include("{ROOT.as_posix()}/cmake/EPGVersions.cmake")
 include("{ROOT.as_posix()}/cmake/EPGSdk.cmake")
 include("{ROOT.as_posix()}/cmake/EPGFetch.cmake")
+include("{ROOT.as_posix()}/cmake/EPGMissing.cmake")
 function(_epg_data_folder result)
   set(${{result}} "{self.data.as_posix()}" PARENT_SCOPE)
 endfunction()
@@ -105,7 +106,7 @@ def test_builds_at_the_same_time_fetch_it_once(world: World) -> None:
 def test_what_has_another_hash_is_not_taken(world: World) -> None:
     world.tool("0123456789012345678901234567890123456789")
     output = world.find()
-    assert "that has failed" in output and "found '' '' 'The Thing was not found.\nGet it: get the thing'" in output
+    assert "that has failed" in output and "found '' '' 'Thing was not found. Get it:\n  get the thing'" in output
     assert [path.name for path in world.cache.iterdir()] == ["Thing-1.2.3.lock"]
 
 
@@ -118,7 +119,7 @@ def test_a_folder_that_is_named_goes_first(world: World, tmp_path: Path) -> None
 
 def test_it_can_be_forbidden(world: World) -> None:
     output = world.find("-DFETCHCONTENT_FULLY_DISCONNECTED=ON")
-    assert "fetching" not in output and "The Thing was not found" in output
+    assert "fetching" not in output and "Thing was not found" in output
     assert not world.cache.exists()
 
 

@@ -189,10 +189,11 @@ def test_an_sdk_that_is_missing_comes_with_the_command_that_gets_it(
     monkeypatch.setenv("EPG_CACHE", str(tmp_path / "cache"))
     monkeypatch.delenv("PICO_SDK_PATH", raising=False)
     state = run(job_of(pico)).state()
-    (found,) = state["messages"]
-    assert found["message"] == "The Raspberry Pi Pico SDK was not found."
+    found, picotool, *_ = state["messages"]
+    assert found["message"] == "Raspberry Pi Pico SDK was not found."
+    assert picotool["message"].startswith("picotool was not found"), "all that is missing is said at once"
     assert found["hint"].startswith("get it: git clone --depth 1 --branch 2.2.0 ")
-    assert found["hint"].endswith(f" {tmp_path}/cache/pico-sdk-2.2.0"), "the lines that CMake has filled are one"
+    assert found["hint"].endswith(f" {tmp_path}/cache/pico-sdk-2.2.0"), "the command is whole"
     assert found["file"].startswith(str(pico)), "a file of the project, not of EPG"
 
 

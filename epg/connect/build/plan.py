@@ -58,7 +58,7 @@ def make_plan(job: Job, target: Target | None, roots: Sequence[Path]) -> Plan:
     west = job.built_by == "west"
     names = (*ALWAYS, *(["west", "zephyr"] if west and not cache else []))
     findings = find_tools(names, roots, cache)
-    lacking = tuple(problem for finding in findings if (problem := missing(finding)) is not None)
+    lacking = tuple(missing(findings, roots, cache))
     if lacking:
         return Plan(source, build, (), {}, cache, lacking)
     programs = {finding.tool.name: str(finding.path) for finding in findings}

@@ -5,16 +5,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from epg.bootstrap import cache_folder
+from epg.connect.projects import find_jobs
 from epg.diagnostics import Diagnostics
 from epg.load.find_tool import Finding, Surroundings, find_tool
 from epg.load.hardware import Platform
 from epg.load.remedy import command_for
 from epg.load.tools import load_tools
+from epg.project import load_configuration, make_catalog
 
 ALWAYS = ("cmake", "build_program")
 """What every build needs."""
@@ -42,19 +44,38 @@ def missing_tools(
 ) -> list[MissingTool]:
     """What a build for ``platform`` needs and this computer has not."""
     names = platform.needs if platform is not None and platform.needs else ALWAYS
-    return [problem for finding in find_tools(names, roots, cmake) if (problem := missing(finding)) is not None]
+    return missing(find_tools(names, roots, cmake), roots, cmake)
 
 
-def missing(finding: Finding) -> MissingTool | None:
-    """What is wrong with a tool, or None."""
-    tool = finding.tool
-    get = f"get it: {command_for(tool, cache_folder())}"
-    if finding.status == "wrong":
-        message = f"the {finding.source} leads to no {tool.title}: {finding.path}"
-        return MissingTool(tool.name, tool.title, message, f"correct {finding.source}, or leave it unset")
-    if finding.status == "old":
-        message = f"{tool.title} {finding.version} is too old: {tool.oldest} or newer is needed"
-        return MissingTool(tool.name, tool.title, message, get)
-    if finding.status == "missing":
-        return MissingTool(tool.name, tool.title, f"{tool.title} was not found", get)
-    return None
+def missing(
+    findings: Iterable[Finding], roots: Sequence[Path], cmake: Mapping[str, str] | None = None
+) -> list[MissingTool]:
+    """What is wrong with the tools that were looked for."""
+    tools = load_tools(roots, Diagnostics())
+    where = Surroundings.here(cache_folder(), cmake)
+    problems = []
+    for finding in findings:
+        tool = finding.tool
+        if finding.status == "wrong":
+            message = f"the {finding.source} leads to no {tool.title}: {finding.path}"
+            problems.append(MissingTool(tool.name, tool.title, message, f"correct {finding.source}, or leave it unset"))
+        elif finding.status in ("old", "missing"):
+            message = f"{tool.title} was not found"
+            if finding.status == "old":
+                message = f"{tool.title} {finding.version} is too old: {tool.oldest} or newer is needed"
+            get = f"get it: {command_for(tool, where, tools)}"
+            problems.append(MissingTool(tool.name, tool.title, message, get))
+    return problems
+
+
+def tools_of_project(folder: Path) -> list[str]:
+    """The names of the tools that the targets of the project in ``folder`` need, as far as its files say so."""
+    names: set[str] = set()
+    for job in find_jobs(folder, Diagnostics()):
+        catalog = make_catalog(job.request.roots, Diagnostics())
+        configuration = load_configuration(job.request, catalog, Diagnostics())
+        if configuration is not None:
+            names.update(configuration.target.platform.needs)
+            for middleware in configuration.communication.middlewares:
+                names.update(middleware.needs)
+    return sorted(names)

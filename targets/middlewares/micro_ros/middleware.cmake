@@ -4,7 +4,7 @@
 function(_epg_middleware_micro_ros library)
   _epg_find_sdk(folder micro_ros)
   if(NOT folder)
-    message(FATAL_ERROR "Middleware 'micro_ros' needs libmicroros.  ${folder_PROBLEM}")
+    message(FATAL_ERROR "Middleware 'micro_ros' needs libmicroros. ${folder_PROBLEM}")
   endif()
   if(NOT EXISTS "${folder}/libmicroros.a")
     message(FATAL_ERROR "Middleware 'micro_ros' needs libmicroros: there is no ${folder}/libmicroros.a")

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import subprocess
 import sys
 from pathlib import Path
+
+import pytest
 
 from tests.emulator.toolchain import ROOT, arm_gcc, pico_sdk, skip_if_missing, tool
 from tests.platforms.pico.images import freertos_kernel, skip_unless_buildable
@@ -27,6 +30,7 @@ EXECUTABLE = """
 epg_add_executable(jiwy_firmware EPG::jiwy)
 """
 NONE = "communication.middleware=none communication.transport=null communication.console=null"
+XRCE = "communication.middleware=xrce"
 CONSOLE = "communication.middleware=console"
 
 
@@ -35,7 +39,11 @@ def target(platform: str = "bare_metal", communication: str = NONE) -> str:
 
 
 def configure(folder: Path, text: str, *arguments: str, bare: bool = False, **environment: str) -> str:
-    """What CMake prints for a project; ``bare``: on a computer on which nothing is installed in its usual place."""
+    """What CMake prints for a project, in one line; ``bare``: nothing is installed in its usual place."""
+    return " ".join(output(folder, text, *arguments, bare=bare, **environment).split())
+
+
+def output(folder: Path, text: str, *arguments: str, bare: bool = False, **environment: str) -> str:
     (folder / "CMakeLists.txt").write_text(
         f"cmake_minimum_required(VERSION 3.22)\ninclude({ROOT}/cmake/epg_import.cmake)\n{text}", encoding="utf-8"
     )
@@ -49,7 +57,7 @@ def configure(folder: Path, text: str, *arguments: str, bare: bool = False, **en
         command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=variables | environment
     )
     assert (done.returncode == 0) == ("CMake Error" not in done.stdout)
-    return " ".join(done.stdout.split())
+    return done.stdout
 
 
 def test_a_project_without_the_sdk(tmp_path: Path) -> None:
@@ -63,7 +71,7 @@ def test_a_project_without_the_sdk(tmp_path: Path) -> None:
 def test_no_sdk_anywhere(tmp_path: Path) -> None:
     skip_if_missing(arm_gcc)
     said = configure(tmp_path, SDK + target(), bare=True)
-    assert "The Raspberry Pi Pico SDK was not found. Get it: git clone --depth 1 --branch 2.2.0" in said
+    assert "Raspberry Pi Pico SDK was not found. Get it: git clone --depth 1 --branch 2.2.0" in said
 
 
 def test_a_variable_that_leads_elsewhere(tmp_path: Path) -> None:
@@ -83,6 +91,45 @@ def test_an_sdk_that_is_too_old(tmp_path: Path) -> None:
     assert "is 1.5.1; EPG needs 2.0.0 or newer. Get it: git clone" in said
 
 
+PARTS = ("git", "arm_gcc", "pico_sdk", "picotool", "freertos_kernel", "micro_cdr", "micro_xrce_dds_client")
+
+
+@pytest.mark.parametrize("cache", ["cache", "my cache"])
+def test_all_that_is_missing_is_said_at_once(cache: str, tmp_path: Path) -> None:
+    """On a bare computer: each part with the command that `epg doctor` has for it, on one line."""
+    path = tmp_path / "bin"
+    path.mkdir()
+    for program in ("cmake", "ninja", "id"):
+        (path / program).symlink_to(shutil.which(program) or "")
+    bare = {"PATH": str(path), "EPG_CACHE": str(tmp_path / cache)}
+    arguments = ["-DCMAKE_FIND_USE_CMAKE_SYSTEM_PATH=FALSE", "-DFETCHCONTENT_FULLY_DISCONNECTED=ON"]
+    said = output(tmp_path, SDK + target("freertos", XRCE), *arguments, bare=True, **bare)
+    lines = [line.strip() for line in said.splitlines()]
+    environment = {"HOME": str(tmp_path / "home"), "EPG_NO_INSTALL": "1", **bare}
+    command = [sys.executable, str(ROOT / "epg"), "doctor", "--json"]
+    items = json.loads(subprocess.run(command, capture_output=True, text=True, env=environment).stdout)["items"]
+    remedies = {item["name"]: item["remedy"] for item in items}
+    assert [lines.count(remedies[name]) for name in PARTS] == [1] * len(PARTS), said
+    assert said.count("CMake Error") == 1
+
+
+def test_what_the_target_needs_besides_the_sdk_is_said_at_once(tmp_path: Path) -> None:
+    skip_unless_buildable("bare_metal")
+    two = target("freertos", XRCE) + target("bare_metal", XRCE).replace("(jiwy", "(other")
+    arguments = [f"-DPICO_SDK_PATH={pico_sdk()}", "-DFETCHCONTENT_FULLY_DISCONNECTED=ON", *picotool()]
+    said = configure(tmp_path, SDK + two + EXECUTABLE, *arguments, bare=True)
+    for part in ("FreeRTOS kernel", "Micro-CDR", "Micro XRCE-DDS client"):
+        assert said.count(f"{part} was not found. Get it: git clone") == 1, said
+    assert said.count("CMake Error") == 1
+
+
+def test_picotool_is_built_with_the_sdk_that_is_there(tmp_path: Path) -> None:
+    """Its build stops without an SDK."""
+    skip_if_missing(arm_gcc, pico_sdk)
+    arguments = [f"-DPICO_SDK_PATH={pico_sdk()}", "-DFETCHCONTENT_FULLY_DISCONNECTED=ON"]
+    assert f" -DPICO_SDK_PATH={pico_sdk()} " in configure(tmp_path, SDK, *arguments, bare=True)
+
+
 def test_no_compiler(tmp_path: Path) -> None:
     skip_if_missing(pico_sdk)
     path = tmp_path / "bin"
@@ -91,7 +138,7 @@ def test_no_compiler(tmp_path: Path) -> None:
         (path / program).symlink_to(shutil.which(program) or "")
     arguments = [f"-DPICO_SDK_PATH={pico_sdk()}", "-DCMAKE_FIND_USE_CMAKE_SYSTEM_PATH=FALSE"]
     said = configure(tmp_path, SDK, *arguments, bare=True, PATH=str(path))
-    assert "The Arm GNU toolchain was not found. Get it: " in said
+    assert "Arm GNU toolchain was not found. Get it: " in said
 
 
 def test_another_board(tmp_path: Path) -> None:
@@ -106,7 +153,8 @@ def test_no_kernel(tmp_path: Path) -> None:
     said = configure(
         tmp_path, SDK + target("freertos") + EXECUTABLE, f"-DPICO_SDK_PATH={pico_sdk()}", *picotool(), bare=True
     )
-    assert "epg_add_target(jiwy): The FreeRTOS kernel was not found. Get it: git clone" in said
+    assert "epg_add_target(jiwy): this computer lacks parts that the target is built with." in said
+    assert "FreeRTOS kernel was not found. Get it: git clone" in said
     assert said.count("CMake Error") == 1
 
 
@@ -125,7 +173,7 @@ def test_no_picotool_and_no_network(tmp_path: Path) -> None:
     skip_unless_buildable("bare_metal")
     arguments = [f"-DPICO_SDK_PATH={pico_sdk()}", "-DFETCHCONTENT_FULLY_DISCONNECTED=ON"]
     said = configure(tmp_path, SDK + target() + EXECUTABLE, *arguments, bare=True)
-    assert "The picotool was not found. Get it:" in said
+    assert "picotool was not found (without one the Pico SDK" in said
     assert "-DPICO_NO_PICOTOOL=1" in said
 
 
