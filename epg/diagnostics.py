@@ -31,7 +31,7 @@ class Diagnostic:
     """
 
     id: str
-    severity: str  # "error" or "warning"
+    severity: str  # "error", "warning" or "note": something to know that is right as it is
     span: Span
     message: str
     hint: str = ""
@@ -57,6 +57,9 @@ class Diagnostics:
         self, id: str, span: Span, message: str, *, hint: str = "", notes: Iterable[Note] = (), about: str = ""
     ) -> None:
         self._add(Diagnostic(id, "warning", span, message, hint, tuple(notes), about))
+
+    def note(self, id: str, span: Span, message: str, *, hint: str = "") -> None:
+        self._add(Diagnostic(id, "note", span, message, hint))
 
     def add_all(self, others: Iterable[Diagnostic]) -> None:
         """Adds what was said elsewhere, each once."""

@@ -131,7 +131,8 @@ def files_of_model(path: Path, model: Model | None) -> Iterator[Path]:
     yield path
     if model is not None:
         yield from model.files
-        yield model.directory
+        yield from model.twins
+        yield from (model.directory, *model.searched)
         return
     count = 0
     for folder in searched_folders(path) if path.is_dir() else ():

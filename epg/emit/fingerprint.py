@@ -55,9 +55,12 @@ def model_hash(model: Model, parameters: Mapping[str, float]) -> Code:
 
 
 def _add_files(digest: hashlib._Hash, label: str, folder: Path, files: Iterable[Path]) -> None:
-    named = {path.relative_to(folder).as_posix() if path.is_relative_to(folder) else path.name: path for path in files}
-    for name, path in sorted(named.items()):
-        _add(digest, f"{label}/{name}", path.read_bytes().replace(b"\r\n", b"\n"))
+    named = [
+        (path.relative_to(folder).as_posix() if path.is_relative_to(folder) else path.name, path) for path in files
+    ]
+    read = ((name, path.read_bytes().replace(b"\r\n", b"\n")) for name, path in named)
+    for name, data in sorted(read):  # files of one name may lie in several folders outside of this one
+        _add(digest, f"{label}/{name}", data)
 
 
 def _add(digest: hashlib._Hash, name: str, data: bytes) -> None:

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from tests.cmake.project import ROOT, Project
+from tests.models.exports import Export
 
 SITECUSTOMIZE = 'import os\nwith open(os.environ["PYTHON_STARTS"], "a") as log:\n    log.write("start\\n")\n'
 
@@ -129,6 +130,31 @@ def test_a_file_that_was_not_there_and_now_comes_first_is_noticed(robot: Watched
     (robot.project.source / "my_robot.tcf").unlink()
     assert robot.configure() > 0
     assert '"nearer"' not in (robot.outputs / "robot/robot_app.c").read_text()
+
+
+def test_files_beside_a_models_folder_are_noticed(robot: Watched) -> None:
+    source = robot.project.source
+    pan = Export().write(source / "pan")
+    (source / "common").mkdir()
+    shutil.move(pan / "xxtypes.h", source / "common" / "xxtypes.h")
+    robot.replace(
+        "CMakeLists.txt", "find_package(EPG REQUIRED)", "find_package(EPG REQUIRED)\nepg_add_model(pan MODEL pan)"
+    )
+    for starts in (True, False):
+        assert (robot.configure() > 0) == starts
+        assert "taken from '../common', as the model's folder lacks them: xxtypes.h" in robot.output
+    robot.replace("common/xxtypes.h", "double", "long double")
+    assert robot.configure() > 0
+    assert robot.configure() == 0
+    robot.write(source / "include" / "xxtypes.h", (source / "common" / "xxtypes.h").read_text())  # says the same
+    assert robot.configure() > 0
+    assert robot.configure() == 0
+    robot.replace("include/xxtypes.h", "long double", "float")
+    assert robot.configure(check=False) > 0
+    assert "beside it lie 2 that differ" in robot.output
+    robot.write(pan / "xxtypes.h", (source / "common" / "xxtypes.h").read_text())
+    assert robot.configure() > 0
+    assert "taken from" not in robot.output
 
 
 def test_a_template_of_a_users_kind_is_noticed(robot: Watched) -> None:

@@ -94,7 +94,7 @@ def test_message(
         expected = output.err
     assert output.err == expected
     assert status == (1 if ": error: " in expected else 0)
-    assert ": error: " in expected or ": warning: " in expected
+    assert re.search(r": (error|warning|note): .* \[[a-z0-9.-]+\]$", expected, re.MULTILINE)
 
 
 def test_every_kind_of_message_has_a_case() -> None:
@@ -106,7 +106,7 @@ def test_every_kind_of_message_has_a_case() -> None:
             continue
         ids |= set(
             re.findall(
-                r"""(?:error|warning)\(\s*["']([a-z0-9.]+(?:-[a-z0-9.]+)+)["']""", path.read_text(encoding="utf-8")
+                r"""(?:error|warning|note)\(\s*["']([a-z0-9.]+(?:-[a-z0-9.]+)+)["']""", path.read_text(encoding="utf-8")
             )
         )
     shown = {

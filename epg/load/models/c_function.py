@@ -191,6 +191,8 @@ class _Importer:
                 renames=self._renames(),
             ),
             finish_time=finite(finish),
+            searched=self.linked.searched,
+            twins=self.linked.twins,
         )
         mine = self.diagnostics.error_count
         if self.metadata.tokens and cross_check(model, self._prefix(), self.metadata, self.diagnostics):

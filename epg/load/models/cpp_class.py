@@ -114,6 +114,8 @@ class _Importer:
                 places=tuple(tuple(self._place(line) for line in group) for group in places),
             ),
             finish_time=finite(finish),
+            searched=self.linked.searched,
+            twins=self.linked.twins,
         )
         if tokens and cross_check(model, self._prefix(), self.metadata, self.diagnostics):
             check_tokens(tokens, self.diagnostics)

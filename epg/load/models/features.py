@@ -9,6 +9,7 @@ from pathlib import Path
 
 from epg.diagnostics import Diagnostics, Note
 from epg.load.models.c_code import KEYWORDS, Code, Function, function_head
+from epg.load.models.declarations import outside_bodies
 from epg.load.models.identifiers import words
 from epg.load.models.link import Linked
 from epg.load.models.tokens import Tokens
@@ -162,7 +163,7 @@ class _Declarations:
         if name in self._own.get(path, ()) or any(name in header for header in self._headers):
             return True
         if path not in self._prototypes:
-            statements = (s for outside in _outside_bodies(code) for s in re.split(r"[{}]|(?<=;)", outside))
+            statements = (s for outside in outside_bodies(code) for s in re.split(r"[{}]|(?<=;)", outside))
             declared = (s for s in statements if s.rstrip("; \t\n").endswith(")") and s.endswith(";"))
             self._prototypes[path] = {match[1] for s in declared for match in _CALLED.finditer(s)}
         return name in self._prototypes[path]
@@ -182,14 +183,6 @@ def _check_declared(
     diagnostics.error(
         "model-undeclared", span, message, hint="include the header that declares it, as 20-sim exports it"
     )
-
-
-def _outside_bodies(code: Code) -> Iterable[str]:
-    at = 0
-    for function in code.functions:
-        yield code.file.code[at : function.body_start]
-        at = function.body_end
-    yield code.file.code[at:]
 
 
 _HEAP_HINT = "targets have no heap after start: use arrays of fixed size"

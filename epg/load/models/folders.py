@@ -23,7 +23,7 @@ def searched_folders(directory: Path, depth: int = DEPTH) -> list[Path]:
         except OSError:
             return found
         for entry in entries:
-            if _may_hold_sources(entry):
+            if may_hold_sources(entry):
                 found.extend(searched_folders(entry, depth - 1))
     return found
 
@@ -41,7 +41,8 @@ def source_files(directory: Path, suffixes: Iterable[str], depth: int = DEPTH) -
     return found
 
 
-def _may_hold_sources(entry: Path) -> bool:
+def may_hold_sources(entry: Path) -> bool:
+    """Whether a folder is searched: no link, no hidden folder, none of an IDE or a build."""
     if entry.name.startswith(".") or entry.name.lower() in _SKIPPED or entry.is_symlink() or not entry.is_dir():
         return False
     return not any((entry / mark).exists() for mark in _BUILD_MARKS)

@@ -1,37 +1,31 @@
-"""Which files of a folder belong to one model: those that its functions need, found as a linker does.
+"""Which files belong to one model: those that its functions need, found as a linker does.
 
+They are looked for in the model's folder first.  What is not there may lie beside it: see ``neighbours.py``.
 Exports carry demo programs, FMI functions and unused helpers, developers put drivers and a second model beside them:
 following the names that are used leaves all of that out without knowing what it is called.
 """
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics, Note
-from epg.load.models.c_code import Code, Function, Include, parse_code
-from epg.load.models.folders import source_files
+from epg.load.models.c_code import Code, Function, parse_code
+from epg.load.models.declarations import declared_names, open_classes
+from epg.load.models.folders import searched_folders, source_files
+from epg.load.models.headers import Headers, Shim
+from epg.load.models.neighbours import SOURCE_FOLDERS, Neighbours, all_alike, report_taken
 from epg.load.models.source_file import SourceFile, read_source
-from epg.load.text_file import is_file
 from epg.source import Span
 
 _FMI_FILE = re.compile(r"fmi\w*functions?\w*\.c$", re.IGNORECASE)
 _DEMO_FILE = re.compile(r"(test_.*|xxmain|sketch_.*)\.\w+$", re.IGNORECASE)
 _IDENTIFIER = re.compile(r"[A-Za-z_]\w*")
-
-#: headers of an export that declare nothing a model needs unless it calls their functions
-_OPTIONAL_HEADER = re.compile(r"motionprofiles|eulerangles|\w*(table2d|matrix|inverse|funcs)\w*", re.IGNORECASE)
-
-
-@dataclass(frozen=True)
-class Shim:
-    """A header that the export includes as ``name`` and that has another case, ``target``, or does not exist."""
-
-    name: str
-    target: Path | None
+_INCLUDE_FOLDERS = ("include", "includes", "inc")
 
 
 @dataclass(frozen=True)
@@ -42,6 +36,10 @@ class Linked:
     headers: tuple[Code, ...]
     include_dirs: tuple[Path, ...]
     shims: tuple[Shim, ...]
+    searched: tuple[Path, ...] = ()
+    """Folders outside of the model's, of which the list of files matters."""
+    twins: tuple[Path, ...] = ()
+    """Files that would make another model, or none, if they changed, though they are no part of it."""
 
     @property
     def main(self) -> Code:
@@ -91,58 +89,135 @@ def is_program(path: Path) -> bool:
 
 
 def link(main: Code, suffixes: Iterable[str], diagnostics: Diagnostics) -> Linked | None:
-    """The files that ``main`` needs; None after reporting an ambiguous definition or a missing header."""
-    directory = main.file.path.parent
-    pool = _pool(main, directory, suffixes, diagnostics)
-    definitions = _definitions(pool)
-    units = [main]
-    headers: dict[Path, Code] = {}
-    shims: dict[str, Shim] = {}
-    search = _include_directories(directory)
-    done: set[str] = set()
-    good = True
-    position = 0
-    while position < len(units):
-        unit = units[position]
-        position += 1
-        good &= _collect_headers(unit, search, headers, shims, diagnostics)
+    """The files that ``main`` needs; None after reporting an ambiguous definition or a missing file."""
+    return _Linker(main, tuple(suffixes), diagnostics).link()
+
+
+class _Linker:
+    def __init__(self, main: Code, suffixes: tuple[str, ...], diagnostics: Diagnostics) -> None:
+        self.main = main
+        self.suffixes = suffixes
+        self.diagnostics = diagnostics
+        self.directory = main.file.path.parent
+        self.near = Neighbours(self.directory)
+        self.definitions = _definitions(_pool(main, self.directory, suffixes, diagnostics))
+        self.headers = Headers(_include_directories(self.directory), self.near, diagnostics)
+        self.units = [main]
+        self.taken: list[Path] = []
+        self.done: set[str] = set()
+        self.good = True
+
+    def link(self) -> Linked | None:
+        position = 0
+        while position < len(self.units):
+            self._follow(self.units[position])
+            position += 1
+            if position == len(self.units) and self.good and self.headers.good:
+                self._take_sources()
+        if not self.good or not self.headers.good or not self._all_classes():
+            return None
+        rest = sorted(self.units[1:], key=lambda code: str(code.file.path))
+        places = [self.directory, *self.headers.folders(), *(code.file.path.parent for code in rest)]
+        taken = [*self.headers.taken, *self.taken]
+        report_taken(taken, self.main.file.path, self.near, self.diagnostics)
+        return Linked(
+            (self.main, *rest),
+            tuple(self.headers.found[path] for path in sorted(self.headers.found)),
+            tuple(dict.fromkeys(places)),
+            tuple(self.headers.shims[name] for name in sorted(self.headers.shims)),
+            self.near.watched,
+            tuple(sorted(self.headers.twins)),
+        )
+
+    def _follow(self, unit: Code) -> None:
+        """Adds the headers of ``unit``, and the files of the model's folder that define what it uses."""
+        self.headers.follow(unit)
+        for name in sorted(self._used(unit) - self.done):
+            self.done.add(name)
+            holders = self.definitions.get(name, [])
+            if not holders or any(code is known for code in holders for known in self.units):
+                continue
+            self._add(name, holders, _choose(holders, self.main.file.path))
+
+    def _used(self, unit: Code) -> set[str]:
         names = set(unit.used)
-        for header in headers.values():
+        for header in self.headers.found.values():
             names |= {
                 word for macro in header.macros if macro.name in names for word in _IDENTIFIER.findall(macro.value)
             }
             if header.file.path.stem == unit.file.path.stem and unit.file.path.suffix != ".c":
                 names |= header.identifiers  # types of a class's members
-        for name in sorted(names - done):
-            done.add(name)
-            holders = definitions.get(name, [])
-            if not holders or any(code is known for code in holders for known in units):
+        return names
+
+    def _add(self, name: str, holders: list[Code], chosen: Code | None) -> None:
+        if chosen is not None:
+            self.units.append(chosen)
+            return
+        self.good = False
+        places = [Note("defined here", _definition_span(code, name)) for code in holders]
+        self.diagnostics.error(
+            "model-ambiguous-definition",
+            self.main.file.span(0),
+            f"'{name}' is defined in {len(holders)} files, so it is open which of them belong to this model",
+            hint="keep each model in a folder of its own",
+            notes=places,
+        )
+
+    def _take_sources(self) -> None:
+        """Adds files beside the model's folder that define what its headers declare and no file of it defines."""
+        missing = self._missing()
+        if not missing:
+            return
+        pool: list[Code] = []
+        seen = {os.path.realpath(unit.file.path) for unit in self.units}
+        named = self.headers.named(self.directory)
+        for folder in (*named, *self.near.folders):
+            for file in self.near.sources(folder, self.suffixes, missing):
+                place = os.path.realpath(file.path)
+                code = None if is_program(file.path) or place in seen else _not_a_program(file)
+                seen.add(place)
+                pool += [code] if code is not None else []
+        definitions = _definitions(pool)
+        for name in sorted(missing & definitions.keys()):
+            holders = definitions[name]
+            if any(code is known for code in holders for known in self.units):
                 continue
-            chosen = _choose(holders, main.file.path)
-            if chosen is None:
+            paths = [code.file.path for code in holders]
+            meant = [code for code in holders if code.file.path.parent in named]
+            alike = len(paths) > 1 and all_alike(paths)
+            self.headers.twins.update(paths if alike else ())
+            chosen = meant[0] if len(meant) == 1 else holders[0] if alike else _choose(holders, self.main.file.path)
+            self._add(name, holders, chosen)
+            self.taken += [chosen.file.path] if chosen is not None else []
+
+    def _missing(self) -> set[str]:
+        """Functions, classes and variables that headers declare, that the model uses, and that no file defines."""
+        codes = [*self.units, *self.headers.found.values()]
+        declared = {name for code in codes for name in declared_names(code)}
+        used = {name for unit in self.units for name in self._used(unit)}
+        defined = {function.owner or function.name for code in codes for function in code.functions}
+        defined |= {variable.name for code in codes for variable in code.variables}
+        defined |= {macro.name for code in codes for macro in code.macros}
+        return (declared & used) - defined
+
+    def _all_classes(self) -> bool:
+        """Reports a class that the model uses and whose functions no file defines."""
+        if ".c" in self.suffixes:
+            return True
+        owners = {function.owner for unit in self.units for function in unit.functions}
+        used = self._used(self.main)
+        good = True
+        for header in self.headers.found.values():
+            for name in sorted(open_classes(header) & used - owners):
                 good = False
-                places = [Note("defined here", _definition_span(code, name)) for code in holders]
-                diagnostics.error(
-                    "model-ambiguous-definition",
-                    main.file.span(0),
-                    f"'{name}' is defined in {len(holders)} files, so it is open which of them belong to this model",
-                    hint="keep each model in a folder of its own",
-                    notes=places,
-                )
-                continue
-            units.append(chosen)
-    if not good:
-        return None
-    rest = sorted(units[1:], key=lambda code: str(code.file.path))
-    directories = dict.fromkeys(
-        [directory, *(path.parent for path in headers), *(code.file.path.parent for code in rest)]
-    )
-    return Linked(
-        (main, *rest),
-        tuple(headers[path] for path in sorted(headers)),
-        tuple(directories),
-        tuple(shims[name] for name in sorted(shims)),
-    )
+                match = re.search(rf"\b{name}\b", self.main.file.code)
+                start = match.start() if match else 0
+                message = f"'{name}' is declared in '{header.file.path.name}', but no file defines its functions"
+                notes = self.near.notes(f"{header.file.path.stem}{self.main.file.path.suffix}")
+                hint = f"{self.near.description()}: copy all files that 20-sim exported"
+                span = self.main.file.span(start, start + len(name)) if match else self.main.file.span(0)
+                self.diagnostics.error("model-incomplete", span, message, hint=hint, notes=notes)
+        return good
 
 
 def _pool(main: Code, directory: Path, suffixes: Iterable[str], diagnostics: Diagnostics) -> list[Code]:
@@ -157,10 +232,15 @@ def _pool(main: Code, directory: Path, suffixes: Iterable[str], diagnostics: Dia
             diagnostics.warning("model-unreadable", problem.span, problem.message, hint=problem.hint)
         if file is None:
             continue
-        code = parse_code(file)
-        if not any(function.name == "main" and not function.owner for function in code.functions):
+        code = _not_a_program(file)
+        if code is not None:
             codes.append(code)
     return codes
+
+
+def _not_a_program(file: SourceFile) -> Code | None:
+    code = parse_code(file)
+    return None if any(function.name == "main" and not function.owner for function in code.functions) else code
 
 
 def _definitions(pool: Iterable[Code]) -> Mapping[str, list[Code]]:
@@ -194,85 +274,13 @@ def _choose(holders: list[Code], main: Path) -> Code | None:
 def _include_directories(directory: Path) -> list[Path]:
     """Where headers are looked for: beside the sources, below them, and in the ``include`` beside a ``src``."""
     result = [directory]
-    for parent in (directory, directory.parent if directory.name.lower() in ("src", "source", "sources") else None):
+    for parent in (directory, directory.parent if directory.name.lower() in SOURCE_FOLDERS else None):
         if parent is None:
             continue
         try:
             below = sorted(entry for entry in parent.iterdir() if entry.is_dir() and not entry.name.startswith("."))
         except OSError:
             continue
-        result.extend(entry for entry in below if entry.name.lower() not in ("project", "build", "binaries"))
-    return list(dict.fromkeys(result))
-
-
-def _collect_headers(
-    unit: Code, search: list[Path], headers: dict[Path, Code], shims: dict[str, Shim], diagnostics: Diagnostics
-) -> bool:
-    good = True
-    open_codes = [unit]
-    while open_codes:
-        code = open_codes.pop()
-        for include in code.includes:
-            if include.system:
-                continue
-            path = _find_header(include, code.file, search)
-            if path is None:
-                path = _other_case(include.name, [code.file.path.parent, *search])
-                shims[include.name] = Shim(include.name, path)
-                if path is None:
-                    good &= _report_missing(include, code.file, diagnostics)
-                    continue
-            if path in headers:
-                continue
-            file = read_source(path, diagnostics, code.file.span(include.start, include.start + len(include.name)))
-            if file is None:
-                good = False
-                continue
-            headers[path] = parse_code(file)
-            open_codes.append(headers[path])
-    return good
-
-
-def _find_header(include: Include, file: SourceFile, search: list[Path]) -> Path | None:
-    for directory in (file.path.parent, *search):
-        path = directory / include.name
-        if is_file(path):
-            return path
-    return None
-
-
-def _other_case(name: str, search: list[Path]) -> Path | None:
-    for directory in search:
-        path: Path | None = directory
-        for part in name.replace("\\", "/").split("/"):
-            if path is None or part in ("", ".", ".."):
-                path = None
-                break
-            try:
-                path = next((e for e in sorted(path.iterdir()) if e.name.casefold() == part.casefold()), None)
-            except OSError:
-                path = None
-        if path is not None and path.is_file():
-            return path
-    return None
-
-
-def _report_missing(include: Include, file: SourceFile, diagnostics: Diagnostics) -> bool:
-    """Reports a header that does not exist; True when the model can do without."""
-    span = file.span(include.start, include.start + len(include.name))
-    name = include.name.replace("\\", "/").rsplit("/", 1)[-1]
-    if _OPTIONAL_HEADER.fullmatch(name.removesuffix(".h")):
-        diagnostics.warning(
-            "model-file-missing",
-            span,
-            f"'{include.name}' is not in the model's folder",
-            hint="it is not needed unless the model uses its functions; export again to have it",
-        )
-        return True
-    diagnostics.error(
-        "model-file-missing",
-        span,
-        f"'{include.name}' is not in the model's folder",
-        hint="copy all files that 20-sim exported",
-    )
-    return False
+        wanted = below if parent is directory else [entry for entry in below if entry.name.lower() in _INCLUDE_FOLDERS]
+        result.extend(entry for entry in wanted if entry.name.lower() not in ("project", "build", "binaries"))
+    return list(dict.fromkeys([*result, *searched_folders(directory)]))

@@ -68,6 +68,10 @@ class Model:
     """What only the importer's own emitter needs: sources, prefixes, class name; see ``details.py``."""
     finish_time: float | None = None
     """Where the experiment in 20-sim ends, in seconds.  Nothing ends there on a target."""
+    searched: tuple[Path, ...] = ()
+    """Folders beside ``directory`` in which files were looked for: others in them may make another model."""
+    twins: tuple[Path, ...] = ()
+    """Files that are no part of the model as long as they say the same as one that is."""
 
     @property
     def instantiable(self) -> bool:

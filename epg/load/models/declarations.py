@@ -1,0 +1,82 @@
+"""What headers declare: functions, variables and classes that some file must define."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from epg.load.models.c_code import KEYWORDS, Code
+
+_FUNCTION = re.compile(r"(?<![\w.>])([A-Za-z_]\w{0,255})\s{0,80}\(", re.ASCII)
+_EXTERN = re.compile(r"\bextern\s[^;(){}]{0,300};")
+_NAME = re.compile(r"([A-Za-z_]\w{0,255})\s{0,80}(?:\[[^\]]{0,300}\]\s{0,80}){0,8}(?=[,;])", re.ASCII)
+_CLASS = re.compile(r"\bclass\s{1,80}([A-Za-z_]\w{0,255})\s{0,80}(?::(?!:)[^;{}]{0,500})?\{", re.ASCII)
+_BRACE = re.compile(r"[{}]")
+_FRIEND = re.compile(r"\bfriend\b[^;]{0,300};")
+_METHOD = re.compile(r"\([^();{}]{0,1000}\)\s{0,80}(?:const\s{0,80}|override\s{0,80}|noexcept\s{0,80}){0,3};")
+
+
+def declared_names(code: Code) -> set[str]:
+    """Functions and ``extern`` variables that ``code`` declares outside of bodies, and classes with open methods."""
+    names = open_classes(code)
+    for text in outside_bodies(code):
+        text = _without_classes(text)
+        names.update(match[1] for match in _FUNCTION.finditer(text))
+        for statement in _EXTERN.finditer(text):
+            names.update(match[1] for match in _NAME.finditer(statement[0]))
+    return names - KEYWORDS
+
+
+def open_classes(code: Code) -> set[str]:
+    """Classes with a method that has no body where the class is declared, and is not pure."""
+    text = code.file.code
+    found, at = set(), 0
+    for match in _CLASS.finditer(text):
+        if match.start() < at:  # of a class inside: no part of the text is looked at twice
+            continue
+        at = _end(text, match.end())
+        if any(_METHOD.search(part) for part in _level(text[match.end() : at])):
+            found.add(match[1])
+    return found
+
+
+def _without_classes(text: str) -> str:
+    """What stands outside of the braces of classes, whose methods are theirs alone."""
+    parts, at = [], 0
+    for match in _CLASS.finditer(text):
+        if match.start() >= at:
+            parts.append(text[at : match.end()])
+            at = _end(text, match.end())
+    return "".join([*parts, text[at:]])
+
+
+def _end(text: str, start: int) -> int:
+    """Where the brace that opens before ``start`` closes."""
+    depth = 1
+    for match in _BRACE.finditer(text, start):
+        depth += 1 if match[0] == "{" else -1
+        if depth == 0:
+            return match.start()
+    return len(text)
+
+
+def _level(body: str) -> Iterator[str]:
+    """The body of a class without friends and without what stands in braces."""
+    depth, at = 0, 0
+    for match in _BRACE.finditer(body):
+        if match[0] == "{":
+            if depth == 0:
+                yield _FRIEND.sub("", body[at : match.start()])
+            depth += 1
+        else:
+            depth -= 1
+            at = match.end()
+    yield _FRIEND.sub("", body[at:])
+
+
+def outside_bodies(code: Code) -> Iterator[str]:
+    at = 0
+    for function in code.functions:
+        yield code.file.code[at : function.body_start]
+        at = function.body_end
+    yield code.file.code[at:]

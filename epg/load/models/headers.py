@@ -1,0 +1,180 @@
+"""The headers of a model: what its files include, where that is found, and what is said if it is not."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from epg.diagnostics import Diagnostics, Note
+from epg.load.models.c_code import Code, Include, parse_code
+from epg.load.models.neighbours import Neighbours, all_alike
+from epg.load.models.source_file import SourceFile, read_source
+from epg.load.text_file import is_file
+from epg.source import Span
+
+#: headers of an export that declare nothing a model needs unless it calls their functions
+_OPTIONAL = re.compile(r"motionprofiles|eulerangles|\w*(table2d|matrix|inverse|funcs)\w*", re.IGNORECASE)
+
+
+@dataclass(frozen=True)
+class Shim:
+    """A header that the export includes as ``name`` and that has another case, ``target``, or does not exist."""
+
+    name: str
+    target: Path | None
+
+
+class Headers:
+    """Collects what files include.  ``search`` are the model's own folders; ``near`` are asked last."""
+
+    def __init__(self, search: Sequence[Path], near: Neighbours, diagnostics: Diagnostics) -> None:
+        self.search = search
+        self.near = near
+        self.diagnostics = diagnostics
+        self.found: dict[Path, Code] = {}
+        self.shims: dict[str, Shim] = {}
+        self.taken: list[Path] = []  # those that lie beside the model's folder, and are not included by their place
+        self.twins: set[Path] = set()  # files that say the same as one of these
+        self.good = True
+        self._bases: dict[Path, None] = {}
+        self._told: set[str] = set()
+
+    def follow(self, unit: Code) -> None:
+        """Finds what ``unit`` includes, and what that includes; reports what is missing."""
+        waiting = [unit]
+        while waiting:
+            code = waiting.pop()
+            for include in code.includes:
+                path = None if include.system else self._find(include, code.file)
+                if path is None or path in self.found:
+                    continue
+                place = code.file.span(include.start, include.start + len(include.name))
+                file = read_source(path, self.diagnostics, place)
+                if file is None:
+                    self.good = False
+                    continue
+                self.found[path] = parse_code(file)
+                waiting.append(self.found[path])
+
+    def folders(self) -> list[Path]:
+        """The include path: as it was searched."""
+        used = dict.fromkeys([*self._bases, *(path.parent for path in self.found)])
+        order = {folder: number for number, folder in enumerate(self.search)}
+        return sorted(used, key=lambda folder: order.get(folder, len(order)))
+
+    def named(self, directory: Path) -> list[Path]:
+        """Folders outside of ``directory`` that an ``#include`` names, as ``"../common/xxinteg.h"`` does."""
+        folders = dict.fromkeys(path.parent for path in self.found)
+        return [folder for folder in folders if not folder.is_relative_to(directory)]
+
+    def _find(self, include: Include, file: SourceFile) -> Path | None:
+        """The file that is meant; None after saying that there is none, or that it is open which."""
+        name = include.name
+        if is_file(file.path.parent / name):
+            return _plain(file.path.parent / name)
+        for folder in self.search:
+            if is_file(folder / name):
+                self._bases[folder] = None
+                return _plain(folder / name)
+        other = _other_case(name, [file.path.parent, *self.search])
+        return self._find_near(include, file) if other is None else self._shimmed(name, other)
+
+    def _find_near(self, include: Include, file: SourceFile) -> Path | None:
+        """As :meth:`_find`, beside the model's folder: by name, in another spelling, without the folder before it."""
+        name = include.name
+        candidates = self.near.files(name)
+        exact = bool(candidates)
+        if not exact:
+            others = (_other_case(name, [folder]) for folder in self.near.folders)
+            candidates = [path for path in others if path is not None]
+        if not candidates and ".." not in name:
+            candidates = self.near.files(_base(name))
+        if len(candidates) > 1 and all_alike(candidates):
+            self.twins.update(candidates)
+            candidates = candidates[:1]
+        if len(candidates) == 1:
+            path = candidates[0]
+            self.taken.append(path)
+            self._bases[next((f for f in self.near.folders if f / name == path), path.parent)] = None
+            return path if exact else self._shimmed(name, path)
+        if candidates and not _is_optional(name):
+            self._report_ambiguous(include, file, candidates)
+            return None
+        self.shims[name] = Shim(name, None)
+        self._report_missing(include, file)
+        return None
+
+    def _shimmed(self, name: str, path: Path) -> Path:
+        self.shims[name] = Shim(name, path)
+        return path
+
+    def _report_ambiguous(self, include: Include, file: SourceFile, candidates: list[Path]) -> None:
+        self.good = False
+        if include.name in self._told:
+            return
+        self._told.add(include.name)
+        self.diagnostics.error(
+            "model-ambiguous-definition",
+            file.span(include.start, include.start + len(include.name)),
+            f"'{include.name}' is not in the model's folder, and beside it lie {len(candidates)} that differ",
+            hint="copy the one that is meant into the model's folder",
+            notes=[Note("one of them", Span(str(path))) for path in candidates[:8]],
+        )
+
+    def _report_missing(self, include: Include, file: SourceFile) -> None:
+        """Reports a header that does not exist, once; a model can do without some."""
+        span = file.span(include.start, include.start + len(include.name))
+        if _is_optional(include.name):
+            self.diagnostics.warning(
+                "model-file-missing",
+                span,
+                f"'{include.name}' is not in the model's folder",
+                hint="it is not needed unless the model uses its functions; export again to have it",
+            )
+            return
+        self.good = False
+        if include.name in self._told:
+            return
+        self._told.add(include.name)
+        notes = self.near.notes(_base(include.name))
+        mend = "copy the one that is meant into the model's folder" if notes else "copy all files that 20-sim exported"
+        self.diagnostics.error(
+            "model-file-missing",
+            span,
+            f"'{include.name}' is not in the model's folder, nor beside it",
+            hint=f"{self.near.description()}; {mend}",
+            notes=notes,
+        )
+
+
+def _is_optional(name: str) -> bool:
+    return _OPTIONAL.fullmatch(_base(name).removesuffix(".h")) is not None
+
+
+def _base(name: str) -> str:
+    return name.replace("\\", "/").rsplit("/", 1)[-1]
+
+
+def _plain(path: Path) -> Path:
+    """A path without ``..``, where that leads to the same file."""
+    plain = Path(os.path.normpath(path))
+    return plain if ".." in path.parts and os.path.realpath(plain) == os.path.realpath(path) else path
+
+
+def _other_case(name: str, search: Sequence[Path]) -> Path | None:
+    for directory in search:
+        path: Path | None = directory
+        for part in name.replace("\\", "/").split("/"):
+            if path is None or part in ("", ".", ".."):
+                path = None
+                break
+            try:
+                path = next((e for e in sorted(path.iterdir()) if e.name.casefold() == part.casefold()), None)
+            except OSError:
+                path = None
+        if path is not None and path.is_file():
+            return path
+    return None
