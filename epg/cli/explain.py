@@ -123,7 +123,9 @@ def _text(description: dict[str, Any], wire: dict[str, Any]) -> str:
     )
     rows.append(("C symbol", component["symbol"], ""))
     rows += [("hardware", resource, claim) for claim, resource in component["resources"].items()]
-    rows += [("pin", f"GPIO {pin}", signal) for signal, pin in component["pins"].items()]
+    rows += [
+        ("pin", f"GPIO {pin}" if isinstance(pin, int) else pin, signal) for signal, pin in component["pins"].items()
+    ]
     for claim, divider in component["dividers"].items():
         frequency, remark = divider_text(divider)
         rows.append(("frequency", frequency, f"{claim}: {remark}"))

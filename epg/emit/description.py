@@ -81,7 +81,7 @@ def _component(component: ResolvedComponent, names: PathNames) -> dict[str, Any]
         "written": _span(component.span, names),
         "resources": {claim: found.resource for claim, found in component.claims.items()},
         "pins": {
-            pin: component.claims[claim.name].pins[signal]
+            pin: component.claims[claim.name].pin_names[signal]
             for claim in component.kind.claims
             for signal, pin in sorted(claim.signals.items())
             if component.claims[claim.name].pins_are_real

@@ -28,7 +28,7 @@ def hardware_data(assignments: Mapping[ClaimKey, Assignment]) -> list[dict[str, 
             "component": component or None,
             "claim": claim,
             "resource": found.resource,
-            "pins": dict(sorted(found.pins.items())) if found.pins_are_real else {},
+            "pins": dict(sorted(found.pin_names.items())),
             "divider": describe_divider(found),
         }
         for (component, claim), found in assignments.items()

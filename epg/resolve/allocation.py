@@ -54,6 +54,8 @@ class Assignment:
     instance: str = ""
     slot: str = ""
     attributes: Mapping[str, object] = field(default_factory=dict)
+    pin_names: Mapping[str, int | str] = field(default_factory=dict)
+    """Signals, and what the chip calls their pins: a number (GPIO 10) or a name (PD12); empty without real pins."""
     node: str = ""
     """The devicetree node that is used instead of pins and a peripheral."""
 
@@ -282,6 +284,7 @@ def _assignment(placed: _Placed, peripheral: Peripheral, place: Place, target: T
         frequency=frequency,
         asked=asked,
         pins_are_real=target.has_pins,
+        pin_names=_pin_names(placed, target),
         instance=peripheral.instances[instance],
         slot="" if whole else peripheral.slots[slot],
         attributes=_attributes(placed.claim),
@@ -301,6 +304,13 @@ def _asked(placed: _Placed) -> Fraction:
     return Fraction(value) if attribute == "frequency" else 1 / Fraction(value)
 
 
+def _pin_names(placed: _Placed, target: Target) -> Mapping[str, int | str]:
+    if not target.has_pins:
+        return MappingProxyType({})
+    names = {signal: target.soc.pins[number] for signal, number in placed.pins.items()}
+    return MappingProxyType({signal: int(name) if name.isdigit() else name for signal, name in names.items()})
+
+
 def _pins_only(placed: _Placed, target: Target) -> Assignment:
     numbers = list(placed.pins.values())
     names = ", ".join(target.soc.pins[number] if target.has_pins else str(number) for number in numbers)
@@ -311,5 +321,6 @@ def _pins_only(placed: _Placed, target: Target) -> Assignment:
         settings=MappingProxyType({}),
         resource=f"{'pin' if target.has_pins else 'simulated pin'} {names}",
         pins_are_real=target.has_pins,
+        pin_names=_pin_names(placed, target),
         attributes=_attributes(placed.claim),
     )

@@ -13,6 +13,7 @@ from epg.check.configuration import Component, Configuration
 from epg.check.schema import extended_from
 from epg.diagnostics import Diagnostics, Note
 from epg.load.models.model import Model
+from epg.quantity import parse_quantity
 from epg.resolve.allocation import Assignment, allocate
 from epg.resolve.application import Application, Plant, ResolvedComponent, Wire
 from epg.resolve.claims import TICK, component_claims, tick_claims
@@ -151,8 +152,11 @@ def _period(configuration: Configuration, model: Model, diagnostics: Diagnostics
         diagnostics.error("out-of-range", configuration.control.output_delay_span, message, notes=notes)
     ratio = model.step / period
     if ratio.denominator != 1:
-        message = f"the model's step of {_ms(model.step)} is no multiple of the control period of {_ms(period)}"
-        hint = f"set 'control: {{period: {_ms(model.step)}}}' or export the model with another step"
+        step, asked = _apart(model.step, period)
+        message = f"the model's step of {step} is not a multiple of the control period of {asked}"
+        exact = parse_quantity(step, "time") == model.step
+        meant = f"set 'control: {{period: {step}}}'" if exact else "leave out 'control.period'"
+        hint = f"{meant} or export the model with another step"
         notes = [Note("the model", model.span)]
         diagnostics.error("step-not-multiple", configuration.control.period_span, message, hint=hint, notes=notes)
         return period, 1
@@ -231,7 +235,8 @@ def _plant(
     _same_model(bindings, model, diagnostics)
     ratio = period / model.step
     if ratio.denominator != 1:
-        message = f"the control period of {_ms(period)} is no multiple of the plant's step of {_ms(model.step)}"
+        asked, step = _apart(period, model.step)
+        message = f"the control period of {asked} is not a multiple of the plant's step of {step}"
         hint = "export the plant with a step that divides the period"
         diagnostics.error(
             "step-not-multiple", bindings.model_span, message, hint=hint, notes=[Note("the plant", model.span)]
@@ -256,10 +261,19 @@ def _files(
     return tuple(sorted(files))
 
 
-def _ms(seconds: Fraction) -> str:
+def _apart(one: Fraction, other: Fraction) -> tuple[str, str]:
+    """Two different times as people write them, with as many digits as make them differ."""
+    for digits in range(6, 18):
+        texts = _ms(one, digits), _ms(other, digits)
+        if texts[0] != texts[1]:
+            return texts
+    return f"{one} s", f"{other} s"
+
+
+def _ms(seconds: Fraction, digits: int = 6) -> str:
     """A time as people write it: ``1 ms``, ``33.3 ms``, ``100 us``."""
     for unit, factor in (("s", 1), ("ms", 1000), ("us", 1000_000)):
         value = seconds * factor
         if value.denominator == 1:
-            return f"{value.numerator if value < 1_000_000 else float(value):g} {unit}"
-    return f"{float(seconds * 1000):g} ms"
+            return f"{value.numerator if value < 1_000_000 else float(value):.{digits}g} {unit}"
+    return f"{float(seconds * 1000):.{digits}g} ms"

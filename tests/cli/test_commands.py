@@ -142,6 +142,17 @@ def test_explain_shows_the_whole_way(capsys: pytest.CaptureFixture[str]) -> None
         assert words in text
 
 
+def test_explain_names_the_pins_as_the_chip_does(capsys: pytest.CaptureFixture[str]) -> None:
+    files = ["nucleo_h743zi_zephyr_jiwy.tcf", *FILES[2:]]
+    assert main(["explain", "position_pan", "--name", "jiwy", "--tcf", *files]) == 0
+    text = capsys.readouterr().out
+    rows = [line.split() for line in text.splitlines() if line.split()[0] == "pin"]
+    assert rows == [["pin", "PD12", "a"], ["pin", "PD13", "b"]]
+    assert "GPIO" not in text
+    assert main(["check", "--hardware", files[0]]) == 0
+    assert "a PD12, b PD13" in capsys.readouterr().out
+
+
 def test_explain_tells_the_frequency_that_is_reached(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
     text = (robot / "robot.tcf").read_text()
     assert text.count("frequency: 20 kHz") == 1
