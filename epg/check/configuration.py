@@ -17,6 +17,7 @@ from epg.check.compose import (
     typed_parameters,
 )
 from epg.check.devicetree import check_node
+from epg.check.fail_safe import check_fail_safe
 from epg.check.merge import apply_settings, merge_chain
 from epg.check.middleware import check_lack, check_offer, offered, unoffered_hint
 from epg.check.names import identifier_problem, normal_namespace
@@ -218,7 +219,7 @@ def _control(
     limit = node.get("overrun_limit")
     default_topic = ENABLE_TOPIC if communication is not None and communication.middleware.is_node else None
     if fail_safe is not None:
-        _fail_safe(fail_safe, components, diagnostics)
+        check_fail_safe(fail_safe, root["components"], components, diagnostics)
     return Control(
         period=seconds,
         period_span=period.span if period else node.span,
@@ -231,22 +232,6 @@ def _control(
         fail_safe=str(fail_safe.value) if fail_safe else None,
         fail_safe_span=fail_safe.span if fail_safe else node.span,
     )
-
-
-def _fail_safe(node: Node, components: Mapping[str, Component], diagnostics: Diagnostics) -> None:
-    """A fail-safe input is a component with a boolean source."""
-    name = str(node.value)
-    able = [
-        c.name
-        for c in components.values()
-        if any(p.direction == "source" and p.type == "boolean" for p in c.kind.ports)
-    ]
-    if name not in components:
-        hint = did_you_mean(name, able, "digital inputs")
-        diagnostics.error("unknown-component", node.span, f"there is no component '{name}'", hint=hint)
-    elif name not in able:
-        message = f"'{name}' is a {components[name].kind.name}, which is not on or off"
-        diagnostics.error("wrong-port-type", node.span, message, hint="name a digital_input")
 
 
 def _communication(

@@ -1,0 +1,61 @@
+"""The input that disables a target while it is off: which component it can be, and what a broken wire does to it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Protocol
+
+from epg.check.schema import extended_from
+from epg.diagnostics import Diagnostics, did_you_mean
+from epg.load.kind import Kind
+from epg.source import Node
+
+
+class Input(Protocol):
+    """A component; ``parameters`` are typed, ``node`` is as written."""
+
+    @property
+    def kind(self) -> Kind: ...
+    @property
+    def parameters(self) -> Mapping[str, object]: ...
+    @property
+    def node(self) -> Node: ...
+
+
+def check_fail_safe(node: Node, section: Node, components: Mapping[str, Input], diagnostics: Diagnostics) -> None:
+    """``node`` must name a component with a boolean source; ``components`` are the faultless ones of ``section``."""
+    name = str(node.value)
+    able = [
+        name
+        for name, component in components.items()
+        if any(port.direction == "source" and port.type == "boolean" for port in component.kind.ports)
+    ]
+    if name in able:
+        _check_open_wire(name, components[name], diagnostics)
+    elif name in components:
+        message = f"'{name}' is a {components[name].kind.name}, which is not on or off"
+        diagnostics.error("wrong-port-type", node.span, message, hint="name a digital_input")
+    elif name not in section:  # else it has a mistake of its own, which is reported
+        hint = did_you_mean(name, able, "digital inputs")
+        diagnostics.error("unknown-component", node.span, f"there is no component '{name}'", hint=hint)
+
+
+def _check_open_wire(name: str, component: Input, diagnostics: Diagnostics) -> None:
+    """Warns when the input is on, or may be, while nothing is connected to its pin."""
+    pull, invert = component.parameters.get("pull"), bool(component.parameters.get("invert", False))
+    if "pins" not in component.node or pull is None or pull == ("up" if invert else "down"):
+        return  # without pins nothing is known of the wire: the host has none, and a devicetree node has its own pull
+    written = component.node.get("pull")
+    span = component.node.key_span("kind") if written is None else written.span
+    if pull == "none":
+        message = f"nothing holds '{name}' off when its wire breaks: its pin is open, and the target may stay enabled"
+    else:
+        message = f"'{name}' is on when its wire breaks ('pull: {pull}'): the target stays enabled"
+    diagnostics.warning(
+        "open-fail-safe",
+        span,
+        message,
+        hint="let a normally-closed contact connect the pin to ground, and write 'pull: up, invert: true': "
+        "docs/emergency-stop.md",
+        notes=extended_from(written) if written is not None else (),
+    )
