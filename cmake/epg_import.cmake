@@ -69,7 +69,10 @@ if(NOT EPG_DIR)
 endif()
 find_package(EPG CONFIG QUIET NO_CMAKE_FIND_ROOT_PATH)
 if(NOT EPG_FOUND)
-  message(FATAL_ERROR "EPG was not found.\n"
-    "Install it (pip install epg), or name a checkout: cmake -DEPG_PATH=<folder> ... ${EPG_NOT_FOUND_MESSAGE}")
+  message(FATAL_ERROR "EPG was not found. ${EPG_NOT_FOUND_MESSAGE}\n"
+    "If it is installed in a virtual environment, activate that first:\n  . ~/epg-environment/bin/activate\n"
+    "Else install it from its folder (a checkout; EPG is not on PyPI):\n"
+    "  python3 -m venv ~/epg-environment && . ~/epg-environment/bin/activate && pip install <folder of EPG>\n"
+    "or name the folder:\n  cmake -DEPG_PATH=<folder of EPG> ...")
 endif()
 set(EPG_IMPORTED_DIR "${EPG_DIR}" CACHE INTERNAL "The EPG that epg_import.cmake has found")

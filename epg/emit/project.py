@@ -9,9 +9,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import ClassVar
 
 from epg.emit.template import environment
 from epg.emit.text import ProjectText
+from epg.install import ACTIVATE, install_command
 from epg.load.hardware import Target
 
 NAME = "NAME"
@@ -50,6 +52,10 @@ class ProjectPlan:
     subscriptions: Sequence[str]
     actuators: Sequence[str]
     versions: Mapping[str, str]
+
+    activate: ClassVar[str] = ACTIVATE
+    install: ClassVar[str] = install_command()
+    install_with_west: ClassVar[str] = install_command("west <folder of EPG>")
 
 
 def project_folder(names: Iterable[str], roots: Iterable[Path]) -> Path | None:

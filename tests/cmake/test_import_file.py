@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from epg.install import ACTIVATE, install_command
 from tests.cmake.project import CMAKE_DIR
 
 PROJECT = """cmake_minimum_required(VERSION 3.22...3.31)
@@ -153,9 +154,9 @@ def test_a_project_around_this_one_decides(user: User) -> None:
 
 def test_nothing_found(user: User) -> None:
     message = user.configure(check=False)
-    assert (
-        "EPG was not found. Install it (pip install epg), or name a checkout: cmake -DEPG_PATH=<folder> ..." in message
-    )
+    assert "EPG was not found. If it is installed in a virtual environment, activate that first:" in message
+    assert f" {ACTIVATE} Else install it from its folder" in message
+    assert f" {install_command()} or name the folder: cmake -DEPG_PATH=<folder of EPG> ..." in message
 
 
 def test_a_wrong_path_is_named(user: User) -> None:

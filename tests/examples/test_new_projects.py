@@ -247,5 +247,5 @@ def test_another_epg(target: str, tmp_path: Path) -> None:
     file.write_text(file.read_text().replace(f"set(epgVersion {epg.__version__})", "set(epgVersion 9.8.7)"))
     output = " ".join(configure(project, check=False).split())
     assert f"This project is written for EPG 9.8.7, and the EPG in {ROOT}/cmake is {epg.__version__}. " in output
-    assert "Get it: python -m pip install epg==9.8.7 Or write " in output
+    assert "Install EPG 9.8.7 from its folder (docs/installing.md), or name that folder: -DEPG_PATH=" in output
     assert errors(output) == 1

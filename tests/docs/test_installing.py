@@ -1,0 +1,40 @@
+"""How EPG is installed is said the same everywhere: it is not on PyPI, and Debian wants a virtual environment."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from epg.install import ACTIVATE, install_command
+
+ROOT = Path(__file__).resolve().parents[2]
+TEXTS = ("*.md", "*.cmake", "*.j2", "*.py", "*.json", "*.yaml", "*.txt", "*.cmd", "*.js")
+
+
+def files() -> list[Path]:
+    """All texts of the project but its tests."""
+    listed = subprocess.run(["git", "-C", str(ROOT), "ls-files", "--", *TEXTS], capture_output=True, text=True)
+    if listed.returncode != 0:
+        pytest.skip("this is no checkout of git: apt install git")
+    return [ROOT / name for name in listed.stdout.splitlines() if not name.startswith("tests/")]
+
+
+def test_nobody_is_told_to_install_epg_by_its_name() -> None:
+    told = re.compile(r"pip3? install (?:[\w.-]+ )*epg(?![-\w/])")
+    page = ROOT / "docs/installing.md"
+    wrong = [path for path in files() if path != page and told.search(path.read_text(encoding="utf-8"))]
+    assert wrong == []
+    assert told.search(page.read_text(encoding="utf-8")), "what people try first is named where they look"
+
+
+@pytest.mark.parametrize("name", ["docs/installing.md", "cmake/epg_import.cmake"])
+def test_the_command_is_the_same(name: str) -> None:
+    text = (ROOT / name).read_text(encoding="utf-8")
+    assert install_command() in text and ACTIVATE in text
+
+
+def test_the_readme_installs_its_own_folder() -> None:
+    assert f"\n{install_command('.')}\n" in (ROOT / "README.md").read_text(encoding="utf-8")
