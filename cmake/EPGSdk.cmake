@@ -201,7 +201,25 @@ function(_epg_cache_folder result)
   else()
     set(folder "$ENV{HOME}/.cache/epg")
   endif()
+  _epg_check_cache("${folder}")
   set(${result} "${folder}" PARENT_SCOPE)
+endfunction()
+
+# Stops where other users can change what is in EPG's cache: SDKs that are included, programs that are run.
+# epg/bootstrap.py, which runs later, looks at groups more closely.
+function(_epg_check_cache folder)
+  get_property(checked GLOBAL PROPERTY EPG_CHECKED_CACHE)
+  if(NOT CMAKE_HOST_UNIX OR checked STREQUAL folder OR NOT IS_DIRECTORY "${folder}")
+    return()
+  endif()
+  set_property(GLOBAL PROPERTY EPG_CHECKED_CACHE "${folder}")
+  set(find [=[find "$1"/. -prune \( -perm -0002 -o -perm -0020 ! -group "$(id -g)" -o ! -user "$(id -u)" ! -user 0 ! -user "${SUDO_UID:-0}" \)]=])
+  execute_process(COMMAND sh -c "${find}" sh "${folder}" OUTPUT_VARIABLE found ERROR_QUIET)
+  if(found)
+    message(FATAL_ERROR "EPG does not use its cache, ${folder}: other users of this computer can change what is in it.
+Delete it, or set the environment variable EPG_CACHE to a folder of your own, or, if you know all that is in it:
+  chmod -R go-w ${folder}")
+  endif()
 endfunction()
 
 # The array at <key> as a list, empty when there is none.

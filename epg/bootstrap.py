@@ -59,12 +59,57 @@ def cache_folder() -> Path:
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "epg"
 
 
+def cache_problem(folder: Path) -> str:
+    """What is wrong with EPG's cache in ``folder``; empty if others cannot change what is in it, and EPG runs.
+
+    A folder that is not there yet is made for its owner alone.  On Windows a folder of the user is private anyway.
+    """
+    if os.name == "nt":
+        return ""
+    try:
+        found = folder.stat()
+    except OSError:
+        return ""  # whoever needs it says what is wrong
+    own = {0, os.geteuid()}
+    if os.geteuid() == 0 and os.environ.get("SUDO_UID", "").isdecimal():
+        own.add(int(os.environ["SUDO_UID"][:10]))
+    if found.st_uid not in own:
+        return f"it belongs to another user, number {found.st_uid}"
+    if found.st_mode & 0o002 or (found.st_mode & 0o020 and not _is_own_group(found.st_gid)):
+        return f"other users can write into it (mode {found.st_mode & 0o7777:o})"
+    return ""
+
+
+def _is_own_group(group: int) -> bool:
+    """Whether a group has one member, the user: systems that make one for each user let it write by default."""
+    import grp
+    import pwd
+
+    try:
+        user, found = pwd.getpwuid(os.geteuid()), grp.getgrgid(group)
+    except KeyError:
+        return False
+    return user.pw_gid == group and found.gr_name == user.pw_name and set(found.gr_mem) <= {user.pw_name}
+
+
+def _check_cache() -> None:
+    folder = cache_folder()
+    problem = cache_problem(folder)
+    if problem:
+        raise MissingPackages(
+            f"EPG does not use its cache, {folder}: {problem}, and EPG runs programs that are in it\n"
+            f"hint: delete it, or take the others' rights away (chmod -R go-w {folder}) if you know all that is in it, "
+            "or set EPG_CACHE to a folder of your own"
+        )
+
+
 def ensure(group: str = "generator", *, install: bool | None = None) -> None:
     """Makes the packages of ``group`` importable, installing them into EPG's cache if need be.
 
     ``install`` None: allowed unless the environment variable ``EPG_NO_INSTALL`` is set.  Raises
     :class:`MissingPackages`.
     """
+    _check_cache()
     missing = _missing(group)
     if not missing:
         return
@@ -152,7 +197,7 @@ def _install(group: str, folder: Path, missing: list[str]) -> None:
     sys.stderr.write(f"EPG: installing {', '.join(missing)} for {sys.executable} into {folder} (once)\n")
     sys.stderr.flush()
     try:
-        folder.parent.mkdir(parents=True, exist_ok=True)
+        folder.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
         temporary = Path(tempfile.mkdtemp(dir=folder.parent, prefix=f".{folder.name}."))
     except OSError as error:
         raise MissingPackages(_remedy(missing, f"EPG's cache cannot be written: {error}")) from error

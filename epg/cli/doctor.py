@@ -116,6 +116,9 @@ def _home() -> str:
 
 def _cache_note(cache: Path) -> str:
     """What is special about EPG's cache; its folder is made when it is first needed."""
+    problem = bootstrap.cache_problem(cache)
+    if problem:
+        return f" (which EPG does not use: {problem})"
     existing = next(folder for folder in (cache, *cache.absolute().parents) if folder.exists())
     if not os.access(existing, os.W_OK):
         return " (which cannot be written)"

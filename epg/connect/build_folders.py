@@ -12,6 +12,7 @@ from typing import Any
 
 from epg.diagnostics import Diagnostics
 from epg.load.find_tool import read_cmake_cache
+from epg.load.text_file import is_file
 
 USUAL = "build"
 CACHE = "CMakeCache.txt"
@@ -55,7 +56,7 @@ def _variables(folder: Path, source: Path) -> dict[str, str] | None:
 
 
 def _cache(file: Path) -> dict[str, str]:
-    return read_cmake_cache(file, Diagnostics()) if file.is_file() else {}
+    return read_cmake_cache(file, Diagnostics()) if is_file(file) else {}
 
 
 def _same(folder: str, other: Path) -> bool:

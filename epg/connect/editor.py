@@ -10,7 +10,7 @@ from typing import Any
 from epg.connect.body import Refused
 from epg.connect.configurations import Project
 from epg.connect.draft import Draft, Operation
-from epg.connect.files import Snapshot, Watch, read_snapshot, save
+from epg.connect.files import Snapshot, Watch, read_snapshot, remove_leftovers, save
 from epg.connect.loaded import Models, load, tcf_path
 from epg.connect.projects import Job
 from epg.connect.view import view_of
@@ -32,6 +32,8 @@ class Editor:
         self.conflict: dict[str, str] | None = None
         self._tcf_path = tcf_path(job.request) or Path(os.path.abspath(job.request.tcf))
         self._models = Models()
+        for path in (job.request.bindings, self._tcf_path):
+            remove_leftovers(path)
         self.draft = self._new_draft()
         self._load()
 
@@ -58,7 +60,7 @@ class Editor:
         if not anyway:
             self._check_conflict()
         for after in self.draft.unsaved():
-            save(self.draft.before_saving(after.path), after, anyway=anyway)
+            save(self.draft.before_saving(after.path), after, project=self.job.source_dir, anyway=anyway)
             self.draft.saved(after)
         self.conflict = self.external = None
         self._seen = self.draft.bindings, self.draft.tcf

@@ -1,15 +1,17 @@
 """The files of a session: read as text, written at once and whole, watched for edits by others.
 
 A file keeps what people see only in their editor: line ends, a byte order mark, its permissions, and the link that
-leads to it.
+leads to it within the project.
 """
 
 from __future__ import annotations
 
 import hashlib
 import os
+import re
 import secrets
 from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -54,13 +56,15 @@ def read_snapshot(path: Path) -> Snapshot:
         return Snapshot(path, None)
 
 
-def save(before: Snapshot, after: Snapshot, *, anyway: bool = False) -> None:
+def save(before: Snapshot, after: Snapshot, *, project: Path | None = None, anyway: bool = False) -> None:
     """Replaces the file by ``after``, if it is still the one read ``before``: whoever reads it sees one of the two.
 
-    The file that a symbolic link leads to is replaced, not the link, and its permissions stay.  Raises
-    :class:`Unsavable`, with the file as it was.
+    The file that a symbolic link leads to is replaced, not the link, and its permissions stay.  A link must not lead
+    out of ``project``, the folder of the project, nor out of the file's own folder if that lies elsewhere or there is
+    no project.  Raises :class:`Unsavable`, with the file as it was.
     """
     target = Path(os.path.realpath(before.path))
+    _check_links(before.path, target, project)
     if not anyway and read_snapshot(target).data != before.data:
         raise Unsavable(f"'{before.path.name}' was changed by somebody else since it was read")
     assert after.data is not None
@@ -70,6 +74,7 @@ def save(before: Snapshot, after: Snapshot, *, anyway: bool = False) -> None:
         if target.exists() and not os.access(target, os.W_OK):
             raise Unsavable(f"'{before.path.name}' is write-protected")
         with temporary.open("xb") as file:
+            _lock(file.fileno())
             file.write(after.data)
             file.flush()
             os.fsync(file.fileno())
@@ -84,11 +89,45 @@ def save(before: Snapshot, after: Snapshot, *, anyway: bool = False) -> None:
         raise
 
 
+def remove_leftovers(path: Path) -> None:
+    """Removes what :func:`save` has left of ``path`` where its process was killed; never what is being written."""
+    target = Path(os.path.realpath(path))
+    pattern = re.compile(rf"\.{re.escape(target.name)}\.[0-9a-f]{{12}}")
+    with suppress(OSError, ValueError):
+        for entry in os.scandir(target.parent):
+            if pattern.fullmatch(entry.name) and entry.is_file(follow_symlinks=False):
+                _remove_unless_held(entry.path)
+
+
+def _remove_unless_held(name: str) -> None:
+    with suppress(OSError):  # Windows refuses to remove a file that is open, the lock says it elsewhere
+        with open(name, "rb") as file:
+            _lock(file.fileno())
+        os.unlink(name)
+
+
+def _check_links(path: Path, target: Path, project: Path | None) -> None:
+    """Refuses a link that would have a file changed that nobody named."""
+    path = Path(os.path.abspath(path))
+    inside = project if project is not None and Path(os.path.abspath(project)) in path.parents else path.parent
+    if Path(os.path.realpath(inside)) not in target.parents:
+        raise Unsavable(
+            f"'{path.name}' is a link to '{target}', outside of '{inside}': EPG does not write there; "
+            "replace the link by a copy, or name that file itself in CMakeLists.txt"
+        )
+
+
+def _lock(file: int) -> None:
+    """Holds a file until it is closed or the process ends; raises OSError where somebody else holds it."""
+    if os.name != "nt":
+        import fcntl
+
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+
 def _discard(temporary: Path) -> None:
-    try:
+    with suppress(OSError):  # it was not made
         temporary.unlink()
-    except OSError:
-        pass  # it was not made
 
 
 class Watch:

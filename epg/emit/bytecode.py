@@ -49,7 +49,8 @@ class TemplateCache(jinja2.BytecodeCache):
         file = self._file(bucket)
         temporary = file.with_name(f".{file.name}.{os.getpid()}")
         try:
-            self.folder.mkdir(parents=True, exist_ok=True)
+            self.folder.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+            self.folder.mkdir(exist_ok=True)
             temporary.write_bytes(hashlib.sha256(data).digest() + data)
             os.replace(temporary, file)
         except OSError:

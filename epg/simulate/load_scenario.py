@@ -8,6 +8,7 @@ from pathlib import Path
 
 from epg.check.schema import load_schema, validate
 from epg.diagnostics import Diagnostics, did_you_mean
+from epg.load.text_file import is_file
 from epg.load.yaml_file import load_yaml
 from epg.quantity import QuantityError, dimension_of, normal_unit, parse_quantity
 from epg.simulate.scenario import Axis, Event, Homing, Part, Profile, Scenario, Window
@@ -53,7 +54,7 @@ class _Reader:
         self.names += [("topic", topic, setpoints.key_span(topic)) for topic, _ in setpoints.items()]
         profiles = {topic: self.profile(node, duration) for topic, node in setpoints.items()}
         reference = root.get("reference")
-        if reference is not None and not (path.parent / str(reference.value)).is_file():
+        if reference is not None and not is_file(path.parent / str(reference.value)):
             hint = did_you_mean(str(reference.value), [file.name for file in path.parent.glob("*.py")])
             self.error("file-not-found", reference, f"there is no file '{reference.value}'", hint)
         events, ends = root.get("events"), root.get("ends")

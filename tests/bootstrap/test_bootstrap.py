@@ -131,3 +131,76 @@ def test_the_oldest_versions_are_those_of_the_package() -> None:
         assert module
         assert f'"{name.lower()}>={".".join(map(str, oldest))}"' in text
     assert sys.version_info >= (3, 10)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="EPG: the user's folders are private on Windows")
+@pytest.mark.parametrize("mode", [0o777, 0o1777, 0o775, 0o702], ids=oct)
+def test_a_cache_that_others_may_write_is_not_used(mode: int, tmp_path: Path) -> None:
+    """What is in it would be run: packages, compiled templates, SDKs."""
+    cache = tmp_path / "cache"
+    planted = cache / bootstrap.package_folder("generator").name / "yaml"
+    planted.mkdir(parents=True)
+    (planted / "__init__.py").write_text("raise SystemExit('planted')\n")
+    if mode == 0o775:
+        if os.geteuid() != 0:
+            pytest.skip("EPG: a group of others needs root")
+        os.chown(cache, 0, 4321)
+    cache.chmod(mode)
+    done = run(sys.executable, cache, *EPG)
+    assert done.returncode == 4 and "planted" not in done.stderr
+    assert f"EPG does not use its cache, {cache}: other users can write into it (mode {mode:o})" in done.stderr
+    assert "EPG_CACHE" in done.stderr and "Traceback" not in done.stderr
+    said = run(sys.executable, cache, EPG[0], "doctor").stdout.splitlines()[0]
+    assert "which EPG does not use: other users can write into it" in said
+    cache.chmod(0o755)
+    assert run(sys.executable, cache, *EPG).returncode == 0
+
+
+@pytest.mark.skipif(os.name == "nt" or os.geteuid() != 0, reason="EPG: files of another user need root")
+def test_a_cache_of_another_user_is_not_used(tmp_path: Path) -> None:
+    cache = tmp_path / "cache"
+    cache.mkdir(mode=0o755)
+    os.chown(cache, 4321, 4321)
+    done = run(sys.executable, cache, *EPG)
+    assert done.returncode == 4 and "it belongs to another user, number 4321" in done.stderr
+    assert run(sys.executable, cache, *EPG, SUDO_UID="4321").returncode == 0
+
+
+def test_a_new_cache_is_the_users_own(tmp_path: Path) -> None:
+    """Also where files are writable for everybody by default."""
+    script = f"import os, sys; os.umask(0); os.execv(sys.executable, [sys.executable, {EPG[0]!r}, *sys.argv[1:]])"
+    jiwy = ROOT / "examples/jiwy"
+    target = ["--tcf", "host_jiwy.tcf", "--model", str(jiwy / "model"), "--bindings", str(jiwy / "jiwy.bindings.yaml")]
+    for _ in range(2):
+        done = run(
+            sys.executable,
+            tmp_path / "cache",
+            "-c",
+            script,
+            "generate",
+            "jiwy",
+            *target,
+            "--output",
+            str(tmp_path / "o"),
+        )
+        assert done.returncode == 0, done.stderr
+    assert (tmp_path / "cache").stat().st_mode & 0o022 == 0 and list((tmp_path / "cache").iterdir())
+
+
+@pytest.mark.skipif(os.name == "nt", reason="EPG: POSIX has groups of a user's own")
+def test_the_users_own_group_may_write(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Debian and Fedora make a group for each user, and files are writable for it by default."""
+    import grp
+    import pwd
+
+    tmp_path.chmod(0o775)
+    user, group = pwd.getpwuid(os.geteuid()), tmp_path.stat().st_gid
+    members: list[str] = []
+    monkeypatch.setattr(pwd, "getpwuid", lambda _: pwd.struct_passwd((*user[:3], group, *user[4:])))
+    monkeypatch.setattr(grp, "getgrgid", lambda _: grp.struct_group((user.pw_name, "x", group, members)))
+    assert bootstrap.cache_problem(tmp_path) == ""
+    members.append("somebody")
+    assert "other users can write into it (mode 775)" in bootstrap.cache_problem(tmp_path)
+    members.clear()
+    monkeypatch.setattr(grp, "getgrgid", lambda _: grp.struct_group(("users", "x", group, members)))
+    assert bootstrap.cache_problem(tmp_path)

@@ -123,6 +123,23 @@ def test_it_can_be_forbidden(world: World) -> None:
     assert not world.cache.exists()
 
 
+@pytest.mark.skipif(os.name == "nt", reason="EPG: the user's folders are private on Windows")
+def test_a_cache_that_others_may_write_is_not_used(world: World) -> None:
+    """What is in it is included by the configure step."""
+    world.find()
+    world.cache.chmod(0o757)
+    done = subprocess.run(
+        ["cmake", "-P", str(world.script)],
+        capture_output=True,
+        text=True,
+        env={**os.environ, "EPG_CACHE": str(world.cache)},
+    )
+    assert done.returncode != 0 and "other users of this computer can change" in " ".join(done.stderr.split())
+    assert f"  chmod -R go-w {world.cache}\n" in done.stderr and "found '" not in done.stdout
+    world.cache.chmod(0o755)
+    assert f"found '{world.fetched}'" in world.find()
+
+
 @pytest.mark.parametrize("name", ["micro_cdr", "micro_xrce_dds_client"])
 def test_pins_name_the_version_that_is_tested(name: str) -> None:
     tool = json.loads((ROOT / "targets" / "tools" / f"{name}.json").read_text())

@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from epg.connect.files import BOM, Snapshot, Unsavable, Watch, read_snapshot, save
-from tests.connect.page import Page, serving, session_of
+from epg.connect.files import BOM, Snapshot, Unsavable, Watch, read_snapshot, remove_leftovers, save
+from tests.connect.page import Denied, Page, serving, session_of
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 WRITER = """
@@ -47,7 +47,29 @@ def test_a_file_is_never_half_written(tmp_path: Path) -> None:
         writer.wait()
         writer.stdout.close()
         seen.add(path.read_bytes())
+        remove_leftovers(path)
+        assert os.listdir(tmp_path) == [path.name]
     assert seen == whole
+
+
+def test_what_a_killed_session_leaves_goes_at_the_next_start(project: Path, bindings: Path, tmp_path: Path) -> None:
+    import fcntl
+
+    names = [f".{bindings.name}.0123456789ab", ".robot.tcf.ba9876543210"]
+    others = [f".{bindings.name}.swp", f".{bindings.name}.0123456789abc", f"{bindings.name}.0123456789ab"]
+    for name in (*names, *others):
+        (project / name).write_text("half of")
+    held = project / f".{bindings.name}.00000000000a"
+    outside = tmp_path / "outside"
+    outside.write_text("mine")
+    link = project / f".{bindings.name}.00000000000b"
+    link.symlink_to(outside)
+    with held.open("wb") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        with serving(session_of(project)):
+            left = {path.name for path in project.iterdir()}
+    assert not left & set(names) and {*others, held.name, link.name} <= left, "what is being written stays"
+    assert outside.read_text() == "mine"
 
 
 def test_line_ends_and_mark_stay(page: Page, bindings: Path) -> None:
@@ -70,8 +92,8 @@ def test_permissions_stay(page: Page, bindings: Path) -> None:
     assert sorted(path.name for path in bindings.parent.glob(".robot*")) == []
 
 
-def test_a_link_stays_a_link(project: Path, bindings: Path, tmp_path: Path) -> None:
-    real = tmp_path / "shared" / "real.yaml"
+def test_a_link_stays_a_link(project: Path, bindings: Path) -> None:
+    real = project / "shared" / "real.yaml"
     real.parent.mkdir()
     bindings.rename(real)
     bindings.symlink_to(real)
@@ -81,6 +103,42 @@ def test_a_link_stays_a_link(project: Path, bindings: Path, tmp_path: Path) -> N
         assert bindings.is_symlink() and "setpoint_pan: tilt_subscriber" in real.read_text()
         real.write_text(real.read_text() + "# through the link\n")
         assert page.until(lambda state: state["draft"]["external"])
+
+
+def test_a_link_out_of_the_project_is_not_followed(project: Path, bindings: Path, tmp_path: Path) -> None:
+    real = tmp_path / "a robot.shared" / "real.yaml"
+    real.parent.mkdir()
+    bindings.rename(real)
+    bindings.symlink_to(real)
+    before = real.read_text()
+    with serving(session_of(project)) as page:
+        page.connect("setpoint_pan", "tilt_subscriber")
+        for anyway in (False, True):
+            with pytest.raises(Denied, match="outside of") as refusal:
+                page.post("save", anyway=anyway)
+            assert str(real) in refusal.value.message and refusal.value.status == 409
+        assert page.state()["draft"]["changed"]
+    assert bindings.is_symlink() and real.read_text() == before and os.listdir(real.parent) == [real.name]
+
+
+def test_links_above_the_project_are_none_of_its_own(project: Path, tmp_path: Path) -> None:
+    """A project that is reached through a link, and a folder in it that is a link to elsewhere."""
+    (tmp_path / "link").symlink_to(project)
+    with serving(session_of(tmp_path / "link")) as page:
+        page.connect("setpoint_pan", "tilt_subscriber")
+        page.post("save")
+    outside = tmp_path / "outside"
+    outside.mkdir()
+    (outside / "a.yaml").write_text("one\n")
+    (project / "sub").symlink_to(outside)
+    path = project / "sub" / "a.yaml"
+    before = read_snapshot(path)
+    with pytest.raises(Unsavable, match="outside of"):
+        save(before, before.with_text("two\n"), project=project)
+    assert (outside / "a.yaml").read_text() == "one\n"
+    named = read_snapshot(outside / "a.yaml")
+    save(named, named.with_text("two\n"), project=project)  # whoever names a file elsewhere means it
+    assert (outside / "a.yaml").read_text() == "two\n"
 
 
 def test_a_new_file_has_usual_permissions(tmp_path: Path) -> None:

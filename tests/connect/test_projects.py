@@ -164,6 +164,18 @@ def test_presets(tmp_path: Path) -> None:
     assert (job.request.tcf, job.preset, job.build_dir) == ("servo.tcf", "y", built)
 
 
+@pytest.mark.parametrize(
+    "name", ["a" * 5000, "a/" * 3000, "\0", "${sourceDir}/" + "b" * 300], ids=["long", "deep", "nul", "b"]
+)
+def test_a_build_folder_that_no_system_can_have(name: str, tmp_path: Path) -> None:
+    """CMake says what is wrong with it, when it is asked to configure."""
+    top = project(tmp_path, "project(p C)\nepg_add_target(servo TCF t.tcf MODEL m BINDINGS b.yaml)\n")
+    presets = [{"name": "x", "binaryDir": name}]
+    (top / "CMakePresets.json").write_text(json.dumps({"version": 3, "configurePresets": presets}))
+    ((job,), _) = found(top)
+    assert (job.request.tcf, job.preset) == ("t.tcf", "x")
+
+
 def test_all_that_a_call_can_say(tmp_path: Path) -> None:
     folder = project(
         tmp_path,

@@ -133,3 +133,15 @@ def test_events_become_rows(tmp_path: Path) -> None:
     assert (Fraction(1, 4), "pan", math.pi / 2) in rows
     assert [row[0] for row in rows] == sorted(row[0] for row in rows)
     assert not [row for row in setpoint_rows(scenario, realtime=True) if row[1] == "$stall"]
+
+
+@pytest.mark.parametrize("name", ["a" * 5000 + ".py", "a/" * 3000 + "x.py", "a\\0b.py"], ids=["long", "deep", "nul"])
+def test_a_reference_that_no_system_can_have(name: str, tmp_path: Path) -> None:
+    path = tmp_path / "scenario.yaml"
+    text = (HERE / "wrong/axes.yaml").read_text()
+    assert "reference: ideal_lop.py" in text
+    path.write_text(text.replace("ideal_lop.py", f'"{name}"'))
+    diagnostics = Diagnostics()
+    assert load_scenario(path, diagnostics) is None
+    (message,) = [problem.message for problem in diagnostics if problem.id == "file-not-found"]
+    assert message.startswith("there is no file '")
