@@ -11,8 +11,11 @@ from epg.diagnostics import Diagnostics, Note
 from epg.load.models.c_code import KEYWORDS, Code, Function, function_head
 from epg.load.models.declarations import outside_bodies
 from epg.load.models.identifiers import words
+from epg.load.models.library_types import FILES as FILE_TYPES
+from epg.load.models.library_types import is_declaration, is_of_std, library_uses
 from epg.load.models.link import Linked
 from epg.load.models.tokens import Tokens
+from epg.source import Span
 
 FIXED_STEP_METHODS = ("Discrete", "Euler", "RungeKutta2", "RungeKutta4")
 
@@ -55,6 +58,7 @@ _LIBRARY = words(
     rand srand qsort bsearch exit abort assert defined offsetof va_start va_end va_arg static_assert
     """
 )
+_CPP_LIBRARY = words("min max swap move forward clamp fill copy begin end size")
 _LIBRARY_ALL = _LIBRARY | {f"{name}f" for name in _LIBRARY} | HEAP | _FILES | _PRINTS | _CLOCKS
 
 
@@ -117,8 +121,16 @@ def check_features(
     }
     told: set[str] = set()
     declarations = _Declarations(linked)
+    causes = _Causes(foreign)
     for code, function in reachable:
+        of_files = causes.look_at_types(code, function)
         for name, start in code.calls(function):
+            if name not in _LIBRARY_ALL and (is_declaration(code, start) or is_of_std(code, start)):
+                continue
+            if causes.look_at_call(name, start, code, known):
+                continue
+            if of_files and name not in known:
+                continue  # what is done with the file
             if not foreign:
                 _check_declared(name, start, code, declarations, told, diagnostics)
             elif name not in _LIBRARY_ALL and name not in stubs:
@@ -129,6 +141,7 @@ def check_features(
                 start = function.body_start + match.start()
                 message = "memory is allocated while the model runs"
                 diagnostics.error("model-heap", code.file.span(start, start + 3), message, hint=_HEAP_HINT)
+    causes.report(diagnostics)
     for code in linked.headers:
         for match in re.finditer(r"\btypedef\s+(float)\s+\w*Double\b", code.file.code):
             diagnostics.warning(
@@ -185,6 +198,47 @@ def _check_declared(
     )
 
 
+class _Causes:
+    """Uses of files and of the heap.  The first of each is an error, and names the others."""
+
+    def __init__(self, foreign: bool) -> None:
+        self._foreign = foreign
+        self._files: list[tuple[str, Span]] = []
+        self._heap: list[tuple[str, Span]] = []
+
+    def look_at_types(self, code: Code, function: Function) -> bool:
+        """Whether ``function`` has objects that are files: what else it does is about them."""
+        uses = list(library_uses(code, function))
+        files = [use for use in uses if use.name in FILE_TYPES]
+        for use in files or uses:
+            found = self._files if files else self._heap
+            found.append((f"uses std::{use.name}", code.file.span(use.start, use.end)))
+        return bool(files)
+
+    def look_at_call(self, name: str, start: int, code: Code, known: set[str]) -> bool:
+        """Whether ``name`` is a function of the C library for files or for the heap."""
+        if name in known or (name not in HEAP and name not in _FILES) or _TERMINAL.match(code.file.code, start):
+            return False
+        found = self._heap if name in HEAP else self._files
+        found.append((f"calls {name}()", code.file.span(start, start + len(name))))
+        return True
+
+    def report(self, diagnostics: Diagnostics) -> None:
+        hint = "replace tables in files by equations or parameters in 20-sim"
+        if self._foreign or any(text.startswith("uses") for text, _ in self._files):
+            hint = "let the model have what it reads as parameters, or as constants in its code"
+        for found, id, why, how in (
+            (self._files, "model-file-use", ": there are no files on a target", hint),
+            (self._heap, "model-heap", "", _HEAP_HINT),
+        ):
+            if found:
+                found.sort(key=lambda use: not re.search(r"open\(|uses", use[0]))  # what the rest follows from
+                text, span = found[0]
+                others = sorted({other for other, _ in found} - {text})
+                also = f" ({', '.join(word.split()[1] for word in others[:6])} too)" if others else ""
+                diagnostics.error(id, span, f"the model {text}{also}{why}", hint=how)
+
+
 _HEAP_HINT = "targets have no heap after start: use arrays of fixed size"
 
 
@@ -215,15 +269,7 @@ def _check_call(
         return
     if name in known or name in told:
         return
-    if name in HEAP:
-        diagnostics.error("model-heap", span, f"the model calls {name}()", hint=_HEAP_HINT)
-    elif name in _FILES and not _TERMINAL.match(code.file.code, start):
-        message = f"the model calls {name}(): there are no files on a target"
-        hint = "replace tables in files by equations or parameters in 20-sim"
-        if foreign:
-            hint = "let the model have what it reads as parameters, or as constants in its code"
-        diagnostics.error("model-file-use", span, message, hint=hint)
-    elif name in _PRINTS or name in _FILES:
+    if name in _PRINTS or name in _FILES:
         message = f"the model calls {name}(): its output goes nowhere on a target"
         diagnostics.warning("model-prints", span, message, hint="remove it, or bind an output port to a topic")
     elif name in ("rand", "srand"):
@@ -237,7 +283,7 @@ def _check_call(
         message = f"the model reads the computer's clock ({name}()), which targets do not have"
         hint = "use the time of the simulation" if foreign else "use 'time' instead of 'realtime' in 20-sim"
         diagnostics.warning("model-real-time", span, message, hint=hint)
-    elif name not in _LIBRARY_ALL:
+    elif name not in _LIBRARY_ALL and not (name in _CPP_LIBRARY and code.file.path.suffix != ".c"):
         told.add(name)
         if re.match(r"XX|YY", name) or name.endswith("Submodel"):
             message = f"'{name}' is called, but no file of the export defines it"

@@ -13,6 +13,7 @@ from epg.diagnostics import Diagnostics
 from epg.load.models.c_code import Code, Function
 from epg.load.models.features import HEAP, check_features
 from epg.load.models.link import Linked
+from epg.source import Span
 
 #: the heap that EPG gives to FMUs; their callbacks (FMI 2.0.4, 2.1.5) lead to the same
 PROVIDED = frozenset(("malloc", "calloc", "realloc", "free", "strdup"))
@@ -32,14 +33,19 @@ def check_fmu(linked: Linked, standard: int, diagnostics: Diagnostics) -> None:
     running = _named(linked, standard, _RUN)
     starting = _named(linked, standard, _START)
     check_features(linked, [*starting, *running], "", diagnostics, foreign=True, allowed=PROVIDED)
+    taking: list[tuple[str, Span]] = []
     for code, function in linked.reachable(running):
         body = code.body(function)
         taken = _TAKES.search(body)
         if taken is not None and not _GIVES_BACK.search(body):
             start = function.body_start + taken.start(1)
-            message = f"'{function.name}' takes memory while the model runs, and does not give it back"
-            hint = f"take it in fmi{standard}Instantiate{'CoSimulation' if standard == 3 else ''}, or use an array"
-            diagnostics.error("model-heap", code.file.span(start, start + len(taken[1])), message, hint=hint)
+            taking.append((function.name, code.file.span(start, start + len(taken[1]))))
+    if taking:
+        name, span = taking[0]
+        others = f" (nor do {', '.join(other for other, _ in taking[1:5])})" if taking[1:] else ""
+        message = f"'{name}' takes memory while the model runs, and does not give it back{others}"
+        hint = f"take it in fmi{standard}Instantiate{'CoSimulation' if standard == 3 else ''}, or use an array"
+        diagnostics.error("model-heap", span, message, hint=hint)
 
 
 def uses_heap(codes: Iterable[Code]) -> bool:

@@ -10,6 +10,7 @@ import posixpath
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics
@@ -96,6 +97,7 @@ def find_sources(files: FmuFiles, description: Description, diagnostics: Diagnos
         return None
     own = reader.own(FMI_HEADERS[description.standard])
     reader.follow([*units, *own.values()])
+    reader.report_taken()
     if diagnostics.error_count > before:
         return None
     main = {2: "fmi2DoStep", 3: "fmi3DoStep"}[description.standard]
@@ -106,7 +108,7 @@ def find_sources(files: FmuFiles, description: Description, diagnostics: Diagnos
         return None
     headers = tuple(sorted(reader.codes.keys() - set(units)))
     return FmuSources(
-        tuple(dict.fromkeys(units)), headers, include_dirs, listed.definitions, reader.codes, frozenset(own)
+        tuple(dict.fromkeys(units)), headers, reader.include_dirs, listed.definitions, reader.codes, frozenset(own)
     )
 
 
@@ -204,6 +206,16 @@ class _Reader:
         self.include_dirs = tuple(include_dirs)
         self.diagnostics = diagnostics
         self.codes: dict[str, Code] = {}
+        self.taken: dict[str, list[str]] = {}
+        self.told: set[str] = set()
+
+    @cached_property
+    def _places(self) -> dict[str, list[str]]:
+        """All files by the last part of their names."""
+        places: dict[str, list[str]] = {}
+        for name in sorted(self.files.contents):
+            places.setdefault(posixpath.basename(name), []).append(name)
+        return places
 
     def own(self, headers: Iterable[str]) -> dict[str, str]:
         """Those of the standard's headers that the FMU has where EPG's own code will find them."""
@@ -234,9 +246,9 @@ class _Reader:
             code = self.codes[name]
             for include in code.includes:
                 found = self._find(name, include)
-                if found is None:
-                    self._missing(code, include)
-                elif found not in self.codes and self.read(found):
+                if found is None and self._is_needed(code, include):
+                    found = self._find_below(code, include)
+                if found is not None and found not in self.codes and self.read(found):
                     waiting.append(found)
 
     def _find(self, name: str, include: Include) -> str | None:
@@ -248,15 +260,38 @@ class _Reader:
                 return place
         return None
 
-    def _missing(self, code: Code, include: Include) -> None:
-        """Reports a header that is not there, unless it may stand in code for another system."""
+    def _is_needed(self, code: Code, include: Include) -> bool:
+        """Whether a file that is not there must be: headers of C and of FMI need not, nor those of other systems."""
         basename = posixpath.basename(include.name)
         if include.system or basename in _C_HEADERS or any(basename in headers for headers in FMI_HEADERS.values()):
-            return
+            return False
         before = [match[1] for match in _INACTIVE.finditer(code.file.without_comments, 0, include.start)]
         guards = 1 if code.file.path.suffix.lower() == ".h" else 0
-        if before.count("if") - before.count("endif") > guards:
-            return
+        return before.count("if") - before.count("endif") <= guards
+
+    def _find_below(self, code: Code, include: Include) -> str | None:
+        """The file in whichever folder it lies: some tools put folders into their FMUs and name them in no file."""
+        wanted = f"/{include.name.replace(chr(92), '/')}"
+        places = [name for name in self._places.get(posixpath.basename(wanted), ()) if name.endswith(wanted)]
+        if len({re.sub(rb"\s+", b" ", self.files.contents[place]) for place in places}) == 1:
+            folder = places[0][: -len(wanted)]
+            self.include_dirs = (*self.include_dirs, folder)
+            self.taken.setdefault(folder, []).append(include.name)
+            return places[0]
         span = code.file.span(include.start, include.start + len(include.name))
-        message = f"'{one_line(include.name)[:80]}' is not among the FMU's sources"
-        self.diagnostics.error("fmu-file-missing", span, message, hint="export the FMU again, with all its sources")
+        name = one_line(include.name)[:80]
+        if name not in self.told:
+            self.told.add(name)
+            message, hint = f"'{name}' is not among the FMU's sources", "export the FMU again, with all its sources"
+            if places:
+                message = f"'{name}' lies in {len(places)} folders of the FMU, and it is open which of them is meant"
+                hint = f"write the folder into the #include: {', '.join(one_line(place) for place in places[:4])}"
+            self.diagnostics.error("fmu-file-missing", span, message, hint=hint)
+        return None
+
+    def report_taken(self) -> None:
+        """Says which headers were found in folders that neither the FMU nor an include names."""
+        for folder, names in sorted(self.taken.items()):
+            message = f"found in '{one_line(folder)}', which the FMU does not name as a folder of headers: "
+            shown = ", ".join(one_line(name) for name in sorted(set(names))[:12])
+            self.diagnostics.note("model-neighbour", Span(str(self.files.path(folder))), message + shown)

@@ -106,3 +106,52 @@ def test_a_function_that_no_header_declares(tmp_path: Path) -> None:
 def test_counts_of_stale_tokens_are_not_believed(tmp_path: Path) -> None:
     export = Export(token_values={"NUMBER_DEPSTATES": "1", "INPUT_NAMES3": "in\nspeed\n"})
     assert only_problem(export.write(tmp_path), "warning").id == "stale-metadata"
+
+
+READER = """
+#include <fstream>
+#include <string>
+#include <vector>
+static double gain_of(const char *name)
+{
+\tstd::ifstream file(name);
+\tstd::string line;
+\tstd::vector<double> values(3);
+\twhile (std::getline(file, line)) values.push_back(std::stod(line));
+\treturn values.at(0);
+}
+"""
+
+
+@pytest.mark.parametrize("spaces", ["std::", ""])
+def test_a_class_that_reads_a_file_is_refused_for_that_alone(tmp_path: Path, spaces: str) -> None:
+    folder = Export(dynamic='\tm_V[0] = gain_of("gains.txt");\n').write_cpp(tmp_path)
+    source = folder / "Servo.cpp"
+    reader = READER.replace("std::", spaces).replace(
+        "static", "using namespace std;\nstatic" if not spaces else "static"
+    )
+    source.write_text(source.read_text().replace('#include "Servo.h"\n', f'#include "Servo.h"\n{reader}'))
+    problem = only_problem(folder, "error")
+    assert problem.id == "model-file-use" and problem.message.startswith("the model uses std::ifstream:")
+    assert text_at(problem) == f"{spaces}ifstream"
+
+
+def test_classes_that_take_memory_are_one_error(tmp_path: Path) -> None:
+    code = '\t{ std::vector<double> v(3); std::string s("a"); m_V[0] = v[0] + s.size(); }\n'
+    problem = only_problem(Export(dynamic=code).write_cpp(tmp_path), "error")
+    assert problem.id == "model-heap" and problem.message == "the model uses std::vector (std::string too)"
+
+
+def test_objects_and_functions_of_the_library_are_no_missing_functions(tmp_path: Path) -> None:
+    code = (
+        "\t{ struct Gain { double k; Gain(double x) { k = x; } }; Gain gain(2.0); m_V[0] = std::max(gain.k, 1.0); }\n"
+    )
+    model, diagnostics = load(Export(dynamic=code).write_cpp(tmp_path))
+    assert model is not None, [item.message for item in diagnostics]
+
+
+def test_a_file_is_one_error_however_it_is_used(tmp_path: Path) -> None:
+    code = '\t{ FILE *f = fopen ("a", "r"); fscanf (f, "%lf", V); fclose (f); fclose (f); }\n'
+    problem = only_problem(Export(dynamic=code).write(tmp_path), "error")
+    assert problem.message == "the model calls fopen() (fclose(), fscanf() too): there are no files on a target"
+    assert text_at(problem) == "fopen"

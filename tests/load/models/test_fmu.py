@@ -19,7 +19,7 @@ import yaml
 from epg.load.models.details import FmuExport
 from tests.models.exports import Export
 from tests.models.fmus import FMU2, FMU3, changed, pack
-from tests.models.harness import load, loaded
+from tests.models.harness import HAVE_COMPILER, build, load, loaded, run_wrapper
 
 SCHEMA = Path(__file__).resolve().parents[3] / "schemas" / "model.schema.json"
 
@@ -149,6 +149,39 @@ def test_sources_that_nobody_lists(tmp_path: Path) -> None:
     changed(FMU2, folder, "modelDescription.xml", (text[start:end], ""))
     (folder / "sources/notes.txt").write_text("no source")
     assert {path.name for path in loaded(folder).files} == {"modelDescription.xml", "servo.c", "law.c", "law.h"}
+
+
+@pytest.mark.parametrize("archive", [False, True], ids=["folder", "archive"])
+def test_headers_in_folders_that_nothing_names(archive: bool, tmp_path: Path) -> None:
+    folder = changed(FMU2, tmp_path / "fmu", "sources/servo.c", ("", ""))
+    (folder / "sources" / "lib" / "control").mkdir(parents=True)
+    (folder / "sources" / "law.h").rename(folder / "sources" / "lib" / "control" / "law.h")
+    model, diagnostics = load(pack(folder, tmp_path / "a.fmu") if archive else folder)
+    assert model is not None and isinstance(model.details, FmuExport)
+    assert [(item.severity, item.id) for item in diagnostics] == [("note", "model-neighbour")]
+    assert "found in 'sources/lib/control'" in diagnostics.items[0].message and "law.h" in diagnostics.items[0].message
+    if HAVE_COMPILER:
+        run_wrapper(build(model, "servo", tmp_path / "build"), 3)
+
+
+def test_headers_of_one_name_in_several_folders(tmp_path: Path) -> None:
+    folder = changed(FMU2, tmp_path / "fmu", "sources/servo.c", ("", ""))
+    for name in ("old", "new"):
+        (folder / "sources" / name).mkdir()
+        (folder / "sources" / name / "law.h").write_text((folder / "sources" / "law.h").read_text() + f"int {name};\n")
+    (folder / "sources" / "law.h").unlink()
+    id, message = only_error(folder)
+    assert id == "fmu-file-missing" and "'law.h' lies in 2 folders of the FMU" in message
+
+
+def test_memory_that_steps_keep_is_one_error(tmp_path: Path) -> None:
+    taking = "static void *one(void) { return malloc(1); }\nstatic void *two(void) { return malloc(2); }\n"
+    text = ("    double error =", "    one(); two();\n    double error =")
+    folder = changed(FMU2, tmp_path / "fmu", "sources/servo.c", text)
+    source = folder / "sources" / "servo.c"
+    source.write_text(source.read_text().replace("fmi2Status fmi2DoStep", f"{taking}fmi2Status fmi2DoStep", 1))
+    id, message = only_error(folder)
+    assert id == "model-heap" and "'one'" in message and "(nor do two)" in message
 
 
 def test_headers_of_other_systems_may_be_missing(tmp_path: Path) -> None:

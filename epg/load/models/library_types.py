@@ -1,0 +1,70 @@
+"""Classes of the C++ library that cannot be used on a target, and names before a parenthesis that are not called.
+
+Somebody lets a controller read its parameters with ``std::ifstream file("gains.txt");``.  What follows there, such as
+``std::getline`` and ``std::stod``, has the same cause.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from epg.load.models.c_code import KEYWORDS, Code, Function
+from epg.load.models.identifiers import words
+
+FILES = words("ifstream ofstream fstream wifstream wofstream wfstream basic_ifstream basic_ofstream filebuf")
+HEAP = words(
+    """
+    string wstring stringstream istringstream ostringstream vector list deque map multimap set multiset unordered_map
+    unordered_set stack queue priority_queue shared_ptr unique_ptr function any regex thread async future
+    """
+)
+_TYPE = re.compile(
+    rf"(?<![\w.>])(?P<std>std\s{{0,9}}::\s{{0,9}})?\b(?P<type>{'|'.join(sorted(FILES | HEAP))})\b"
+    r"(?P<rest>\s{0,9}<[^;(){}]{0,200}>)?(?=\s{1,80}[A-Za-z_]\w{0,255}\s{0,80}[;({=,)]|\s{0,9}[({])",
+    re.ASCII,
+)
+_USING = re.compile(r"\busing\s{1,80}namespace\s{1,80}std\s{0,80};")
+_WORD = re.compile(r"\w+$")
+_BEFORE_CALLS = words("return else do case throw new delete goto and or not xor co_return co_await sizeof")
+
+
+@dataclass(frozen=True)
+class Use:
+    """Where a class of the library is used: an object of it is made."""
+
+    name: str
+    start: int
+    end: int
+
+
+def library_uses(code: Code, function: Function) -> Iterator[Use]:
+    """Objects of classes that read files or take memory from the heap, in the body of ``function``."""
+    if code.file.path.suffix.lower() == ".c":
+        return
+    text = code.file.code
+    everywhere = _USING.search(text) is not None
+    for match in _TYPE.finditer(text, function.body_start, function.body_end):
+        if match["std"] or everywhere:
+            yield Use(match["type"], match.start(), match.end("type"))
+
+
+def is_declaration(code: Code, start: int) -> bool:
+    """Whether the name before a parenthesis is that of an object that is made: ``Gains gains("file");``."""
+    before = code.file.code[max(0, start - 300) : start].rstrip(" \t")
+    if before.endswith(">"):
+        return re.search(r"\w\s{0,9}<[^<>;(){}]{0,200}>$", before) is not None
+    word = _WORD.search(before[-256:])
+    if word is None or word[0] in _BEFORE_CALLS or word[0][0].isdigit():
+        return False
+    return word[0] not in KEYWORDS or _is_type(word[0])
+
+
+def is_of_std(code: Code, start: int) -> bool:
+    """Whether a name stands behind ``std::``."""
+    return re.search(r"\bstd\s{0,9}::\s{0,9}$", code.file.code[max(0, start - 30) : start]) is not None
+
+
+def _is_type(word: str) -> bool:
+    return word in ("auto", "bool", "char", "double", "float", "int", "long", "short", "signed", "unsigned", "const")
