@@ -15,7 +15,7 @@ from epg.diagnostics import Diagnostics
 from epg.load.models.assignments import exact_number, is_step, number
 from epg.load.models.details import FmuExport, FmuParameter, FmuPorts
 from epg.load.models.fmu_description import Description, read_description
-from epg.load.models.fmu_features import check_fmu, uses_heap
+from epg.load.models.fmu_features import check_fmu, check_guid, uses_heap
 from epg.load.models.fmu_files import DESCRIPTION, FmuFiles, read_fmu_files
 from epg.load.models.fmu_sources import FMI_HEADERS, FmuSources, find_sources
 from epg.load.models.fmu_variables import TYPES_2, TYPES_3, Variable
@@ -64,6 +64,7 @@ def load_fmu(
     if sources is None:
         return None
     check_fmu(sources.linked, description.standard, diagnostics)
+    check_guid(sources.codes.values(), description.guid, description.span, description.standard, diagnostics)
     inputs, outputs = (_ports(description, direction, diagnostics) for direction in ("input", "output"))
     parameters, places = _parameters(description)
     if step is None or diagnostics.error_count > before:

@@ -7,11 +7,12 @@ that a step takes and keeps would run out.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 
-from epg.diagnostics import Diagnostics
+from epg.diagnostics import Diagnostics, Note
 from epg.load.models.c_code import Code, Function
 from epg.load.models.features import HEAP, check_features
+from epg.load.models.identifiers import one_line
 from epg.load.models.link import Linked
 from epg.source import Span
 
@@ -19,6 +20,8 @@ from epg.source import Span
 PROVIDED = frozenset(("malloc", "calloc", "realloc", "free", "strdup"))
 _TAKES = re.compile(r"\b(malloc|calloc|realloc|strdup|allocateMemory)\s*\)?\s*\(")
 _GIVES_BACK = re.compile(r"\b(?:free|freeMemory)\s*\)?\s*\(")
+_IDENTIFIES = re.compile(r"(?i)guid|instantiation_?token")
+_TEXT = re.compile(r'[ \t]{1,80}"([^"\\\n]{0,200})"')
 _START = """Instantiate InstantiateCoSimulation SetupExperiment EnterInitializationMode ExitInitializationMode
 Terminate FreeInstance""".split()
 _RUN = (
@@ -46,6 +49,30 @@ def check_fmu(linked: Linked, standard: int, diagnostics: Diagnostics) -> None:
         message = f"'{name}' takes memory while the model runs, and does not give it back{others}"
         hint = f"take it in fmi{standard}Instantiate{'CoSimulation' if standard == 3 else ''}, or use an array"
         diagnostics.error("model-heap", span, message, hint=hint)
+
+
+def check_guid(codes: Collection[Code], guid: str, span: Span, standard: int, diagnostics: Diagnostics) -> None:
+    """Reports sources that know themselves by another identifier than the description: they would refuse to start.
+
+    ``span`` is the description's.  Sources hold it as a macro with text, ``FMI_GUID`` in 20-sim's; only those count that
+    the code uses, and of several for different versions of FMI one must fit.
+    """
+    used = {name for code in codes for name in code.used}
+    used |= {word for code in codes for macro in code.macros for word in re.findall(r"\w+", macro.value)}
+    found: list[tuple[str, Span]] = []
+    for code in codes:
+        for macro in code.macros:
+            end = macro.start + len(macro.name)
+            match = _TEXT.match(code.file.text, end) if _IDENTIFIES.search(macro.name) else None
+            if match is not None and macro.name in used:
+                found.append((match[1], code.file.span(match.start(1), match.end(1))))
+    if not found or any(text == guid for text, _ in found):
+        return
+    word = "guid" if standard == 2 else "instantiationToken"
+    text, place = found[0]
+    message = f"the {word} is '{one_line(guid)[:60]}', but the sources have '{one_line(text)[:60]}': they would not start"
+    hint = "the description and the sources are of two exports: export the FMU again"
+    diagnostics.error("fmu-guid", span, message, hint=hint, notes=[Note("the sources", place)])
 
 
 def uses_heap(codes: Iterable[Code]) -> bool:

@@ -268,6 +268,26 @@ def test_the_step_of_20sims_method_is_read_from_the_sources(tmp_path: Path) -> N
     assert loaded(FMU2).details.own_step is None  # type: ignore[union-attr]
 
 
+def test_the_identifier_of_the_sources(tmp_path: Path) -> None:
+    """Only one that the code uses counts; of those for several versions of FMI, one must fit."""
+    define = '#define GUID "{6f1c9a0e-servo}"'
+    other = '#define GUID "{another}"'
+    for name, text, id in (
+        ("other", other, "fmu-guid"),
+        ("alias", '#define SERVO_GUID "{another}"\n#define GUID SERVO_GUID', "fmu-guid"),
+        ("two", f'#if FMI_VERSION == 1\n#define GUID "{{old}}"\n#else\n{define}\n#endif', ""),
+        ("unused", f'{define}\n#define TEMPLATE_GUID "{{none}}"', ""),
+    ):
+        folder = changed(FMU2, tmp_path / name, "sources/servo.c", (define, text))
+        assert (only_error(folder)[0] if id else loaded(folder).name) == (id or 'Servo "1"')
+    folder = Export().write_whole_fmu(tmp_path / "20sim", "instance")
+    loaded(folder)
+    (folder / "sources" / "fmiGUID.h").write_text('#define FMI_GUID "{of another export}"\n')
+    packed = pack(folder, tmp_path / "packed.fmu")
+    for path in (folder, packed):
+        assert only_error(path)[0] == "fmu-guid"
+
+
 # hostile archives ----------------------------------------------------------------------------------------------------
 
 DESCRIPTION = (FMU2 / "modelDescription.xml").read_bytes()
