@@ -54,8 +54,8 @@ def check_fmu(linked: Linked, standard: int, diagnostics: Diagnostics) -> None:
 def check_guid(codes: Collection[Code], guid: str, span: Span, standard: int, diagnostics: Diagnostics) -> None:
     """Reports sources that know themselves by another identifier than the description: they would refuse to start.
 
-    ``span`` is the description's.  Sources hold it as a macro with text, ``FMI_GUID`` in 20-sim's; only those count that
-    the code uses, and of several for different versions of FMI one must fit.
+    ``span`` is the description's.  Sources hold it as a macro with text, ``FMI_GUID`` in 20-sim's.  Macros that the
+    code does not use do not count; of several, for different versions of FMI, one must fit.
     """
     used = {name for code in codes for name in code.used}
     used |= {word for code in codes for macro in code.macros for word in re.findall(r"\w+", macro.value)}
@@ -70,7 +70,9 @@ def check_guid(codes: Collection[Code], guid: str, span: Span, standard: int, di
         return
     word = "guid" if standard == 2 else "instantiationToken"
     text, place = found[0]
-    message = f"the {word} is '{one_line(guid)[:60]}', but the sources have '{one_line(text)[:60]}': they would not start"
+    message = (
+        f"the {word} is '{one_line(guid)[:60]}', but the sources have '{one_line(text)[:60]}': they would not start"
+    )
     hint = "the description and the sources are of two exports: export the FMU again"
     diagnostics.error("fmu-guid", span, message, hint=hint, notes=[Note("the sources", place)])
 

@@ -12,7 +12,7 @@ from fractions import Fraction
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics, Note
-from epg.load.models.assignments import PortLine, exact_number, input_lines, output_lines
+from epg.load.models.assignments import PortLine, assignments, exact_number, input_lines, number, output_lines
 from epg.load.models.configuration import (
     Configuration,
     find_configuration,
@@ -20,8 +20,11 @@ from epg.load.models.configuration import (
     load_model_description,
 )
 from epg.load.models.model import Model, Port
+from epg.load.models.ports import make_parameters
 from epg.load.models.tokens import Tokens, is_tokens_file, load_tokens
 from epg.source import Span
+
+_MOST_NOTES = 10  # parameters with another value that are named, of what may be hundreds
 
 
 @dataclass(frozen=True)
@@ -110,6 +113,8 @@ def cross_check(model: Model, prefix: str, metadata: Metadata, diagnostics: Diag
         if step and exact_number(step) != model.step:
             text = f"step size {step} s, the sources {float(model.step)!r} s"
             same &= _differs(tokens.path, tokens.span("TIME_STEP_SIZE"), text, model.span, diagnostics)
+        if same:
+            _check_values(model, tokens, diagnostics)
         if "VARPREFIX" in tokens.values and tokens.trimmed("VARPREFIX") != prefix:
             text = f"prefix '{tokens.trimmed('VARPREFIX')}', the sources '{prefix}'"
             _differs(tokens.path, tokens.span("VARPREFIX"), text, model.span, diagnostics)
@@ -153,6 +158,29 @@ def _check_names(model: Model, tokens: Tokens, diagnostics: Diagnostics) -> bool
     return same
 
 
+def _check_values(model: Model, tokens: Tokens, diagnostics: Diagnostics) -> None:
+    """Warns once of parameters that have other values in the tokens; the notes name the others."""
+    lines = list(assignments(tokens.code("INITIALIZE_PARAMETERS")))
+    told = [(item.name, item.value, item.span) for item in make_parameters(lines, tokens.names("PARAMETER"), ())[0]]
+    for name, (text, span) in zip(tokens.names("PARAMETER"), tokens.lines("PARAMETER_VALUES")):
+        told += [(name, value, span)] if (value := number(text)) is not None else []
+    known = {parameter.name: parameter for parameter in model.parameters}
+    found = {
+        name: (value, span) for name, value, span in reversed(told) if name in known and value != known[name].value
+    }
+    different = [(own, *found[own.name]) for own in model.parameters if own.name in found]
+    if not different:
+        return
+    own, value, span = different[0]
+    notes = [Note("the sources", own.span)]
+    for other, there, _ in different[1:_MOST_NOTES]:
+        notes.append(Note(f"'{other.name}' is {there!r} there, {other.value!r} here", other.span))
+    more = len(different) - 1
+    rest = f", and {more} more {'differ' if more > 1 else 'differs'}" if more else ""
+    text = f"parameter '{own.name}' = {value!r}, the sources {own.value!r}{rest}"
+    _differs(tokens.path, span, text, own.span, diagnostics, notes)
+
+
 def _check_configured(
     configuration: Configuration, direction: str, ports: Sequence[Port], sources: Span, diagnostics: Diagnostics
 ) -> None:
@@ -167,13 +195,15 @@ def _check_configured(
         )
 
 
-def _differs(file: Path, span: Span, text: str, sources: Span, diagnostics: Diagnostics) -> bool:
+def _differs(
+    file: Path, span: Span, text: str, sources: Span, diagnostics: Diagnostics, notes: Sequence[Note] = ()
+) -> bool:
     diagnostics.warning(
         "stale-metadata",
         span,
         f"'{file.name}' has {text}",
         hint="the sources are used; export the model again to make both agree",
-        notes=[Note("the sources", sources)],
+        notes=notes or [Note("the sources", sources)],
     )
     return False
 

@@ -58,6 +58,12 @@ class Tokens:
         units = [unit.strip() for unit in self._lines(f"{kind}_UNITS")]
         return (units + [""] * count)[:count]
 
+    def lines(self, name: str) -> list[tuple[str, Span]]:
+        """The lines of a token with one value on each, and where they stand."""
+        first = self.span(name)
+        spans = (first, *(Span(first.file, first.line + at, 1, 2) for at in range(1, len(self._lines(name)))))
+        return list(zip(self._lines(name), spans))
+
     def _lines(self, name: str) -> list[str]:
         text = self.get(name)
         if text.endswith("\n"):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -103,3 +104,43 @@ def test_tokens_of_a_second_model_beside_it_are_not_used(tmp_path: Path) -> None
     (folder / "Other_tokens.xml").write_text(Export(name="Other", step="0.5").tokens_xml())
     model, diagnostics = load(folder)
     assert model is not None and not diagnostics.items
+
+
+@pytest.mark.parametrize("kind", ["c", "c++", "fmu sources"])
+def test_other_values_of_parameters_are_named(kind: str, tmp_path: Path) -> None:
+    """Once, at the value in the tokens, with both values; those in the sources run."""
+    other = (
+        ("PI1\\kp", "2.5", ""),
+        ("PI1\\tauI", "8e-1", "s"),
+        ("Filter\\tau", "0.5", "s"),
+        ("Limiter\\maximum", "1", ""),
+    )
+    lines = replace(Export(), parameters=other, variable="m_" if kind == "c++" else "xx_").parameter_lines()
+    export = Export(token_values={"INITIALIZE_PARAMETERS": lines})
+    if kind == "fmu sources":
+        export.write_fmu(tmp_path, True)
+    else:
+        (export.write if kind == "c" else export.write_cpp)(tmp_path)
+    model, diagnostics = load(tmp_path)
+    assert model is not None
+    assert [parameter.value for parameter in model.parameters] == [2.5, 0.8, 0.05, 0.95]
+    (problem,) = diagnostics.items
+    assert (problem.severity, problem.id) == ("warning", "stale-metadata")
+    assert "has parameter 'Filter\\tau' = 0.5, the sources 0.05, and 1 more differs" in problem.message
+    assert "the sources are used" in problem.hint
+    line = Path(problem.span.file).read_text().splitlines()[problem.span.line - 1]
+    assert line.strip().startswith(("xx_P[2] = 0.5;", "m_P[2] = 0.5;"))
+    texts = []
+    for note in problem.notes:
+        texts.append(Path(note.span.file).read_text().splitlines()[note.span.line - 1].strip())
+    assert [text.partition("P")[2].partition(";")[0] for text in texts] == ["[2] = 5.0e-2", "[3] = 0.95"]
+    assert problem.notes[1].message == "'Limiter\\maximum' is 1.0 there, 0.95 here"
+
+
+def test_a_value_that_was_changed_in_one_place_of_the_tokens(tmp_path: Path) -> None:
+    values = "2.5\n0.8\n0.050\n0.9\n"
+    _, diagnostics = load(Export(token_values={"PARAMETER_VALUES": values}).write(tmp_path))
+    (problem,) = diagnostics.items
+    assert "has parameter 'Limiter\\maximum' = 0.9, the sources 0.95" in problem.message
+    assert "more" not in problem.message
+    assert (tmp_path / "tokens.xml").read_text().splitlines()[problem.span.line - 1] == "0.9"
