@@ -22,6 +22,7 @@ def project() -> dict[str, bytes]:
     parameters = "".join(f"  q{i}: {i}\n" for i in numbers)
     wires = "".join(f"  p{i}: c{i}\n" for i in numbers)
     members = " ".join(f"double p{i};" for i in numbers)
+    variables = "".join(f"double q{i};\n" for i in numbers)
     return {
         "robot.tcf": (
             f"version: 1\ntarget: host\nnode: r\ncontrol: {{enable_at_start: true}}\ncomponents:\n{components}"
@@ -32,8 +33,13 @@ def project() -> dict[str, bytes]:
             "version: 1\nname: Big\nstep: 1 ms\nheader: big.h\nsources: [big.c]\nfunctions: {step: s}\n"
             f"types: {{inputs: i_t, outputs: o_t}}\noutputs: {{o: {{}}}}\ninputs:\n{inputs}parameters:\n{parameters}"
         ).encode(),
-        "model/big.h": f"typedef struct {{{members}}} i_t;\ntypedef struct {{double o;}} o_t;\n".encode(),
-        "model/big.c": b'#include "big.h"\nvoid s(const i_t *i, o_t *o)\n{\n    (void)i;\n    o->o = 0;\n}\n',
+        "model/big.h": (
+            f"typedef struct {{{members}}} i_t;\ntypedef struct {{double o;}} o_t;\nvoid s(const i_t *i, o_t *o);\n"
+            + variables.replace("double", "extern double")
+        ).encode(),
+        "model/big.c": (
+            f'#include "big.h"\n{variables}void s(const i_t *i, o_t *o)\n{{\n    (void)i;\n    o->o = 0;\n}}\n'
+        ).encode(),
     }
 
 
@@ -55,6 +61,8 @@ def test_right(tmp_path: Path) -> None:
         ("robot.tcf", "{kind: constant, value", "{kind: ros_subscriber, topic: t, initial"),
         ("model/model.yaml", ": {}", ": {unit: V, typ: real}"),
         ("model/model.yaml", "  q", "  if: 1\n  p"),
+        ("model/model.yaml", "  q", "  r"),
+        ("model/model.yaml", "  p", "  s"),
     ],
     ids=str,
 )

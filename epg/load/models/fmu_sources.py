@@ -29,7 +29,7 @@ FMI_HEADERS = {
     2: ("fmi2TypesPlatform.h", "fmi2FunctionTypes.h", "fmi2Functions.h"),
     3: ("fmi3PlatformTypes.h", "fmi3FunctionTypes.h", "fmi3Functions.h"),
 }
-_C_HEADERS = {
+C_HEADERS = {
     f"{name}.h"
     for name in words("""
     assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdalign stdarg stdatomic
@@ -263,7 +263,7 @@ class _Reader:
     def _is_needed(self, code: Code, include: Include) -> bool:
         """Whether a file that is not there must be: headers of C and of FMI need not, nor those of other systems."""
         basename = posixpath.basename(include.name)
-        if include.system or basename in _C_HEADERS or any(basename in headers for headers in FMI_HEADERS.values()):
+        if include.system or basename in C_HEADERS or any(basename in headers for headers in FMI_HEADERS.values()):
             return False
         before = [match[1] for match in _INACTIVE.finditer(code.file.without_comments, 0, include.start)]
         guards = 1 if code.file.path.suffix.lower() == ".h" else 0

@@ -14,6 +14,7 @@ from epg.diagnostics import Diagnostics, did_you_mean
 from epg.load.models import details
 from epg.load.models.c_code import parse_code
 from epg.load.models.folders import source_files
+from epg.load.models.hand_written_names import Names
 from epg.load.models.identifiers import is_reserved, one_line, to_identifier
 from epg.load.models.model import Model, Parameter, Port
 from epg.load.models.model_yaml import ModelYaml
@@ -70,6 +71,7 @@ def _load(path: Path, node: Node, diagnostics: Diagnostics) -> Model | None:
 
 class _Reader(ModelYaml):
     def load(self) -> Model | None:
+        self.before = self.diagnostics.error_count
         if not self._begin(tuple(_KEYS), _REQUIRED):
             return None
         language = self._choice("language", ("c", "c++"), "c")
@@ -85,6 +87,10 @@ class _Reader(ModelYaml):
         header = self._header(directories)
         if step is None or functions is None or not sources:
             return None
+        if self.diagnostics.error_count == self.before:
+            names = Names(self.path.parent, header, directories, sources, language == "c++")
+            if names.certain:
+                self._check_names(names, instance, members)
         read = {file for file in sources if file.is_file()}
         headers = [file for folder in directories for file in source_files(folder, (".h", ".hpp", ".hh"), 0)]
         return Model(
@@ -272,6 +278,28 @@ class _Reader(ModelYaml):
             self._error("wrong-type", found.span, f"'{key}' must be text", "put it into quotes")
             return ""
         return one_line(found.value)
+
+    def _check_names(self, names: Names, instance: str, members: tuple[str, ...]) -> None:
+        """Reports names of functions, types, parameters and ports that the sources do not have."""
+        for _, node in self.node["functions"].items():
+            names.check_function(str(node.value), node.span, self.diagnostics)
+        if instance:
+            names.check_type(instance, self.node["instance"].span, self.diagnostics)
+        types = self.node.get("types")
+        for key, node in types.items() if types is not None else ():
+            names.check_type(str(node.value), node.span, self.diagnostics)
+            ports = self.node.get(key)
+            for port, _ in ports.items() if ports is not None else ():
+                names.check_member(str(node.value), port, self.node[key].key_span(port), self.diagnostics)
+        parameters = self.node.get("parameters")
+        entries = list(parameters.items()) if parameters is not None else []
+        for (name, node), member in zip(entries, members, strict=True):
+            written = node.get("member")
+            span = written.span if written is not None else self.node["parameters"].key_span(name)
+            if instance:
+                names.check_member(instance, member, span, self.diagnostics)
+            else:
+                names.check_variable(member, span, self.diagnostics)
 
     # files ----------------------------------------------------------------------------------------------------------
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from fractions import Fraction
 from pathlib import Path
 
@@ -172,3 +173,85 @@ def _words(value: object) -> list[object]:
     if isinstance(value, list):
         return [word for child in value for word in _words(child)]
     return [value]
+
+
+def changed(folder: Path, name: str, **files: tuple[str, str]) -> Path:
+    """A copy of one of the tests' models with one change of each file; ``_`` stands for the dot in its name."""
+    shutil.copytree(MODELS / name, folder)
+    for file, (old, new) in files.items():
+        path = folder / file.replace("_", ".")
+        assert old in path.read_text()
+        path.write_text(path.read_text().replace(old, new))
+    return folder
+
+
+MISSPELT = [
+    ("pid_c", "pid_step,", "pid_stpe,", "wrong-value", "pid_step"),
+    ("pid_c", "pid_end", "pid_ends", "wrong-value", "pid_end"),
+    ("pid_c", "instance: pid_t", "instance: pid_tt", "wrong-value", "pid_t"),
+    ("pid_c", "outputs: pid_outputs_t", "outputs: pid_output_t", "wrong-value", "pid_outputs_t"),
+    ("pid_c", "member: integral.rate", "member: integral.rates", "wrong-value", "rate"),
+    ("pid_c", "member: integral.rate", "member: integrals.rate", "wrong-value", "integral"),
+    ("pid_c", "  kp:", "  kpp:", "wrong-value", "kp"),
+    ("pid_c", "  setpoint:", "  setpiont:", "wrong-value", "setpoint"),
+    ("pid_cpp", "control::advance", "control::advanse", "wrong-value", "advance"),
+    ("pid_cpp", "control::Filter", "control::Filtre", "wrong-value", "Filter"),
+    ("pid_cpp", "{gain:", "{gian:", "wrong-value", "gain"),
+    ("gain_arrays", "{gain: {", "{gian: {", "wrong-value", "gain"),
+]
+
+
+@pytest.mark.parametrize(("name", "old", "new", "id", "meant"), MISSPELT, ids=[f"{m[0]}-{m[2]}" for m in MISSPELT])
+def test_a_misspelt_name_is_told_where_it_is_written(
+    name: str, old: str, new: str, id: str, meant: str, tmp_path: Path
+) -> None:
+    folder = changed(tmp_path / "model", name, model_yaml=(old, new))
+    model, diagnostics = load(folder)
+    assert model is None
+    assert [(item.id, item.hint) for item in diagnostics] == [(id, f"did you mean '{meant}'?")]
+    span = diagnostics.items[0].span
+    at = (folder / "model.yaml").read_text().splitlines()[span.line - 1][span.column - 1 : span.end - 1]
+    assert at.strip('"') in new
+
+
+def test_a_function_that_no_source_defines(tmp_path: Path) -> None:
+    folder = changed(tmp_path / "model", "pid_c", pid_c=("void pid_step", "void pid_step2"))
+    model, diagnostics = load(folder)
+    assert model is None
+    assert [item.id for item in diagnostics] == ["model-incomplete"]
+    (folder / "more.c").write_text('#include "pid.h"\nvoid pid_step(void) {}\n')
+    _, diagnostics = load(folder)
+    assert diagnostics.items[0].hint == "add that file to 'sources'"
+    assert [Path(note.span.file).name for note in diagnostics.items[0].notes] == ["more.c"]
+
+
+@pytest.mark.parametrize(
+    "unknown",
+    ['#include "sdk_of_somebody.h"\n', "#include <sdk/of_somebody.h>\n", "#define F(x) void pid_##x(void)\n"],
+)
+def test_what_cannot_be_known_is_not_judged(unknown: str, tmp_path: Path) -> None:
+    folder = changed(tmp_path / "model", "pid_c", model_yaml=("pid_step,", "pid_other,"))
+    (folder / "pid.h").write_text(unknown + (folder / "pid.h").read_text())
+    assert load(folder)[0] is not None
+
+
+def test_functions_in_headers_and_included_files(tmp_path: Path) -> None:
+    folder = write(tmp_path, BASE)
+    (folder / "law.h").write_text("static inline void a_step(const double *u, double *y) { y[0] = u[0]; }\n")
+    (folder / "a.h").write_text('#include <math.h>\n#include "law.h"\n')
+    (folder / "a.c").write_text('#include "a.h"\n')
+    loaded(folder)
+    (folder / "a.h").write_text("void a_step(const double *u, double *y);\n")
+    (folder / "a.c").write_text('#include "law.h"\n')
+    loaded(folder)
+
+
+def test_members_that_macros_or_a_base_declare(tmp_path: Path) -> None:
+    folder = changed(tmp_path / "model", "pid_c", pid_h=("    double kp;\n", "    GAIN(kp);\n"))
+    (folder / "pid.h").write_text("#define GAIN(x) double x\n" + (folder / "pid.h").read_text())
+    loaded(folder)
+    base = "struct Base { double gain = 0.0; };\nstruct Filter : Base {"
+    other = changed(tmp_path / "other", "pid_cpp", controller_hpp=("struct Filter {", base))
+    path = other / "controller.hpp"
+    path.write_text(path.read_text().replace("{\n    double gain = 0.0;\n", "{\n"))
+    loaded(other)

@@ -1,0 +1,260 @@
+"""Whether the names in a ``model.yaml`` are those of its sources: a misspelt one must not end in the linker.
+
+What cannot be known is not judged: where an include is not found, or macros paste names together, there may be more
+names than can be seen.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+from epg.diagnostics import Diagnostics, Note, did_you_mean
+from epg.load.models.c_code import Code, Include, parse_code
+from epg.load.models.declarations import declared_names
+from epg.load.models.fmu_sources import C_HEADERS
+from epg.load.models.folders import source_files
+from epg.load.models.source_file import read_source
+from epg.load.text_file import is_file
+from epg.source import Span
+
+MAX_FILES = 500
+_STRUCT = re.compile(r"\b(?:struct|class|union)\b\s{0,80}([A-Za-z_]\w{0,255})?\s{0,80}(:[^;{}()]{0,300})?\{", re.ASCII)
+_ALIAS = re.compile(
+    r"\btypedef\s{1,80}(?:struct\s{1,80})?([A-Za-z_]\w{0,255})\s{1,80}([A-Za-z_]\w{0,255})\s{0,80};", re.ASCII
+)
+_USING = re.compile(r"\busing\s{1,80}([A-Za-z_]\w{0,255})\s{0,80}=\s{0,80}([A-Za-z_]\w{0,255})\s{0,80};", re.ASCII)
+_TYPE_NAME = re.compile(
+    r"\b(?:struct|class|union|enum)\s{1,80}([A-Za-z_]\w{0,255})|[}\w]\s{0,80}\b([A-Za-z_]\w{0,255})\s{0,80};", re.ASCII
+)
+_BRACE = re.compile(r"[{}]")
+_MEMBER = re.compile(r"([A-Za-z_]\w{0,255})\s{0,80}(?:\[[^\]]{0,200}\]\s{0,80}){0,8}$", re.ASCII)
+
+
+@dataclass(frozen=True)
+class Struct:
+    """A struct or class; ``members`` by name, with the struct that a member is, if that is known."""
+
+    members: dict[str, Struct | None] = field(default_factory=dict)
+    open: bool = False  # there may be more: those of a base
+
+
+class Names:
+    """What the sources of a hand-written controller declare and define."""
+
+    def __init__(
+        self, folder: Path, header: str, directories: Sequence[Path], sources: Sequence[Path], cpp: bool
+    ) -> None:
+        self.folder = folder
+        self.header = header
+        self.cpp = cpp
+        self.certain = True
+        self._directories = [*directories, *(source.parent for source in sources)]
+        self._codes: dict[Path, Code] = {}
+        place = next((d / header for d in directories if is_file(d / header)), None)
+        self.headers = self._read([place] if place else [])
+        self.units = self._read(sources)
+
+    def _read(self, paths: Iterable[Path]) -> list[Code]:
+        """The files and all that they include."""
+        found: dict[Path, Code] = {}
+        waiting = list(paths)
+        while waiting:
+            path = waiting.pop(0)
+            if path in found:
+                continue
+            if path not in self._codes:
+                file = read_source(path, Diagnostics()) if len(self._codes) < MAX_FILES else None
+                if file is None:
+                    self.certain = False
+                    continue
+                self._codes[path] = parse_code(file)
+                self.certain &= "##" not in file.text
+            found[path] = self._codes[path]
+            for include in found[path].includes:
+                other = self._find(include, path)
+                if other is not None:
+                    waiting.append(other)
+                elif not include.system or not (include.name in C_HEADERS or "." not in include.name):
+                    self.certain = False
+        return list(found.values())
+
+    def _find(self, include: Include, path: Path) -> Path | None:
+        folders = self._directories if include.system else [path.parent, *self._directories]
+        return next((folder / include.name for folder in folders if is_file(folder / include.name)), None)
+
+    @property
+    def seen(self) -> list[Code]:
+        """What generated code sees: C++ sources stand in the same file."""
+        return [*self.headers, *self.units] if self.cpp else self.headers
+
+    @property
+    def all(self) -> list[Code]:
+        return list(self._codes.values())
+
+    def check_function(self, name: str, span: Span, diagnostics: Diagnostics) -> None:
+        last = name.rpartition("::")[2]
+        if self._is_known(last):
+            defined = {function.name for code in self.all for function in code.functions}
+            if last not in defined and last not in self._macros and not self._is_in_body(last):
+                self._undefined(last, span, diagnostics)
+            return
+        functions = {name for code in self.seen for name in declared_names(code)}
+        functions |= {function.name for code in self.seen for function in code.functions}
+        where = f"'{self.header}'" if not self.cpp else f"'{self.header}' and the sources"
+        message = f"there is no function '{name}' in {where}"
+        notes = self._defined_in(last) if diagnostics.wants_hints else []
+        hint = "declare it in the header" if notes else did_you_mean(last, functions, "functions there")
+        diagnostics.error("wrong-value", span, message, hint=hint, notes=notes)
+
+    def check_type(self, name: str, span: Span, diagnostics: Diagnostics) -> None:
+        last = name.rpartition("::")[2].removeprefix("struct ")
+        if not self._is_known(last):
+            types = {a or b for code in self.seen for a, b in _TYPE_NAME.findall(code.file.code)}
+            hint = did_you_mean(last, types - {""} or {*self.structs}, "types there")
+            diagnostics.error("wrong-value", span, f"there is no type '{name}' in '{self.header}'", hint=hint)
+
+    def check_member(self, type: str, member: str, span: Span, diagnostics: Diagnostics) -> None:
+        """``member``, such as ``gains.kp[2]``, of the struct ``type``."""
+        struct = self.structs.get(type.rpartition("::")[2].removeprefix("struct "))
+        for part in member.split("."):
+            if struct is None or struct.open:
+                return
+            name = part.partition("[")[0]
+            if name not in struct.members:
+                hint = did_you_mean(name, struct.members, "members") if diagnostics.wants_hints else ""
+                diagnostics.error("wrong-value", span, f"'{type}' has no member '{member}'", hint=hint)
+                return
+            struct = struct.members[name]
+
+    def check_variable(self, member: str, span: Span, diagnostics: Diagnostics) -> None:
+        """``member``, such as ``gains.kp``, of a global variable."""
+        name = re.split(r"[.\[]", member)[0]
+        if self._is_known(name):
+            if name not in self._variables and name not in self._macros:
+                self._undefined(name, span, diagnostics)
+            return
+        message = f"there is no variable '{name}' in '{self.header}'"
+        hint = "'member' names the variable, 'instance' the type that has it"
+        if diagnostics.wants_hints:
+            declared = {other for code in self.seen for other in declared_names(code)}
+            known = self._variables & (declared | {v.name for code in self.seen for v in code.variables})
+            hint = did_you_mean(name, known, "variables there") or hint
+        diagnostics.error("wrong-value", span, message, hint=hint)
+
+    def _is_known(self, name: str) -> bool:
+        return any(name in code.identifiers for code in self.seen)
+
+    @cached_property
+    def _variables(self) -> set[str]:
+        return {variable.name for code in self.all for variable in code.variables}
+
+    def _is_in_body(self, name: str) -> bool:
+        """Whether a class has a function of that name with its body inside."""
+        pattern = re.compile(rf"\b{re.escape(name)}\s{{0,80}}\([^();{{}}]{{0,1000}}\)[^;{{}}()]{{0,80}}\{{")
+        return any(pattern.search(code.file.code) for code in self.all)
+
+    @cached_property
+    def _macros(self) -> set[str]:
+        return {macro.name for code in self.all for macro in code.macros}
+
+    @cached_property
+    def _members_of_macros(self) -> set[str]:
+        """Macros that may declare members."""
+        return {m.name for code in self.all for m in code.macros if m.parameters or ";" in m.value}
+
+    def _undefined(self, name: str, span: Span, diagnostics: Diagnostics) -> None:
+        notes = self._defined_in(name) if diagnostics.wants_hints else []
+        hint = "add that file to 'sources'" if notes else "add the file that defines it to 'sources'"
+        message = f"'{name}' is declared in '{self.header}', but none of the sources defines it"
+        diagnostics.error("model-incomplete", span, message, hint=hint, notes=notes)
+
+    def _defined_in(self, name: str) -> list[Note]:
+        """Files of the folder, among the sources or not, that define a function or variable."""
+        notes = []
+        for path in source_files(self.folder, (".c", ".cpp", ".cc", ".cxx"))[:MAX_FILES]:
+            file = read_source(path, Diagnostics())
+            if file is None or name not in file.text:
+                continue
+            code = parse_code(file)
+            items = [function.start for function in code.functions if function.name == name]
+            items += [variable.start for variable in code.variables if variable.name == name]
+            notes += [Note("it is defined here", code.file.span(at, at + len(name))) for at in items[:1]]
+        return notes[:3]
+
+    @cached_property
+    def structs(self) -> dict[str, Struct]:
+        """The structs and classes by their names."""
+        found: dict[str, Struct] = {}
+        for code in self.seen:
+            text = code.file.code
+            for name, body, behind, derived in _structs(text):
+                struct = _struct(body, derived or not self._members_of_macros.isdisjoint(re.findall(r"\w+", body)))
+                alias = re.match(r"\s{0,80}([A-Za-z_]\w{0,255})\s{0,80};", text[behind : behind + 500])
+                for key in (name, alias[1] if alias else ""):
+                    if key:
+                        found.setdefault(key, struct)
+        for code in self.seen:
+            pairs = [(m[2], m[1]) for m in _ALIAS.finditer(code.file.code)]
+            pairs += [(m[1], m[2]) for m in _USING.finditer(code.file.code)]
+            for new, old in pairs:
+                if old in found:
+                    found.setdefault(new, found[old])
+        return found
+
+
+def _structs(text: str) -> Iterator[tuple[str, str, int, bool]]:
+    """Name, body, the place behind it, and whether it has a base, of each struct outside of others."""
+    at = 0
+    for match in _STRUCT.finditer(text):
+        if match.start() >= at:
+            at = _end(text, match.end())
+            yield match[1] or "", text[match.end() : at], at + 1, match[2] is not None
+
+
+def _end(text: str, start: int) -> int:
+    depth = 1
+    for match in _BRACE.finditer(text, start):
+        depth += 1 if match[0] == "{" else -1
+        if depth == 0:
+            return match.start()
+    return len(text)
+
+
+def _struct(body: str, derived: bool, depth: int = 0) -> Struct:
+    """The members in ``body``; a struct inside that has a name is one of them."""
+    if depth > 8 or "#" in body or re.search(r"\b(?:template|using|union)\b", body):
+        return Struct(open=True)
+    members: dict[str, Struct | None] = {}
+    start = position = 0
+    while position < len(body):
+        match = re.compile(r"[{;]").search(body, position)
+        if match is None:
+            break
+        if match[0] == ";":
+            for part in re.sub(r"<[^<>;]{0,200}>", "", body[start : match.start()]).split(","):
+                named = _MEMBER.search(part.partition("=")[0].strip()[-300:])
+                if named:
+                    members.setdefault(named[1], None)
+            start = position = match.end()
+            continue
+        end = _end(body, match.end())
+        head = body[start : match.start()]
+        if re.search(r"\b(?:struct|class)\b", head) and "(" not in head:
+            name = re.match(r"\s{0,80}([A-Za-z_]\w{0,255})\s{0,80};", body[end + 1 : end + 500])
+            if name:
+                members[name[1]] = _struct(body[match.end() : end], False, depth + 1)
+            elif not re.match(r"\s{0,80}\w", head.strip()[6:] or ""):
+                return Struct(open=True)  # its members are those of the struct around it
+            start = position = end + 1
+        elif "(" in head:  # a function with its body
+            start = position = end + 1
+        else:
+            position = end + 1  # a member with its value
+            named = _MEMBER.search(head.partition("=")[0].strip()[-300:])
+            if named:
+                members.setdefault(named[1], None)
+    return Struct(members, derived)
