@@ -23,12 +23,13 @@ class Input(Protocol):
 
 
 def check_fail_safe(node: Node, section: Node, components: Mapping[str, Input], diagnostics: Diagnostics) -> None:
-    """``node`` must name a component with a boolean source; ``components`` are the faultless ones of ``section``."""
+    """``node`` must name a component with a boolean source that is not a topic; ``components`` are the faultless ones of ``section``."""
     name = str(node.value)
     able = [
         name
         for name, component in components.items()
-        if any(port.direction == "source" and port.type == "boolean" for port in component.kind.ports)
+        if not component.kind.communication  # a topic is not a wire
+        and any(port.direction == "source" and port.type == "boolean" for port in component.kind.ports)
     ]
     if name in able:
         _check_open_wire(name, components[name], diagnostics)

@@ -104,6 +104,11 @@ def _ports(node: Node, parameters: Mapping[str, Node], diagnostics: Diagnostics)
         direction = str(port["direction"].value)
         if "each" in port:
             _each(port, parameters, diagnostics)
+        for key, _ in port["boolean_with"].items() if "boolean_with" in port else ():
+            if key not in parameters:
+                hint = did_you_mean(key, parameters, "parameters")
+                key_span = port["boolean_with"].key_span(key)
+                diagnostics.error("unknown-name", key_span, f"this kind has no parameter '{key}'", hint=hint)
         if "actuator" in port and port["actuator"].value is True and direction != "sink":
             diagnostics.error(
                 "wrong-value", port["actuator"].span, "an actuator is a sink", hint="write 'direction: sink'"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -40,6 +40,7 @@ class KindPort:
 
     ``default``: meant when only the component is named.  ``actuator``: made safe while the target is disabled.
     ``drive``: its value drives a motor, and the template's macro ``applied`` gives what it is at present.
+    ``boolean_with``: values of parameters with which a component's port is boolean, though the kind's is not.
     ``each``: in a kind, the parameter whose names say how many such ports a component has; in a component's own kind
     (:meth:`Kind.of_component`) there is one for each ``element`` of it, and ``part`` is what the kind calls it.
     """
@@ -55,6 +56,7 @@ class KindPort:
     each: str = ""
     element: str = ""
     part: str = ""
+    boolean_with: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -129,9 +131,12 @@ class Kind:
         Where one port stands for each name of a list, that name is the port's; where several do, the port of the first
         joint is ``pan.position``.
         """
-        if not any(port.each for port in self.ports):
+        if not any(port.each or port.boolean_with for port in self.ports):
             return self
-        ports: list[KindPort] = [port for port in self.ports if not port.each]
+        ports: list[KindPort] = []
+        for port in self.ports:
+            boolean = port.boolean_with and all(parameters[key] == text for key, text in port.boolean_with.items())
+            ports += [replace(port, type="boolean") if boolean else port] if not port.each else []
         for each in dict.fromkeys(port.each for port in self.ports if port.each):
             elements = parameters[each]
             assert isinstance(elements, tuple)
@@ -250,6 +255,7 @@ def _port(name: str, node: Node) -> KindPort:
         description=text_of(node, "description"),
         each=text_of(node, "each"),
         part=name,
+        boolean_with=MappingProxyType({key: str(value.value) for key, value in map_of(node, "boolean_with").items()}),
     )
 
 

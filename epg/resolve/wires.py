@@ -52,7 +52,11 @@ def input_wires(
             message = (
                 f"'{component.name}.{component_port.name}' gives any number, '{port.name}' wants {port.type} values"
             )
-            diagnostics.error("wrong-port-type", binding.span, message, hint="make the model's input real")
+            hint = "make the model's input real"
+            if port.type == "boolean" and component_port.boolean_with:
+                stated = ", ".join(f"{key}: {value}" for key, value in component_port.boolean_with.items())
+                hint = f"state '{stated}' on '{component.name}', or {hint}"
+            diagnostics.error("wrong-port-type", binding.span, message, hint=hint)
         wires.append(Wire(port, resolved[component.name], component_port, steps, binding.span))
     return tuple(wires)
 

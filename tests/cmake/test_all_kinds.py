@@ -14,7 +14,9 @@ from tests.cmake.project import Project
 SETPOINTS = """time,topic,value
 0.05,speed,57.29577951308232
 0.05,/level,1
+0.10,arm,1
 0.15,/level,4
+0.20,arm,0
 0.3,/level,100
 """
 
@@ -59,6 +61,12 @@ def test_subscriber_units_initial_value_rate_limit_and_timeout(run) -> None:  # 
     assert at(run, 0.130, "inputs.speed") == pytest.approx(math.radians(57.3 - 30), abs=math.radians(2))
     assert at(run, 0.2, "inputs.speed") == 0.0
     assert run[1]["setpoint_timeouts"] == 1
+
+
+def test_a_topic_of_truth_values_feeds_a_boolean_input(run) -> None:  # type: ignore[no-untyped-def]
+    for time, value in ((0.05, 0), (0.15, 1), (0.25, 0)):
+        assert at(run, time, "inputs.armed") == value
+        assert at(run, time, "outputs.armed_out") == value
 
 
 def test_conversions_on_component_and_wire(run) -> None:  # type: ignore[no-untyped-def]
