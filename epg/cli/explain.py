@@ -10,7 +10,7 @@ from typing import Any
 
 from epg.cli.arguments import add_target_arguments, request_of
 from epg.cli.report import to_json
-from epg.diagnostics import Diagnostics, did_you_mean
+from epg.diagnostics import Diagnostics, UserError, did_you_mean
 from epg.emit.hardware import divider_text
 from epg.source import Span
 
@@ -48,6 +48,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
 
 
 def _from_files(options: argparse.Namespace, diagnostics: Diagnostics) -> dict[str, Any]:
+    from epg.cli.generate import report_mistake_in_template
     from epg.emit.application import application_topics
     from epg.emit.cmake import PathNames
     from epg.emit.description import describe
@@ -57,7 +58,14 @@ def _from_files(options: argparse.Namespace, diagnostics: Diagnostics) -> dict[s
     app = load_application(request, diagnostics)
     diagnostics.stop_if_errors()
     assert app is not None
-    data: dict[str, Any] = json.loads(describe(app, application_topics(app, request.roots), PathNames(Path.cwd())))
+    try:
+        topics = application_topics(app, request.roots)
+    except UserError:
+        raise
+    except Exception as error:
+        report_mistake_in_template(error, request.user_roots, diagnostics)
+        raise
+    data: dict[str, Any] = json.loads(describe(app, topics, PathNames(Path.cwd())))
     return data
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from epg.cli.arguments import add_target_arguments, request_of
 from epg.cli.output import add_output_arguments, update_folder, write_warnings
-from epg.diagnostics import Diagnostics
+from epg.diagnostics import Diagnostics, UserError
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -20,12 +20,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def report_mistake_in_template(error: Exception, user_roots: Sequence[Path], diagnostics: Diagnostics) -> None:
     """Reports a mistake in a template of the user's own kinds and platforms and stops; EPG's own are bugs."""
-    from epg.emit.template import mistake_in_template
+    from epg.emit.template import NOT_UTF_8, mistake_in_template
     from epg.source import Span
 
     file, line, message = mistake_in_template(error) or ("", 0, "")
     if any(Path(file).is_relative_to(root) for root in user_roots):
         hint = "docs/adding-a-component-kind.md says what a template may print"
+        hint = "save it as UTF-8" if message == NOT_UTF_8 else hint
         diagnostics.error("template-wrong", Span(file, line, 1), f"this template does not work: {message}", hint=hint)
         diagnostics.stop_if_errors()
 
@@ -53,6 +54,8 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         diagnostics.stop_if_errors()
     try:
         files = application_outputs(app, request.roots, PathNames(options.source_dir))
+    except UserError:
+        raise
     except Exception as error:
         report_mistake_in_template(error, request.user_roots, diagnostics)
         raise

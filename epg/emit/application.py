@@ -20,7 +20,7 @@ from epg.emit.claims import board_nodes, claims_of, gpios_of, tick_of
 from epg.emit.cmake import platform_files
 from epg.emit.fingerprint import LITERAL, model_hash
 from epg.emit.service import MiddlewareView, service_of
-from epg.emit.template import environment
+from epg.emit.template import CodeMacro, environment, macro_mistake
 from epg.emit.text import CMakeCode, Code, DevicetreeCode, Escaped, KconfigCode, double, identifier
 from epg.emit.topics import Topics, topics_of
 from epg.load.models.details import HandWritten
@@ -272,8 +272,13 @@ class Emitter:
     def macro(self, component: ResolvedComponent, macro: str, *arguments: object) -> Code:
         """What the template of a component's kind gives; empty when it has no such macro."""
         function = getattr(self._module(component), macro, None)
-        if function is None:
+        if not isinstance(function, CodeMacro):
             return Code("")
+        taken, given = len(function.arguments), 1 + len(arguments)
+        if taken < given and not function.catch_varargs:
+            raise macro_mistake(
+                component.kind.folder, macro, f"macro '{macro}' takes {taken} of {given} arguments", given
+            )
         try:
             return Code(str(function(self.views[component.name], *arguments)).strip("\n"))
         except ArithmeticError:  # what a kind computes of parameters that are each in their range
@@ -289,7 +294,11 @@ class Emitter:
     def _statement(self, component: ResolvedComponent, macro: str, *arguments: object) -> Code:
         code = self.macro(component, macro, *arguments)
         if not code.strip():
-            raise LookupError(f"kind '{component.kind.name}' has no macro '{macro}' for {arguments}")
+            port = f", which port '{arguments[0]}' needs" if arguments else ""
+            message = f"kind '{component.kind.name}' has no macro '{macro}'{port}"
+            if isinstance(getattr(self._module(component), macro, None), CodeMacro):
+                message = f"macro '{macro}' gives nothing" + (f" for port '{arguments[0]}'" if arguments else "")
+            raise macro_mistake(component.kind.folder, macro, message, 1 + len(arguments))
         return code
 
     def _part(self, number: int, component: ResolvedComponent) -> Part:

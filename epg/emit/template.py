@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -17,9 +18,11 @@ from jinja2.compiler import CodeGenerator
 from jinja2.runtime import Macro
 
 from epg.bootstrap import cache_folder
+from epg.diagnostics import Diagnostics, UserError
 from epg.emit import text
 from epg.emit.bytecode import TemplateCache
 from epg.emit.text import CMakeCode, Code, DevicetreeCode, Escaped, KconfigCode, ProjectText
+from epg.source import Span
 
 FILTERS: Mapping[type[Escaped], Mapping[str, Callable[..., object]]] = {
     Code: {
@@ -70,7 +73,7 @@ def environment(folders: Iterable[Path], language: type[Escaped] = Code) -> jinj
         raise TypeError(f"a template printed {value!r} ({type(value).__name__}) without a filter")
 
     env = _Environment(
-        loader=jinja2.FileSystemLoader([str(folder) for folder in folders]),
+        loader=_Loader([str(folder) for folder in folders]),
         undefined=jinja2.StrictUndefined,
         autoescape=True,
         finalize=only_code,
@@ -87,6 +90,21 @@ def environment(folders: Iterable[Path], language: type[Escaped] = Code) -> jinj
     env.filters.update(FILTERS[language])
     env.globals["pi"] = math.pi
     return env
+
+
+class _Loader(jinja2.FileSystemLoader):
+    """Says of a template that is not UTF-8 where it is not."""
+
+    def get_source(self, environment: jinja2.Environment, template: str) -> tuple[str, str, Callable[[], bool]]:
+        try:
+            return super().get_source(environment, template)
+        except UnicodeDecodeError as error:
+            line = error.object[: error.start].count(b"\n") + 1
+            path = next(Path(root) / template for root in self.searchpath if (Path(root) / template).is_file())
+            raise jinja2.TemplateSyntaxError(NOT_UTF_8, line, template, str(path)) from None
+
+
+NOT_UTF_8 = "it is not UTF-8 text"
 
 
 class CodeMacro(Macro):
@@ -143,7 +161,8 @@ def _is_constant(node: nodes.Node | None) -> bool:
 def mistake_in_template(error: Exception) -> tuple[str, int, str] | None:
     """File, line and message of an error that a template made; None if it is not one of a template's."""
     if isinstance(error, jinja2.TemplateSyntaxError):
-        return (error.filename or "", error.lineno, error.message or "") if error.filename else None
+        file = error.filename or error.name  # an open comment has the file as its name
+        return (file, error.lineno, error.message or "") if file else None
     place = None
     trace = error.__traceback__
     while trace is not None:
@@ -154,3 +173,15 @@ def mistake_in_template(error: Exception) -> tuple[str, int, str] | None:
             place = trace.tb_frame.f_code.co_filename, trace.tb_lineno
         trace = trace.tb_next
     return (*place, str(error)) if place else None
+
+
+def macro_mistake(folder: Path, macro: str, message: str, arguments: int) -> UserError:
+    """What is wrong with ``macro`` of the kind in ``folder``, which is called with so many ``arguments``."""
+    path = folder / "code.c.j2"
+    lines = path.read_text(encoding="utf-8").splitlines()
+    found = [number for number, line in enumerate(lines, 1) if re.search(rf"\bmacro\s+{macro}\b", line)]
+    form = f"{{% macro {macro}({', '.join(('c', 'port', 'value')[:arguments])}) %}}"
+    problems = Diagnostics()
+    span = Span(str(path), found[0] if found else 1, 1)
+    problems.error("template-wrong", span, message, hint=f"write '{form}'; docs/architecture.md lists all macros")
+    return UserError(problems)
