@@ -23,7 +23,7 @@ class Input(Protocol):
 
 
 def check_fail_safe(node: Node, section: Node, components: Mapping[str, Input], diagnostics: Diagnostics) -> None:
-    """``node`` must name a component with a boolean source that is not a topic; ``components`` are the faultless ones of ``section``."""
+    """``node`` must name a boolean source that is not a topic; ``components`` are the faultless ones of ``section``."""
     name = str(node.value)
     able = [
         name
