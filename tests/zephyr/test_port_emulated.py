@@ -17,7 +17,7 @@ from tests.emulator.toolchain import arm_gcc, node, rp2040js, skip_if_missing
 
 from .workspace import build, c_library, workspace
 
-STOP, START, PANIC, HANG, LOCK_INTERRUPTS = range(1, 6)
+STOP, START, PANIC, HANG, LOCK_INTERRUPTS, DISABLE_SPARE_IRQ, SUSPEND, RESUME = range(1, 9)
 NO_FAULT, WATCHDOG, PROCESSOR = 0, 11, 12
 """Of epg/fault.h."""
 MOTOR, FORWARD = 2, 3
@@ -80,6 +80,27 @@ def test_ticks_that_come_while_interrupts_are_locked_are_missed(board: Board) ->
     status = board.status()
     assert status["missed"] in (2, 3)
     assert status["overruns"] == 1
+    assert (status["enabled"], status["fault"]) == (1, NO_FAULT)
+
+
+def test_an_interrupt_that_a_cycle_disables_stays_disabled(board: Board) -> None:
+    board.ask(DISABLE_SPARE_IRQ)
+    assert board.pico.word("spare_enabled") == 0
+
+
+def test_interrupts_go_on_while_the_control_thread_does_not_run(board: Board) -> None:
+    """For less time than the watchdog allows."""
+    sent = random.Random(3).randbytes(200)
+    board.ask(SUSPEND, milliseconds=5)
+    stopped = board.status()["cycles"]
+    board.pico.call("uart_send", uart=1, hex=sent.hex(), baud=115200)
+    board.pico.run(milliseconds=45)
+    assert board.status()["cycles"] == stopped
+    assert bytes.fromhex(board.pico.call("uart_receive", uart=1)) == sent
+    board.ask(RESUME)
+    status = board.status()
+    assert status["cycles"] > stopped + 10
+    assert status["missed"] > 40
     assert (status["enabled"], status["fault"]) == (1, NO_FAULT)
 
 

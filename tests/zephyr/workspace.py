@@ -106,7 +106,7 @@ def _python(base: Path) -> Path:
     candidates = [Path(sys.executable)]
     west = shutil.which("west")
     if west is not None:
-        candidates.append(Path(west).parent / "python")
+        candidates.append(Path(west).resolve().parent / "python")  # pipx makes a link
     candidates.append(base.parent / ".venv" / "bin" / "python")
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     for python in candidates:

@@ -12,7 +12,14 @@ from tests.platforms.pico.xrce.board import Jiwy
 from tests.zephyr.workspace import build, c_library, workspace
 
 APPLICATION = "examples/zephyr_jiwy/app"
-SPANS = {"tick": "epg_control_cycle", "read": "epg_port_quadrature_count", "write": "epg_port_pwm_write"}
+SPANS = {
+    "tick": ("on_wrap", "epg_zephyr_watchdog_feed"),
+    "cycle": ("epg_control_cycle", "return"),
+    "read": ("qdec_common_attr_get", "return"),
+    "write": ("epg_port_pwm_write", "return"),
+    "locked": ("write_locked", "return"),
+}
+"""From the tick's interrupt, which reads the encoders, to the end of the cycle in the control thread."""
 
 
 def skip_unless_emulated() -> None:
@@ -37,6 +44,16 @@ class ZephyrJiwy(Jiwy):
     def begin(self) -> None:
         super().begin()
         self.interrupts()
+        self.cycles()
+        self.locked()
+
+    def cycles(self) -> list[int]:
+        """When control cycles began in their thread, since the last call."""
+        return [cycle for cycle, *_ in self.pico.call("span", name="cycle")["passages"]]
+
+    def locked(self) -> list[int]:
+        """For how many cycles of the processor interrupts were locked while outputs were written, since the last call."""
+        return [length for _, length, _ in self.pico.call("span", name="locked")["passages"]]
 
     def interrupts(self) -> list[int]:
         """When the tick's interrupt was entered, since the last call."""

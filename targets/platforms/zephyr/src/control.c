@@ -6,6 +6,9 @@
  * tick repeats by itself, so it can be late but never lost; how many ticks there were is asked of the time of the newest
  * one.  The tick and the system clock may drift apart by some parts per million (the driver of SysTick loses clocks when
  * it is set anew), so that time counts from each tick anew.
+ *
+ * On RP2040 and RP2350 the tick's interrupt reads the inputs, too (inputs.c): the thread may begin later in some cycles,
+ * because other interrupts go before it.
  */
 #include <string.h>
 
@@ -37,28 +40,27 @@ static struct {
     uint64_t period_ns;
 } loop;
 
-/**
- * The target's application.  On RP2040 and RP2350, where the tick is a wrap of the PWM at which outputs act too, no
- * interrupt of a device comes between the tick and the end of reading, nor any at all between writes: inputs are read,
- * and outputs written, at the same time in each cycle.  Interrupts wait for as long as that takes: for JIWY 50 us, and
- * 3 us, or 13 us in a cycle in which both motors change their direction (RP2040 at 125 MHz).  A driver of yours that
- * sleeps in a write lets them in.
- */
+/** The target's application, whose outputs are written while interrupts are locked. */
 static epg_application_t wrapped;
 
 static bool running; /* the thread is there */
 static atomic_bool stopping;
 static atomic_bool waiting; /* for a tick */
+static atomic_bool sampled; /* the newest tick has read the inputs; it does so only while `waiting` */
 
 /* Holding: asked for by the communication thread, answered after the cycle at hand. */
 static atomic_bool hold_requested;
 static atomic_bool hold_granted;
 static K_SEM_DEFINE(hold_answered, 0, 1);
 
-bool epg_zephyr_control_tick(void)
+void epg_zephyr_control_tick(void)
 {
+    const bool sample = IS_ENABLED(CONFIG_EPG_TICK_PICO_PWM) && atomic_load(&waiting);
+    if (sample) {
+        epg_zephyr_inputs_sample();
+    }
+    atomic_store(&sampled, sample);
     k_sem_give(&ticks);
-    return atomic_load(&waiting);
 }
 
 /** Ticks that have passed since `loop.due_ns`, the newest of which was at `newest_ns`. */
@@ -90,27 +92,25 @@ static bool held(void)
     return atomic_load(&hold_granted);
 }
 
-static void read_uninterrupted(void)
-{
-    loop.application->read();
-    epg_zephyr_tick_let_in();
-}
-
-static void write_uninterrupted(void)
+/**
+ * At the output delay, so that no interrupt comes between two writes, and all levels act at the same wrap of the PWM.  It
+ * takes 3 us for JIWY, and 13 us in a cycle in which both motors change their direction (RP2040 at 125 MHz).
+ */
+static void write_locked(void)
 {
     const unsigned int key = irq_lock();
     loop.application->write();
     irq_unlock(key);
 }
 
+/** Outputs whose drivers may wait are written while interrupts are not locked. */
 static const epg_application_t *wrap(const epg_application_t *application)
 {
-    if (!IS_ENABLED(CONFIG_EPG_TICK_PICO_PWM)) {
+    if (!epg_zephyr_outputs_are_registers()) {
         return application;
     }
     wrapped = *application;
-    wrapped.read = read_uninterrupted;
-    wrapped.write = write_uninterrupted;
+    wrapped.write = write_locked;
     return &wrapped;
 }
 
@@ -141,12 +141,13 @@ static void run(void *first, void *second, void *third)
         (void)k_sem_take(&ticks, K_FOREVER);
         atomic_store(&waiting, false);
         if (atomic_load(&stopping)) {
-            epg_zephyr_tick_let_in();
             loop.application->safe();
             return;
         }
+        /* Not after a cycle that ended late, nor when another tick has come before this thread could run. */
+        epg_zephyr_inputs_use(atomic_load(&sampled));
         cycle();
-        epg_zephyr_tick_let_in(); /* where the cycle has read nothing */
+        epg_zephyr_inputs_use(false);
     }
 }
 
@@ -160,6 +161,7 @@ epg_zephyr_error_t epg_zephyr_control_start(const epg_zephyr_target_t *zephyr, e
     atomic_store(&stopping, false);
     atomic_store(&hold_requested, false);
     atomic_store(&hold_granted, false);
+    atomic_store(&sampled, false);
     k_sem_reset(&ticks);
 
     epg_zephyr_device_refused = false;

@@ -8,7 +8,7 @@
 #include "epg/ring.h"
 #include "epg/zephyr.h"
 
-/* port.c and quadrature.c -------------------------------------------------------------------------------------- */
+/* port.c and inputs.c -------------------------------------------------------------------------------------- */
 
 /** A device refused what it was asked for while peripherals were started. */
 extern bool epg_zephyr_device_refused;
@@ -19,8 +19,20 @@ bool epg_zephyr_devices_ready(void);
 /** Whether a device is there and started; if not, the log says so. */
 bool epg_zephyr_ready(const struct device *device);
 
+/** Whether all outputs are registers of the chip, so that writing them takes a few microseconds. */
+bool epg_zephyr_outputs_are_registers(void);
+
 /** The row of the table for a pin of the portable code; NULL: it has none. */
 const epg_zephyr_pin_t *epg_zephyr_pin(uint8_t pin);
+
+/**
+ * Reads all inputs that can be read in an interrupt.  From the tick's, while the control thread waits for it: that uses
+ * the same variables.
+ */
+void epg_zephyr_inputs_sample(void);
+
+/** Whether the inputs of the cycle to come are those of the last epg_zephyr_inputs_sample().  Control thread. */
+void epg_zephyr_inputs_use(bool of_tick);
 
 /* tick_pico.c, tick_counter.c or tick_timer.c -------------------------------------------------------------------- */
 
@@ -37,26 +49,14 @@ void epg_zephyr_tick_stop(void);
  */
 uint64_t epg_zephyr_tick_newest_ns(uint64_t *now_ns);
 
-#ifdef CONFIG_EPG_TICK_PICO_PWM
-/** Enables the interrupts that a tick has disabled; nothing when it has disabled none.  Control thread. */
-void epg_zephyr_tick_let_in(void);
-#else
-static inline void epg_zephyr_tick_let_in(void)
-{
-}
-#endif
-
 /* control.c ------------------------------------------------------------------------------------------------------ */
 
 /** `fault`: what ended the run before this one; it is latched. */
 epg_zephyr_error_t epg_zephyr_control_start(const epg_zephyr_target_t *zephyr, epg_fault_t fault);
 void epg_zephyr_control_stop(void);
 
-/**
- * A tick: from its interrupt.  True when the control thread waited for it, and so runs as soon as this interrupt is over;
- * the tick may then disable other interrupts until epg_zephyr_tick_let_in().
- */
-bool epg_zephyr_control_tick(void);
+/** A tick: from its interrupt. */
+void epg_zephyr_control_tick(void);
 
 /**
  * Runs no cycle until epg_zephyr_control_release(): ticks of this time are not missed.  Waits for the cycle at hand.

@@ -1,6 +1,6 @@
 /**
  * @file
- * Time, PWM and pins.
+ * Time and outputs.
  */
 #include "epg/port.h"
 
@@ -10,7 +10,7 @@
 
 #include "parts.h"
 #ifdef CONFIG_EPG_TICK_PICO_PWM
-#include "pwm_pico.h"
+#include "pico.h"
 #endif
 
 LOG_MODULE_DECLARE(epg, CONFIG_EPG_LOG_LEVEL);
@@ -180,20 +180,25 @@ void epg_port_output_write(uint8_t pin, bool level)
     }
 }
 
-void epg_port_input_start(uint8_t pin, epg_port_pull_t pull)
+bool epg_zephyr_outputs_are_registers(void)
 {
-    static const gpio_flags_t pulls[] = {
-        [EPG_PULL_NONE] = 0,
-        [EPG_PULL_UP] = GPIO_PULL_UP,
-        [EPG_PULL_DOWN] = GPIO_PULL_DOWN,
-    };
-    check(start_pin(pin, GPIO_INPUT | pulls[pull]));
-}
-
-bool epg_port_input_read(uint8_t pin)
-{
-    const epg_zephyr_pin_t *row = epg_zephyr_pin(pin);
-    return row != NULL && gpio_pin_get_dt(&row->gpio) > 0;
+#ifdef CONFIG_EPG_TICK_PICO_PWM
+    const epg_zephyr_hardware_t *hardware = &epg_zephyr_hardware;
+    for (size_t i = 0; i < hardware->pwm_count; i++) {
+        if (!epg_zephyr_pico_has_pwm(hardware->pwms[i].device)) {
+            return false;
+        }
+    }
+    for (size_t i = 0; i < hardware->output_count; i++) {
+        const epg_zephyr_pin_t *row = epg_zephyr_pin(hardware->outputs[i].pin);
+        if (row != NULL && !epg_zephyr_pico_has_port(row->gpio.port)) {
+            return false;
+        }
+    }
+    return true;
+#else
+    return false;
+#endif
 }
 
 /* All --------------------------------------------------------------------------------------------------------------- */

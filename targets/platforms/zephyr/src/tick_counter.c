@@ -19,7 +19,7 @@ static void on_top(const struct device *counter, void *user)
 {
     ARG_UNUSED(counter);
     ARG_UNUSED(user);
-    (void)epg_zephyr_control_tick();
+    epg_zephyr_control_tick();
 }
 
 epg_zephyr_error_t epg_zephyr_tick_start(const epg_zephyr_tick_t *tick, uint64_t period_ns)

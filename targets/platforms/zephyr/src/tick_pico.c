@@ -10,7 +10,6 @@
 #include <zephyr/irq.h>
 #include <zephyr/kernel.h>
 
-#include <cmsis_core.h>
 #include <hardware/structs/pwm.h>
 
 #include "epg/port.h"
@@ -34,46 +33,18 @@ BUILD_ASSERT(DT_NODE_HAS_STATUS_OKAY(PWM_NODE), "the tick is made by the PWM: it
  */
 #define WRAP_PRIORITY 0
 
-/** Interrupts of the chip, 32 in a register of the NVIC. */
-#define NVIC_WORDS DIV_ROUND_UP(CONFIG_NUM_IRQS, 32)
-
 #define NS_PER_S 1000000000U
 
 static struct {
     uint32_t slice;
     uint64_t ns_per_count; /* times 2^24 */
-    uint32_t kept_out[NVIC_WORDS];
 } state;
-
-/** Disables all interrupts but the tick's, until epg_zephyr_tick_let_in(). */
-static inline void keep_out(void)
-{
-    for (size_t i = 0; i < NVIC_WORDS; i++) {
-        const uint32_t others = NVIC->ISER[i] & ~(WRAP_IRQ / 32U == i ? 1U << (WRAP_IRQ % 32U) : 0U);
-        NVIC->ICER[i] = others;
-        state.kept_out[i] |= others;
-    }
-    __DSB();
-    __ISB();
-}
-
-void epg_zephyr_tick_let_in(void)
-{
-    const unsigned int key = irq_lock();
-    for (size_t i = 0; i < NVIC_WORDS; i++) {
-        NVIC->ISER[i] = state.kept_out[i];
-        state.kept_out[i] = 0;
-    }
-    irq_unlock(key);
-}
 
 static void on_wrap(const void *argument)
 {
     ARG_UNUSED(argument);
     pwm_hw->intr = 1U << state.slice;
-    if (epg_zephyr_control_tick()) {
-        keep_out();
-    }
+    epg_zephyr_control_tick();
 }
 
 /** Slices of the PWM that drive outputs of the target, one bit each. */

@@ -16,7 +16,7 @@ static struct {
 static void on_expiry(struct k_timer *timer)
 {
     ARG_UNUSED(timer);
-    (void)epg_zephyr_control_tick();
+    epg_zephyr_control_tick();
 }
 
 static K_TIMER_DEFINE(timer, on_expiry, NULL);

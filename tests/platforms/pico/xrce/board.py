@@ -25,8 +25,12 @@ from .agent import BoardAgent
 AGENT_PORT, CONSOLE_PORT = 0, 1
 HOMED = 900
 """ms after which both axes have homed from 0.12 rad and stand."""
-SPANS = {"tick": "on_wrap", "read": "epg_port_quadrature_count", "write": "epg_port_pwm_write"}
-"""Functions of the control cycle whose calls are timed."""
+SPANS = {
+    "tick": ("on_wrap", "return"),
+    "read": ("epg_port_quadrature_count", "return"),
+    "write": ("epg_port_pwm_write", "return"),
+}
+"""What of the control cycle is timed: from one function to another, or to its own return."""
 
 
 def image(platform: str, executable: str) -> Path:
@@ -38,7 +42,7 @@ class Jiwy:
 
     core = 1
     """That control runs on."""
-    spans: Mapping[str, str] = SPANS
+    spans: Mapping[str, tuple[str, str]] = SPANS
     start = 40
     """ms from the reset, after which USB is configured."""
 
@@ -50,8 +54,8 @@ class Jiwy:
         self._since = 0
         self.pico = Emulator(elf or image(platform, executable), usb={"seed": seed, "open": False})
         connect(self.pico, {"pan": 0.12, "tilt": 0.12})
-        for name, symbol in self.spans.items():
-            self.pico.call("watch_span", name=name, core=self.core, **{"from": symbol, "to": "return"})
+        for name, (begin, end) in self.spans.items():
+            self.pico.call("watch_span", name=name, core=self.core, **{"from": begin, "to": end})
         self.pico.call("watch_pwm", slices=list(MOTOR_SLICES))
         self.pico.run(milliseconds=self.start)
         assert self.pico.call("usb")["state"] == "configured"

@@ -11,7 +11,10 @@
  * What comes over USB and over the serial line goes back.
  */
 
+#include <zephyr/irq.h>
 #include <zephyr/kernel.h>
+
+#include <string.h>
 
 #include "epg/port.h"
 #include "epg/port_uart.h"
@@ -30,6 +33,9 @@
 #define HALF_LEVEL   3125U
 #define OVERRUN_LIMIT 5U
 
+/* Of SPI0, which this image does not use. */
+#define SPARE_IRQ 18U
+
 enum request {
 	REQUEST_NONE,
 	REQUEST_STOP,
@@ -37,12 +43,19 @@ enum request {
 	REQUEST_PANIC,
 	REQUEST_HANG,
 	REQUEST_LOCK_INTERRUPTS,
+	REQUEST_DISABLE_SPARE_IRQ,
+	REQUEST_SUSPEND,
+	REQUEST_RESUME,
 };
 
 /* The test's; it waits until the request is 0 again. */
 volatile uint32_t request;
 volatile uint32_t started;
 volatile uint32_t error;
+volatile uint32_t spare_enabled;
+
+/* The next control cycle disables SPARE_IRQ. */
+static volatile bool disable_spare;
 
 static const epg_zephyr_decoder_t decoders[] = {
 	{.block = 0, .unit = 0, .device = DEVICE_DT_GET(DT_PHANDLE_BY_IDX(NODE, decoders, 0))},
@@ -92,6 +105,10 @@ static void start_peripherals(void)
 
 static void sample(void)
 {
+	if (disable_spare) {
+		irq_disable(SPARE_IRQ);
+		disable_spare = false;
+	}
 	count = epg_port_quadrature_count(&encoder);
 }
 
@@ -201,6 +218,26 @@ static void start(void)
 	error = status.error;
 }
 
+static void nobody(const void *argument)
+{
+	ARG_UNUSED(argument);
+}
+
+static void find_control(const struct k_thread *thread, void *found)
+{
+	if (strcmp(k_thread_name_get((k_tid_t)thread), "epg_control") == 0) {
+		*(k_tid_t *)found = (k_tid_t)thread;
+	}
+}
+
+static k_tid_t control_thread(void)
+{
+	k_tid_t found = NULL;
+
+	k_thread_foreach(find_control, &found);
+	return found;
+}
+
 static void handle(uint32_t wanted)
 {
 	unsigned int key;
@@ -224,6 +261,18 @@ static void handle(uint32_t wanted)
 		k_busy_wait(3500);
 		irq_unlock(key);
 		break;
+	case REQUEST_DISABLE_SPARE_IRQ:
+		irq_enable(SPARE_IRQ);
+		disable_spare = true;
+		k_msleep(5);
+		spare_enabled = irq_is_enabled(SPARE_IRQ) ? 1 : 0;
+		break;
+	case REQUEST_SUSPEND:
+		k_thread_suspend(control_thread());
+		break;
+	case REQUEST_RESUME:
+		k_thread_resume(control_thread());
+		break;
 	default:
 		break;
 	}
@@ -231,6 +280,8 @@ static void handle(uint32_t wanted)
 
 int main(void)
 {
+	IRQ_CONNECT(SPARE_IRQ, 3, nobody, NULL, 0);
+	spare_enabled = 2; /* nobody has asked */
 	start();
 	for (;;) {
 		handle(request);

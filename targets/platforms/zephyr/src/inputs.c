@@ -1,0 +1,167 @@
+/**
+ * @file
+ * Inputs: quadrature decoders, which are devices of the sensor API that give their count (epg/zephyr/qdec.h), and pins.
+ *
+ * On RP2040 and RP2350 the tick's own interrupt reads them: no other interrupt and no thread comes before it, so inputs
+ * are of the same instant in each cycle, however late the control thread begins.  Pins whose driver may wait, such as
+ * those of an expander on I2C, cannot be read in an interrupt: the control thread reads them at its beginning.
+ */
+#include <epg/zephyr/qdec.h>
+#include <zephyr/kernel.h>
+
+#include "epg/port.h"
+#include "parts.h"
+#ifdef CONFIG_EPG_TICK_PICO_PWM
+#include "pico.h"
+#endif
+
+/** Decoders of one target; the chips have fewer. */
+#define DECODERS 16U
+/** Rows in the table of pins; the chips have fewer. */
+#define PINS 64U
+
+/* By row of the table: what the last reading gave. */
+static struct {
+    uint32_t count;
+    bool healthy;
+} newest[DECODERS];
+
+/* By row of the table, of pins that the tick's interrupt reads. */
+static struct {
+    bool in_interrupt;
+    bool level;
+} levels[PINS];
+
+/** For the control thread: `newest` and `levels` are of the tick whose cycle it runs. */
+static bool sampled;
+
+static size_t decoder_rows(void)
+{
+    return MIN(epg_zephyr_hardware.decoder_count, DECODERS);
+}
+
+static size_t pin_rows(void)
+{
+    return MIN(epg_zephyr_hardware.pin_count, PINS);
+}
+
+static void read_decoder(size_t row)
+{
+    int64_t count = 0;
+    newest[row].healthy = qdec_get_count(epg_zephyr_hardware.decoders[row].device, &count) == 0;
+    if (newest[row].healthy) {
+        newest[row].count = (uint32_t)count;
+    }
+}
+
+static bool read_pin(size_t row)
+{
+    return gpio_pin_get_dt(&epg_zephyr_hardware.pins[row].gpio) > 0;
+}
+
+void epg_zephyr_inputs_sample(void)
+{
+    for (size_t row = 0; row < decoder_rows(); row++) {
+        read_decoder(row);
+    }
+    for (size_t row = 0; row < pin_rows(); row++) {
+        if (levels[row].in_interrupt) {
+            levels[row].level = read_pin(row);
+        }
+    }
+}
+
+void epg_zephyr_inputs_use(bool of_tick)
+{
+    sampled = of_tick;
+}
+
+/* Decoders ------------------------------------------------------------------------------------------------------- */
+
+static bool find_decoder(const epg_port_quadrature_t *decoder, size_t *row)
+{
+    for (*row = 0; *row < decoder_rows(); (*row)++) {
+        const epg_zephyr_decoder_t *candidate = &epg_zephyr_hardware.decoders[*row];
+        if (candidate->block == decoder->block && candidate->unit == decoder->unit) {
+            return true;
+        }
+    }
+    return false;
+}
+
+uint32_t epg_port_quadrature_count(const epg_port_quadrature_t *decoder)
+{
+    size_t row;
+    if (!find_decoder(decoder, &row)) {
+        return 0;
+    }
+    if (!sampled) {
+        read_decoder(row);
+    }
+    return newest[row].count;
+}
+
+void epg_port_quadrature_start(const epg_port_quadrature_t *decoder)
+{
+    (void)epg_port_quadrature_count(decoder);
+    if (!epg_port_quadrature_healthy(decoder)) {
+        epg_zephyr_device_refused = true;
+    }
+}
+
+bool epg_port_quadrature_healthy(const epg_port_quadrature_t *decoder)
+{
+    size_t row;
+    return find_decoder(decoder, &row) && newest[row].healthy;
+}
+
+/* Pins ------------------------------------------------------------------------------------------------------------ */
+
+static bool find_pin(uint8_t pin, size_t *row)
+{
+    const epg_zephyr_pin_t *found = epg_zephyr_pin(pin);
+    if (found == NULL || found >= &epg_zephyr_hardware.pins[pin_rows()]) {
+        return false;
+    }
+    *row = (size_t)(found - epg_zephyr_hardware.pins);
+    return true;
+}
+
+/** Whether the driver of the port only reads a register. */
+static bool can_be_read_in_interrupt(const struct device *port)
+{
+#ifdef CONFIG_EPG_TICK_PICO_PWM
+    return epg_zephyr_pico_has_port(port);
+#else
+    ARG_UNUSED(port);
+    return false;
+#endif
+}
+
+void epg_port_input_start(uint8_t pin, epg_port_pull_t pull)
+{
+    static const gpio_flags_t pulls[] = {
+        [EPG_PULL_NONE] = 0,
+        [EPG_PULL_UP] = GPIO_PULL_UP,
+        [EPG_PULL_DOWN] = GPIO_PULL_DOWN,
+    };
+    size_t row;
+    if (!find_pin(pin, &row)) {
+        epg_zephyr_device_refused = true;
+        return;
+    }
+    const struct gpio_dt_spec *gpio = &epg_zephyr_hardware.pins[row].gpio;
+    if (gpio_pin_configure_dt(gpio, GPIO_INPUT | pulls[pull]) < 0) {
+        epg_zephyr_device_refused = true;
+    }
+    levels[row].in_interrupt = can_be_read_in_interrupt(gpio->port);
+}
+
+bool epg_port_input_read(uint8_t pin)
+{
+    size_t row;
+    if (!find_pin(pin, &row)) {
+        return false;
+    }
+    return sampled && levels[row].in_interrupt ? levels[row].level : read_pin(row);
+}
