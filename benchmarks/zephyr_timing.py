@@ -143,13 +143,12 @@ def timing_table(measured: dict[Load, Measured], seeds: int, milliseconds: int) 
         "Deviations from t0 + k T in cycles of 8 ns, smallest ... largest, and the share of cycles that deviate. "
         "Interrupt: entry of the tick's, against the earliest. Encoders: the start of each read, in that interrupt. "
         "Cycle: its first instruction in the control thread, against the earliest; what is read in the thread deviates "
-        "as much. Locked: for how many microseconds no interrupt was served while outputs were written. Written: the end "
-        "of the last write to them, in microseconds from the interrupt's begin. Output: the PWM wrap (every 6,250 cycles) at which a level takes effect, against the wrap at "
-        "which most do.",
+        "as much. Locked: for how many microseconds no interrupt was served while outputs were written. Written: the "
+        "end of the last write to them, in microseconds from the interrupt's begin. Output: the PWM wrap (every 6,250 "
+        "cycles) at which a level takes effect, against the wrap at which most do.",
         f"{seeds} USB hosts with other times of packets, {milliseconds / 1000:g} s each. An agent sends setpoints as "
         "often as the board publishes. Flooded: packets on both serial ports as fast as USB takes them.",
-        f"Aims: no tick lost and no overrun: {verdict(lost == 0)}; encoders read within 20 us: "
-        f"{verdict(read < AIM)}.",
+        f"Aims: no tick lost and no overrun: {verdict(lost == 0)}; encoders read within 20 us: {verdict(read < AIM)}.",
         SIMULATED,
     ]
     return Table("Deviation of a 1 ms control cycle, Zephyr on RP2040, simulated", head, rows, notes)

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from epg.check.compose import COMMON_PARAMETERS, parameter_problems
 from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.load.items import flag_of, map_of, texts_of
+from epg.load.kind import OUTPUT_CLASSES
 from epg.source import Node, Span
 
 _SETPOINT_PARAMETERS = {
@@ -17,6 +18,7 @@ _SETPOINT_PARAMETERS = {
 }
 _PUBLICATION_PARAMETERS = {"every": "type: integer", "on_change": "type: boolean"}
 _CHOICES = {"qos": ("reliable", "best_effort"), "on_timeout": ("hold", "zero", "disable")}
+_OUTPUTS = 8
 _DIMENSIONS = {"frequency": "frequency", "period": "time"}
 
 
@@ -42,6 +44,7 @@ def check_kind(node: Node, diagnostics: Diagnostics) -> None:
     _relations(node, {**parameters, **uses}, uses, diagnostics)
     _ports(node, parameters, diagnostics)
     _claims(node, parameters, diagnostics)
+    _safe_states(node, diagnostics)
     if "communication" in node:
         _communication(node, parameters, diagnostics)
 
@@ -155,6 +158,20 @@ def _claims(node: Node, parameters: Mapping[str, Node], diagnostics: Diagnostics
         if pin.value not in used:
             hint = "name it in the signals of a claim"
             diagnostics.error("wrong-value", pin.span, f"pin '{pin.value}' is in no claim", hint=hint)
+
+
+def _safe_states(node: Node, diagnostics: Diagnostics) -> None:
+    """States are levels of outputs, of which targets/runtime/include/epg/outputs.h has 8 for a component."""
+    outputs = [name for name, claim in map_of(node, "claims").items() if claim["class"].value in OUTPUT_CLASSES]
+    if len(outputs) > _OUTPUTS:
+        message = f"a kind can claim {_OUTPUTS} outputs at most, not {len(outputs)}"
+        diagnostics.error("wrong-value", node["claims"].span, message)
+    for state in node["safe_states"].elements() if "safe_states" in node else ():
+        for name, _ in state.items():
+            if name not in outputs:
+                message = f"'{name}' is not an output that this kind claims"
+                hint = did_you_mean(name, outputs, "outputs")
+                diagnostics.error("unknown-name", state.key_span(name), message, hint=hint)
 
 
 def _attribute(attribute: str, named: Node, parameter: Node | None, diagnostics: Diagnostics) -> None:

@@ -23,6 +23,7 @@ from epg.emit.service import MiddlewareView, service_of
 from epg.emit.template import CodeMacro, environment, macro_mistake
 from epg.emit.text import CMakeCode, Code, DevicetreeCode, Escaped, KconfigCode, double, identifier
 from epg.emit.topics import Topics, topics_of
+from epg.load.kind import OUTPUT_CLASSES
 from epg.load.models.details import HandWritten
 from epg.resolve.application import Application, ResolvedComponent, Step, Wire
 from epg.resolve.conversion import folded
@@ -140,15 +141,30 @@ class InputPin:
     invert: bool
 
 
+@dataclass(frozen=True)
+class SafeState:
+    """Which of a component's outputs must be low and which must be high, one bit each, the first one lowest."""
+
+    low: int
+    high: int
+
+
+@dataclass(frozen=True)
+class OutputGroup:
+    """The output pins of one component, ``count`` of them from the ``first`` on, and its safe states."""
+
+    component: str
+    first: int
+    count: int
+    states: tuple[SafeState, ...]
+
+
 LANGUAGES: Mapping[str, type[Escaped]] = {
     ".overlay": DevicetreeCode,
     ".Kconfig": KconfigCode,
     ".cmake": CMakeCode,
 }
 """What templates of platforms are written in, by the ends of the files they become; the others are C."""
-
-OUTPUT_CLASSES = ("digital_output", "pwm")
-"""Classes of peripherals whose pins are outputs."""
 
 
 class Emitter:
@@ -207,6 +223,7 @@ class Emitter:
             "monitor": [self._output(wire) for wire in app.outputs if wire.component.name in publishers],
             "output_pins": self._output_pins(),
             "input_pins": self._input_pins(),
+            "output_groups": self._output_groups(),
             "claims": claims_of(app),
             "gpios": gpios_of(app),
             "tick": tick_of(app),
@@ -351,6 +368,23 @@ class Emitter:
             for pin in component.claims[claim.name].pins.values()
         ]
 
+    def _output_groups(self) -> list[OutputGroup]:
+        groups = []
+        first = 0
+        for component in self.app.components:
+            claims = [
+                claim.name
+                for claim in component.kind.claims
+                if claim.resource_class in OUTPUT_CLASSES
+                for _ in component.claims[claim.name].pins
+            ]
+            if claims:
+                safe = {claim: "high" if self._safe_level(component, claim) == "true" else "low" for claim in claims}
+                states = tuple(_safe_state(claims, state) for state in component.kind.safe_states or [safe])
+                groups.append(OutputGroup(component.name, first, len(claims), states))
+                first += len(claims)
+        return groups
+
     def _safe_level(self, component: ResolvedComponent, claim: str) -> Code:
         return self.macro(component, "safe_level", claim).strip() or Code("false")
 
@@ -443,3 +477,12 @@ def _tidy(text: str) -> str:
         if line or (result and result[-1]):
             result.append(line)
     return "\n".join(result).rstrip("\n") + "\n"
+
+
+def _safe_state(claims: Sequence[str], levels: Mapping[str, str]) -> SafeState:
+    """The masks of a kind's safe state, for outputs that belong to these ``claims``."""
+
+    def bits(level: str) -> int:
+        return sum(1 << bit for bit, claim in enumerate(claims) if levels.get(claim) == level)
+
+    return SafeState(bits("low"), bits("high"))

@@ -11,6 +11,9 @@ from typing import Any
 from epg.load.items import flag_of, map_of, text_of, texts_of
 from epg.source import Node, Span
 
+OUTPUT_CLASSES = ("digital_output", "pwm")
+"""Classes of peripherals whose pins a component drives."""
+
 _BOUNDS = ("minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum")
 
 
@@ -114,6 +117,7 @@ class Kind:
     needs_bound: tuple[NeedsBound, ...]
     ports: tuple[KindPort, ...]
     claims: tuple[KindClaim, ...]
+    safe_states: tuple[Mapping[str, str], ...]  # claim -> "low" or "high": safe whatever the other claims' pins do
     headers: tuple[str, ...]
     sources: tuple[str, ...]
     node: Node
@@ -208,6 +212,10 @@ def make_kind(node: Node, folder: Path) -> Kind:
         needs_bound=tuple(needs_bound),
         ports=tuple(_port(name, child) for name, child in map_of(node, "ports").items()),
         claims=tuple(_claim(name, child, node) for name, child in map_of(node, "claims").items()),
+        safe_states=tuple(
+            MappingProxyType({name: str(level.value) for name, level in state.items()})
+            for state in (node["safe_states"].elements() if "safe_states" in node else ())
+        ),
         headers=texts_of(node, "driver", "headers"),
         sources=texts_of(node, "driver", "sources"),
         node=node,

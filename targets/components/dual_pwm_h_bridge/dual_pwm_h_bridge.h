@@ -9,6 +9,8 @@
  * | 0              | 0               | coasts   |
  * | 1              | 1               | brakes   |
  *
+ * No level of one input alone is safe: the other one decides.  So both are in each of the safe_states in component.yaml.
+ *
  * This is the table of DRV8833, DRV8871, DRV8212 and L9110 and their relatives.  `slow_decay` says what the motor does
  * in the rest of each PWM period: coast (the current decays fast) or brake (it decays slowly, which makes speed more
  * nearly proportional to duty).  Needs only the port layer.  Not thread-safe: all calls from one context.
@@ -35,33 +37,32 @@ typedef struct epg_dual_pwm_h_bridge {
 } epg_dual_pwm_h_bridge_t;
 
 /**
- * Both levels as the bridge's state says.  The one that ends a drive comes first: when a PWM period ends between the
- * two writes, that period has both inputs low or, with slow decay, high.
+ * Both levels as the bridge's state says.  When a PWM period ends between the two writes, or the second one fails, the
+ * motor is not driven against the direction of its last drive and of the next one: an input that ends a drive, or holds
+ * with slow decay, comes first.
  */
 static inline void epg_dual_pwm_h_bridge_set(const epg_dual_pwm_h_bridge_t *bridge,
                                              const epg_dual_pwm_h_bridge_config_t *config)
 {
     const uint32_t clocks = config->forwards.top + 1U;
-    const uint32_t high = config->slow_decay ? clocks : bridge->bridge.level;
-    const uint32_t low = config->slow_decay ? clocks - bridge->bridge.level : 0;
-    switch (bridge->bridge.state) {
-    case EPG_BRIDGE_FORWARDS:
-        epg_port_pwm_write(&config->backwards, low);
-        epg_port_pwm_write(&config->forwards, high);
-        break;
-    case EPG_BRIDGE_BACKWARDS:
-        epg_port_pwm_write(&config->forwards, low);
-        epg_port_pwm_write(&config->backwards, high);
-        break;
-    case EPG_BRIDGE_BRAKE:
-        epg_port_pwm_write(&config->forwards, clocks);
-        epg_port_pwm_write(&config->backwards, clocks);
-        break;
-    case EPG_BRIDGE_COAST:
-    default:
-        epg_port_pwm_write(&config->forwards, 0);
-        epg_port_pwm_write(&config->backwards, 0);
-        break;
+    const epg_bridge_state_t state = bridge->bridge.state;
+    const bool backwards =
+        (state == EPG_BRIDGE_FORWARDS || state == EPG_BRIDGE_BACKWARDS ? state : bridge->bridge.driven) ==
+        EPG_BRIDGE_BACKWARDS;
+    const epg_port_pwm_t *driving = backwards ? &config->backwards : &config->forwards;
+    const epg_port_pwm_t *other = backwards ? &config->forwards : &config->backwards;
+    if (state == EPG_BRIDGE_BRAKE) {
+        epg_port_pwm_write(driving, clocks);
+        epg_port_pwm_write(other, clocks);
+    } else if (state == EPG_BRIDGE_COAST) {
+        epg_port_pwm_write(other, 0);
+        epg_port_pwm_write(driving, 0);
+    } else if (config->slow_decay) {
+        epg_port_pwm_write(driving, clocks);
+        epg_port_pwm_write(other, clocks - bridge->bridge.level);
+    } else {
+        epg_port_pwm_write(other, 0);
+        epg_port_pwm_write(driving, bridge->bridge.level);
     }
 }
 

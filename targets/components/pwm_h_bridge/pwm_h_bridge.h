@@ -9,6 +9,9 @@
  * | 0 | 0 | low         | coasts                                |
  * | 1 | 1 | always high | brakes: its terminals are connected   |
  *
+ * With a and b equal the motor is not driven at any level of the PWM: both its terminals are at one supply rail, or open.
+ * With the PWM low it is not driven at any levels of a and b.  These are the safe_states in component.yaml.
+ *
  * This is the table of L298, TB6612 and VNH5019 and their relatives.  Both direction pins are high only where the
  * configuration asks for the brake.  Needs only the port layer.  Not thread-safe: all calls from one context.
  */

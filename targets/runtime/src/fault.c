@@ -33,6 +33,8 @@ const char *epg_fault_name(epg_fault_t fault)
         return "watchdog";
     case EPG_FAULT_PROCESSOR:
         return "processor";
+    case EPG_FAULT_OUTPUT:
+        return "output";
     }
     return "unknown";
 }

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+from collections.abc import Mapping
 from fractions import Fraction
 from pathlib import Path
 
@@ -262,3 +264,22 @@ def test_what_is_wrong_is_reported_once(tmp_path: Path) -> None:
     for line in (1, 2):
         assert catalog.kind("broken", Span("robot.tcf", line, 1, 2), problems) is None
     assert [p.id for p in problems] == ["yaml-syntax"]
+
+
+@pytest.mark.parametrize(("kind", "name"), [("pwm_h_bridge", "single_states"), ("dual_pwm_h_bridge", "dual_states")])
+def test_safe_states_of_bridges_are_those_that_their_test_tries(kind: str, name: str) -> None:
+    """tests/runtime/c/outputs_tests.c."""
+    catalog, _ = builtin()
+    found = catalog.find_kind(kind)
+    assert found is not None
+    claims = [claim.name for claim in found.claims]
+
+    def masks(state: Mapping[str, str]) -> tuple[int, int]:
+        low, high = (sum(1 << claims.index(c) for c in state if state[c] == level) for level in ("low", "high"))
+        return low, high
+
+    source = (TARGETS.parent / "tests" / "runtime" / "c" / "outputs_tests.c").read_text(encoding="utf-8")
+    written = re.search(rf"{name}\[\] = \{{(.*)\}};", source)
+    assert written is not None
+    values = [dict(re.findall(r"\.(low|high) = (\d)", one)) for one in written[1].split("}")[:-1]]
+    assert [(int(v.get("low", 0)), int(v.get("high", 0))) for v in values] == [masks(s) for s in found.safe_states]

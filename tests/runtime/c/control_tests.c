@@ -588,7 +588,8 @@ TEST(faults_have_names)
     CHECK(strcmp(epg_fault_name(EPG_FAULT_SENSOR), "sensor") == 0);
     CHECK(strcmp(epg_fault_name(EPG_FAULT_WATCHDOG), "watchdog") == 0);
     CHECK(strcmp(epg_fault_name(EPG_FAULT_PROCESSOR), "processor") == 0);
-    CHECK(strcmp(epg_fault_name((epg_fault_t)13), "unknown") == 0);
+    CHECK(strcmp(epg_fault_name(EPG_FAULT_OUTPUT), "output") == 0);
+    CHECK(strcmp(epg_fault_name((epg_fault_t)14), "unknown") == 0);
 }
 
 /* Statistics --------------------------------------------------------------------------------------------------- */

@@ -21,6 +21,29 @@ static void written(void)
     }
 }
 
+/** As ports do whose drivers may refuse a write; false: nothing is written. */
+static bool may_write(uint8_t pin, epg_level_t level)
+{
+    if (fake_port.guarded == NULL) {
+        return true;
+    }
+    if (!epg_outputs_may_write(fake_port.guarded, pin)) {
+        return false;
+    }
+    if ((fake_port.refuses >> pin & 1U) != 0U) {
+        fake_port.refused |= 1U << pin;
+        epg_outputs_refused(fake_port.guarded, pin, fake_port.take_over);
+        return false;
+    }
+    epg_outputs_written(fake_port.guarded, pin, level);
+    return true;
+}
+
+static epg_level_t level_of(bool high)
+{
+    return high ? EPG_LEVEL_HIGH : EPG_LEVEL_LOW;
+}
+
 uint64_t epg_port_time_ns(void)
 {
     return fake_port.now_ns;
@@ -55,6 +78,9 @@ void epg_port_pwm_write(const epg_port_pwm_t *pwm, uint32_t level)
 {
     CHECK(fake_port.pwms_started[pwm->unit]);
     CHECK(level <= fake_port.tops[pwm->unit] + 1U);
+    if (!may_write(pwm->pin, level > 0U && level <= pwm->top ? EPG_LEVEL_SWITCHING : level_of(level > 0U))) {
+        return;
+    }
     fake_port.levels[pwm->unit] = level;
     written();
 }
@@ -69,6 +95,9 @@ void epg_port_output_start(uint8_t pin, bool level)
 void epg_port_output_write(uint8_t pin, bool level)
 {
     CHECK(fake_port.outputs_started[pin]);
+    if (!may_write(pin, level_of(level))) {
+        return;
+    }
     fake_port.outputs[pin] = level;
     written();
 }

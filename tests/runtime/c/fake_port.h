@@ -5,6 +5,7 @@
 #ifndef FAKE_PORT_H
 #define FAKE_PORT_H
 
+#include "epg/outputs.h"
 #include "epg/port.h"
 #include "epg/port_uart.h"
 
@@ -26,6 +27,10 @@ typedef struct fake_port {
     unsigned char store[FAKE_STORE];
     size_t store_size;      /**< bytes stored; 0: nothing */
     bool store_refuses;     /**< nothing can be stored */
+    epg_outputs_t *guarded; /**< NULL: no write is refused; rows are numbers of pins */
+    uint32_t refuses;       /**< pins whose writes are refused, one bit each, */
+    uint32_t refused;       /**< and those whose writes have been */
+    epg_take_over_t take_over;
     unsigned int writes;    /**< of PWM levels and pins */
     void (*on_write)(void); /**< called after each of them: nothing happens unseen */
 } fake_port_t;

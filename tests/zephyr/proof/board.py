@@ -52,7 +52,7 @@ class ZephyrJiwy(Jiwy):
         return [cycle for cycle, *_ in self.pico.call("span", name="cycle")["passages"]]
 
     def locked(self) -> list[int]:
-        """For how many cycles of the processor interrupts were locked while outputs were written, since the last call."""
+        """For how many cycles of the processor interrupts were locked for each write, since the last call."""
         return [length for _, length, _ in self.pico.call("span", name="locked")["passages"]]
 
     def interrupts(self) -> list[int]:

@@ -14,8 +14,8 @@ LATEST = 20 * CYCLES_PER_MILLISECOND // 1000
 LATEST_CYCLE = 100 * CYCLES_PER_MILLISECOND // 1000
 """The same of the control thread's cycle, which computes: other interrupts go before it."""
 LATEST_WRITE = 535 * CYCLES_PER_MILLISECOND // 1000
-"""Cycles from the tick's interrupt to the end of the last write to an output: they may begin at 500 us from the tick, and
-the PWM wraps at 550 us."""
+"""Cycles from the tick's interrupt to the end of the last write to an output: they may begin at 500 us from the tick,
+and the PWM wraps at 550 us."""
 LONGEST_LOCK = 20 * CYCLES_PER_MILLISECOND // 1000
 """Cycles for which interrupts are locked while outputs are written: 20 us."""
 

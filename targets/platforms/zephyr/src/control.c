@@ -40,7 +40,7 @@ static struct {
     uint64_t period_ns;
 } loop;
 
-/** The target's application, whose outputs are written while interrupts are locked. */
+/** The target's application, with what this platform does besides. */
 static epg_application_t wrapped;
 
 static bool running; /* the thread is there */
@@ -103,14 +103,21 @@ static void write_locked(void)
     irq_unlock(key);
 }
 
+/** After requests to enable, and before outputs are written. */
+static void read_and_check_outputs(void)
+{
+    loop.application->read();
+    epg_zephyr_outputs_check(loop.control);
+}
+
 /** Outputs whose drivers may wait are written while interrupts are not locked. */
 static const epg_application_t *wrap(const epg_application_t *application)
 {
-    if (!epg_zephyr_outputs_are_registers()) {
-        return application;
-    }
     wrapped = *application;
-    wrapped.write = write_locked;
+    wrapped.read = read_and_check_outputs;
+    if (epg_zephyr_outputs_are_registers()) {
+        wrapped.write = write_locked;
+    }
     return &wrapped;
 }
 
@@ -165,6 +172,9 @@ epg_zephyr_error_t epg_zephyr_control_start(const epg_zephyr_target_t *zephyr, e
     k_sem_reset(&ticks);
 
     epg_zephyr_device_refused = false;
+    if (!epg_zephyr_outputs_start()) {
+        return EPG_ZEPHYR_ERROR_DEVICE;
+    }
     epg_native_sim_starting();
     epg_control_start(loop.control, wrap(application));
     epg_native_sim_started();

@@ -8,7 +8,7 @@
 #include "epg/ring.h"
 #include "epg/zephyr.h"
 
-/* port.c and inputs.c -------------------------------------------------------------------------------------- */
+/* port.c, inputs.c and outputs.c -------------------------------------------------------------------------------------- */
 
 /** A device refused what it was asked for while peripherals were started. */
 extern bool epg_zephyr_device_refused;
@@ -18,6 +18,15 @@ bool epg_zephyr_devices_ready(void);
 
 /** Whether a device is there and started; if not, the log says so. */
 bool epg_zephyr_ready(const struct device *device);
+
+/** Before the first output starts.  False: one has refused a write, and its component is given up until a reset. */
+bool epg_zephyr_outputs_start(void);
+
+/** Latches the fault of an output that has refused a write.  In each cycle, after requests to enable. */
+void epg_zephyr_outputs_check(epg_control_t *control);
+
+/** Whether a component is in no safe state: the watchdog is to reset the board. */
+bool epg_zephyr_outputs_unsafe(void);
 
 /** Whether all outputs are registers of the chip, so that writing them takes a few microseconds. */
 bool epg_zephyr_outputs_are_registers(void);

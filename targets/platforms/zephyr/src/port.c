@@ -1,17 +1,13 @@
 /**
  * @file
- * Time and outputs.
+ * Time, and the devices of the target.
  */
 #include "epg/port.h"
 
-#include <zephyr/drivers/pwm.h>
 #include <zephyr/kernel.h>
 #include <zephyr/logging/log.h>
 
 #include "parts.h"
-#ifdef CONFIG_EPG_TICK_PICO_PWM
-#include "pico.h"
-#endif
 
 LOG_MODULE_DECLARE(epg, CONFIG_EPG_LOG_LEVEL);
 
@@ -20,13 +16,6 @@ BUILD_ASSERT(
     "EPG needs a system clock with k_cycle_get_64(); for SysTick set CONFIG_CORTEX_M_SYSTICK_64BIT_CYCLE_COUNTER=y");
 
 bool epg_zephyr_device_refused;
-
-static inline void check(int error)
-{
-    if (error < 0) {
-        epg_zephyr_device_refused = true;
-    }
-}
 
 /* Time ----------------------------------------------------------------------------------------------------------- */
 
@@ -80,76 +69,7 @@ void epg_port_wait_until(uint64_t time_ns)
 #endif
 }
 
-/* PWM ------------------------------------------------------------------------------------------------------------ */
-
-/** Outputs of one target; the chips have fewer. */
-#define PWMS 32U
-
-/* By row of the table: the period in clocks of the device, so that no cycle divides 64 bits to know it. */
-static uint32_t periods[PWMS];
-
-static const epg_zephyr_pwm_t *find_pwm(uint8_t block, uint8_t unit, size_t *row)
-{
-    for (size_t i = 0; i < epg_zephyr_hardware.pwm_count && i < PWMS; i++) {
-        const epg_zephyr_pwm_t *pwm = &epg_zephyr_hardware.pwms[i];
-        if (pwm->block == block && pwm->unit == unit) {
-            *row = i;
-            return pwm;
-        }
-    }
-    return NULL;
-}
-
-static int find_period(const epg_port_pwm_t *config)
-{
-    size_t row = 0;
-    uint64_t rate = 0;
-    const epg_zephyr_pwm_t *pwm = find_pwm(config->block, config->unit, &row);
-    if (pwm == NULL) {
-        return -ENODEV;
-    }
-    periods[row] = config->top + 1U;
-    if (pwm->period_ns == 0) {
-        return 0;
-    }
-    const int error = pwm_get_cycles_per_sec(pwm->device, pwm->channel, &rate);
-    periods[row] = (uint32_t)(pwm->period_ns * rate / NS_PER_S);
-    return error;
-}
-
-/** The high time for a level out of `steps`, in clocks of the device. */
-static inline uint32_t pulse_of(uint32_t level, uint32_t steps, uint32_t period)
-{
-    return period == steps ? level : (uint32_t)((uint64_t)period * level / steps);
-}
-
-void epg_port_pwm_start(const epg_port_pwm_t *config)
-{
-    check(find_period(config));
-    size_t row = 0;
-    const epg_zephyr_pwm_t *pwm = find_pwm(config->block, config->unit, &row);
-    if (pwm != NULL) {
-        check(pwm_set_cycles(pwm->device, pwm->channel, periods[row], 0, pwm->flags));
-    }
-}
-
-void epg_port_pwm_write(const epg_port_pwm_t *config, uint32_t level)
-{
-    size_t row = 0;
-    const epg_zephyr_pwm_t *pwm = find_pwm(config->block, config->unit, &row);
-    if (pwm == NULL) {
-        return; /* the start said so */
-    }
-    const uint32_t pulse = pulse_of(level, config->top + 1U, periods[row]);
-#ifdef CONFIG_EPG_TICK_PICO_PWM
-    if (epg_zephyr_pwm_take(pwm, pulse)) {
-        return;
-    }
-#endif
-    (void)pwm_set_cycles(pwm->device, pwm->channel, periods[row], pulse, pwm->flags); /* refusals came at the start */
-}
-
-/* Pins ------------------------------------------------------------------------------------------------------------ */
+/* All --------------------------------------------------------------------------------------------------------------- */
 
 const epg_zephyr_pin_t *epg_zephyr_pin(uint8_t pin)
 {
@@ -160,48 +80,6 @@ const epg_zephyr_pin_t *epg_zephyr_pin(uint8_t pin)
     }
     return NULL;
 }
-
-static int start_pin(uint8_t pin, gpio_flags_t flags)
-{
-    const epg_zephyr_pin_t *row = epg_zephyr_pin(pin);
-    return row == NULL ? -ENODEV : gpio_pin_configure_dt(&row->gpio, flags);
-}
-
-void epg_port_output_start(uint8_t pin, bool level)
-{
-    check(start_pin(pin, level ? GPIO_OUTPUT_ACTIVE : GPIO_OUTPUT_INACTIVE));
-}
-
-void epg_port_output_write(uint8_t pin, bool level)
-{
-    const epg_zephyr_pin_t *row = epg_zephyr_pin(pin);
-    if (row != NULL) {
-        (void)gpio_pin_set_dt(&row->gpio, level ? 1 : 0);
-    }
-}
-
-bool epg_zephyr_outputs_are_registers(void)
-{
-#ifdef CONFIG_EPG_TICK_PICO_PWM
-    const epg_zephyr_hardware_t *hardware = &epg_zephyr_hardware;
-    for (size_t i = 0; i < hardware->pwm_count; i++) {
-        if (!epg_zephyr_pico_has_pwm(hardware->pwms[i].device)) {
-            return false;
-        }
-    }
-    for (size_t i = 0; i < hardware->output_count; i++) {
-        const epg_zephyr_pin_t *row = epg_zephyr_pin(hardware->outputs[i].pin);
-        if (row != NULL && !epg_zephyr_pico_has_port(row->gpio.port)) {
-            return false;
-        }
-    }
-    return true;
-#else
-    return false;
-#endif
-}
-
-/* All --------------------------------------------------------------------------------------------------------------- */
 
 bool epg_zephyr_ready(const struct device *device)
 {

@@ -70,6 +70,9 @@ epg_zephyr_error_t epg_zephyr_watchdog_start(uint64_t period_ns)
 
 void epg_zephyr_watchdog_stop(void)
 {
+    if (epg_zephyr_outputs_unsafe()) {
+        return; /* it is to reset the board */
+    }
     if (state.running && wdt_disable(device) < 0) {
         k_timer_start(&feeder, K_NO_WAIT, K_MSEC(state.timeout_ms / FEEDINGS));
     }
@@ -78,14 +81,14 @@ void epg_zephyr_watchdog_stop(void)
 
 void epg_zephyr_watchdog_feed(uint32_t silence)
 {
-    if (silence < state.silence_limit) {
+    if (silence < state.silence_limit && !epg_zephyr_outputs_unsafe()) {
         (void)wdt_feed(device, state.channel);
     }
 }
 
 void epg_zephyr_watchdog_relax(bool relaxed)
 {
-    if (state.running) {
+    if (state.running && !epg_zephyr_outputs_unsafe()) {
         (void)set_up(relaxed ? MAX(RELAXED_MS, state.timeout_ms) : state.timeout_ms);
     }
 }

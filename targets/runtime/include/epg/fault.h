@@ -28,7 +28,8 @@ typedef enum epg_fault {
     EPG_FAULT_HOMING_TIME,      /**< homing took too long */
     EPG_FAULT_SENSOR,           /**< a sensor's peripheral has stopped */
     EPG_FAULT_WATCHDOG,         /**< the watchdog has reset the processor: one of the two sides had stopped */
-    EPG_FAULT_PROCESSOR         /**< hard fault, failed assertion, panic or stack overflow before the last reset */
+    EPG_FAULT_PROCESSOR,        /**< hard fault, failed assertion, panic or stack overflow before the last reset */
+    EPG_FAULT_OUTPUT            /**< the driver of an output refused a write */
 } epg_fault_t;
 
 /** Name of a fault, for messages: "none", "not finite", "overrun", ...; "unknown" for any other number. */

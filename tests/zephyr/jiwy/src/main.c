@@ -126,6 +126,40 @@ ZTEST(jiwy, test_decoder_fails)
 	zexpect_true(status_after(K_MSEC(3)).enabled);
 }
 
+/* A PWM that refuses a write disables the target for good: its pins are plain pins until a reset. */
+ZTEST(jiwy_refused, test_output_fails)
+{
+	static const struct gpio_dt_spec pan = GPIO_DT_SPEC_GET_BY_IDX(TARGET, gpios, 0);
+	gpio_flags_t flags = 0;
+	epg_status_t status;
+
+	zassert_true(jiwy_start());
+	zassert_true(status_after(K_MSEC(3)).enabled);
+	zassert_not_equal(high_time(), 0);
+	zassert_ok(gpio_emul_flags_get(pan.port, pan.pin, &flags));
+	pwm_emul_set_error(PWM_PAN, -EIO);
+	status = status_after(K_MSEC(3));
+	zexpect_false(status.enabled);
+	zexpect_equal(status.fault, EPG_FAULT_OUTPUT);
+	zexpect_not_equal(status.fault_component, EPG_NO_COMPONENT);
+	zexpect_ok(gpio_emul_flags_get(pan.port, pan.pin, &flags));
+	zexpect_equal(flags & (GPIO_OUTPUT | GPIO_OUTPUT_INIT_LOW),
+		      GPIO_OUTPUT | GPIO_OUTPUT_INIT_LOW);
+	zexpect_equal(pins_high(), 0);
+	pwm_emul_set_error(PWM_PAN, 0);
+	jiwy_enable(true);
+	for (int i = 0; i < 5; i++) {
+		status = status_after(K_MSEC(1));
+		zexpect_false(status.enabled);
+		zexpect_equal(status.fault, EPG_FAULT_OUTPUT);
+	}
+	zexpect_equal(pins_high(), 0);
+	jiwy_stop();
+	zexpect_false(jiwy_start());
+}
+
+ZTEST_SUITE(jiwy_refused, NULL, NULL, NULL, NULL, NULL);
+
 #endif
 
 /* Each test on a target that has just been started. */

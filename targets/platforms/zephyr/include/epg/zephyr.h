@@ -17,6 +17,7 @@
 #include <zephyr/drivers/pwm.h>
 
 #include "epg/middleware.h"
+#include "epg/outputs.h"
 #include "epg/target.h"
 #include "epg/transport.h"
 
@@ -76,6 +77,8 @@ typedef struct epg_zephyr_hardware {
     const epg_zephyr_pin_t *pins;
     size_t output_count;
     const epg_zephyr_output_t *outputs;
+    size_t group_count;
+    const epg_output_group_t *groups; /**< of `outputs`: what of them belongs to one component */
     size_t uart_count;
     const epg_zephyr_uart_t *uarts;
 } epg_zephyr_hardware_t;

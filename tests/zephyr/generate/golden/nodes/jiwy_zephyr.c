@@ -80,6 +80,26 @@ static const epg_zephyr_output_t outputs[] = {
     {.pin = 253, .high = false}, /* components.light */
 };
 
+static const epg_safe_state_t safe_states_0[] = { /* components.pwm_pan */
+    {.low = 1, .high = 0},
+    {.low = 6, .high = 0},
+    {.low = 0, .high = 6},
+};
+static const epg_safe_state_t safe_states_1[] = { /* components.pwm_tilt */
+    {.low = 1, .high = 0},
+    {.low = 6, .high = 0},
+    {.low = 0, .high = 6},
+};
+static const epg_safe_state_t safe_states_2[] = { /* components.light */
+    {.low = 1, .high = 0},
+};
+
+static const epg_output_group_t groups[] = {
+    {.component = 2, .first = 0, .count = 3, .state_count = 3, .states = safe_states_0},
+    {.component = 3, .first = 3, .count = 3, .state_count = 3, .states = safe_states_1},
+    {.component = 10, .first = 6, .count = 1, .state_count = 1, .states = safe_states_2},
+};
+
 static const epg_zephyr_uart_t uarts[] = {
     /* components.line */
     {.block = 252, .device = DEVICE_DT_GET(DT_NODELABEL(usart2))},
@@ -94,6 +114,8 @@ const epg_zephyr_hardware_t epg_zephyr_hardware = {
     .pins = pins,
     .output_count = 7,
     .outputs = outputs,
+    .group_count = 3,
+    .groups = groups,
     .uart_count = 1,
     .uarts = uarts,
 };

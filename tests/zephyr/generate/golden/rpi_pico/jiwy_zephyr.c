@@ -66,6 +66,22 @@ static const epg_zephyr_output_t outputs[] = {
     {.pin = 6, .high = false}, /* components.pwm_tilt */
 };
 
+static const epg_safe_state_t safe_states_0[] = { /* components.pwm_pan */
+    {.low = 1, .high = 0},
+    {.low = 6, .high = 0},
+    {.low = 0, .high = 6},
+};
+static const epg_safe_state_t safe_states_1[] = { /* components.pwm_tilt */
+    {.low = 1, .high = 0},
+    {.low = 6, .high = 0},
+    {.low = 0, .high = 6},
+};
+
+static const epg_output_group_t groups[] = {
+    {.component = 2, .first = 0, .count = 3, .state_count = 3, .states = safe_states_0},
+    {.component = 3, .first = 3, .count = 3, .state_count = 3, .states = safe_states_1},
+};
+
 const epg_zephyr_hardware_t epg_zephyr_hardware = {
     .decoder_count = 2,
     .decoders = decoders,
@@ -75,6 +91,8 @@ const epg_zephyr_hardware_t epg_zephyr_hardware = {
     .pins = pins,
     .output_count = 6,
     .outputs = outputs,
+    .group_count = 2,
+    .groups = groups,
     .uart_count = 0,
 };
 

@@ -1,0 +1,235 @@
+/**
+ * @file
+ * Outputs: PWM and pins.
+ *
+ * A driver may refuse a write: an expander that does not answer, a clock that is off, a channel that somebody has taken.
+ * The component is then brought into a safe state and given up until a reset (epg/outputs.h), and the target is disabled
+ * with the fault EPG_FAULT_OUTPUT.
+ */
+#include <zephyr/drivers/pwm.h>
+#include <zephyr/kernel.h>
+
+#include "epg/port.h"
+#include "parts.h"
+#ifdef CONFIG_EPG_TICK_PICO_PWM
+#include "pico.h"
+#endif
+
+#define NS_PER_S 1000000000U
+
+/** Rows in the table of pins; the chips have fewer. */
+#define PINS 64U
+
+/** The row in the table of outputs of a pin that is in no component's. */
+#define NO_ROW UINT8_MAX
+BUILD_ASSERT(NO_ROW >= EPG_OUTPUTS_ROWS, "no row of the table");
+
+static epg_outputs_t outputs;
+
+static uint8_t output_row(uint8_t pin)
+{
+    for (size_t i = 0; i < epg_zephyr_hardware.output_count && i < EPG_OUTPUTS_ROWS; i++) {
+        if (epg_zephyr_hardware.outputs[i].pin == pin) {
+            return (uint8_t)i;
+        }
+    }
+    return NO_ROW;
+}
+
+/* PWM ------------------------------------------------------------------------------------------------------------ */
+
+/** Outputs of one target; the chips have fewer. */
+#define PWMS 32U
+
+/* By row of the table: the period in clocks of the device, so that no cycle divides 64 bits to know it. */
+static uint32_t periods[PWMS];
+
+/* By row of the table: its row in the table of outputs. */
+static uint8_t pwm_outputs[PWMS];
+
+static const epg_zephyr_pwm_t *find_pwm(uint8_t block, uint8_t unit, size_t *row)
+{
+    for (size_t i = 0; i < epg_zephyr_hardware.pwm_count && i < PWMS; i++) {
+        const epg_zephyr_pwm_t *pwm = &epg_zephyr_hardware.pwms[i];
+        if (pwm->block == block && pwm->unit == unit) {
+            *row = i;
+            return pwm;
+        }
+    }
+    return NULL;
+}
+
+static int find_period(const epg_port_pwm_t *config)
+{
+    size_t row = 0;
+    uint64_t rate = 0;
+    const epg_zephyr_pwm_t *pwm = find_pwm(config->block, config->unit, &row);
+    if (pwm == NULL) {
+        return -ENODEV;
+    }
+    periods[row] = config->top + 1U;
+    if (pwm->period_ns == 0) {
+        return 0;
+    }
+    const int error = pwm_get_cycles_per_sec(pwm->device, pwm->channel, &rate);
+    periods[row] = (uint32_t)(pwm->period_ns * rate / NS_PER_S);
+    return error;
+}
+
+/** The high time for a level out of `steps`, in clocks of the device. */
+static inline uint32_t pulse_of(uint32_t level, uint32_t steps, uint32_t period)
+{
+    return period == steps ? level : (uint32_t)((uint64_t)period * level / steps);
+}
+
+/** Makes an output a plain pin; one that has no pin, because the application's devicetree names the PWM, by its driver. */
+static bool take_over(size_t row, bool high)
+{
+    const epg_zephyr_pin_t *pin = epg_zephyr_pin(epg_zephyr_hardware.outputs[row].pin);
+    if (pin != NULL && gpio_pin_configure_dt(&pin->gpio, high ? GPIO_OUTPUT_ACTIVE : GPIO_OUTPUT_INACTIVE) >= 0) {
+        return true;
+    }
+    for (size_t i = 0; pin == NULL && i < epg_zephyr_hardware.pwm_count && i < PWMS; i++) {
+        const epg_zephyr_pwm_t *pwm = &epg_zephyr_hardware.pwms[i];
+        if (pwm_outputs[i] == row) {
+            return pwm_set_cycles(pwm->device, pwm->channel, periods[i], high ? periods[i] : 0U, pwm->flags) >= 0;
+        }
+    }
+    return false;
+}
+
+static void refuse(uint8_t row)
+{
+    epg_zephyr_device_refused = true; /* for a start that is under way */
+    epg_outputs_refused(&outputs, row, take_over);
+}
+
+static int set_pulse(size_t i, uint32_t pulse)
+{
+    const epg_zephyr_pwm_t *pwm = &epg_zephyr_hardware.pwms[i];
+#ifdef CONFIG_EPG_TICK_PICO_PWM
+    if (epg_zephyr_pwm_take(pwm, pulse)) {
+        return 0;
+    }
+#endif
+    return pwm_set_cycles(pwm->device, pwm->channel, periods[i], pulse, pwm->flags);
+}
+
+void epg_port_pwm_start(const epg_port_pwm_t *config)
+{
+    size_t i = 0;
+    const epg_zephyr_pwm_t *pwm = find_pwm(config->block, config->unit, &i);
+    if (pwm == NULL) {
+        epg_zephyr_device_refused = true;
+        return;
+    }
+    pwm_outputs[i] = output_row(config->pin);
+    if (find_period(config) < 0 || pwm_set_cycles(pwm->device, pwm->channel, periods[i], 0, pwm->flags) < 0) {
+        refuse(pwm_outputs[i]);
+    }
+}
+
+void epg_port_pwm_write(const epg_port_pwm_t *config, uint32_t level)
+{
+    size_t i = 0;
+    if (find_pwm(config->block, config->unit, &i) == NULL || !epg_outputs_may_write(&outputs, pwm_outputs[i])) {
+        return;
+    }
+    const uint32_t pulse = pulse_of(level, config->top + 1U, periods[i]);
+    if (set_pulse(i, pulse) < 0) {
+        refuse(pwm_outputs[i]);
+        return;
+    }
+    epg_outputs_written(&outputs, pwm_outputs[i],
+                        pulse == 0U          ? EPG_LEVEL_LOW
+                        : pulse < periods[i] ? EPG_LEVEL_SWITCHING
+                                             : EPG_LEVEL_HIGH);
+}
+
+/* Pins ------------------------------------------------------------------------------------------------------------ */
+
+/* By row of the table: its row in the table of outputs. */
+static uint8_t pin_outputs[PINS];
+
+static bool find_pin(uint8_t pin, size_t *row)
+{
+    const epg_zephyr_pin_t *found = epg_zephyr_pin(pin);
+    if (found == NULL) {
+        return false;
+    }
+    *row = (size_t)(found - epg_zephyr_hardware.pins);
+    return *row < PINS;
+}
+
+void epg_port_output_start(uint8_t pin, bool level)
+{
+    size_t row;
+    if (!find_pin(pin, &row)) {
+        epg_zephyr_device_refused = true;
+        return;
+    }
+    pin_outputs[row] = output_row(pin);
+    if (gpio_pin_configure_dt(&epg_zephyr_hardware.pins[row].gpio, level ? GPIO_OUTPUT_ACTIVE : GPIO_OUTPUT_INACTIVE) <
+        0) {
+        refuse(pin_outputs[row]);
+        return;
+    }
+    epg_outputs_written(&outputs, pin_outputs[row], level ? EPG_LEVEL_HIGH : EPG_LEVEL_LOW);
+}
+
+void epg_port_output_write(uint8_t pin, bool level)
+{
+    size_t row;
+    if (!find_pin(pin, &row) || !epg_outputs_may_write(&outputs, pin_outputs[row])) {
+        return;
+    }
+    if (gpio_pin_set_dt(&epg_zephyr_hardware.pins[row].gpio, level ? 1 : 0) < 0) {
+        refuse(pin_outputs[row]);
+        return;
+    }
+    epg_outputs_written(&outputs, pin_outputs[row], level ? EPG_LEVEL_HIGH : EPG_LEVEL_LOW);
+}
+
+/* All --------------------------------------------------------------------------------------------------------------- */
+
+bool epg_zephyr_outputs_start(void)
+{
+    if (outputs.refused) {
+        return false;
+    }
+    epg_outputs_start(&outputs, epg_zephyr_hardware.groups, epg_zephyr_hardware.group_count);
+    return true;
+}
+
+void epg_zephyr_outputs_check(epg_control_t *control)
+{
+    if (outputs.refused) {
+        epg_control_fault(control, EPG_FAULT_OUTPUT, outputs.component);
+    }
+}
+
+bool epg_zephyr_outputs_unsafe(void)
+{
+    return outputs.unsafe;
+}
+
+bool epg_zephyr_outputs_are_registers(void)
+{
+#ifdef CONFIG_EPG_TICK_PICO_PWM
+    const epg_zephyr_hardware_t *hardware = &epg_zephyr_hardware;
+    for (size_t i = 0; i < hardware->pwm_count; i++) {
+        if (!epg_zephyr_pico_has_pwm(hardware->pwms[i].device)) {
+            return false;
+        }
+    }
+    for (size_t i = 0; i < hardware->output_count; i++) {
+        const epg_zephyr_pin_t *row = epg_zephyr_pin(hardware->outputs[i].pin);
+        if (row != NULL && !epg_zephyr_pico_has_port(row->gpio.port)) {
+            return false;
+        }
+    }
+    return true;
+#else
+    return false;
+#endif
+}
