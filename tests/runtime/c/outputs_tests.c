@@ -99,9 +99,11 @@ static void command(double duty)
     } else if (duty == SAFE) {
         epg_pwm_h_bridge_safe(&motor.single, &motor.single_config);
     } else if (motor.is_dual) {
-        (void)epg_dual_pwm_h_bridge_write(&motor.dual, &motor.dual_config, duty);
+        (void)epg_dual_pwm_h_bridge_command(&motor.dual, &motor.dual_config, duty);
+        epg_dual_pwm_h_bridge_set(&motor.dual, &motor.dual_config);
     } else {
-        (void)epg_pwm_h_bridge_write(&motor.single, &motor.single_config, duty);
+        (void)epg_pwm_h_bridge_command(&motor.single, &motor.single_config, duty);
+        epg_pwm_h_bridge_apply(&motor.single, &motor.single_config);
     }
 }
 

@@ -17,7 +17,7 @@ SPANS = {
     "cycle": ("epg_control_cycle", "return"),
     "read": ("qdec_common_attr_get", "return"),
     "write": ("epg_port_pwm_write", "return"),
-    "locked": ("write_locked", "return"),
+    "locked": ("write_outputs", "return"),
 }
 """From the tick's interrupt, which reads the encoders, to the end of the cycle in the control thread."""
 
