@@ -141,7 +141,7 @@ function(_epg_middleware_library name middleware)
       cmake_language(CALL _epg_middleware_${middleware} ${library})
     endif()
   endif()
-  target_link_libraries(${name} PUBLIC ${library})
+  target_link_libraries(${name} PRIVATE ${library}) # its headers are for generated code, not for the user's
 endfunction()
 
 # The portable runtime, compiled once per build.

@@ -119,7 +119,7 @@ def _check_templates(names: Collection[Node], diagnostics: Diagnostics) -> None:
             diagnostics.error("wrong-value", name.span, message, hint=hint)
 
 
-_TEMPLATE = re.compile(r"NAME(?:_[a-z0-9_]+)?\.[A-Za-z]+\.j2")
+_TEMPLATE = re.compile(r"(?:NAME(?:_[a-z0-9_]+)?|epg_[a-z0-9_]+)\.[A-Za-z]+\.j2")
 _TAKEN = {
     f"NAME_{part}.j2"
     for of in ("model", "plant")

@@ -72,7 +72,6 @@ def application_cmake(
         sources = names.in_order(middleware.folder / name for name in middleware.sources)
         lines += _set(f"EPG_MIDDLEWARE_{middleware.name}_FOLDER", [names.cmake(middleware.folder)])
         lines += _set(f"EPG_MIDDLEWARE_{middleware.name}_SOURCES", sources)
-    lines += _set("EPG_MIDDLEWARE_STACK", [str(max(used.stack for used in app.communication.middlewares))])
     if app.communication.transport:
         lines += _set("EPG_TRANSPORT", [str(cmake(app.communication.transport))])
     lines += _set("EPG_GENERATED_SOURCES", [str(cmake(name)) for name in own])

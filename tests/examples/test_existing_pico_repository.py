@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shlex
 import shutil
 from pathlib import Path
 
@@ -54,9 +55,37 @@ def test_other_executables_do_not_notice(tmp_path: Path) -> None:
     assert {key.split("/")[0] for key in others} >= {"blink", "hello_usb", "thermometer"}
     assert {key: after[key] for key in others} == others
 
+    assert changes(before, after) == NEEDED
+    main = repository / "turntable/main.c"
+    with_start = main.read_text(encoding="utf-8")
+    main.write_text("int main(void)\n{\n    return 0;\n}\n", encoding="utf-8")
+    run(repository, "cmake", "--build", "build", "--target", "turntable_station")  # not a call of EPG's yet: it links
+    main.write_text(with_start, encoding="utf-8")
     output = run(repository, "cmake", "--build", "build", "--target", "turntable_station")
     assert_good(build, output)
     assert digests(build, *BUILT) == files
+
+
+NEEDED = {
+    # TinyUSB and the libraries of the SDK that EPG links
+    "CFG_TUSB_DEBUG", "CFG_TUSB_MCU", "CFG_TUSB_OS", "PICO_RP2040_USB_DEVICE_UFRAME_FIX",
+    "LIB_PICO_FIX_RP2040_USB_DEVICE_ENUMERATION", "LIB_PICO_MULTICORE", "LIB_PICO_UNIQUE_ID",
+    # what EPG asks of the SDK's C files
+    "PICO_CORE1_STACK_SIZE", "PICO_DOUBLE_PROPAGATE_NANS", "PICO_USE_STACK_GUARDS",
+    # <name>.h, epg/control.h, epg/pico.h, epg/pico_quadrature.h, tusb_config.h, tusb.h
+    "build/epg/turntable", "targets/runtime/include", "targets/platforms/pico/include",
+    "targets/libraries/pico_quadrature/include", "targets/platforms/pico/usb/include", "lib/tinyusb/src",
+}  # fmt: skip
+"""Definitions and folders of headers by which the commands that compile the program's own files change."""
+
+
+def changes(before: dict[str, dict[str, str]], after: dict[str, dict[str, str]]) -> set[str]:
+    """What is different for main.c of the executable that gained the controller, but for the SDK's system headers."""
+    words = [set(shlex.split(commands["turntable/CMakeFiles/turntable_station.dir/main.c.o"]["command"]))
+             for commands in (before, after)]  # fmt: skip
+    found = {word.split("=")[0].removeprefix("-D") for word in words[0] ^ words[1] if word.startswith("-D")}
+    folders = {word for word in words[0] ^ words[1] if word.startswith("-I")}
+    return found | {next((name for name in NEEDED if folder.endswith(name)), folder) for folder in folders}
 
 
 def assert_good(build: Path, output: str) -> None:

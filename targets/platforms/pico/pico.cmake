@@ -18,7 +18,6 @@ function(_epg_pico_target name)
   add_library(${name}_port INTERFACE)
   target_sources(${name}_port INTERFACE ${arg_SERVICE})
   target_link_libraries(${name}_port INTERFACE epg_pico ${arg_LIBRARIES})
-  target_compile_definitions(${name}_port INTERFACE EPG_PICO_MIDDLEWARE_STACK=${EPG_MIDDLEWARE_STACK})
   set(ports 0)
   if(EPG_TRANSPORT STREQUAL "usb")
     set(ports 1)
@@ -30,8 +29,6 @@ function(_epg_pico_target name)
   if(ports GREATER 0)
     _epg_pico_usb_library()
     target_link_libraries(${name}_port INTERFACE epg_pico_usb)
-    target_compile_definitions(${name}_port INTERFACE EPG_PICO_USB_PORTS=${ports}
-      EPG_PICO_TARGET_HEADER="${name}_pico.h")
     # Only when a directory is done is it known what the user has set of executables.
     cmake_language(EVAL CODE "cmake_language(DEFER DIRECTORY [[${CMAKE_SOURCE_DIR}]] CALL _epg_pico_check_stdio [[${name}]] [[${CMAKE_SOURCE_DIR}]])")
   endif()
@@ -140,28 +137,33 @@ function(_epg_pico_library)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${folder}/src")
   add_library(epg_pico INTERFACE)
   target_sources(epg_pico INTERFACE ${sources})
-  target_include_directories(epg_pico INTERFACE "${folder}/include" "${folder}/src")
+  target_include_directories(epg_pico INTERFACE "${folder}/include")
   target_link_libraries(epg_pico INTERFACE
     EPG::pico_quadrature pico_runtime pico_runtime_init pico_multicore pico_flash pico_unique_id
     hardware_clocks hardware_exception hardware_flash hardware_gpio hardware_irq hardware_pwm hardware_sync
     hardware_timer hardware_uart hardware_watchdog)
-  target_compile_definitions(epg_pico INTERFACE
+  # The user's own files are compiled with these, too: what only assembler reads is for assembler only.
+  foreach(part DOUBLE FLOAT DIVIDER INT64_OPS BITS MEM)
     # What the control cycle calls of the SDK lies in RAM too.
-    PICO_DOUBLE_IN_RAM=1 PICO_FLOAT_IN_RAM=1 PICO_DIVIDER_IN_RAM=1 PICO_INT64_OPS_IN_RAM=1 PICO_BITS_IN_RAM=1
-    PICO_MEM_IN_RAM=1
+    target_compile_definitions(epg_pico INTERFACE $<$<COMPILE_LANGUAGE:ASM>:PICO_${part}_IN_RAM=1>)
+  endforeach()
+  target_compile_definitions(epg_pico INTERFACE
     # NaN stays NaN where the RP2040's ROM routines can do that.
     PICO_DOUBLE_PROPAGATE_NANS=1
     # An overflowing stack is a HardFault, which makes outputs safe.
     PICO_USE_STACK_GUARDS=1
-    # Core 1 is EPG's, with a stack of its own: multicore_launch_core1() of the user panics.
+    # The bank of memory for core 1's stack holds the control loop's: the SDK's does not fit beside it.
     PICO_CORE1_STACK_SIZE=0)
-  target_link_options(epg_pico INTERFACE
-    LINKER:--wrap=panic LINKER:--wrap=__assert_func LINKER:--wrap=_exit "${folder}/in_ram.ld")
+  foreach(function panic __assert_func _exit multicore_reset_core1 multicore_launch_core1
+      multicore_launch_core1_with_stack multicore_launch_core1_raw)
+    target_link_options(epg_pico INTERFACE LINKER:--wrap=${function})
+  endforeach()
+  target_link_options(epg_pico INTERFACE "${folder}/in_ram.ld")
   set_property(TARGET epg_pico APPEND PROPERTY INTERFACE_LINK_DEPENDS "${folder}/in_ram.ld")
 endfunction()
 
 # The transport over USB: its own TinyUSB device, so it excludes the SDK's stdio over USB.
-# Whoever links it defines how many serial ports it has: EPG_PICO_USB_PORTS.
+# The program that links it has an epg_pico_target.h, which says how many serial ports it has.
 function(_epg_pico_usb_library)
   if(TARGET epg_pico_usb)
     return()

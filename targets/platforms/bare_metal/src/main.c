@@ -2,7 +2,7 @@
  * @file
  * main() of an executable that holds a target and nothing else.
  */
-#include "sdk.h"
+#include "../../pico/src/sdk.h"
 
 /* <name>_start() of the target; CMake names it. */
 extern bool EPG_PICO_START(void);

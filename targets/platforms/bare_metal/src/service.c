@@ -7,7 +7,7 @@
  *
  * It has a stack of its own, so that the user's need not be larger for it.
  */
-#include "parts.h"
+#include "../../pico/src/parts.h"
 
 #define PERIOD_US 1000U
 

@@ -2,8 +2,8 @@
  * @file
  * main() of an executable that holds a target and nothing else.
  */
+#include "../../pico/src/sdk.h"
 #include "rtos.h"
-#include "sdk.h"
 
 /* <name>_start() of the target; CMake names it. */
 extern bool EPG_PICO_START(void);

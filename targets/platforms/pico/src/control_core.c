@@ -283,14 +283,19 @@ epg_pico_error_t epg_pico_control_start(const epg_pico_target_t *pico, epg_fault
     /* RP2040 data sheet 2.1.5: at equal priority core 0's flood of accesses could delay core 1's by a clock each. */
     busctrl_hw->priority = BUSCTRL_BUS_PRIORITY_PROC1_BITS;
     epg_pico_stack_paint(epg_pico_control_stack.bottom, epg_pico_control_stack.top);
-    multicore_reset_core1();
-    multicore_launch_core1_with_stack(core1_main, epg_pico_control_stack.bottom, sizeof stack);
+    __real_multicore_reset_core1();
+    __real_multicore_launch_core1_with_stack(core1_main, epg_pico_control_stack.bottom, sizeof stack);
     if (wait_while(STATE_STARTING) && atomic_load(&state) == STATE_RUNNING) {
         return EPG_PICO_OK;
     }
     const bool failed = atomic_load(&state) == STATE_FAILED;
     epg_pico_control_stop();
     return failed ? EPG_PICO_ERROR_RESOURCE : EPG_PICO_ERROR_CORE;
+}
+
+bool epg_pico_control_runs(void)
+{
+    return atomic_load(&state) != STATE_OFF;
 }
 
 void epg_pico_control_stop(void)
@@ -303,7 +308,7 @@ void epg_pico_control_stop(void)
         (void)wait_while(STATE_STOPPING);
     }
     watchdog_disable();
-    multicore_reset_core1();
+    __real_multicore_reset_core1();
     hw_clear_bits(WRAP_ENABLE, loop.tick_bit);
     epg_pico_outputs_start();
     epg_pico_quadrature_stop_all();
@@ -315,7 +320,7 @@ bool epg_pico_control_hold(uint32_t timeout_us)
 {
     static uint32_t number;
     if (atomic_load(&state) != STATE_RUNNING) {
-        return true; /* core 1 does nothing */
+        return !epg_pico_core1_taken(); /* else core 1 does nothing */
     }
     number = (number + 1U) & 0x7FFFFFFFU;
     const uint32_t request = number == 0U ? ++number : number;

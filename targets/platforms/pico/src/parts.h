@@ -8,6 +8,7 @@
 #include <stdatomic.h>
 
 #include "epg/pico.h"
+#include "epg_pico_target.h"
 #include "sdk.h"
 
 /* port.c ------------------------------------------------------------------------------------------------------- */
@@ -38,15 +39,27 @@ uint32_t epg_pico_clocks_to_ns(uint32_t clocks);
 void epg_pico_cycle_clock_begin(uint64_t now_ns);
 void epg_pico_cycle_clock_end(void);
 
+/* core1.c ------------------------------------------------------------------------------------------------------ */
+
+/** Whether the program has started something of its own on core 1 and has not reset the core since. */
+bool epg_pico_core1_taken(void);
+
+/* The SDK's own functions; by their usual names core1.c is called. */
+void __real_multicore_reset_core1(void);
+void __real_multicore_launch_core1_with_stack(void (*entry)(void), uint32_t *bottom, size_t size);
+
 /* control_core.c ----------------------------------------------------------------------------------------------- */
 
 /** `fault`: what ended the run before this one; it is latched. */
 epg_pico_error_t epg_pico_control_start(const epg_pico_target_t *pico, epg_fault_t fault);
 void epg_pico_control_stop(void);
 
+/** Whether core 1 is the control loop's now. */
+bool epg_pico_control_runs(void);
+
 /**
- * Keeps core 1 out of flash until epg_pico_control_release().  False when the target is enabled, or when core 1 does
- * not answer within `timeout_us`.
+ * Keeps core 1 out of flash until epg_pico_control_release().  False when the target is enabled, when core 1 does not
+ * answer within `timeout_us`, or when the program runs something of its own on core 1.
  */
 bool epg_pico_control_hold(uint32_t timeout_us);
 void epg_pico_control_release(void);
@@ -86,6 +99,9 @@ extern const epg_pico_stack_t epg_pico_control_stack;
 
 /* start.c ------------------------------------------------------------------------------------------------------- */
 
+/** Keeps `problem` as the error that epg_pico_status() tells. */
+void epg_pico_report(epg_pico_error_t problem);
+
 /**
  * What `serve` does besides its middleware, which is waiting within it: sends what that has written, calls `rest`, which
  * returns soon, and serves transports and console.
@@ -93,11 +109,6 @@ extern const epg_pico_stack_t epg_pico_control_stack;
 void epg_pico_serve_others(void (*rest)(void));
 
 /* service.c of bare_metal and freertos -------------------------------------------------------------------------- */
-
-/** Bytes of stack that middleware and console take: the largest `stack` of their middleware.yaml. */
-#ifndef EPG_PICO_MIDDLEWARE_STACK
-#define EPG_PICO_MIDDLEWARE_STACK 2048
-#endif
 
 /** Bytes by which the frame of an exception is larger where it has the registers of an FPU (Armv8-M, B3.19). */
 #if PICO_RP2040

@@ -75,6 +75,9 @@ static epg_pico_error_t start(const epg_pico_target_t *pico)
     if (running != NULL) {
         return EPG_PICO_ERROR_RUNNING;
     }
+    if (epg_pico_core1_taken()) {
+        return EPG_PICO_ERROR_CORE_TAKEN;
+    }
     paint_main_stack();
     epg_pico_guard_faults();
     if (!epg_serve_start_transport(pico->transport, pico->transport_title) ||
@@ -94,6 +97,11 @@ static epg_pico_error_t start(const epg_pico_target_t *pico)
         return EPG_PICO_ERROR_RESOURCE;
     }
     return EPG_PICO_OK;
+}
+
+void epg_pico_report(epg_pico_error_t problem)
+{
+    error = problem;
 }
 
 bool epg_pico_start(const epg_pico_target_t *pico)

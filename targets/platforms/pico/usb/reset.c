@@ -4,7 +4,7 @@
  *
  * Outputs are safe before the reboot, and the reboot is no fault.
  */
-#include "parts.h"
+#include "../src/parts.h"
 #include "usb.h"
 
 /** Until the answer to the request has gone out. */

@@ -2,7 +2,7 @@
  * @file
  * The transport `usb`: serial ports over USB (CDC ACM).  Nothing here waits for the host.
  */
-#include "parts.h"
+#include "../src/parts.h"
 #include "usb.h"
 
 const char *epg_pico_usb_titles[EPG_PICO_USB_PORTS];

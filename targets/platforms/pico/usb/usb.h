@@ -5,6 +5,7 @@
 #ifndef EPG_PICO_USB_H
 #define EPG_PICO_USB_H
 
+#include "epg_pico_target.h"
 #include "usb_sdk.h"
 
 /** Interfaces, in the order of the configuration descriptor.  A serial port has two. */

@@ -110,6 +110,32 @@ ZTEST(jiwy, test_outputs)
 	zexpect_not_equal(high_time(), 0);
 }
 
+/* Stopped, outputs are safe and no cycle comes.  Each start is as the first, at whatever time it comes. */
+ZTEST(jiwy, test_stop_and_start)
+{
+	(void)status_after(K_MSEC(3));
+	for (int turn = 0; turn < 20; turn++) {
+		epg_status_t status;
+
+		zassert_true(jiwy_stop());
+		zassert_true(jiwy_stop(), "there is nothing to stop");
+		zexpect_equal(high_time(), 0);
+		zexpect_equal(pins_high(), 0);
+		const uint32_t cycles = status_after(K_NO_WAIT).statistics.cycles;
+
+		zexpect_equal(status_after(K_MSEC(5)).statistics.cycles, cycles);
+		zassert_true(jiwy_start());
+		zassert_false(jiwy_start(), "it runs already");
+		jiwy_enable(true);
+		status = status_after(K_USEC(3000 + 370 * turn));
+		zexpect_true(status.enabled);
+		zexpect_equal(status.fault, EPG_FAULT_NONE);
+		zexpect_equal(status.statistics.missed, 0);
+		zexpect_within(status.statistics.cycles, 3 + 370 * turn / 1000, 1);
+		zexpect_not_equal(high_time(), 0);
+	}
+}
+
 /* A decoder that says that it has stopped disables the target, and latches. */
 ZTEST(jiwy, test_decoder_fails)
 {

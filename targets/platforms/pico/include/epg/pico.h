@@ -48,7 +48,7 @@ typedef struct epg_pico_target {
     const epg_transport_t *console_transport; /**< for the console beside it; NULL: there is none */
 } epg_pico_target_t;
 
-/** Why epg_pico_start() did not start, or epg_pico_stop() did not stop. */
+/** Why epg_pico_start() did not start, epg_pico_stop() did not stop, or the program did not get core 1. */
 typedef enum epg_pico_error {
     EPG_PICO_OK = 0,
     EPG_PICO_ERROR_RUNNING,   /**< it runs already */
@@ -56,12 +56,13 @@ typedef enum epg_pico_error {
     EPG_PICO_ERROR_PLACEMENT, /**< code or tables of the control cycle lie in flash: another linker script? */
     EPG_PICO_ERROR_RESOURCE,  /**< a PIO block, an alarm or an interrupt is taken by somebody else */
     EPG_PICO_ERROR_CORE,      /**< core 1 did not answer */
-    EPG_PICO_ERROR_CALLER     /**< epg_pico_stop() was called where it cannot wait */
+    EPG_PICO_ERROR_CALLER,    /**< epg_pico_stop() was called where it cannot wait */
+    EPG_PICO_ERROR_CORE_TAKEN /**< start: the program uses core 1; later: the program has asked for core 1, in vain */
 } epg_pico_error_t;
 
 /** What the port layer counts besides the statistics of the control cycle. */
 typedef struct epg_pico_status {
-    epg_pico_error_t error;      /**< of the newest start or stop */
+    epg_pico_error_t error;      /**< the newest one; EPG_PICO_OK after a start */
     bool after_watchdog;         /**< the watchdog ended the run before this one */
     uint32_t control_stack_size; /**< bytes of core 1's stack, */
     uint32_t control_stack_used; /**< and how many of them have ever been used */

@@ -5,15 +5,10 @@
 #ifndef EPG_PICO_TUSB_CONFIG_H
 #define EPG_PICO_TUSB_CONFIG_H
 
-/* pico.cmake says how many serial ports the target has. */
+#include "epg_pico_target.h"
+
 #if EPG_PICO_USB_PORTS != 1 && EPG_PICO_USB_PORTS != 2
 #error "EPG_PICO_USB_PORTS must be 1 or 2"
-#endif
-
-#ifdef EPG_PICO_TARGET_HEADER
-#include EPG_PICO_TARGET_HEADER
-#else
-#define EPG_PICO_LARGEST_MESSAGE 0
 #endif
 
 /** Bytes of a frame around a message, and twice those of a frame of which each byte is escaped. */

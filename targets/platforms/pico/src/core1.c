@@ -1,0 +1,64 @@
+/**
+ * @file
+ * Core 1 belongs to the control loop while a target runs, and else to the program.
+ *
+ * The linker leads the program's calls of the SDK's functions here (--wrap), so that neither takes the core from the
+ * other: a target does not start while the program has core 1, and a program cannot have it while a target runs.
+ */
+#include "parts.h"
+
+void __real_multicore_launch_core1_raw(void (*entry)(void), uint32_t *stack, uint32_t vector_table);
+
+void __wrap_multicore_reset_core1(void);
+void __wrap_multicore_launch_core1(void (*entry)(void));
+void __wrap_multicore_launch_core1_with_stack(void (*entry)(void), uint32_t *bottom, size_t size);
+void __wrap_multicore_launch_core1_raw(void (*entry)(void), uint32_t *stack, uint32_t vector_table);
+
+static bool taken;
+
+bool epg_pico_core1_taken(void)
+{
+    return taken;
+}
+
+/** Whether the program may have core 1 now. */
+static bool granted(void)
+{
+    if (epg_pico_control_runs()) {
+        epg_pico_report(EPG_PICO_ERROR_CORE_TAKEN);
+        return false;
+    }
+    return true;
+}
+
+void __wrap_multicore_reset_core1(void)
+{
+    if (granted()) {
+        __real_multicore_reset_core1();
+        taken = false;
+    }
+}
+
+/** The program gets the control loop's stack, which is not in use then and is larger than the SDK's for core 1. */
+void __wrap_multicore_launch_core1(void (*entry)(void))
+{
+    const epg_pico_stack_t *stack = &epg_pico_control_stack;
+    __wrap_multicore_launch_core1_with_stack(entry, stack->bottom,
+                                             (size_t)(stack->top - stack->bottom) * sizeof *stack->bottom);
+}
+
+void __wrap_multicore_launch_core1_with_stack(void (*entry)(void), uint32_t *bottom, size_t size)
+{
+    if (granted()) {
+        taken = true;
+        __real_multicore_launch_core1_with_stack(entry, bottom, size);
+    }
+}
+
+void __wrap_multicore_launch_core1_raw(void (*entry)(void), uint32_t *stack, uint32_t vector_table)
+{
+    if (granted()) {
+        taken = true;
+        __real_multicore_launch_core1_raw(entry, stack, vector_table);
+    }
+}
