@@ -43,8 +43,19 @@ void {function}TerminateSubmodel{suffix}(double *u, double *y, double t);
     return _run_c(text, sources, includes, folder)
 
 
-def run_cpp_class(folder_of_model: Path, name: str, folder: Path, counts: tuple[int, int], steps: int) -> str:
-    """The C++ class target, as its test program does, but without an end of the experiment."""
+def run_cpp_class(
+    folder_of_model: Path,
+    name: str,
+    folder: Path,
+    counts: tuple[int, int],
+    steps: int,
+    sources: list[Path] | None = None,
+    includes: list[Path] | None = None,
+) -> str:
+    """The C++ class target, as its test program does, but without an end of the experiment.
+
+    ``sources`` and ``includes`` are for exports whose files lie in other places than 20-sim gives them.
+    """
     text = f"""{SIGNAL}
 #include <stddef.h>
 #include "{name}.h"
@@ -57,17 +68,16 @@ static {name} model;
             "model.SetFinishTime(0.0); model.Initialize(u, y, 0.0);",
             "model.Calculate(u, y);",
             "model.Terminate(u, y);",
+            "XXDouble",
         )
     }
 """
     folder.mkdir(parents=True, exist_ok=True)
     main = folder / "direct.cpp"
     main.write_text(text, encoding="utf-8")
-    sources = [main, folder_of_model / f"{name}.cpp", *sorted((folder_of_model / "common").glob("*.cpp"))]
-    objects = [
-        compile_file(source, folder / f"direct_{i}.o", ["-w", f"-I{folder_of_model}"], "c++")
-        for i, source in enumerate(sources)
-    ]
+    own = sources or [folder_of_model / f"{name}.cpp", *sorted((folder_of_model / "common").glob("*.cpp"))]
+    options = ["-w", *(f"-I{place}" for place in [folder_of_model, *(includes or [])])]
+    objects = [compile_file(source, folder / f"direct_{i}.o", options, "c++") for i, source in enumerate([main, *own])]
     return run([str(link(objects, folder / "direct", True))])
 
 
@@ -125,14 +135,16 @@ int main(void)
     return _run_c(text, files, [sources, headers], folder, ["-DNO_FUNCTION_PREFIX"])
 
 
-def _main(inputs: int, outputs: int, steps: int, init: str, calculate: str, terminate: str) -> str:
+def _main(
+    inputs: int, outputs: int, steps: int, init: str, calculate: str, terminate: str, real: str = "double"
+) -> str:
     take = f"for (int i = 0; i < {inputs}; i++) {{ u[i] = signal(); }}"
     show = f'for (int i = 0; i < {outputs}; i++) {{ show(y[i]); }} puts("");'
     return f"""
 int main(void)
 {{
-    double u[{inputs} + 1] = {{0}};
-    double y[{outputs} + 1] = {{0}};
+    {real} u[{inputs} + 1] = {{0}};
+    {real} y[{outputs} + 1] = {{0}};
     {take}
     {init}
     {show}
@@ -158,4 +170,5 @@ def _run_c(text: str, sources: list[Path], includes: list[Path], folder: Path, o
 
 def has_entry_points(path: Path) -> bool:
     """Whether a C file defines the functions of a submodel."""
-    return re.search(r"\b\w*InitializeSubmodel\w*\s*\([^;{}]*\)\s*\{", path.read_text("latin-1")) is not None
+    pattern = r"^\w+[ \t]+\w*InitializeSubmodel\w*\s*\([^;{}()]*\)\s*\{"
+    return re.search(pattern, path.read_text("latin-1"), re.MULTILINE) is not None
