@@ -21,7 +21,7 @@ from epg.diagnostics import Diagnostics, did_you_mean
 from epg.emit.bindings import new_bindings
 from epg.emit.folder import present_files, write_folder
 from epg.emit.project import ProjectPlan, StandIn, project_files, project_folder, project_names
-from epg.load.catalog import Catalog, Target
+from epg.load.catalog import Catalog, Target, not_found_hint
 from epg.load.middleware import Middleware
 from epg.load.models import Model, load_model
 from epg.load.tcf import predefined_tcf_names
@@ -33,6 +33,9 @@ from epg.source import Span
 MODEL = "model"
 """Where a model goes that lies outside of the project."""
 IMPORT = "epg_import.cmake"
+
+_SHOWN = 3
+"""Files that a message lists."""
 
 UNBOUND = frozenset(("unbound-input", "unbound-output", "needs-bound"))
 """Messages that come of ports without a component."""
@@ -103,9 +106,16 @@ def write_project(request: ProjectRequest, diagnostics: Diagnostics) -> NewProje
     project = new_project(request, diagnostics)
     diagnostics.stop_if_errors()
     assert project is not None
-    for path in present_files(request.folder, project.files):
+    present = present_files(request.folder, project.files)
+    if len(present) == 1:
         hint = "nothing was written: 'epg new' replaces no file"
-        diagnostics.error("file-exists", Span(str(path)), "this file exists", hint=hint)
+        diagnostics.error("file-exists", Span(str(present[0])), "this file exists", hint=hint)
+    elif present:
+        names = ", ".join(path.relative_to(request.folder).as_posix() for path in present[:_SHOWN])
+        more = f" and {len(present) - _SHOWN} more" if len(present) > _SHOWN else ""
+        hint = "nothing was written: 'epg new' replaces no file; name a new folder"
+        message = f"this folder has files that the project would have: {names}{more}"
+        diagnostics.error("file-exists", Span(str(request.folder)), message, hint=hint)
     diagnostics.stop_if_errors()
     write_folder(request.folder, project.files)
     return project
@@ -141,7 +151,8 @@ def _find_base(request: ProjectRequest, catalog: Catalog, diagnostics: Diagnosti
         configuration = load_configuration(predefined, catalog, diagnostics)
         target = configuration.target if configuration is not None else None
     else:
-        hint = did_you_mean(name, [*targets, *(file.removesuffix(".tcf") for file in files)], "targets and .tcf files")
+        known = [*targets, *(file.removesuffix(".tcf") for file in files)]
+        hint = not_found_hint(name, known, "targets and .tcf files")
         diagnostics.error("unknown-target", _argument(name), f"there is no target '{name}'", hint=hint)
         return None
     if target is None:

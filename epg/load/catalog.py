@@ -95,7 +95,7 @@ class Catalog:
     def kind(self, name: str, span: Span, diagnostics: Diagnostics) -> Kind | None:
         """The kind that ``span`` names, or None after reporting that there is none."""
         if name not in self._paths("component"):
-            hint = did_you_mean(name, self.kind_names(), "kinds")
+            hint = not_found_hint(name, self.kind_names(), "kinds")
             diagnostics.error("unknown-kind", span, f"there is no kind '{name}'", hint=hint)
         return self.find_kind(name)
 
@@ -103,7 +103,7 @@ class Catalog:
         """The target that ``span`` names, or None after reporting that there is none."""
         target, exists = self._target(name)
         if not exists:
-            hint = did_you_mean(name, self.target_names(), "targets")
+            hint = not_found_hint(name, self.target_names(), "targets")
             diagnostics.error("unknown-target", span, f"there is no target '{name}'", hint=hint)
         return target
 
@@ -138,7 +138,7 @@ class Catalog:
         """Reports a board that a platform names, or a chip that a board names, when there is no such folder."""
         sort, node = ("soc", board.node["soc"]) if board else ("board", platform.node.get("board"))
         if node is not None and str(node.value) not in self._paths(sort):
-            hint = did_you_mean(str(node.value), self.names(sort), f"in {FOLDERS[sort]}/")
+            hint = not_found_hint(str(node.value), self.names(sort), f"in {FOLDERS[sort]}/")
             self._diagnostics.error(f"unknown-{sort}", node.span, f"there is no {sort} '{node.value}'", hint=hint)
 
     def _paths(self, sort: str) -> dict[str, list[Path]]:
@@ -171,6 +171,12 @@ class Catalog:
 
 
 _NAME_KEYS = {"soc": "soc", "board": "board", "platform": "platform", "middleware": "middleware", "component": "kind"}
+
+
+def not_found_hint(name: str, known: Sequence[str], otherwise: str) -> str:
+    """The hint for a name that is in no ``targets`` folder: it may be one of the user's, whose folder is not known."""
+    meant = did_you_mean(name, known, otherwise)
+    return f"{meant}{'' if meant.endswith('?') else '.'} EPG finds your own in the folders that EPG_TARGETS_PATH names"
 
 
 def load_catalog(roots: Sequence[Path], diagnostics: Diagnostics) -> Catalog:
