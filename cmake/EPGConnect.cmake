@@ -4,7 +4,7 @@
 # neither Ninja nor Make locks its files, and Ninja opens its log when a command of its own has ended.
 function(_epg_connect_target name)
   _epg_connect_command(command "${name}" ${ARGN})
-  if(command MATCHES "[$][(<]") # in a path: CMake hands $( to Ninja and Make as theirs, and takes $< for its own
+  if(command MATCHES "[#<>]") # in a file's name: custom targets cannot have them
     return()
   endif()
   add_custom_target(${name}_connect

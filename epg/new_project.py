@@ -15,7 +15,7 @@ from pathlib import Path
 
 import epg
 from epg.check.configuration import CONSOLE, Configuration
-from epg.check.names import identifier_problem
+from epg.check.names import identifier_problem, project_folder_problem
 from epg.data import data_folder, targets_roots
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.emit.bindings import new_bindings
@@ -87,6 +87,10 @@ def new_project(request: ProjectRequest, diagnostics: Diagnostics) -> NewProject
     """The project, nothing of it written yet, or None after reporting why there is none."""
     name = project_name(request.folder) if request.name is None else request.name
     check_name(name, _argument(name), diagnostics)
+    problem = project_folder_problem(os.path.abspath(request.folder))
+    if problem:
+        message = f"'{request.folder}' cannot be the folder of a project: {problem}"
+        diagnostics.error("invalid-name", Span(str(request.folder)), message, hint="choose another folder")
     catalog = make_catalog(request.roots, diagnostics)
     base = _find_base(request, catalog, diagnostics)
     model = load_model(request.model, diagnostics)

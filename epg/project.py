@@ -14,7 +14,7 @@ from pathlib import Path
 from epg.check.bindings import Bindings, load_bindings
 from epg.check.catalog import check_catalog
 from epg.check.configuration import Configuration, check_configuration
-from epg.check.names import STANDARD_HEADERS, STANDARD_TYPES, identifier_problem
+from epg.check.names import STANDARD_HEADERS, STANDARD_TYPES, cmake_path_problem, identifier_problem
 from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
 from epg.load.catalog import Catalog, Target, load_catalog
@@ -192,17 +192,10 @@ def check_driver_headers(application: Application, diagnostics: Diagnostics) -> 
 
 
 def check_paths(paths: Iterable[Path], diagnostics: Diagnostics) -> None:
-    """Paths that CMake is told are text, no brackets in them swallow the ``;`` of its lists, and no build program
-    takes a part of one for a variable: CMake hands ``$(`` to Ninja and Make as it is."""
+    """Paths that CMake is told can be named there, and in the files that it writes for Ninja and Make."""
     for path in sorted(paths):
         text = str(path.absolute())
-        problem = ""
-        if not text.isprintable():
-            problem = "it is no printable UTF-8 text"
-        elif text.count("[") != text.count("]"):
-            problem = "brackets in it must be balanced"
-        elif "$(" in text:
-            problem = "'$(' in it begins a variable of Make"
+        problem = cmake_path_problem(text)
         if problem:
             message = f"'{text}' cannot be named in CMake: {problem}"
             diagnostics.error("invalid-name", Span(str(path)), message, hint="rename the file or its folder")

@@ -5,6 +5,7 @@ Rules for ROS names: https://design.ros2.org/articles/topic_and_service_names.ht
 
 from __future__ import annotations
 
+import os
 import re
 
 _C11 = """auto break case char const continue default do double else enum extern float for goto if inline int long
@@ -37,6 +38,8 @@ STANDARD_TYPES = frozenset(
 
 _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,62}")
 _ROS_TOKEN = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+_NOT_IN_CMAKE = re.compile(r"\||\$[({]|\$(ENV|CACHE)\{|\]=*\]")
+_NOT_IN_PROJECTS = re.compile("[#<>?]" if os.name == "nt" else r'[#<>?:;"\\]')
 
 
 def identifier_problem(name: str) -> str | None:
@@ -106,6 +109,30 @@ def absolute_topic(topic: str, namespace: str, node: str) -> str:
         return topic
     below = [part for part in (namespace.strip("/"), node if topic.startswith("~/") else "") if part]
     return "/".join(["", *below, topic.removeprefix("~/")]).replace(SERIAL, _SERIAL_NUMBER)
+
+
+def cmake_path_problem(path: str) -> str | None:
+    """Why a path cannot stand in CMake's files, or in those that CMake writes for Ninja and Make.
+
+    CMake does not escape ``|`` for Ninja, nor ``$(`` for Ninja and Make, and it replaces ``${X}`` in names of sources.
+    Open brackets swallow the ``;`` of its lists, and ``]]`` ends a bracket argument.
+    """
+    if not path.isprintable():
+        return "it is no printable UTF-8 text"
+    found = _NOT_IN_CMAKE.search(path)
+    if found:
+        return f"'{found[0]}' in it means something to CMake or the build program"
+    return "brackets in it must be balanced" if path.count("[") != path.count("]") else None
+
+
+def project_folder_problem(path: str) -> str | None:
+    """Why a project in the folder ``path`` cannot be built with CMake, or None.
+
+    Besides what no path can have: CMake's own checks of a compiler fail with ``:``, ``;``, ``"`` and a backslash, what
+    it writes for Make fails with ``?``, and its custom targets cannot have ``#``, ``<`` and ``>``.
+    """
+    found = _NOT_IN_PROJECTS.search(path)
+    return f"CMake cannot build a project with '{found[0]}' in its path" if found else cmake_path_problem(path)
 
 
 def _path_problem(path: str, what: str, longest: int) -> str | None:

@@ -135,6 +135,24 @@ def test_a_name_of_ones_own(tmp_path: Path) -> None:
     assert not (tmp_path / "another").exists()
 
 
+@pytest.mark.skipif(os.name == "nt", reason="EPG: Windows has no such names")
+@pytest.mark.parametrize(
+    "folder", ["a|b", "a${X}b", "a$ENV{HOME}b", "a$(id)b", "a#b", "a[b", "a]]b[[", "a?b", "a;b", 'a"b', "a:b"]
+)
+def test_a_folder_that_cmake_cannot_use_is_refused(
+    folder: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert new(tmp_path / folder / "robot", "host") == 1
+    said = capsys.readouterr().err
+    assert f"{folder}/robot' cannot be the folder of a project: " in said and "hint: choose another folder" in said
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.skipif(os.name == "nt", reason="EPG: Windows has no such names")
+def test_a_folder_with_other_signs_is_fine(tmp_path: Path) -> None:
+    assert new(tmp_path / "a $b {c} @d@ %e & (f) 'g' [1] ~=,^!" / "robot", "host") == 0
+
+
 def test_folders_above_are_made(tmp_path: Path) -> None:
     assert new(tmp_path / "a/b/robot", "host") == 0
     assert (tmp_path / "a/b/robot/CMakeLists.txt").is_file()

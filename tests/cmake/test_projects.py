@@ -195,7 +195,22 @@ def test_import_file_under_a_toolchain_that_confines_packages(robot: Project, wh
     robot.configure(f"-DCMAKE_TOOLCHAIN_FILE={robot.source}/toolchain.cmake", f"-DEPG_PATH={ROOT}", epg_dir=False)
 
 
-@pytest.mark.parametrize("name", ["$(HOME).yaml", "a$(b).yaml"])
+@pytest.mark.parametrize("name", ["a|b", "a${PROJECT_NAME}b", "a$ENV{HOME}b", "a#b", "a<b", "a?b", "a[b", "a]]b[["])
+def test_folders_that_cmake_or_make_would_read_otherwise(name: str, tmp_path: Path) -> None:
+    robot = Project(tmp_path / name, "robot")
+    output = robot.fails_to_configure()
+    assert "EPG: a folder's name cannot be used in CMake: " in " ".join(output.split())
+    assert f"  {robot.source}\n" in output and output.count("CMake Error") == 1
+
+
+def test_folders_with_other_signs_are_fine(tmp_path: Path) -> None:
+    robot = Project(tmp_path / "a $b {c} @d@ %e & (f) 'g' [1] ~=,^!", "robot")
+    robot.configure()
+    robot.build()
+    assert (robot.build_folder / "robot_host").is_file()
+
+
+@pytest.mark.parametrize("name", ["$(HOME).yaml", "a$(b).yaml", "a|b.yaml", "a${b}.yaml", "$ENV{HOME}.yaml"])
 def test_paths_that_cmake_or_make_would_read_otherwise(robot: Project, name: str) -> None:
     (robot.source / "bindings.yaml").rename(robot.source / name)
     robot.edit("CMakeLists.txt", "BINDINGS bindings.yaml", f"BINDINGS [=[{name}]=]")

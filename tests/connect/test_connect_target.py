@@ -65,7 +65,7 @@ def test_what_the_target_was_told_is_what_the_page_shows(robot: Project) -> None
 
 
 def test_a_path_that_build_programs_would_replace_breaks_no_build(robot: Project) -> None:
-    rename_bindings(robot, "$<1:x>.yaml")
+    rename_bindings(robot, "$<1:x>#.yaml")
     robot.build("--target", "epg_runtime")
     assert "robot_connect" not in robot.build("--target", "help")
 
