@@ -222,7 +222,7 @@ WRONG = [
     ({"definitions": ["A"]}, "wrong-type"),
     ({"definitions": {"A B": 1}}, "invalid-name"),
     ({"definitions": {"A": [1]}}, "wrong-type"),
-    ({"definitions": {"A": "1 /* x"}}, "wrong-value"),
+    ({"definitions": {"A": "1/* x"}}, "wrong-value"),
     ({"step": "0 s"}, "out-of-range"),
     ({"sources": ["a.c"]}, "unknown-key"),
     ({"version": 2}, "newer-version"),
