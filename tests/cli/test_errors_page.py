@@ -8,7 +8,7 @@ from pathlib import Path
 from epg.cli.messages import Entry, find_entry, read_page
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-FIRST_LINE = re.compile(r"^(\S.*: (?:error|warning): .* \[([a-z0-9.-]+)\])$", re.MULTILINE)
+FIRST_LINE = re.compile(r"^(\S.*: (?:error|warning|note): .* \[([a-z0-9.-]+)\])$", re.MULTILINE)
 
 
 def ids_in_sources() -> tuple[set[str], set[str]]:
@@ -16,7 +16,7 @@ def ids_in_sources() -> tuple[set[str], set[str]]:
     literal, composed = set(), set()
     for path in (ROOT / "epg").rglob("*.py"):
         text = path.read_text(encoding="utf-8")
-        call = r"(?:error|warning|report|refuse)\(\s*(?:event,\s*)?"
+        call = r"(?:error|warning|note|report|refuse)\(\s*(?:event,\s*)?"
         literal |= set(re.findall(call + r"""["']([a-z0-9.]+(?:-[a-z0-9.]+)+)["']""", text))
         for form in re.findall(r"""(?:\bid = |error\(|warning\()\s*f["']([a-z0-9{}._-]+)["']""", text):
             composed.add(re.sub(r"\{[^}]*\}", "[a-z0-9_]+", form))
