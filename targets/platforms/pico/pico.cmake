@@ -29,9 +29,9 @@ function(_epg_pico_target name)
   if(ports GREATER 0)
     _epg_pico_usb_library()
     target_link_libraries(${name}_port INTERFACE epg_pico_usb)
-    # Only when a directory is done is it known what the user has set of executables.
-    cmake_language(EVAL CODE "cmake_language(DEFER DIRECTORY [[${CMAKE_SOURCE_DIR}]] CALL _epg_pico_check_stdio [[${name}]] [[${CMAKE_SOURCE_DIR}]])")
   endif()
+  # Only when a directory is done is it known what the user has set of executables.
+  cmake_language(EVAL CODE "cmake_language(DEFER DIRECTORY [[${CMAKE_SOURCE_DIR}]] CALL _epg_pico_check_executables [[${name}]] [[${ports}]] [[${CMAKE_SOURCE_DIR}]])")
   _epg_pico_binary_info("${name}" info)
   target_sources(${name}_port INTERFACE "${info}")
   target_include_directories(${name} PRIVATE "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/include")
@@ -90,21 +90,45 @@ bi_decl(bi_program_feature(\"EPG \" @NAME@_EPG_VERSION \" target @name@ \" @NAME
   set(${result} "${file}" PARENT_SCOPE)
 endfunction()
 
-# Reports executables below <directory> that link target <name> and the SDK's stdio over USB as well.
-function(_epg_pico_check_stdio name directory)
+# Reports executables below <directory> that link target <name> and are set to what it cannot run with; <usb>: it is the
+# USB device.
+function(_epg_pico_check_executables name usb directory)
   get_property(targets DIRECTORY "${directory}" PROPERTY BUILDSYSTEM_TARGETS)
   foreach(target IN LISTS targets)
-    get_target_property(stdio ${target} PICO_TARGET_STDIO_USB)
     get_target_property(libraries ${target} LINK_LIBRARIES)
-    if(stdio AND ("${name}" IN_LIST libraries OR "EPG::${name}" IN_LIST libraries))
-      message(SEND_ERROR "EPG: ${target} links EPG::${name}, whose transport is USB, and the Pico SDK's stdio over USB; there is one USB device.
-Write pico_enable_stdio_usb(${target} 0), or choose another transport: SET communication.middleware=none communication.transport=null")
+    if("${name}" IN_LIST libraries OR "EPG::${name}" IN_LIST libraries)
+      if(usb)
+        _epg_pico_check_stdio("${name}" "${target}" "${libraries}")
+      endif()
+      get_target_property(definitions ${target} COMPILE_DEFINITIONS)
+      list(FILTER definitions INCLUDE REGEX "^(-D)?PICO_NO_RAM_VECTOR_TABLE(=1)?$")
+      if(definitions)
+        message(SEND_ERROR "EPG: ${target} links EPG::${name}, whose interrupts need a vector table in RAM, and is compiled with PICO_NO_RAM_VECTOR_TABLE=1.
+Take PICO_NO_RAM_VECTOR_TABLE out of the compile definitions of ${target}.")
+      endif()
     endif()
   endforeach()
   get_property(subdirectories DIRECTORY "${directory}" PROPERTY SUBDIRECTORIES)
   foreach(subdirectory IN LISTS subdirectories)
-    _epg_pico_check_stdio("${name}" "${subdirectory}")
+    _epg_pico_check_executables("${name}" "${usb}" "${subdirectory}")
   endforeach()
+endfunction()
+
+# Reports <target>, an executable that links target <name>, when the SDK's stdio over USB is on for it, too.
+function(_epg_pico_check_stdio name target libraries)
+  get_target_property(enabled ${target} PICO_TARGET_STDIO_USB)
+  set(by "pico_enable_stdio_usb()")
+  if(enabled MATCHES "-NOTFOUND$")
+    set(enabled "${PICO_STDIO_USB}") # the SDK's default for all executables
+    set(by "PICO_STDIO_USB")
+  endif()
+  if(NOT enabled AND "pico_stdio_usb" IN_LIST libraries)
+    message(SEND_ERROR "EPG: ${target} links EPG::${name}, whose transport is USB, and pico_stdio_usb; there is one USB device.
+Take pico_stdio_usb out of target_link_libraries(${target}), or choose another transport: SET communication.middleware=none communication.transport=null")
+  elseif(enabled)
+    message(SEND_ERROR "EPG: ${target} links EPG::${name}, whose transport is USB, and the Pico SDK's stdio over USB, by ${by}; there is one USB device.
+Write pico_enable_stdio_usb(${target} 0), or choose another transport: SET communication.middleware=none communication.transport=null")
+  endif()
 endfunction()
 
 # Puts code and tables of the control cycle into RAM.

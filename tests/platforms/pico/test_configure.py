@@ -195,6 +195,31 @@ def test_two_owners_of_usb(tmp_path: Path) -> None:
     assert "CMake Error" not in fine
 
 
+USER = "add_executable(user main.c)\ntarget_link_libraries(user EPG::jiwy pico_stdlib{more})\n"
+
+
+@pytest.mark.parametrize(
+    ("project", "option", "said"),
+    [
+        (USER.format(more=""), "-DPICO_STDIO_USB=1", "stdio over USB, by PICO_STDIO_USB; there is one USB device"),
+        (USER.format(more=" pico_stdio_usb"), "", "and pico_stdio_usb; there is one USB device. Take"),
+        (
+            USER.format(more="") + "target_compile_definitions(user PRIVATE PICO_NO_RAM_VECTOR_TABLE=1)\n",
+            "",
+            "Take PICO_NO_RAM_VECTOR_TABLE out of the compile definitions of user.",
+        ),
+    ],
+)
+def test_settings_that_a_target_cannot_run_with(project: str, option: str, said: str, tmp_path: Path) -> None:
+    skip_unless_buildable("bare_metal")
+    (tmp_path / "main.c").write_text("int main(void) { return 0; }\n")
+    options = [option] if option else []
+    assert said in configure(tmp_path, SDK + target(communication=CONSOLE) + project, *options)
+    if option:
+        mended = project + "pico_enable_stdio_usb(user 0)\n"
+        assert "CMake Error" not in configure(tmp_path, SDK + target(communication=CONSOLE) + mended, *options)
+
+
 def picotool() -> list[str]:
     skip_if_missing(lambda: tool("picotool"))
     return [f"-Dpicotool_DIR={tool('picotool')}"]

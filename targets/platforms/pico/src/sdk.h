@@ -29,4 +29,8 @@
 #include "pico/runtime_init.h"
 #include "pico/unique_id.h"
 
+#if PICO_NO_RAM_VECTOR_TABLE
+#error "EPG needs a vector table in RAM: take PICO_NO_RAM_VECTOR_TABLE out of the compile definitions"
+#endif
+
 #endif
