@@ -14,7 +14,13 @@ from pathlib import Path
 from epg.check.bindings import Bindings, load_bindings
 from epg.check.catalog import check_catalog
 from epg.check.configuration import Configuration, check_configuration
-from epg.check.names import STANDARD_HEADERS, STANDARD_TYPES, cmake_path_problem, identifier_problem
+from epg.check.names import (
+    STANDARD_HEADERS,
+    STANDARD_TYPES,
+    SYSTEM_LIBRARIES,
+    cmake_path_problem,
+    identifier_problem,
+)
 from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
 from epg.load.catalog import Catalog, Target, load_catalog
@@ -140,6 +146,10 @@ def check_name(name: str, span: Span, diagnostics: Diagnostics) -> None:
     problem = identifier_problem(name)
     if problem is None and name in STANDARD_HEADERS:
         problem = f"would make a header '{name}.h', which hides the C library's: choose another name"
+    elif problem is None and name in SYSTEM_LIBRARIES:
+        problem = (
+            "is the name of a system library: CMake would link this target wherever that is meant; choose another name"
+        )
     elif problem is None and {f"{name}_inputs", f"{name}_outputs"} & STATIC_NAMES:
         problem = f"would make a symbol '{name}_outputs', which generated code has inside: choose another name"
     if problem:

@@ -193,6 +193,10 @@ def _parameter_schema(parameter: KindParameter) -> dict[str, Any]:
         schema |= {"type": "array", "items": _NAME, "minItems": 1, "maxItems": MOST_NAMES, "uniqueItems": True}
     else:
         schema["type"] = parameter.type
+        if parameter.type == "integer" and "enum" not in schema:  # an int of C, unless the kind says otherwise
+            lowest, highest = ("minimum", -(1 << 31)), ("maximum", (1 << 31) - 1)
+            stated = {word.lower().removeprefix("exclusive") for word in parameter.bounds}
+            schema |= {key: limit for key, limit in (lowest, highest) if key not in stated}
         schema |= {key: bound.plain() for key, bound in parameter.bounds.items()}
     return schema
 

@@ -28,6 +28,13 @@ STANDARD_HEADERS = frozenset(
 )
 """Headers of C11, and of POSIX and common C libraries, without ``.h``: a generated header would be found first."""
 
+SYSTEM_LIBRARIES = frozenset(
+    """m c g pthread rt dl util crypt nsl resolv anl gcc gcc_s gcc_eh atomic gomp quadmath ssp asan tsan ubsan lsan
+    unwind nosys rdimon gloss semihost System objc kernel32 user32 gdi32 winspool shell32 ole32 oleaut32 uuid comdlg32
+    advapi32 ws2_32 winmm mingw32 mingwex moldname msvcrt""".split()
+)
+"""Libraries of compilers and systems: CMake takes ``m`` in target_link_libraries() for a target of that name."""
+
 STANDARD_TYPES = frozenset(
     """size_t ssize_t ptrdiff_t wchar_t wint_t max_align_t sig_atomic_t time_t clock_t clockid_t timer_t pid_t off_t
     mode_t dev_t ino_t key_t id_t uid_t gid_t nlink_t fpos_t div_t ldiv_t lldiv_t float_t double_t fenv_t fexcept_t

@@ -384,6 +384,30 @@ def test_hand_written_model_with_instances(rate: float, tmp_path: Path) -> None:
         assert block[3] == [min((4.0 + i) * 0.75 + rate * 0.75, 3.0), rate]
 
 
+def test_an_integer_of_a_hand_written_model_stays_in_its_range(tmp_path: Path) -> None:
+    """A double beyond an int would be undefined behaviour in C."""
+    text = """
+#include "loop.h"
+#include <math.h>
+#include <stdio.h>
+int main(void)
+{
+    const double limits[] = {1e300, -1e300, NAN, 2147483647.5, -3.7};
+    for (int i = 0; i < 5; i++) {
+        loop_inputs_t in = {4e9, 0.0, 1.0, limits[i]};
+        loop_outputs_t out;
+        loop_init(loop_instance(0), &in, &out);
+        printf("%.17g ", out.duty);
+    }
+    return 0;
+}
+"""
+    sanitize = ["-fsanitize=float-cast-overflow", "-fno-sanitize-recover=all"]
+    library = build(loaded(MODELS / "pid_c"), "loop", tmp_path, options=sanitize)
+    found = run_program(tmp_path, text, [library], sanitize).split()
+    assert found == ["2147483647", "-2147483648", "-2147483648", "2147483647", "-3"]
+
+
 def test_a_library_called_like_the_code_it_wraps(tmp_path: Path) -> None:
     """Header, types and functions of the user have the names of the generated ones; and a class that of its library."""
     pid = build(loaded(MODELS / "pid_c"), "pid", tmp_path, instances=2)
