@@ -230,6 +230,11 @@ def model_description(export: Export, ports: list[tuple[str, str, int]]) -> str:
         for name, causality, reference in ports
     )
     outputs = [index for index, (_, causality, _) in enumerate(ports, 1) if causality == "output"]
+    variables += "".join(
+        f'<ScalarVariable name="{name.replace(chr(92), ".")}" valueReference="{index}" causality="parameter" '
+        f'variability="tunable"><Real start="{value}"/></ScalarVariable>\n'
+        for index, (name, value, _) in enumerate(export.parameters)
+    )
     unknowns = "".join(f'<Unknown index="{index}"/>' for index in outputs)
     return f"""<?xml version="1.0" encoding="UTF-8"?>
 <fmiModelDescription fmiVersion="2.0" modelName="{export.name}" guid="{GUID}" generationTool="20-sim">

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics
-from epg.load.models.assignments import exact_number, is_step, number
+from epg.load.models.assignments import assignments, exact_number, is_step, number
 from epg.load.models.details import FmuExport, FmuParameter, FmuPorts
 from epg.load.models.fmu_description import Description, read_description
 from epg.load.models.fmu_features import check_fmu, check_guid, uses_heap
@@ -21,6 +22,7 @@ from epg.load.models.fmu_sources import FMI_HEADERS, FmuSources, find_sources
 from epg.load.models.fmu_variables import TYPES_2, TYPES_3, Variable
 from epg.load.models.identifiers import one_line, to_identifier, unique_identifiers
 from epg.load.models.link import Linked
+from epg.load.models.metadata import warn_of_values
 from epg.load.models.model import Model, Parameter, Port
 from epg.load.models.ports import check_identifiers
 from epg.load.models.xml_file import parse_xml
@@ -67,6 +69,8 @@ def load_fmu(
     check_guid(sources.codes.values(), description.guid, description.span, description.standard, diagnostics)
     inputs, outputs = (_ports(description, direction, diagnostics) for direction in ("input", "output"))
     parameters, places = _parameters(description)
+    if own_step is not None:
+        parameters = _values_of_sources(parameters, sources, diagnostics)
     if step is None or diagnostics.error_count > before:
         return None
     states = {variable.reference: variable.count for variable in description.variables if variable.state}
@@ -218,6 +222,35 @@ def _parameters(description: Description) -> tuple[tuple[Parameter, ...], tuple[
         parameters.append(Parameter(title, identifier, value, unit, index, variable.span, tunable))
     places = [FmuParameter(variable.type, variable.reference) for variable, _ in chosen]
     return tuple(parameters), tuple(places)
+
+
+def _values_of_sources(
+    parameters: tuple[Parameter, ...], sources: FmuSources, diagnostics: Diagnostics
+) -> tuple[Parameter, ...]:
+    """The parameters of an FMU of 20-sim with the values that its sources give them, after a warning of differences.
+
+    Elements of arrays are left out: their numbers begin at 0 in the descriptions of some versions.
+    """
+    told: dict[str, set[float]] = {}
+    places: dict[str, Span] = {}
+    for name in sources.units:
+        file = sources.codes[name].file
+        for line in assignments(file):
+            value = number(line.value)
+            if line.array.endswith(("P", "I")) and line.name and "[" not in line.name and value is not None:
+                title = line.name.replace("\\", ".")
+                told.setdefault(title, set()).add(value)
+                places.setdefault(title, line.span)
+    result, different = [], []
+    for parameter in parameters:
+        values = told.get(parameter.name, set())
+        if len(values) == 1 and values != {parameter.value}:
+            value = min(values)
+            different.append((parameter.span, parameter.value, value, parameter.name, places[parameter.name]))
+            parameter = replace(parameter, value=value)
+        result.append(parameter)
+    warn_of_values(DESCRIPTION, different, diagnostics)
+    return tuple(result)
 
 
 # sources -------------------------------------------------------------------------------------------------------------

@@ -159,7 +159,7 @@ def _check_names(model: Model, tokens: Tokens, diagnostics: Diagnostics) -> bool
 
 
 def _check_values(model: Model, tokens: Tokens, diagnostics: Diagnostics) -> None:
-    """Warns once of parameters that have other values in the tokens; the notes name the others."""
+    """Warns once of parameters that have other values in the tokens."""
     lines = list(assignments(tokens.code("INITIALIZE_PARAMETERS")))
     told = [(item.name, item.value, item.span) for item in make_parameters(lines, tokens.names("PARAMETER"), ())[0]]
     for name, (text, span) in zip(tokens.names("PARAMETER"), tokens.lines("PARAMETER_VALUES")):
@@ -169,16 +169,28 @@ def _check_values(model: Model, tokens: Tokens, diagnostics: Diagnostics) -> Non
         name: (value, span) for name, value, span in reversed(told) if name in known and value != known[name].value
     }
     different = [(own, *found[own.name]) for own in model.parameters if own.name in found]
+    warn_of_values(
+        tokens.path.name, [(span, value, own.value, own.name, own.span) for own, value, span in different], diagnostics
+    )
+
+
+def warn_of_values(
+    file: str, different: Sequence[tuple[Span, float, float, str, Span]], diagnostics: Diagnostics
+) -> None:
+    """Warns once of parameters that have another value in ``file`` than in the sources, if there are any.
+
+    Each is given by its place and value in the file, then by its value, name and place in the sources.
+    """
     if not different:
         return
-    own, value, span = different[0]
-    notes = [Note("the sources", own.span)]
-    for other, there, _ in different[1:_MOST_NOTES]:
-        notes.append(Note(f"'{other.name}' is {there!r} there, {other.value!r} here", other.span))
+    span, there, here, name, place = different[0]
+    notes = [Note("the sources", place)]
+    for _, other, own, title, where in different[1:_MOST_NOTES]:
+        notes.append(Note(f"'{title}' is {other!r} there, {own!r} here", where))
     more = len(different) - 1
     rest = f", and {more} more {'differ' if more > 1 else 'differs'}" if more else ""
-    text = f"parameter '{own.name}' = {value!r}, the sources {own.value!r}{rest}"
-    _differs(tokens.path, span, text, own.span, diagnostics, notes)
+    text = f"parameter '{name}' = {there!r}, the sources {here!r}{rest}"
+    _differs(Path(file), span, text, place, diagnostics, notes)
 
 
 def _check_configured(

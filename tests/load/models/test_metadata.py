@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.models.exports import Export
+from tests.models.fmus import pack
 from tests.models.harness import load
 
 
@@ -144,3 +145,20 @@ def test_a_value_that_was_changed_in_one_place_of_the_tokens(tmp_path: Path) -> 
     assert "has parameter 'Limiter\\maximum' = 0.9, the sources 0.95" in problem.message
     assert "more" not in problem.message
     assert (tmp_path / "tokens.xml").read_text().splitlines()[problem.span.line - 1] == "0.9"
+
+
+@pytest.mark.parametrize("archive", [False, True], ids=["folder", "archive"])
+def test_other_values_in_the_description_of_an_fmu(archive: bool, tmp_path: Path) -> None:
+    """They are not set: the FMU runs with those of its sources."""
+    folder = Export(method="Euler").write_whole_fmu(tmp_path / "fmu", "output time")
+    assert not load(folder)[1].items
+    description = folder / "modelDescription.xml"
+    description.write_text(description.read_text().replace('start="2.5"', 'start="4.0"'))
+    model, diagnostics = load(pack(folder, tmp_path / "a.fmu") if archive else folder)
+    assert model is not None
+    assert {p.name: p.value for p in model.parameters}["PI1.kp"] == 2.5
+    (problem,) = diagnostics.items
+    assert (problem.severity, problem.id) == ("warning", "stale-metadata")
+    assert "'modelDescription.xml' has parameter 'PI1.kp' = 4.0, the sources 2.5" in problem.message
+    assert 'start="4.0"' in description.read_text().splitlines()[problem.span.line - 1]
+    assert problem.notes[0].span.file.endswith("xxmodel.c")
