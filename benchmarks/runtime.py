@@ -26,6 +26,7 @@ WARNINGS = ["-Wall", "-Wextra", "-Wconversion", "-Wdouble-promotion", "-Werror"]
 BORDER = 1.2
 BARE = """version: 1
 extends: host_jiwy.tcf
+control: {enable_at_start: true}
 communication: {middleware: none}
 components: {guard_pan: null, guard_tilt: null}
 """
@@ -35,6 +36,7 @@ GUARD = (
 )
 GUARDED = f"""version: 1
 extends: host_jiwy.tcf
+control: {{enable_at_start: true}}
 communication: {{middleware: none}}
 components:
   guard_pan: {GUARD}

@@ -104,7 +104,7 @@ def test_line_ends_of_sources_change_nothing(original: str, tmp_path: Path) -> N
         "node=other",
         "namespace=/robot1",
         "control.overrun_limit=11",
-        "control.enable_at_start=false",
+        "control.enable_at_start=true",
         "control.output_delay=500 us",
         "control.period=500 us",
         "communication.period=34 ms",

@@ -37,8 +37,8 @@ def jiwy(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
 def simulate(
     folder: Path, setpoints: str, duration: float, *options: str
 ) -> tuple[list[dict[str, str]], dict[str, object]]:
-    """Trace and statistics of a run with the given setpoint file."""
-    (folder / "in.csv").write_text("time,topic,value\n" + setpoints)
+    """Trace and statistics of a run with the given setpoints, enabled at 0 s."""
+    (folder / "in.csv").write_text("time,topic,value\n0,$enable,1\n" + setpoints)
     files = ["--setpoints", "in.csv", "--trace", "out.csv", "--statistics", "out.json", "--duration", str(duration)]
     subprocess.run([folder / "jiwy_host", "--quiet", *files, *options], cwd=folder, check=True)
     with (folder / "out.csv").open(newline="") as file:
@@ -67,6 +67,17 @@ def test_the_readmes_first_command(jiwy: tuple[Path, str]) -> None:
     header, *rows = (folder / "tracking.csv").read_text().splitlines()
     assert {"time", "pan_setpoint", "pan_reference", "pan_position"} <= {c.split(" ")[0] for c in header.split(",")}
     assert len(rows) == 18_000
+
+
+def test_nothing_moves_before_somebody_enables(jiwy: tuple[Path, str]) -> None:
+    folder, _ = jiwy
+    files = ["--trace", "still.csv", "--statistics", "still.json", "--duration", "3"]
+    subprocess.run([folder / "jiwy_host", "--quiet", *files], cwd=folder, check=True)
+    statistics = json.loads((folder / "still.json").read_text())
+    assert (statistics["enabled"], statistics["fault"]) == (False, "none")
+    with (folder / "still.csv").open(newline="") as file:
+        duties = {row[f"plant.inputs.duty_{axis}"] for row in csv.DictReader(file) for axis in ("pan", "tilt")}
+    assert duties == {"0"}
 
 
 def test_two_runs_are_equal(jiwy: tuple[Path, str]) -> None:

@@ -53,6 +53,8 @@ def test_the_readmes_commands(built: Path) -> None:
     cycles = [int(re.fullmatch(r"enabled after (\d+) cycles, \d+ overruns", report)[1]) for report in reports]  # type: ignore[index]
     assert cycles == sorted(set(cycles))
     assert cycles[-1] <= 2500
+    reports = run(built, "sh", "-c", commands[1].replace(" --enable", "")).splitlines()
+    assert all(report.startswith("disabled after ") for report in reports), "the station starts disabled"
 
 
 def test_the_readme_shows_the_lines_that_were_added() -> None:

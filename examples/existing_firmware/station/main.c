@@ -1,6 +1,8 @@
-/* The station: starts the turntable's controller and reports five times a second, for two seconds, on the link. */
+/* The station: starts the turntable's controller and reports five times a second, for two seconds, on the link.
+ * The motor stays off without the argument --enable. */
 #define _POSIX_C_SOURCE 200809L
 #include <stdio.h>
+#include <string.h>
 #include <time.h>
 
 #include "frames.h"
@@ -13,11 +15,14 @@ static void put(uint8_t *bytes, uint32_t number)
     }
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
     if (!turntable_start()) {
         fputs("station: the turntable's controller cannot be started\n", stderr);
         return 1;
+    }
+    if (argc > 1 && strcmp(argv[1], "--enable") == 0) {
+        turntable_enable(true);
     }
     for (int i = 0; i < 10; i++) {
         const struct timespec pause = {.tv_nsec = 200000000};

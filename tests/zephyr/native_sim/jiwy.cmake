@@ -3,5 +3,5 @@ macro(jiwy_target board)
   epg_add_target(jiwy TCF ${board}_jiwy.tcf
     MODEL "${epg}/examples/jiwy/model" BINDINGS "${epg}/examples/jiwy/jiwy.bindings.yaml"
     PLANT "${epg}/examples/jiwy/plant" PLANT_BINDINGS "${epg}/examples/jiwy/plant.bindings.yaml"
-    SET communication.middleware=xrce communication.console=true)
+    SET control.enable_at_start=true communication.middleware=xrce communication.console=true)
 endmacro()

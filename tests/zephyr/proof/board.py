@@ -1,4 +1,4 @@
-"""The example's application on an emulated Pico, as it is shipped: JIWY on its pins, an agent and a person on USB."""
+"""The example's application on an emulated Pico, enabled at start: JIWY on its pins, an agent and a person on USB."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tests.platforms.pico.closed_loop.robot import WRAP_EXCEPTION
 from tests.platforms.pico.xrce.board import Jiwy
 from tests.zephyr.workspace import build, c_library, workspace
 
-APPLICATION = "examples/zephyr_jiwy/app"
+APPLICATION = "tests/zephyr/proof/application"
 SPANS = {
     "tick": ("on_wrap", "epg_zephyr_watchdog_feed"),
     "cycle": ("epg_control_cycle", "return"),

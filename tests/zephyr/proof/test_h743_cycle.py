@@ -34,7 +34,7 @@ def image() -> Path:
     skip_if_missing(partial(workspace, "nucleo_h743zi"), arm_gcc, c_library, unicorn)
     skip_if_missing(lambda: tool("micro_xrce_dds_client"), lambda: tool("micro_cdr"))
     settings = {"CONFIG_FPU": "n", "CONFIG_FPU_SHARING": "n", **c_library()}
-    return build("examples/zephyr_jiwy/app", "nucleo_h743zi", settings=settings) / "zephyr" / "zephyr.elf"
+    return build("tests/zephyr/proof/application", "nucleo_h743zi", settings=settings) / "zephyr" / "zephyr.elf"
 
 
 def cycle(chip: Stm32h743) -> int:
