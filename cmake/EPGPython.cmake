@@ -50,7 +50,7 @@ function(_epg_wanted_python result)
 endfunction()
 
 # Runs `epg <argument>...`; its messages go to the terminal as they are (CMake would wrap their lines).
-# Sets <result> to TRUE or FALSE.
+# Sets <result> to TRUE or FALSE; the global property EPG_EXIT_STATUS holds the exit status (epg/cli/main.py lists them).
 function(_epg_run result)
   _epg_find_python(python)
   _epg_environment(environment)
@@ -59,6 +59,7 @@ function(_epg_run result)
     COMMAND "${CMAKE_COMMAND}" -E env EPG_ABSOLUTE_PATHS=1 ${environment} "${python}" "${folder}/__main__.py" ${ARGN}
     WORKING_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}"
     RESULT_VARIABLE status)
+  set_property(GLOBAL PROPERTY EPG_EXIT_STATUS "${status}")
   if(status STREQUAL "0")
     set(${result} TRUE PARENT_SCOPE)
   else()

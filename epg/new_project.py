@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import tempfile
@@ -15,6 +16,7 @@ from pathlib import Path
 
 import epg
 from epg.check.configuration import CONSOLE, Configuration
+from epg.check.editor import USER_FILES, editor_schema
 from epg.check.names import identifier_problem, project_folder_problem
 from epg.data import data_folder, targets_roots
 from epg.diagnostics import Diagnostics, did_you_mean
@@ -33,6 +35,8 @@ from epg.source import Span
 MODEL = "model"
 """Where a model goes that lies outside of the project."""
 IMPORT = "epg_import.cmake"
+_EDITOR_SETTINGS = ".vscode/settings.json"
+"""Says which schema an editor uses for which files."""
 
 _SHOWN = 3
 """Files that a message lists."""
@@ -102,7 +106,11 @@ def new_project(request: ProjectRequest, diagnostics: Diagnostics) -> NewProject
         return None
     if copied:
         model = _copied_model(copied, place)
-    return _make(_plan(name, base, model, place, request), base, copied, model, request.roots)
+    project = _make(_plan(name, base, model, place, request), base, copied, model, request.roots)
+    if _EDITOR_SETTINGS not in project.files:
+        return project
+    schemas = _editor_schemas(catalog, built_in=not request.user_roots)
+    return replace(project, files=dict(sorted({**project.files, **schemas}.items())))
 
 
 def write_project(request: ProjectRequest, diagnostics: Diagnostics) -> NewProject:
@@ -257,6 +265,12 @@ def _make(
     files = {**copied, **{name: text.encode() for name, text in texts.items()}}
     left = tuple(name for name, match in matches.items() if match.reference is None)
     return NewProject(plan, dict(sorted(files.items())), left, bool(copied))
+
+
+def _editor_schemas(catalog: Catalog, built_in: bool) -> dict[str, bytes]:
+    """The schemas that the settings name, with the kinds and boards that this EPG knows."""
+    schemas = {name: json.dumps(editor_schema(name, catalog, built_in=built_in)) for name in USER_FILES}
+    return {f".vscode/schemas/{name}.schema.json": f"{text}\n".encode() for name, text in schemas.items()}
 
 
 def _copied_model(files: Mapping[str, bytes], place: str) -> Model:

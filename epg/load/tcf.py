@@ -76,21 +76,21 @@ def load_tcf_chain(
     chain: list[TcfFile] = []
     beside = beside or Path()
     while True:
+        read = {file.path.resolve() for file in chain}  # a file must not extend itself
         path = find_tcf(name, beside, roots)
         if path is None:
-            read = {file.path.resolve() for file in chain}  # a file that extends itself is no way out
             others = [file.name for file in sorted(beside.glob("*.tcf")) if file.resolve() not in read]
             known = [*predefined_tcf_names(roots), *others]
             span = wanted_by or Span(name)
             diagnostics.error("tcf-not-found", span, f"there is no file '{name}'", hint=did_you_mean(name, known))
             return ()
-        for file in chain:
-            if file.path.resolve() == path.resolve():
-                assert wanted_by is not None
-                diagnostics.error(
-                    "extends-loop", wanted_by, f"'{path.name}' is extended by itself", hint="remove this 'extends'"
-                )
-                return ()
+        if path.resolve() in read:  # one of EPG's may have the same name
+            path = find_tcf(name, beside / "nowhere", roots) or path
+        if path.resolve() in read:
+            assert wanted_by is not None
+            message = f"'{path.name}' is extended by itself"
+            diagnostics.error("extends-loop", wanted_by, message, hint="remove this 'extends'")
+            return ()
         if len(chain) == _MAX_CHAIN:
             assert wanted_by is not None
             diagnostics.error("extends-depth", wanted_by, f"more than {_MAX_CHAIN} files extend each other")
@@ -99,7 +99,8 @@ def load_tcf_chain(
         if node is None:
             return ()
         candidates = _candidates(name, beside)
-        absent = candidates[: candidates.index(path)] if path in candidates else candidates
+        before = candidates[: candidates.index(path)] if path in candidates else candidates
+        absent = [candidate for candidate in before if not is_file(candidate)]
         chain.append(TcfFile(path, node, wanted_by, tuple(absent)))
         extends = node.get("extends")
         if extends is None or not isinstance(extends.value, str):

@@ -16,6 +16,7 @@ from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
 from epg.emit.folder import write_folder
 from epg.load.tools import load_tools
+from epg.load.yaml_file import load_yaml
 from tests.cmake.project import snapshot
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -403,6 +404,32 @@ def test_settings_for_editors_are_json(tmp_path: Path) -> None:
     assert {"Compile Project", "Run Project", "Flash"} <= {task["label"] for task in tasks["tasks"]}
 
 
+def test_editors_find_the_schema_of_each_file(tmp_path: Path) -> None:
+    """Each file that a project has is one that VS Code's YAML extension checks, and the schema accepts it."""
+    from fnmatch import fnmatch
+
+    from jsonschema import Draft202012Validator
+
+    for target in ("rpi_pico2_bare_metal", "host_jiwy"):
+        folder = tmp_path / target
+        assert new(folder, target) == 0
+        settings = json.loads((folder / ".vscode/settings.json").read_text())
+        assert settings["files.associations"] == {"*.tcf": "yaml"}
+        patterns = {
+            pattern: json.loads((folder / place).read_text()) for place, pattern in settings["yaml.schemas"].items()
+        }
+        assert set(patterns) == {"*.tcf", "*bindings.yaml", "*scenario.yaml", "model.yaml"}
+        checked = 0
+        for file in sorted(folder.rglob("*")):
+            for pattern, schema in patterns.items():
+                if fnmatch(file.name, pattern):
+                    node = load_yaml(file, Diagnostics())
+                    assert node is not None
+                    assert list(Draft202012Validator(schema).iter_errors(node.plain())) == [], file
+                    checked += 1
+        assert checked >= 2
+
+
 # what people read ---------------------------------------------------------------------------------------------------
 
 
@@ -428,3 +455,9 @@ def test_the_readme_names_files_that_are_there(target: str, tmp_path: Path) -> N
         assert (tmp_path / "robot" / name).exists(), name
     for line in readme.splitlines():
         assert len(line) <= 130, line
+
+
+def test_a_project_may_be_called_as_the_configuration_it_extends(tmp_path: Path) -> None:
+    assert new(tmp_path / "host_jiwy", "host_jiwy") == 0
+    assert "extends: host_jiwy.tcf" in (tmp_path / "host_jiwy/host_jiwy.tcf").read_text()
+    assert check(tmp_path / "host_jiwy", "host_jiwy") == 0

@@ -83,6 +83,20 @@ def test_a_mistake_in_the_first_configuration_leaves_nothing_half_written(robot:
     assert not list((robot.build_folder / "epg").rglob("*.c"))
 
 
+def test_the_browser_is_not_offered_where_epg_itself_does_not_run(robot: Project) -> None:
+    cache = robot.folder / "cache"
+    cache.mkdir()
+    cache.chmod(0o777)  # EPG runs nothing in a cache that others may change
+    robot.environment["EPG_CACHE"] = str(cache)
+    output = robot.fails_to_configure()
+    assert "EPG does not use its cache" in output
+    assert "target 'robot' was not generated" in output
+    assert "in a browser" not in output
+    cache.chmod(0o700)
+    robot.edit("bindings.yaml", "duty: motor", "duty: moter")
+    assert "connected in a browser" in robot.fails_to_configure()
+
+
 def test_compile_commands_find_all_headers_right_after_configure(robot: Project) -> None:
     robot.configure()
     commands = json.loads((robot.build_folder / "compile_commands.json").read_text())
