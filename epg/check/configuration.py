@@ -69,6 +69,7 @@ class Communication:
     console: Middleware | None  # that runs beside it
     console_options: Mapping[str, object]
     options: Mapping[str, object]
+    usb: Mapping[str, object]  # what is written of vendor_id, product_id, manufacturer, product, serial
     span: Span  # of the middleware's name, if it is written
 
     @property
@@ -290,8 +291,21 @@ def _communication(
         console=beside,
         console_options=typed_options(beside, beside_node, diagnostics) if beside is not None else {},
         options=options,
+        usb=_usb(node.get("usb") if node else None, target, diagnostics),
         span=written.span,
     )
+
+
+def _usb(node: Node | None, target: Target | None, diagnostics: Diagnostics) -> Mapping[str, object]:
+    """What the target is called as a USB device; platforms without USB leave it to others of the same robot."""
+    if node is None or target is None:
+        return {}
+    platform = target.platform
+    if not platform.has_usb_names and any("usb" in transports for transports in platform.middlewares.values()):
+        message = f"on {platform.name} a target configuration cannot say what the USB device is called"
+        hint = f"remove 'usb'; the documentation of {platform.name} says which settings of its build do that"
+        diagnostics.error("not-on-platform", node.span, message, hint=hint, notes=extended_from(node))
+    return {key: node[key].value for key in sorted(node.keys)}
 
 
 def _diagnostics(node: Node | None, middleware: Middleware, diagnostics: Diagnostics) -> Fraction:

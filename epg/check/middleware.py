@@ -13,7 +13,7 @@ from epg.load.items import map_of, texts_of
 from epg.load.middleware import Middleware
 from epg.source import Node
 
-COMMON_OPTIONS = ("middleware", "transport", "period", "domain", "diagnostics", "console")
+COMMON_OPTIONS = ("middleware", "transport", "period", "domain", "diagnostics", "console", "usb")
 """Keys of ``communication`` that do not depend on the middleware."""
 
 

@@ -180,7 +180,8 @@ class Platform:
 
     Without ``builds`` there is none yet: targets can be checked but not built.
 
-    ``middlewares`` names transports; the first of each is the default.  ``tick`` is the class of the peripheral that
+    ``middlewares`` names transports; the first of each is the default.  With ``has_usb_names`` a target configuration
+    says what the target is called as a USB device.  ``tick`` is the class of the peripheral that
     times the control loop, None where the system software does, as also on chips without that class where
     ``tick_is_optional``.  With ``has_nodes`` a component can name a node of a devicetree instead of pins.  ``shared``
     are folders beside this one whose templates it uses too.
@@ -198,6 +199,7 @@ class Platform:
     simulates_plant: bool
     classes: tuple[str, ...]
     middlewares: Mapping[str, tuple[str, ...]]
+    has_usb_names: bool
     tick: str | None
     tick_is_optional: bool
     has_nodes: bool
@@ -314,6 +316,7 @@ def make_platform(node: Node, folder: Path) -> Platform:
         simulates_plant=flag_of(node, "simulates_plant"),
         classes=texts_of(node, "classes"),
         middlewares=MappingProxyType(middlewares),
+        has_usb_names=flag_of(node, "usb_names"),
         tick=str(tick.value) if tick is not None else None,
         tick_is_optional=tick is not None and flag_of(node["tick"], "optional"),
         has_nodes=flag_of(node, "nodes"),

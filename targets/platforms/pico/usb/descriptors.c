@@ -2,17 +2,30 @@
  * @file
  * Descriptors: one or two serial ports (CDC ACM) and the interface by which picotool reboots the board.
  *
- * The numbers are those of the Pico SDK's own serial port, by which picotool and udev rules know a board that runs
- * firmware; the serial number is the board's unique id, so that several boards can be told apart.  Windows finds the
+ * A target configuration (`communication: {usb: ...}`, in epg_pico_target.h) or definitions of the executable say what the
+ * device is called.  Otherwise the numbers are those of the Pico SDK's own serial port, by which picotool and udev rules
+ * know a board that runs firmware, and the serial number is the board's unique id, so that several boards can be told
+ * apart.  Windows finds the
  * driver of the second interface (WinUSB) through Microsoft OS 2.0 descriptors.
  */
 #include "usb.h"
 
-#define VENDOR_RASPBERRY_PI 0x2E8A
+#if defined(EPG_PICO_USB_VENDOR_ID) != defined(EPG_PICO_USB_PRODUCT_ID)
+#error "define both EPG_PICO_USB_VENDOR_ID and EPG_PICO_USB_PRODUCT_ID: a product id belongs to its vendor's"
+#endif
+#ifndef EPG_PICO_USB_VENDOR_ID
+#define EPG_PICO_USB_VENDOR_ID 0x2E8A /* Raspberry Pi */
 #if PICO_RP2040
-#define PRODUCT_CDC 0x000A
+#define EPG_PICO_USB_PRODUCT_ID 0x000A /* Pico SDK CDC UART */
 #else
-#define PRODUCT_CDC 0x0009
+#define EPG_PICO_USB_PRODUCT_ID 0x0009
+#endif
+#endif
+#ifndef EPG_PICO_USB_MANUFACTURER
+#define EPG_PICO_USB_MANUFACTURER "Raspberry Pi"
+#endif
+#ifndef EPG_PICO_USB_PRODUCT
+#define EPG_PICO_USB_PRODUCT "Pico"
 #endif
 
 /* Of the first port; those of the second are two further. */
@@ -37,6 +50,11 @@ enum {
 #define TEXT_LENGTH 31
 
 static_assert(2 * PICO_UNIQUE_BOARD_ID_SIZE_BYTES <= TEXT_LENGTH, "the serial number fits");
+static_assert(sizeof EPG_PICO_USB_MANUFACTURER <= TEXT_LENGTH + 1, "EPG_PICO_USB_MANUFACTURER is too long");
+static_assert(sizeof EPG_PICO_USB_PRODUCT <= TEXT_LENGTH + 1, "EPG_PICO_USB_PRODUCT is too long");
+#ifdef EPG_PICO_USB_SERIAL
+static_assert(sizeof EPG_PICO_USB_SERIAL <= TEXT_LENGTH + 1, "EPG_PICO_USB_SERIAL is too long");
+#endif
 
 static const tusb_desc_device_t device = {
     .bLength = sizeof device,
@@ -46,8 +64,8 @@ static const tusb_desc_device_t device = {
     .bDeviceSubClass = MISC_SUBCLASS_COMMON,
     .bDeviceProtocol = MISC_PROTOCOL_IAD,
     .bMaxPacketSize0 = CFG_TUD_ENDPOINT0_SIZE,
-    .idVendor = VENDOR_RASPBERRY_PI,
-    .idProduct = PRODUCT_CDC,
+    .idVendor = EPG_PICO_USB_VENDOR_ID,
+    .idProduct = EPG_PICO_USB_PRODUCT_ID,
     .bcdDevice = 0x0100,
     .iManufacturer = TEXT_MANUFACTURER,
     .iProduct = TEXT_PRODUCT,
@@ -147,16 +165,22 @@ bool tud_vendor_control_xfer_cb(uint8_t port, uint8_t stage, const tusb_control_
 
 static const char *text_of(uint8_t index)
 {
+#ifndef EPG_PICO_USB_SERIAL
     static char serial[2 * PICO_UNIQUE_BOARD_ID_SIZE_BYTES + 1];
+#endif
     const char *title = NULL;
     switch (index) {
     case TEXT_MANUFACTURER:
-        return "Raspberry Pi";
+        return EPG_PICO_USB_MANUFACTURER;
     case TEXT_PRODUCT:
-        return "Pico";
+        return EPG_PICO_USB_PRODUCT;
     case TEXT_SERIAL:
+#ifdef EPG_PICO_USB_SERIAL
+        return EPG_PICO_USB_SERIAL;
+#else
         pico_get_unique_board_id_string(serial, sizeof serial);
         return serial;
+#endif
     case TEXT_RESET:
         return "Reset";
     case TEXT_CDC:

@@ -85,7 +85,8 @@ def test_two_ports_and_the_reset_interface(two: Emulator) -> None:
     assert text(descriptor(two, STRING, reset.text)) == "Reset"
     usb = two.call("usb")
     assert re.fullmatch("[0-9A-F]{16}", usb["serial"])
-    assert usb["id"] == [0x2E8A, 0x000A]
+    assert usb["id"] == [0x2E8A, 0x000A], "Pico SDK CDC UART, docs/pico.md"
+    assert [text(descriptor(two, STRING, number)) for number in (1, 2)] == ["Raspberry Pi", "Pico"]
 
 
 @pytest.mark.parametrize("ports", [1, 2])
