@@ -32,6 +32,7 @@ HEAP = 16 << 10
 """Bytes of heap of each instance, where nothing else is said: 20-sim's FMUs take what their variables need."""
 
 _HINT = "export the FMU again"
+_MOST_CALLS = 100_000  # of DoStep in a step of the model: no target computes as many in time
 _STEP_SIZE = re.compile(r"(?<!\w)(\w{1,64}(?:->|_))?step_size\s{0,80}=(?!=)\s{0,80}([^=;]{1,40});", re.ASCII)
 _TYPES = {**TYPES_2, **TYPES_3}
 
@@ -155,6 +156,13 @@ def _step(
     base = description.internal_step or own_step
     if base is not None and (step / base).denominator != 1:
         message = f"the step {float(step):g} s is no multiple of the FMU's internal step, {float(base):g} s"
+        span = wanted_span or description.step_span
+        diagnostics.error("fmu-step", span, message, hint="export it with the step that the target has")
+        return None
+    if own_step is not None and step / own_step > _MOST_CALLS:
+        message = (
+            f"the step {float(step):g} s takes more than {_MOST_CALLS} of the FMU's own, {float(own_step):g} s each"
+        )
         span = wanted_span or description.step_span
         diagnostics.error("fmu-step", span, message, hint="export it with the step that the target has")
         return None

@@ -265,6 +265,8 @@ def test_the_step_of_20sims_method_is_read_from_the_sources(tmp_path: Path) -> N
         assert (model.step, model.details.own_step) == (Fraction(2, 1000), Fraction(1, 2000))
         description.write_text(text.replace("0.002", "0.0007"))
         assert only_error(folder)[0] == "fmu-step"
+        description.write_text(text.replace("0.002", "50.0005"))
+        assert "more than 100000 of the FMU's own" in only_error(folder)[1]
     assert loaded(FMU2).details.own_step is None  # type: ignore[union-attr]
 
 
