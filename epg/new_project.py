@@ -23,7 +23,7 @@ from epg.diagnostics import Diagnostics, did_you_mean
 from epg.emit.bindings import new_bindings
 from epg.emit.folder import present_files, write_folder
 from epg.emit.project import ProjectPlan, StandIn, project_files, project_folder, project_names
-from epg.load.catalog import Catalog, Target, not_found_hint
+from epg.load.catalog import Catalog, Target, target_hint
 from epg.load.middleware import Middleware
 from epg.load.models import Model, load_model
 from epg.load.tcf import predefined_tcf_names
@@ -163,8 +163,7 @@ def _find_base(request: ProjectRequest, catalog: Catalog, diagnostics: Diagnosti
         configuration = load_configuration(predefined, catalog, diagnostics)
         target = configuration.target if configuration is not None else None
     else:
-        known = [*targets, *(file.removesuffix(".tcf") for file in files)]
-        hint = not_found_hint(name, known, "targets and .tcf files")
+        hint = target_hint(name, [*targets, *(file.removesuffix(".tcf") for file in files)], "targets and .tcf files")
         diagnostics.error("unknown-target", _argument(name), f"there is no target '{name}'", hint=hint)
         return None
     if target is None:

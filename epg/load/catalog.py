@@ -28,6 +28,7 @@ FOLDERS = {
 }
 """What a folder of ``targets`` holds: each item is a folder with a file of the item's sort, ``boards/x/board.yaml``."""
 
+
 Item = TypeVar("Item", Soc, Board, Platform, Middleware, Kind)
 
 
@@ -103,7 +104,7 @@ class Catalog:
         """The target that ``span`` names, or None after reporting that there is none."""
         target, exists = self._target(name)
         if not exists:
-            hint = not_found_hint(name, self.target_names(), "targets")
+            hint = target_hint(name, self.target_names(), "targets")
             diagnostics.error("unknown-target", span, f"there is no target '{name}'", hint=hint)
         return target
 
@@ -177,6 +178,11 @@ def not_found_hint(name: str, known: Sequence[str], otherwise: str) -> str:
     """The hint for a name that is in no ``targets`` folder: it may be one of the user's, whose folder is not known."""
     meant = did_you_mean(name, known, otherwise)
     return f"{meant}{'' if meant.endswith('?') else '.'} EPG finds your own in the folders that EPG_TARGETS_PATH names"
+
+
+def target_hint(name: str, known: Sequence[str], otherwise: str) -> str:
+    """The same for a target, whose board may be one that nobody has described yet."""
+    return f"{not_found_hint(name, known, otherwise)}; docs/adding-a-board.md says how to describe a board"
 
 
 def load_catalog(roots: Sequence[Path], diagnostics: Diagnostics) -> Catalog:

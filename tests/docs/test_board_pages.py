@@ -24,6 +24,8 @@ from epg.resolve.divider import clock_range, divide, show
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 BOARDS = ("rpi_pico", "rpi_pico2")
+WIRELESS = ("rpi_pico_w", "rpi_pico2_w")
+"""Their pages say what differs."""
 ROBOTS = ("jiwy", "relbot")
 PLATFORMS = ("bare_metal", "freertos")
 FREQUENCIES = (1_000, 5_000, 10_000, 20_000, 25_000, 50_000, 100_000)
@@ -91,7 +93,7 @@ def pwm(board: str) -> str:
     return "\n".join(lines) + "\n"
 
 
-@pytest.mark.parametrize("board", BOARDS)
+@pytest.mark.parametrize("board", [*BOARDS, *WIRELESS])
 def test_tables_are_true(board: str, capsys: pytest.CaptureFixture[str]) -> None:
     makers: dict[str, Callable[[], str]] = {
         f"wiring {robot}": lambda r=robot: wiring(board, r, capsys) for robot in ROBOTS
@@ -130,6 +132,22 @@ def test_numbers_in_the_text_are_true(board: str) -> None:
     assert (f"{extra} more slices" in text) == (extra > 0)
 
 
+@pytest.mark.parametrize("board", WIRELESS)
+def test_the_radio_s_pins_are_nobody_s(board: str) -> None:
+    """Pico W data sheet, 2.1: GPIO 23, 24, 25 and 29 are the radio's, and the LED is a pin of the radio."""
+    text = page(board).read_text(encoding="utf-8")
+    found, other = target(board).board, target(board.removesuffix("_w")).board
+    assert sorted(found.reserved) == ["23", "24", "25", "29"]
+    assert "| pins of the radio | GP23, GP24, GP25, GP29: EPG refuses them |" in text
+    assert found.pins == other.pins == tuple(str(pin) for pin in (*range(23), 26, 27, 28))
+    assert not found.onboard and not found.names
+    assert f"| `PICO_BOARD` | `{found.sdks['pico_sdk']}` |" in text
+    assert found.sdks["zephyr"] == other.sdks["zephyr"]
+    for shared in ("chip", "encoders"):
+        line = re.search(rf"^\| {shared} \|.*$", text, re.M)
+        assert line is not None and line[0] in page(board.removesuffix("_w")).read_text(encoding="utf-8")
+
+
 def test_gpios_on_both_boards_have_their_places() -> None:
     places = {gpio: board_pin(gpio) for gpio in (0, 2, 10, 13, 15, 16, 22, 26, 28)}
     assert places == {0: 1, 2: 4, 10: 14, 13: 17, 15: 20, 16: 21, 22: 29, 26: 31, 28: 34}
@@ -142,7 +160,7 @@ def test_the_pages_have_the_same_sections() -> None:
     assert len(sections[1]) == len(sections[0]) + 1
 
 
-@pytest.mark.parametrize("file", ["boards/rpi_pico.md", "boards/rpi_pico2.md", "new-project.md"])
+@pytest.mark.parametrize("file", [*(f"boards/{board}.md" for board in (*BOARDS, *WIRELESS)), "new-project.md"])
 def test_links_lead_somewhere(file: str) -> None:
     path = ROOT / "docs" / file
     links = re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", path.read_text(encoding="utf-8"))

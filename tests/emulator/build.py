@@ -38,13 +38,13 @@ def build(
     settings = {"PICO_BOARD": board, "PICO_SDK_PATH": str(pico_sdk()), "CMAKE_BUILD_TYPE": "Release"}
     settings.update(variables or {})
     settings.setdefault("EPG_PATH", str(ROOT))
-    settings["PICO_COMPILER"] = "pico_arm_cortex_m33_gcc" if board == "pico2" else "pico_arm_cortex_m0plus_gcc"
+    settings["PICO_COMPILER"] = "pico_arm_cortex_m33_gcc" if board.startswith("pico2") else "pico_arm_cortex_m0plus_gcc"
     settings["PICO_TOOLCHAIN_PATH"] = str(arm_gcc().parent)
     try:
         settings["picotool_DIR"] = str(tool("picotool"))
     except Missing:
         settings["PICO_NO_PICOTOOL"] = "1"
-    if board == "pico" and not stock_arithmetic:
+    if not board.startswith("pico2") and not stock_arithmetic:
         settings["CMAKE_PROJECT_INCLUDE"] = str(HERE / "compiler_arithmetic.cmake")
     digest = hashlib.sha256(repr((str(source), sorted(settings.items()))).encode()).hexdigest()[:16]
     folder = cache_folder() / "test-build" / f"{source.name}-{board}-{digest}"

@@ -70,7 +70,8 @@ Write at the top of ${CMAKE_SOURCE_DIR}/CMakeLists.txt, in this order:
   endif()
   if(NOT PICO_BOARD STREQUAL board)
     message(SEND_ERROR "epg_add_target(${name}): its target is for the board '${board}', and PICO_BOARD is '${PICO_BOARD}'.
-Configure with -DPICO_BOARD=${board} in a build folder of its own, or choose the .tcf of a target for '${PICO_BOARD}'.")
+Configure with -DPICO_BOARD=${board} in a build folder of its own, or choose the .tcf of a target for '${PICO_BOARD}'.
+'epg targets' lists the boards that EPG knows; docs/adding-a-board.md says how to describe another one.")
     return()
   endif()
   set(${result} TRUE PARENT_SCOPE)

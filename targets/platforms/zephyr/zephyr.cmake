@@ -96,7 +96,8 @@ function(_epg_zephyr_board name wanted)
   string(FIND "${plain}/" "${wanted}/" place)
   if(NOT place EQUAL 0)
     message(FATAL_ERROR "epg_add_target(${name}): its target is for Zephyr's board '${wanted}', and BOARD is '${given}'.
-Build it with -b ${wanted} in a build folder of its own, or choose the .tcf of a target for '${given}'.")
+Build it with -b ${wanted} in a build folder of its own, or choose the .tcf of a target for '${given}'.
+'epg targets' lists the boards that EPG knows; docs/adding-a-board.md says how to describe another one.")
   endif()
   set(BOARD "${given}" PARENT_SCOPE)
 endfunction()

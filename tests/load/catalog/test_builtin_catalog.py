@@ -25,6 +25,7 @@ from epg.source import Span
 
 TARGETS = data_folder("targets")
 BOARDS = ("rpi_pico", "rpi_pico2")
+WIRELESS = ("rpi_pico_w", "rpi_pico2_w")
 PLATFORMS = ("bare_metal", "freertos", "zephyr")
 
 
@@ -46,7 +47,9 @@ def test_everything_is_right() -> None:
 def test_the_targets_of_the_thesis_and_those_without_a_board() -> None:
     catalog, _ = builtin()
     others = ["host", "native_sim", "nucleo_h743zi_zephyr", "mps2_an385_zephyr"]
-    assert catalog.target_names() == sorted([*others, *(f"{board}_{name}" for board in BOARDS for name in PLATFORMS)])
+    assert catalog.target_names() == sorted(
+        [*others, *(f"{board}_{name}" for board in (*BOARDS, *WIRELESS) for name in PLATFORMS)]
+    )
     assert all(catalog.find_target(name).platform.builds for name in catalog.target_names())
 
 
@@ -223,7 +226,10 @@ def test_names_that_do_not_exist() -> None:
     own = "EPG finds your own in the folders that EPG_TARGETS_PATH names"
     assert [(p.id, p.hint) for p in problems][:2] == [
         ("unknown-kind", f"did you mean 'quadrature_encoder'? {own}"),
-        ("unknown-target", f"did you mean 'rpi_pico_freertos'? {own}"),
+        (
+            "unknown-target",
+            f"did you mean 'rpi_pico_freertos'? {own}; docs/adding-a-board.md says how to describe a board",
+        ),
     ]
     assert len(problems.items) == 4
 

@@ -30,10 +30,12 @@ def statistics(said: str) -> dict[str, float]:
     return {name: float(value) for name, value in re.findall(r"^stat (\w+)=(\S+)\r?$", said, re.MULTILINE)}
 
 
-@pytest.mark.parametrize("platform", PLATFORMS)
-def test_jiwy_homes_and_goes_where_it_is_told(platform: str) -> None:
+@pytest.mark.parametrize(
+    ("board", "platform"), [*(("pico", platform) for platform in PLATFORMS), ("pico_w", "freertos")]
+)
+def test_jiwy_homes_and_goes_where_it_is_told(board: str, platform: str) -> None:
     skip_unless_emulated(platform)
-    elf = images("pico", platform, "jiwy_firmware", middleware="console") / "jiwy_firmware.elf"
+    elf = images(board, platform, "jiwy_firmware", middleware="console") / "jiwy_firmware.elf"
     with Emulator(elf, usb={"seed": 3}) as pico:
         for name, axis in AXES.items():
             a, b = axis["pins"]

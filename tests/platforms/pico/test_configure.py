@@ -146,6 +146,7 @@ def test_another_board(tmp_path: Path) -> None:
     said = configure(tmp_path, SDK + target(), "-DPICO_BOARD=pico2")
     assert "epg_add_target(jiwy): its target is for the board 'pico', and PICO_BOARD is 'pico2'" in said
     assert "-DPICO_BOARD=pico" in said
+    assert "docs/adding-a-board.md says how to describe another one" in said
 
 
 def test_no_kernel(tmp_path: Path) -> None:
