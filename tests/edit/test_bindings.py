@@ -130,7 +130,7 @@ REFUSED: dict[str, tuple[str, str, tuple[End, ...] | None, str]] = {
     "an input of two": ("", "angle", (End("a"), End("b")), "servo.bindings.yaml: input 'angle' takes its value from"),
     "to be unconnected": ("", "log", (End("unconnected"),), "servo.bindings.yaml: 'unconnected' is no component"),
     "a section that is none": ("inputs: [a]\n", "angle", (End("a"),), "servo.bindings.yaml:4: 'inputs' is no map"),
-    "a mistake": ("inputs: {\n", "angle", (End("a"),), "servo.bindings.yaml:5: YAML: "),
+    "a mistake": ("inputs: {\n", "angle", (End("a"),), "servo.bindings.yaml:4: this bracket is not closed"),
     "an anchor": ("inputs: {angle: &a b}\n", "angle", (End("a"),), "servo.bindings.yaml:4: anchors and aliases"),
     "no character": ("", "angle", (End("\ud800"),), "servo.bindings.yaml: what 'inputs' would say"),
     "a key too long for YAML": ("outputs: {}\n", "x" * 1100, (End("a"),), "servo.bindings.yaml:4: 'xxx"),
