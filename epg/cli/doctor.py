@@ -54,6 +54,7 @@ class Item:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--build", type=Path, metavar="FOLDER", help="a build folder whose CMake variables count too")
+    parser.add_argument("--run", action="store_true", help="start programs that this folder names, for their versions")
     parser.add_argument("--project", type=Path, metavar="FOLDER", help="only what the targets of this project need")
 
 
@@ -61,7 +62,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     cmake = read_cmake_cache(options.build / "CMakeCache.txt", diagnostics) if options.build else {}
     tools = load_tools(targets_roots(user_roots()), diagnostics)
     diagnostics.stop_if_errors()
-    where = Surroundings.here(bootstrap.cache_folder(), cmake)
+    where = Surroundings.here(bootstrap.cache_folder(), cmake, run=options.run)
     found = {
         name: _item(find_tool(tool, where), where, tools) for name, tool in _wanted(tools, options.project).items()
     }
@@ -162,6 +163,8 @@ def _item(finding: Finding, where: Surroundings, tools: Mapping[str, Tool]) -> I
     else:
         differs = tool.tested and finding.version and not f"{finding.version}.".startswith(f"{tool.tested}.")
         note, remedy = f"tested with {tool.tested}" if differs else "", ""
+    if not finding.asked:
+        note = "not started: --run starts the programs that this folder names, to ask for their versions"
     if tool.optional and not finding.path:
         note = f"{tool.optional}; {note}"
     return Item(

@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING, Any
 from epg.connect.body import Refused
 from epg.connect.places import Places
 from epg.connect.projects import Job
+from epg.load.hardware import Target
 from epg.source import Span
 
 if TYPE_CHECKING:
+    from epg.connect.build.consent import Question
     from epg.connect.build.run import Build
 
 NONE: dict[str, Any] = {
@@ -23,6 +25,7 @@ NONE: dict[str, Any] = {
     "messages": [],
     "products": [],
     "lines": 0,
+    "ask": None,
 }
 
 
@@ -32,6 +35,7 @@ class Runs:
     def __init__(self, changed: Callable[[], None]) -> None:
         self._changed = changed
         self._build: Build | None = None
+        self._question: Question | None = None
 
     @property
     def running(self) -> bool:
@@ -40,6 +44,16 @@ class Runs:
     def check_idle(self) -> None:
         if self.running:
             raise Refused("a build is running", "wait for it, or cancel it", 409)
+
+    def ask(self, job: Job, target: Target | None, agreed: str) -> dict[str, Any] | None:
+        """What must be agreed to first; ``agreed`` is the key of a question that was answered with yes."""
+        from epg.connect.build.consent import question_about
+
+        self._question = question_about(job, target)
+        if self._question is not None and self._question.key == agreed:
+            self._question.agree()
+            self._question = None
+        return self._question.data() if self._question is not None else None
 
     def start(self, job: Job) -> None:
         """Configures and builds ``job``."""
@@ -60,13 +74,14 @@ class Runs:
             self._build.wait(10)
 
     def forget(self) -> None:
-        self._build = None
+        self._build = self._question = None
 
     def state(self, places: Places | None) -> dict[str, Any]:
         """What there is to show; messages about the bindings with the port they are about."""
+        ask = self._question.data() if self._question is not None else None
         if self._build is None:
-            return NONE
-        state = self._build.state()
+            return NONE | {"ask": ask}
+        state = self._build.state() | {"ask": ask}
         for message in state["messages"] if places is not None else ():
             assert places is not None
             message["port"] = places.port_at(Span(message["file"], message["line"], message["column"]))

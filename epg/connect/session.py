@@ -145,6 +145,11 @@ class Session:
         folder = (job.build_dir or job.source_dir if job is not None else None) or Path()
         return excerpt(self.state(), folder, editor.draft.drafts() if editor is not None else {}, file, line)
 
+    def build_question(self) -> dict[str, Any] | None:
+        """What a build would run, where that must be agreed to first: 'generate' with its key as 'run' does that."""
+        with self._changed:
+            return self._ask("")
+
     def close(self) -> None:
         """Ends a build that still runs, with all that it has started."""
         self._runs.close()
@@ -224,8 +229,13 @@ class Session:
         if count:
             what = "is still a mistake" if count == 1 else f"are still {count} mistakes"
             raise Refused(f"there {what}: nothing can be built", "messages say where", 409)
-        self._save({})
-        self._runs.start(self._opened().job)
+        if self._ask(text(body, "run", "")) is None:
+            self._save({})
+            self._runs.start(self._opened().job)
+
+    def _ask(self, agreed: str) -> dict[str, Any] | None:
+        configuration = self._opened().loaded.parts.configuration
+        return self._runs.ask(self._opened().job, configuration.target if configuration is not None else None, agreed)
 
     # how the state comes about
 

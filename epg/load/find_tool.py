@@ -26,17 +26,22 @@ TIMEOUT = 5.0
 
 @dataclass(frozen=True)
 class Surroundings:
-    """What decides where tools are looked for; ``cmake`` are the variables of a CMake cache."""
+    """What decides where tools are looked for; ``cmake`` are the variables of a CMake cache.
+
+    Without ``run``, programs that these variables name are not started to ask for their version: a folder that somebody
+    has handed on may name any program.
+    """
 
     environment: Mapping[str, str]
     cmake: Mapping[str, str]
     home: Path
     cache: Path
+    run: bool = True
 
     @staticmethod
-    def here(cache: Path, cmake: Mapping[str, str] | None = None) -> Surroundings:
+    def here(cache: Path, cmake: Mapping[str, str] | None = None, *, run: bool = True) -> Surroundings:
         """Those of this process."""
-        return Surroundings(os.environ, cmake or {}, Path.home(), cache)
+        return Surroundings(os.environ, cmake or {}, Path.home(), cache, run)
 
     @property
     def path(self) -> str:
@@ -49,7 +54,7 @@ class Finding:
 
     ``status``: "found"; "missing"; "old" when it is older than needed; "wrong" when a variable leads to something
     else, which is not passed over, because builds would stop there too.  ``source`` says how it was found, ``looked``
-    all places that were tried.
+    all places that were tried.  ``asked`` is False where its version is not known because it must not be started.
     """
 
     tool: Tool
@@ -58,6 +63,7 @@ class Finding:
     source: str = ""
     version: str = ""
     looked: tuple[str, ...] = ()
+    asked: bool = True
 
 
 @dataclass(frozen=True)
@@ -65,6 +71,7 @@ class _Place:
     source: str
     folders: list[Path]
     stated: bool = False  # by a variable: then the tool must be there
+    of_build: bool = False  # by a CMake variable
 
 
 def find_tool(tool: Tool, where: Surroundings) -> Finding:
@@ -75,9 +82,10 @@ def find_tool(tool: Tool, where: Surroundings) -> Finding:
         for folder in place.folders:
             path = _in_folder(tool, folder, where)
             if path is not None:
-                version = _version(tool, path)
+                asked = where.run or not (place.of_build and tool.programs)
+                version = _version(tool, path) if asked else ""
                 old = bool(tool.oldest and version) and _order(version) < _order(tool.oldest)
-                return Finding(tool, "old" if old else "found", path, place.source, version, tuple(looked))
+                return Finding(tool, "old" if old else "found", path, place.source, version, tuple(looked), asked)
         if place.stated:
             return Finding(tool, "wrong", place.folders[0], place.source, looked=tuple(looked))
     return Finding(tool, "missing", looked=tuple(looked))
@@ -93,7 +101,7 @@ def read_cmake_cache(path: Path, diagnostics: Diagnostics) -> dict[str, str]:
 def _places(tool: Tool, where: Surroundings) -> Iterator[_Place]:
     for name in tool.variables:
         if where.cmake.get(name):
-            yield _Place(f"CMake variable {name}", [Path(where.cmake[name])], stated=True)
+            yield _Place(f"CMake variable {name}", [Path(where.cmake[name])], stated=True, of_build=True)
     for name in tool.environment:
         if where.environment.get(name):
             yield _Place(f"environment variable {name}", [Path(where.environment[name])], stated=True)

@@ -162,6 +162,24 @@ def test_variables_of_a_build_folder(bare: Path, capsys: pytest.CaptureFixture[s
     assert "there is no file 'CMakeCache.txt'" in capsys.readouterr().err
 
 
+def test_programs_of_a_build_folder_are_not_started(bare: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Its cache may come from anybody, and name any program."""
+    host_programs(bare)
+    program(bare, "evil", "")
+    (bare / "bin/evil").write_text(f"#!/bin/sh\n: > '{bare}/started'\necho 1.2.3\n")
+    (bare / "build").mkdir()
+    lines = [
+        f"{name}:FILEPATH={bare}/bin/evil" for name in ("CMAKE_MAKE_PROGRAM", "CMAKE_C_COMPILER", "CMAKE_CXX_COMPILER")
+    ]
+    (bare / "build/CMakeCache.txt").write_text("\n".join(lines) + "\n")
+    _, items, _ = doctor(capsys, "--build", str(bare / "build"))
+    assert items["build_program"]["path"] == f"{bare}/bin/evil" and items["build_program"]["version"] == ""
+    assert "--run starts" in items["build_program"]["note"] and items["cmake"]["version"] == "3.25.1"
+    assert not (bare / "started").exists()
+    _, items, _ = doctor(capsys, "--build", str(bare / "build"), "--run")
+    assert (bare / "started").exists() and "--run" not in items["build_program"]["note"]
+
+
 def test_packages_that_are_missing(bare: Path) -> None:
     """Without any package, in a Python of its own, and nothing is installed by asking."""
     host_programs(bare)

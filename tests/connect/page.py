@@ -69,6 +69,12 @@ class Page:
     def post(self, action: str, **body: object) -> dict[str, Any]:
         return json.loads(self._open(f"api/{action}", json.dumps(body).encode(), JSON)[0])
 
+    def generate(self) -> dict[str, Any]:
+        """Generates, and agrees to what that runs."""
+        state = self.post("generate")
+        ask = state["build"]["ask"]
+        return self.post("generate", run=ask["key"]) if ask is not None else state
+
     def connect(self, port: str, *references: str, **conversion: object) -> dict[str, Any]:
         return self.post("connect", port=port, ends=[{"reference": name, **conversion} for name in references])
 

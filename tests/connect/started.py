@@ -45,6 +45,6 @@ def started(command: Sequence[str], folder: Path | None = None) -> Iterator[tupl
 
 def generate(page: Page, seconds: float = 120) -> dict[str, object]:
     """Builds, and waits for the end; what the build says of itself."""
-    page.post("generate")
+    page.generate()
     state = page.until(lambda state: state["build"]["state"] not in ("idle", "running"), seconds)
     return dict(state["build"])

@@ -35,7 +35,10 @@ class Step:
 
 @dataclass(frozen=True)
 class Plan:
-    """``missing`` are tools without which nothing can be started; there are no steps then."""
+    """``missing`` are tools without which nothing can be started; there are no steps then.
+
+    ``build_program`` is Ninja or Make, as the build folder's cache has it.
+    """
 
     source: Path
     build: Path
@@ -43,13 +46,15 @@ class Plan:
     environment: Mapping[str, str]
     cache: Mapping[str, str]
     missing: tuple[MissingTool, ...] = ()
+    build_program: str = ""
 
 
-def make_plan(job: Job, target: Target | None, roots: Sequence[Path]) -> Plan:
+def make_plan(job: Job, target: Target | None, roots: Sequence[Path], *, run: bool = True) -> Plan:
     """How to build ``job``.  All targets of the project are built: what ``cmake --build`` does when a person types it,
     so that what is on the disk afterwards is what they would have, files after the link such as ``.uf2`` included.
 
-    ``target`` is None where its configuration is wrong; CMake then says why.
+    ``target`` is None where its configuration is wrong; CMake then says why.  Without ``run``, programs that the build
+    folder names are not even asked for their version.
     """
     source = Path(os.path.abspath(job.source_dir or job.request.beside))
     build = Path(os.path.abspath(job.build_dir or source / USUAL))
@@ -57,7 +62,7 @@ def make_plan(job: Job, target: Target | None, roots: Sequence[Path]) -> Plan:
     cache = read_cmake_cache(file, Diagnostics()) if file.is_file() else {}
     west = job.built_by == "west"
     names = (*ALWAYS, *(["west", "zephyr"] if west and not cache else []))
-    findings = find_tools(names, roots, cache)
+    findings = find_tools(names, roots, cache, run=run)
     lacking = tuple(missing(findings, roots, cache))
     if lacking:
         return Plan(source, build, (), {}, cache, lacking)
@@ -70,7 +75,9 @@ def make_plan(job: Job, target: Target | None, roots: Sequence[Path]) -> Plan:
     else:
         configure = Step("configure", _first(job, source, build, programs), source)
     steps = (configure, Step("build", (programs["cmake"], "--build", str(build), *_parallel(cache, programs)), source))
-    return Plan(source, build, steps, _environment(os.environ, cache, west=west), cache)
+    environment = _environment(os.environ, cache, west=west)
+    build_program = cache.get("CMAKE_MAKE_PROGRAM") or programs["build_program"]
+    return Plan(source, build, steps, environment, cache, build_program=build_program)
 
 
 def _first(job: Job, source: Path, build: Path, programs: Mapping[str, str]) -> tuple[str, ...]:

@@ -32,10 +32,13 @@ class MissingTool:
     hint: str
 
 
-def find_tools(names: Sequence[str], roots: Sequence[Path], cmake: Mapping[str, str] | None = None) -> list[Finding]:
-    """What is found of the tools called ``names``; ``cmake`` are variables of a build folder's cache."""
+def find_tools(
+    names: Sequence[str], roots: Sequence[Path], cmake: Mapping[str, str] | None = None, *, run: bool = True
+) -> list[Finding]:
+    """What is found of the tools called ``names``; ``cmake`` are variables of a build folder's cache, whose programs
+    are started only with ``run``."""
     tools = load_tools(roots, Diagnostics())
-    where = Surroundings.here(cache_folder(), cmake)
+    where = Surroundings.here(cache_folder(), cmake, run=run)
     return [find_tool(tools[name], where) for name in names if name in tools]
 
 

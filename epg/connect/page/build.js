@@ -1,5 +1,6 @@
 // Generate: progress, messages, products, log.
 
+import { openDialog } from "./dialog.js";
 import { h } from "./dom.js";
 import { icon } from "./icons.js";
 import { problem } from "./problems.js";
@@ -23,7 +24,28 @@ export async function generate() {
   if (ui.dock === "closed") ui.dock = "open";
   forgetLog();
   draw();
-  await attempt("generate");
+  if ((await attempt("generate")) && current().build.ask) openDialog("run", "What Generate runs", question);
+}
+
+// Before the first build in a folder: what runs there. Null, which closes the dialog, once that is settled.
+function question() {
+  const { ask } = current().build;
+  if (!ask) return null;
+  return [
+    h("p", { key: "folder" }, "These commands build the project, in ", h("code", null, ask.folder), ":"),
+    h("pre", { key: "commands", tabindex: "0", "aria-label": "Commands" }, ask.commands.join("\n")),
+    h(
+      "p",
+      { key: "programs" },
+      `They start ${ask.programs.join(", ")} and everything that the project's CMake files name, with your rights. `,
+      "Do this for a project that you trust. This is asked once for a folder.",
+    ),
+    h(
+      "button",
+      { key: "run", type: "button", class: "primary", onclick: () => attempt("generate", { run: ask.key }) },
+      "Run",
+    ),
+  ];
 }
 
 export function buildTitle(state) {

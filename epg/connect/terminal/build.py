@@ -10,9 +10,22 @@ LOOK = 1.0
 """Seconds between two looks at a build that says nothing."""
 
 
-def build(session: Session, console: Console) -> bool:
+def ask_to_build(session: Session, console: Console) -> str | None:
+    """What stands for the user's consent; None if there is none.  Says what runs before the first build of a folder."""
+    ask = session.build_question()
+    if ask is not None:
+        console.say(f"building runs, in {ask['folder']}:")
+        for command in ask["commands"]:
+            console.say(f"  {command}")
+        console.say(f"which starts {', '.join(ask['programs'])} and all that the project's CMake files name")
+    if not console.agree("build?"):
+        return None
+    return ask["key"] if ask is not None else ""
+
+
+def build(session: Session, console: Console, agreed: str) -> bool:
     """Saves, configures and builds; whether that went well.  Ctrl-C cancels.  Raises Refused."""
-    state = session.act("generate", {})
+    state = session.act("generate", {"run": agreed})
     said = ""
     while state["build"]["state"] == "running":
         try:

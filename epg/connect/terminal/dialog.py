@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import TextIO
 
 from epg.connect.session import Refused, Session
-from epg.connect.terminal.build import build
+from epg.connect.terminal.build import ask_to_build, build
 from epg.connect.terminal.console import Console, Ended
 from epg.connect.terminal.create import Left, create_project
 from epg.connect.terminal.ports import Ports
@@ -111,10 +111,11 @@ class _Dialog:
         if any(problem["severity"] == "error" for problem in self._talk.state["diagnostics"]):
             self._console.say("there are mistakes: nothing can be built yet")
             return 1
-        if not self._console.agree("build?"):
+        agreed = ask_to_build(self._talk.session, self._console)
+        if agreed is None:
             return 0
         try:
-            return 0 if build(self._talk.session, self._console) else 1
+            return 0 if build(self._talk.session, self._console, agreed) else 1
         except Refused as problem:
             self._talk.say_refused(problem)
             return 1

@@ -3,6 +3,7 @@ and nothing goes wrong unseen."""
 
 from __future__ import annotations
 
+import secrets
 import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -115,7 +116,8 @@ def copy_jiwy(folder: Path) -> None:
 
 @pytest.fixture(scope="session")
 def served_jiwy(browser: Any, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Project]:
-    project = Project(tmp_path_factory.mktemp("connect") / "jiwy")
+    # A folder that nobody has agreed to build before, also where names of folders for tests come again.
+    project = Project(tmp_path_factory.mktemp(f"connect-{secrets.token_hex(4)}") / "jiwy")
     yield project
     project.epg.end()
 
@@ -130,7 +132,7 @@ def jiwy(served_jiwy: Project) -> Project:
 @pytest.fixture
 def model(tmp_path: Path) -> Path:
     """A model that has no project: what 20-sim leaves."""
-    return Path(shutil.copytree(ROOT / "examples/jiwy/model", tmp_path / "exports" / "camera"))
+    return Path(shutil.copytree(ROOT / "examples/jiwy/model", tmp_path / f"exports-{secrets.token_hex(4)}" / "camera"))
 
 
 @pytest.fixture

@@ -32,8 +32,16 @@ def test_generates_shows_errors_and_cancels(jiwy: Project, open_page: Open) -> N
     # A compiler's error leads to its line.
     source.write_text(original + "\nint broken = nowhere;\n", encoding="utf-8")
     line = original.count("\n") + 2
+    # Before the first build in a folder the page says what runs there.
     generate.click()
+    asked = page.get_by_role("dialog", name="What Generate runs")
+    assert f"cmake -S {jiwy.folder} -B {jiwy.folder}/build" in asked.locator("pre").inner_text()
+    page.keyboard.press("Escape")
+    assert jiwy.epg.state()["build"]["state"] == "idle" and not (jiwy.folder / "build").exists()
+    generate.click()
+    asked.get_by_role("button", name="Run").click()
     page.get_by_role("progressbar").wait_for()
+    assert asked.count() == 0
     page.get_by_role("button", name="Cancel", exact=True).wait_for()
     page.locator(".outcome.failed").wait_for(timeout=PATIENT)
     panel.get_by_text("nowhere").first.click()

@@ -1,0 +1,100 @@
+"""What a build would run, said before the first one in a folder.
+
+A folder that somebody has handed on may name any program: in its CMake files, in the cache of a build folder.  So the
+commands are shown once, and once more if they become others; what was agreed to is kept in EPG's cache.
+
+>>> # question = question_about(job)
+>>> # question.commands  ->  ("cmake -S /robot -B /robot/build -G Ninja", "cmake --build /robot/build")
+>>> # question.agree()
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import shlex
+import subprocess
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from epg.bootstrap import cache_folder
+from epg.connect.build.plan import make_plan
+from epg.connect.projects import Job
+from epg.load.hardware import Target
+
+FILE = "agreed-builds"
+"""In EPG's cache: a line for each folder and its programs."""
+KEPT = 1000
+
+
+@dataclass(frozen=True)
+class Question:
+    """``commands`` as one would type them in ``folder``; ``programs`` are run by them, ``key`` stands for all of it."""
+
+    folder: Path
+    commands: tuple[str, ...]
+    programs: tuple[str, ...]
+    key: str
+
+    def data(self) -> dict[str, Any]:
+        return {
+            "folder": str(self.folder),
+            "commands": list(self.commands),
+            "programs": list(self.programs),
+            "key": self.key,
+        }
+
+    def agree(self) -> None:
+        """Does not ask again; only as long as EPG runs where its cache cannot be written."""
+        _agreed.add(self.key)
+        file = cache_folder() / FILE
+        with suppress(OSError):
+            file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+            file.write_text("".join(f"{key}\n" for key in [*_lines(file), self.key][-KEPT:]), encoding="ascii")
+
+
+def question_about(job: Job, target: Target | None) -> Question | None:
+    """What is to be asked before ``job`` is built for ``target``; None if there is nothing to run, or all was said.
+
+    Runs nothing that a build folder names.
+    """
+    plan = make_plan(job, target, job.request.roots, run=False)
+    if not plan.steps:
+        return None
+    programs = {step.command[0] for step in plan.steps} | {plan.build_program}
+    key = json.dumps(
+        [os.path.realpath(plan.source), os.path.realpath(plan.build), sorted(programs), _number(plan.source)]
+    )
+    question = Question(
+        plan.steps[0].folder,
+        tuple(_shown(step.command) for step in plan.steps),
+        tuple(sorted(programs)),
+        hashlib.sha256(key.encode("utf-8", "surrogatepass")).hexdigest(),
+    )
+    known = question.key in _agreed or question.key in _lines(cache_folder() / FILE)
+    return None if known else question
+
+
+_agreed: set[str] = set()
+
+
+def _number(folder: Path) -> int:
+    """Another folder in the same place has another one."""
+    try:
+        return folder.stat().st_ino
+    except OSError:
+        return 0
+
+
+def _lines(file: Path) -> list[str]:
+    try:
+        return file.read_text(encoding="ascii").split()
+    except (OSError, ValueError):
+        return []
+
+
+def _shown(command: tuple[str, ...]) -> str:
+    return subprocess.list2cmdline(command) if os.name == "nt" else shlex.join(command)
