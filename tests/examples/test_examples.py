@@ -24,14 +24,12 @@ def run(command: str, **variables: str) -> str:
 
 
 @pytest.fixture(scope="module")
-def jiwy(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
-    """Build folder and output of the README's first command."""
-    readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    (command, *_) = re.findall(r"^cmake .*$", readme, re.MULTILINE)
+def jiwy(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Build folder of JIWY's program."""
     folder = tmp_path_factory.mktemp("jiwy")
-    assert command.count("build/jiwy") == 2
-    command = command.replace("build/jiwy", str(folder)).replace("-B", f"-DPython3_EXECUTABLE={sys.executable} -B", 1)
-    return folder, run(command)
+    configure = f"cmake -S examples/jiwy -B {folder} -DPython3_EXECUTABLE={sys.executable}"
+    run(f"{configure} && cmake --build {folder} --target jiwy_host")
+    return folder
 
 
 def simulate(
@@ -45,8 +43,14 @@ def simulate(
         return list(csv.DictReader(file)), json.loads((folder / "out.json").read_text())
 
 
-def test_the_readmes_first_command(jiwy: tuple[Path, str]) -> None:
-    folder, output = jiwy
+def test_the_readmes_first_command(tmp_path: Path) -> None:
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    (command, *_) = re.findall(r"^cmake .*$", readme, re.MULTILINE)
+    assert command.count("build/jiwy") == 2
+    folder = tmp_path / "jiwy"
+    output = run(
+        command.replace("build/jiwy", str(folder)).replace("-B", f"-DPython3_EXECUTABLE={sys.executable} -B", 1)
+    )
     for words in (
         "cycles",
         "overruns",
@@ -69,29 +73,26 @@ def test_the_readmes_first_command(jiwy: tuple[Path, str]) -> None:
     assert len(rows) == 18_000
 
 
-def test_nothing_moves_before_somebody_enables(jiwy: tuple[Path, str]) -> None:
-    folder, _ = jiwy
+def test_nothing_moves_before_somebody_enables(jiwy: Path) -> None:
     files = ["--trace", "still.csv", "--statistics", "still.json", "--duration", "3"]
-    subprocess.run([folder / "jiwy_host", "--quiet", *files], cwd=folder, check=True)
-    statistics = json.loads((folder / "still.json").read_text())
+    subprocess.run([jiwy / "jiwy_host", "--quiet", *files], cwd=jiwy, check=True)
+    statistics = json.loads((jiwy / "still.json").read_text())
     assert (statistics["enabled"], statistics["fault"]) == (False, "none")
-    with (folder / "still.csv").open(newline="") as file:
+    with (jiwy / "still.csv").open(newline="") as file:
         duties = {row[f"plant.inputs.duty_{axis}"] for row in csv.DictReader(file) for axis in ("pan", "tilt")}
     assert duties == {"0"}
 
 
-def test_two_runs_are_equal(jiwy: tuple[Path, str]) -> None:
-    folder, _ = jiwy
+def test_two_runs_are_equal(jiwy: Path) -> None:
     traces = []
     for _ in range(2):
-        simulate(folder, "5.0,pan_subscriber,0.5\n", 6.0)
-        traces.append((folder / "out.csv").read_bytes())
+        simulate(jiwy, "5.0,pan_subscriber,0.5\n", 6.0)
+        traces.append((jiwy / "out.csv").read_bytes())
     assert traces[0] == traces[1]
 
 
-def test_homing_is_gentle_and_ends(jiwy: tuple[Path, str]) -> None:
-    folder, _ = jiwy
-    rows, _ = simulate(folder, "", 4.5)
+def test_homing_is_gentle_and_ends(jiwy: Path) -> None:
+    rows, _ = simulate(jiwy, "", 4.5)
     for axis, limit in (("pan", 0.05), ("tilt", 0.06)):
         duties = [abs(float(row[f"outputs.pwm_{axis}"])) for row in rows]
         assert max(duties[:2000]) <= limit + 1e-12
@@ -100,11 +101,10 @@ def test_homing_is_gentle_and_ends(jiwy: tuple[Path, str]) -> None:
         assert abs(float(rows[-1][f"inputs.position_{axis}"])) < 0.02
 
 
-def test_disabling_lets_the_robot_coast_and_keeps_positions_live(jiwy: tuple[Path, str]) -> None:
-    folder, _ = jiwy
+def test_disabling_lets_the_robot_coast_and_keeps_positions_live(jiwy: Path) -> None:
     setpoints = "".join(f"{5 + 0.033 * i:.3f},pan_subscriber,{0.02 * i:.3f}\n" for i in range(50)) + "6.7,$enable,0\n"
     setpoints = "".join(sorted(setpoints.splitlines(keepends=True), key=lambda line: float(line.split(",")[0])))
-    rows, statistics = simulate(folder, setpoints, 8.0)
+    rows, statistics = simulate(jiwy, setpoints, 8.0)
     assert abs(float(rows[6690]["plant.inputs.duty_pan"])) > 0
     after = rows[6702:]
     assert all(float(row["plant.inputs.duty_pan"]) == 0 for row in after)
@@ -116,34 +116,31 @@ def test_disabling_lets_the_robot_coast_and_keeps_positions_live(jiwy: tuple[Pat
     assert statistics["fault"] == "none"
 
 
-def test_a_non_finite_setpoint_is_dropped(jiwy: tuple[Path, str]) -> None:
-    folder, _ = jiwy
-    rows, statistics = simulate(folder, "5.0,pan_subscriber,0.3\n6.0,pan_subscriber,nan\n6.1,pan_subscriber,inf\n", 7.0)
+def test_a_non_finite_setpoint_is_dropped(jiwy: Path) -> None:
+    rows, statistics = simulate(jiwy, "5.0,pan_subscriber,0.3\n6.0,pan_subscriber,nan\n6.1,pan_subscriber,inf\n", 7.0)
     assert statistics["setpoints_dropped"] == 2
     assert statistics["enabled"] is True
     assert float(rows[-1]["inputs.setpoint_pan"]) == 0.3
     assert abs(float(rows[-1]["plant.outputs.angle_pan"]) - 0.3) < 0.02
 
 
-def test_overruns_in_a_row_disable_and_latch(jiwy: tuple[Path, str]) -> None:
-    folder, _ = jiwy
+def test_overruns_in_a_row_disable_and_latch(jiwy: Path) -> None:
     stalls = "".join(f"{5 + 0.001 * i:.3f},$stall,0.0015\n" for i in range(60))
-    rows, statistics = simulate(folder, stalls, 6.0)
+    rows, statistics = simulate(jiwy, stalls, 6.0)
     assert statistics["fault"] == "overrun"
     assert statistics["enabled"] is False
     assert float(rows[-1]["plant.inputs.duty_pan"]) == 0
 
 
-def test_real_time(jiwy: tuple[Path, str]) -> None:
-    folder, _ = jiwy
+def test_real_time(jiwy: Path) -> None:
     done = subprocess.run(
-        [folder / "jiwy_host", "--realtime", "--duration", "2", "--statistics", "rt.json"],
-        cwd=folder,
+        [jiwy / "jiwy_host", "--realtime", "--duration", "2", "--statistics", "rt.json"],
+        cwd=jiwy,
         capture_output=True,
         text=True,
     )
     assert done.returncode == 0, done.stderr
-    statistics = json.loads((folder / "rt.json").read_text())
+    statistics = json.loads((jiwy / "rt.json").read_text())
     assert statistics["cycles"] + statistics["missed"] == 2000
     assert statistics["scheduler"] in ("SCHED_FIFO", "SCHED_OTHER")
     assert 0 < statistics["lateness_mean"] <= statistics["lateness_p99"] <= statistics["lateness_max"]
