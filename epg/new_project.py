@@ -290,9 +290,9 @@ def _stand_ins(model: Model) -> dict[str, StandIn]:
     """A topic for every port of the model that a topic can serve, by the port's name."""
     kinds = {"input": "ros_subscriber", "output": "ros_publisher"}
     return {
-        port.name: StandIn(_component_name(port.identifier), kinds[port.direction])
+        port.name: StandIn(_component_name(port.identifier), kinds[port.direction], port.type == "boolean")
         for port in (*model.inputs, *model.outputs)
-        if port.direction == "output" or port.type == "real"
+        if port.direction == "output" or port.type != "integer"
     }
 
 

@@ -27,6 +27,7 @@ class StandIn:
 
     name: str
     kind: str
+    boolean: bool
 
 
 @dataclass(frozen=True)
