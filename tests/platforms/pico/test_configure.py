@@ -196,6 +196,39 @@ def test_two_owners_of_usb(tmp_path: Path) -> None:
     assert "CMake Error" not in fine
 
 
+ONLY_IN_THE_SYSROOT = 'Could not find a package configuration file provided by "EPG"'
+"""What CMake says under the SDK's toolchain; EPG's pages must say what to do then, as EPG is not reached."""
+
+
+def test_the_package_under_the_sdks_toolchain(tmp_path: Path) -> None:
+    skip_unless_buildable("bare_metal")
+    for page in ("cmake.md", "pico.md"):
+        assert ONLY_IN_THE_SYSROOT in (ROOT / "docs" / page).read_text(encoding="utf-8")
+    line = "find_package(EPG REQUIRED NO_CMAKE_FIND_ROOT_PATH)"
+    assert f"\n{line} " in (ROOT / "docs/cmake.md").read_text(encoding="utf-8")
+    here = f"-DCMAKE_PREFIX_PATH={ROOT}"
+    assert ONLY_IN_THE_SYSROOT in configure_package(tmp_path / "alone", "find_package(EPG REQUIRED)", here)
+    assert "EPG has epg_add_target" in configure_package(tmp_path / "word", line, here)
+    assert "EPG has epg_add_target" in configure_package(
+        tmp_path / "variable", "find_package(EPG REQUIRED)", f"-DEPG_DIR={ROOT / 'cmake'}"
+    )
+
+
+def configure_package(folder: Path, find: str, option: str) -> str:
+    """What CMake prints for a project that finds EPG by ``find``, after project() and under the SDK's toolchain."""
+    folder.mkdir()
+    (folder / "CMakeLists.txt").write_text(
+        f"cmake_minimum_required(VERSION 3.22)\ninclude({pico_sdk()}/external/pico_sdk_import.cmake)\n"
+        f"project(firmware C CXX ASM)\n{find}\nif(COMMAND epg_add_target)\n"
+        '  message(STATUS "EPG has epg_add_target")\nendif()\n',
+        encoding="utf-8",
+    )
+    command = ["cmake", "-S", str(folder), "-B", str(folder / "build"), "-G", "Ninja", option]
+    command += [f"-DPICO_SDK_PATH={pico_sdk()}"]
+    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    return " ".join(done.stdout.split())
+
+
 USER = "add_executable(user main.c)\ntarget_link_libraries(user EPG::jiwy pico_stdlib{more})\n"
 
 
