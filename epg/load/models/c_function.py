@@ -23,9 +23,10 @@ from epg.load.models.assignments import (
     listed_names,
     output_lines,
 )
-from epg.load.models.c_code import Code, Function, Variable, integer_value, parse_code, typedefs
+from epg.load.models.c_code import Code, Function, integer_value, parse_code, typedefs
 from epg.load.models.features import check_features, check_method, check_tokens
 from epg.load.models.folders import source_files
+from epg.load.models.global_variables import base_type, global_variables
 from epg.load.models.identifiers import one_line
 from epg.load.models.link import Linked, link
 from epg.load.models.metadata import Metadata, cross_check, find_metadata
@@ -47,7 +48,6 @@ _MEMORY_COUNTS = (
     "state_count",
     "state_count",
 )
-_BASE_TYPES = {"double", "float", "int", "char", "short", "long", "unsigned", "signed char", "unsigned char", "bool"}
 
 
 def entry_points(code: Code) -> dict[str, Function]:
@@ -385,28 +385,12 @@ class _Importer:
         return self.metadata.tokens.count("NUMBER_STATES") if self.metadata.tokens else 0
 
     def _base_type(self, word: str) -> str:
-        for _ in range(4):
-            if word in _BASE_TYPES:
-                return word
-            word = self.types.get(word, "")
-        return ""
+        return base_type(word, self.types)
 
     def _globals(self) -> tuple[details.GlobalVariable, ...]:
-        result = []
-        for name, (_, variable) in sorted(self.variables.items()):
-            base = self._base_type(variable.type)
-            if not base or variable.constant or variable.pointer or self.instance_type:
-                continue
-            if variable.dimensions:
-                count = _elements(variable, self.macros)
-                if count and not variable.initializer:
-                    result.append(details.GlobalVariable(name, base, count, ""))
-                continue
-            value = exact_number(variable.initializer or "0")
-            floating = base in ("double", "float")
-            if value is not None and finite(value) is not None and (floating or abs(value) < 1 << 31):
-                result.append(details.GlobalVariable(name, base, 0, _value(value, base)))
-        return tuple(result)
+        if self.instance_type:
+            return ()
+        return global_variables((variable for _, variable in self.variables.values()), self.types, self.macros)
 
     def _renames(self) -> tuple[str, ...]:
         names = {f.name for code in self.linked.units for f in code.functions if not f.static and not f.owner}
@@ -444,17 +428,6 @@ class _Importer:
         return (
             "MEMORY" if self.instance_type else next((n for n in self.variables if n.endswith("MEMORY")), "xx_MEMORY")
         )
-
-
-def _elements(variable: Variable, macros: dict[str, str]) -> int:
-    total = 1
-    for size in re.findall(r"\[([^\]]*)\]", variable.dimensions):
-        total *= integer_value(size, macros) or 0
-    return total
-
-
-def _value(value: Fraction, base: str) -> str:
-    return repr(float(value)) if base in ("double", "float") else str(int(value))
 
 
 def read_c_file(path: Path, diagnostics: Diagnostics) -> Code | None:

@@ -183,6 +183,7 @@ class FmuExport:
     parameters: tuple[FmuParameter, ...]
     states: tuple[int, ...]  # value references of continuous states
     state_count: int  # of their values: arrays have several
+    variables: tuple[GlobalVariable, ...]  # that a start puts back; only where the FMU has no memory per instance
     own_step: Fraction | None  # of 20-sim's FMUs, in seconds: each call of DoStep asks for one of these
     endless: bool  # an end of the experiment is given, far away: without it the FMU takes its own
     terminated: bool  # fmi2GetBooleanStatus exists

@@ -14,12 +14,14 @@ from pathlib import Path
 
 from epg.diagnostics import Diagnostics
 from epg.load.models.assignments import assignments, exact_number, is_step, number
-from epg.load.models.details import FmuExport, FmuParameter, FmuPorts
+from epg.load.models.c_code import typedefs
+from epg.load.models.details import FmuExport, FmuParameter, FmuPorts, GlobalVariable
 from epg.load.models.fmu_description import Description, read_description
 from epg.load.models.fmu_features import check_fmu, check_guid, uses_heap
 from epg.load.models.fmu_files import DESCRIPTION, FmuFiles, read_fmu_files
 from epg.load.models.fmu_sources import FMI_HEADERS, FmuSources, find_sources
 from epg.load.models.fmu_variables import TYPES_2, TYPES_3, Variable
+from epg.load.models.global_variables import global_variables
 from epg.load.models.identifiers import one_line, to_identifier, unique_identifiers
 from epg.load.models.link import Linked
 from epg.load.models.metadata import warn_of_values
@@ -74,6 +76,7 @@ def load_fmu(
         parameters = _values_of_sources(parameters, sources, diagnostics)
     if step is None or diagnostics.error_count > before:
         return None
+    variables = _global_memory(sources.linked) if own_step is not None else ()
     states = {variable.reference: variable.count for variable in description.variables if variable.state}
     needed = uses_heap(sources.codes.values())
     read = {files.path(name) for name in (*sources.units, *sources.headers)} if not files.archive else set()
@@ -111,11 +114,12 @@ def load_fmu(
             parameters=places,
             states=tuple(sorted(states)),
             state_count=sum(states.values()),
+            variables=variables,
             own_step=own_step,
             endless=own_step is not None,
             terminated="fmi2GetBooleanStatus" in {f.name for _, f in sources.linked.functions()},
             heap=(HEAP if heap is None else heap) if needed else 0,
-            instantiable=not description.once,
+            instantiable=not description.once and not variables,
         ),
     )
 
@@ -297,6 +301,16 @@ def _names_by_header(standard: int, sources: FmuSources) -> bool:
     if header in sources.own_headers:
         return True
     return any(include.name.endswith(header) for code in sources.codes.values() for include in code.includes)
+
+
+def _global_memory(linked: Linked) -> tuple[GlobalVariable, ...]:
+    """The variables of an FMU of 20-sim 4.5 or 4.6.0, which keeps its state in them and does not reset all of them."""
+    variables = [variable for code in linked.units for variable in code.variables if not variable.static]
+    if not any(variable.name.endswith("MEMORY") for variable in variables):
+        return ()
+    types = {name: base.removeprefix("const ") for code in linked.all for name, base in typedefs(code)}
+    defined = {variable.name: variable for variable in variables if _is_defined(variable.type)}
+    return global_variables(defined.values(), types, linked.macros())
 
 
 def _renames(linked: Linked) -> tuple[str, ...]:

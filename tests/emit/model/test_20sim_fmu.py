@@ -82,3 +82,33 @@ def test_several_steps_of_the_method_in_one_of_the_model(tmp_path: Path) -> None
     rows = [line.split() for line in run_program(tmp_path / "run", SLOWER, libraries).splitlines()]
     assert len(rows) == 200 and len({row[0] for row in rows}) == 200
     assert all(row[0] == row[1] and row[2] == row[3] for row in rows)
+
+
+AGAIN = """
+#include "pan.h"
+#include <stdio.h>
+int main(void)
+{
+    static pan_inputs_t in = {0.5, 0.1};
+    pan_outputs_t out;
+    for (int k = 0; k < 60; k++) {
+        if (k % 20 == 0) {
+            pan_init(pan_instance(0), &in, &out);
+        }
+        pan_step(pan_instance(0), &in, &out);
+        printf("%a %a\\n", out.corr, out.out);
+    }
+    return 0;
+}
+"""
+
+
+def test_a_start_puts_back_global_variables(tmp_path: Path) -> None:
+    """FMUs of 4.5 keep their state in these, and set only some of them when they start."""
+    kept = {"model": "XXDouble xx_kept = 0.25;\n", "dynamic": "\txx_kept += 0.5;\n\txx_V[6] = xx_V[6] - xx_kept;\n"}
+    folder = Export(method="Euler", **kept).write_whole_fmu(tmp_path / "fmu", "globals")
+    model = loaded(folder)
+    assert not model.instantiable  # whatever its description says
+    rows = run_program(tmp_path / "run", AGAIN, [build(model, "pan", tmp_path)]).splitlines()
+    assert len(set(rows)) == 20
+    assert rows[:20] == rows[20:40] == rows[40:]

@@ -1,0 +1,54 @@
+"""Global variables of an export that a start must put back to their first values."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
+
+from epg.load.models.assignments import exact_number, finite
+from epg.load.models.c_code import Variable, integer_value
+from epg.load.models.details import GlobalVariable
+
+_BASE_TYPES = {"double", "float", "int", "char", "short", "long", "unsigned", "signed char", "unsigned char", "bool"}
+
+
+def base_type(name: str, types: Mapping[str, str]) -> str:
+    """The type of C behind a name such as ``XXDouble``; empty if there is none.  ``types`` are the typedefs."""
+    for _ in range(4):
+        if name in _BASE_TYPES:
+            return name
+        name = types.get(name, "")
+    return ""
+
+
+def global_variables(
+    variables: Iterable[Variable], types: Mapping[str, str], macros: dict[str, str]
+) -> tuple[GlobalVariable, ...]:
+    """Those of plain types with a first value that is a number, and arrays of zeros, by name."""
+    result = []
+    for variable in sorted(variables, key=lambda variable: variable.name):
+        base = base_type(variable.type, types)
+        if not base or variable.constant or variable.pointer:
+            continue
+        if variable.dimensions:
+            count = _elements(variable, macros)
+            if count and not variable.initializer:
+                result.append(GlobalVariable(variable.name, base, count, ""))
+            continue
+        value = exact_number(variable.initializer or "0")
+        floating = base in ("double", "float")
+        if value is not None and finite(value) is not None and (floating or abs(value) < 1 << 31):
+            result.append(GlobalVariable(variable.name, base, 0, _value(value, base)))
+    return tuple(result)
+
+
+def _elements(variable: Variable, macros: dict[str, str]) -> int:
+    total = 1
+    for size in re.findall(r"\[([^\]]*)\]", variable.dimensions):
+        total *= integer_value(size, macros) or 0
+    return total
+
+
+def _value(value: Fraction, base: str) -> str:
+    return repr(float(value)) if base in ("double", "float") else str(int(value))
