@@ -14,7 +14,9 @@ from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
-DATA = ("cmake", "targets", "schemas", "integration", "zephyr", "zephyr_module", "docs/errors.md")
+PLANTS = tuple(f"examples/{robot}/{name}" for robot in ("jiwy", "relbot") for name in ("plant", "plant.bindings.yaml"))
+"""The simulated robots that `epg new` writes into projects."""
+DATA = ("cmake", "targets", "schemas", "integration", "zephyr", "zephyr_module", "docs/errors.md", *PLANTS)
 
 
 class EpgBuildHook(BuildHookInterface):

@@ -28,6 +28,7 @@ from epg.load.middleware import Middleware
 from epg.load.models import Model, load_model
 from epg.load.tcf import predefined_tcf_names
 from epg.load.tools import load_tools
+from epg.new_simulation import model_axes, plant_files, robot_axes, robot_folder
 from epg.project import Request, check_name, check_sdk_headers, load_application, load_configuration, make_catalog
 from epg.resolve.matching import Match, match_ports
 from epg.source import Span
@@ -250,12 +251,22 @@ def _make(
 ) -> NewProject:
     """The project with its text; ``model`` as it will be there."""
     ports = (*model.inputs, *model.outputs)
+    model_copied = bool(copied)
     if base.configuration is not None:
         matches = match_ports(model, base.configuration.components)
+        robot = robot_folder(plan.extends, roots)
+        if robot is not None:
+            used = {match.reference.partition(".")[0] for match in matches.values() if match.reference}
+            axes = robot_axes(robot, base.configuration.components, used)
+            plan = replace(plan, plant=True, axes=axes)
+            simulation = "simulation/" if (base.templates / "simulation").is_dir() else ""
+            copied = {**copied, **{simulation + name: data for name, data in plant_files(robot).items()}}
     else:
         stand_ins = _stand_ins(model)
         heard = [stand_in.name for stand_in in stand_ins.values() if stand_in.kind == "ros_subscriber"]
-        plan = replace(plan, stand_ins=list(stand_ins.values()), subscriptions=heard)
+        topics = {port: stand_in.name for port, stand_in in stand_ins.items() if stand_in.kind == "ros_subscriber"}
+        axes = model_axes(model, topics)
+        plan = replace(plan, stand_ins=list(stand_ins.values()), subscriptions=heard, axes=axes)
         names = {port: stand_in.name for port, stand_in in stand_ins.items()}
         matches = {port.name: Match(port, names.get(port.name), ()) for port in ports}
     texts = project_files(plan, base.templates, roots)
@@ -263,7 +274,7 @@ def _make(
     texts[f"{plan.name}.bindings.yaml"] = new_bindings(model, matches)
     files = {**copied, **{name: text.encode() for name, text in texts.items()}}
     left = tuple(name for name, match in matches.items() if match.reference is None)
-    return NewProject(plan, dict(sorted(files.items())), left, bool(copied))
+    return NewProject(plan, dict(sorted(files.items())), left, model_copied)
 
 
 def _editor_schemas(catalog: Catalog, built_in: bool) -> dict[str, bytes]:

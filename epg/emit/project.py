@@ -31,12 +31,23 @@ class StandIn:
 
 
 @dataclass(frozen=True)
+class Axis:
+    """What a scenario moves: the topic that is set, the signal that should follow, the one that drives (or empty)."""
+
+    name: str
+    setpoint: str
+    position: str
+    duty: str
+
+
+@dataclass(frozen=True)
 class ProjectPlan:
     """What templates know of a project.
 
     ``extends`` is the predefined ``.tcf`` it builds on, empty for one that begins with ``stand_ins``.  ``middleware``
     and ``transport`` are empty where those of ``extends`` stay; ``console``: a person can type to the firmware;
     ``node``: it is a node of ROS 2.
+    ``plant``: a simulated robot is among the project's files; ``axes``: what its scenario moves.
     ``model`` is the model's place relative to the project, ``versions`` those of EPG and of the tools, by name.
     """
 
@@ -53,6 +64,8 @@ class ProjectPlan:
     subscriptions: Sequence[str]
     actuators: Sequence[str]
     versions: Mapping[str, str]
+    plant: bool = False
+    axes: Sequence[Axis] = ()
 
     activate: ClassVar[str] = ACTIVATE
     install: ClassVar[str] = install_command()
@@ -83,4 +96,4 @@ def project_files(plan: ProjectPlan, folder: Path, roots: Iterable[Path]) -> dic
         source = path.relative_to(folder).as_posix()
         name = source.removesuffix(SUFFIX).replace(NAME, plan.name)
         files[name] = env.get_template(source).render(plan=plan) if path.suffix == SUFFIX else path.read_text("utf-8")
-    return files
+    return {name: text for name, text in files.items() if text.strip()}

@@ -13,7 +13,16 @@ import pytest
 
 from tests.cmake.project import ROOT, Project
 
-TREES = ("cmake", "targets", "schemas", "integration", "zephyr", "zephyr_module")
+TREES = (
+    "cmake",
+    "targets",
+    "schemas",
+    "integration",
+    "zephyr",
+    "zephyr_module",
+    "examples/jiwy/plant",
+    "examples/relbot/plant",
+)
 
 
 @pytest.fixture(scope="module")

@@ -42,6 +42,20 @@ def simulate(project: Path, command: str) -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
+def assert_it_moves(project: Path, build: str, target: str) -> None:
+    """The README's simulation; of JIWY, an axis follows its setpoint."""
+    (command,) = readme_commands(project, f"cmake --build {build} --target")
+    assert "FAILED" not in run(project, "sh", "-c", command)
+    with (project / build / "tracking.csv").open(newline="") as file:
+        *_, last = csv.DictReader(file)
+    if "jiwy" in target:
+        for axis in ("pan", "tilt"):
+            assert float(last[f"{axis}_subscriber_setpoint"]) == 0.3
+            assert abs(float(last[f"{axis}_subscriber_position"]) - 0.3) < 0.02
+    else:
+        assert 0.3 in [float(value) for name, value in last.items() if name.endswith("_position")]
+
+
 def talk(project: Path, command: str) -> str:
     """What the README's second run, the console, answers."""
     assert command.endswith("--realtime --console")
@@ -59,6 +73,7 @@ def test_a_project_for_the_host(target: str, model: Path, port: str, tmp_path: P
     project = new(tmp_path / "my robot", target, model)
     configure(project)
     run(project, "cmake", "--build", "build")
+    assert_it_moves(project, "build", target)
     first, second = readme_commands(project, "build/robot_host")
     rows = simulate(project, first)
     assert len(rows) == 5 / (float(rows[1]["time"]) - float(rows[0]["time"]))
@@ -71,6 +86,7 @@ def test_the_simulation_of_a_project_for_a_board(target: str, tmp_path: Path) ->
     project = new(tmp_path / "my robot", target)
     configure(project / "simulation")
     run(project, "cmake", "--build", "simulation/build")
+    assert_it_moves(project, "simulation/build", target)
     first, second = readme_commands(project, "simulation/build/robot_host")
     assert float(simulate(project, first)[-1]["inputs.setpoint_pan"]) == 0.1
     talk(project, second)

@@ -1,0 +1,81 @@
+"""What a new project simulates: the robot's plant, where EPG has one, and a scenario that makes something move."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterable, Mapping
+from pathlib import Path
+
+from epg.check.configuration import Component
+from epg.data import data_folder
+from epg.diagnostics import Diagnostics
+from epg.emit.project import Axis
+from epg.load.models import Model
+from epg.load.yaml_file import load_yaml
+
+PLANT, BINDINGS = "plant", "plant.bindings.yaml"
+_SIGNAL_PART = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+
+
+def robot_folder(extends: str, roots: Iterable[Path]) -> Path | None:
+    """The example with a plant for the robot whose predefined ``.tcf`` is ``extends``; None if there is none.
+
+    The example has the name of the robot's folder: ``robots/jiwy/host_jiwy.tcf`` has ``examples/jiwy/plant``.
+    """
+    for root in roots:
+        for file in root.glob(f"robots/*/{extends}"):
+            try:
+                folder = data_folder("examples") / file.parent.name
+            except FileNotFoundError:
+                return None
+            return folder if (folder / PLANT).is_dir() and (folder / BINDINGS).is_file() else None
+    return None
+
+
+def plant_files(folder: Path) -> dict[str, bytes]:
+    """The plant and its bindings, by their names in a project."""
+    files = {
+        f"{PLANT}/{path.relative_to(folder / PLANT).as_posix()}": path.read_bytes()
+        for path in sorted((folder / PLANT).rglob("*"))
+        if path.is_file()
+    }
+    lines = (folder / BINDINGS).read_text(encoding="utf-8").splitlines(keepends=True)
+    text = "".join(line for line in lines if not line.startswith("# yaml-language-server"))  # a path of the example
+    return {**files, BINDINGS: text.encode()}
+
+
+def robot_axes(folder: Path, components: Mapping[str, Component], used: Collection[str]) -> list[Axis]:
+    """An axis for each subscriber among ``used``: a plant's output, and a duty, with words of the subscriber's name."""
+    bindings = load_yaml(folder / BINDINGS, Diagnostics())
+    assert bindings is not None, "EPG's own file"
+    ports = {
+        section: {port: str(node.value) for port, node in bindings[section].items() if node.value in components}
+        for section in ("inputs", "outputs")
+    }
+    axes = []
+    for component in components.values():
+        topic = component.parameters.get("topic")
+        if component.kind.communication != "subscribe" or component.name not in used or len(component.kind.ports) != 1:
+            continue
+        position = _nearest(component.name, ports["outputs"])
+        duty = _nearest(component.name, ports["inputs"])
+        if position:
+            duty = f"plant.inputs.{duty}" if duty else ""
+            axes.append(Axis(component.name, str(topic), f"plant.outputs.{position}", duty))
+    return axes
+
+
+def model_axes(model: Model, topics: Mapping[str, str]) -> list[Axis]:
+    """An axis for each real input that ``topics`` (port: topic) sets: what arrives, and the model's first output."""
+    outputs = [port.name for port in model.outputs if _SIGNAL_PART.fullmatch(port.name)]
+    duty = f"outputs.{outputs[0]}" if outputs else ""
+    real = [port.name for port in model.inputs if port.type == "real" and port.name in topics]
+    return [Axis(topics[name], topics[name], f"inputs.{name}", duty) for name in real if _SIGNAL_PART.fullmatch(name)]
+
+
+def _nearest(name: str, ports: Mapping[str, str]) -> str:
+    """The port with the most words of ``name``; empty if none has any."""
+    words = set(name.lower().split("_"))
+    shared = {port: len(words & set(f"{port}_{component}".lower().split("_"))) for port, component in ports.items()}
+    best = max(shared, key=lambda port: shared[port], default="")
+    return best if best and shared[best] > 0 else ""
