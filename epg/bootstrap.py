@@ -37,7 +37,7 @@ REQUIREMENTS["test"] = {
     **REQUIREMENTS["generator"],
 }
 REQUIREMENTS["test_all"] = {
-    "hatchling": ("hatchling", (1, 24)),
+    "hatchling": ("hatchling", (1, 27)),
     "editables": ("editables", (0, 5)),
     "playwright": ("playwright", (1, 45)),
     **REQUIREMENTS["test"],

@@ -9,6 +9,7 @@ from epg.emit.application import application_topics, emit_application
 from epg.emit.cmake import PathNames, application_cmake, model_cmake
 from epg.emit.description import describe
 from epg.emit.fingerprint import PLACE, application_hash
+from epg.emit.licence import with_licence
 from epg.emit.model import emit_model, model_build
 from epg.load.models.model import Model
 from epg.resolve.application import Application
@@ -28,11 +29,11 @@ def application_outputs(app: Application, roots: Sequence[Path], names: PathName
     files = {name: text.replace(PLACE, hash) for name, text in files.items()}
     files[f"{app.name}.json"] = describe(app, application_topics(app, roots), names, hash)
     files[f"{app.name}.cmake"] = application_cmake(app, builds, files, names)
-    return files
+    return with_licence(files)
 
 
 def model_outputs(model: Model, name: str, instances: int, names: PathNames) -> dict[str, str]:
     """The library of a model alone, as ``epg_add_model`` makes it."""
     files = emit_model(model, name, {}, instances)
     files[f"{name}.cmake"] = model_cmake(model, name, model_build(model, name, {}), files, names)
-    return files
+    return with_licence(files)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+import tarfile
 import urllib.request
 import zipfile
 from pathlib import Path
@@ -67,6 +68,23 @@ def test_the_wheel_holds_the_same_files_as_the_checkout(wheel: Path) -> None:
         assert archive.read("epg/_data/docs/errors.md") == (ROOT / "docs/errors.md").read_bytes()
     assert {"epg/__main__.py", "epg/emit/templates/app.c.j2", "epg/lock/generator.txt"} <= names
     assert any(name.endswith(".data/data/share/EPG/cmake/EPGConfig.cmake") for name in names)
+
+
+def test_a_wheel_and_a_source_archive_have_the_licence(wheel: Path, tmp_path: Path) -> None:
+    texts = [(ROOT / name).read_bytes() for name in ("LICENSE", "NOTICE")]
+    with zipfile.ZipFile(wheel) as archive:
+        names = {Path(name).name: name for name in archive.namelist() if ".dist-info/" in name}
+        assert [archive.read(names[name]) for name in ("LICENSE", "NOTICE")] == texts
+        metadata = archive.read(names["METADATA"]).decode()
+    assert "\nLicense-Expression: Apache-2.0\n" in metadata
+    assert "\nLicense-File: LICENSE\nLicense-File: NOTICE\n" in metadata
+    script = "import sys; from hatchling.builders.sdist import SdistBuilder;"
+    script += " print(next(SdistBuilder(sys.argv[1]).build(directory=sys.argv[2], versions=['standard'])))"
+    command = [sys.executable, "-c", script, str(ROOT), str(tmp_path)]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    with tarfile.open(done.stdout.strip()) as sources:
+        held = {Path(name).name: name for name in sources.getnames() if name.count("/") == 1}
+        assert [sources.extractfile(held[name]).read() for name in ("LICENSE", "NOTICE")] == texts  # type: ignore[union-attr]
 
 
 def test_a_wheel_has_the_page_of_connect(prefix: Path) -> None:

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Target `jiwy` in Zephyr: the devices that the node `epg_jiwy` of the devicetree names, and the tick.

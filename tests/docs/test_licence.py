@@ -1,0 +1,39 @@
+"""The licence: its text, and the line that sources and generated files begin with."""
+
+from __future__ import annotations
+
+import hashlib
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from epg.emit.licence import first_line
+
+ROOT = Path(__file__).resolve().parents[2]
+LINE = "SPDX-License-Identifier: Apache-2.0"
+
+
+def test_the_licence_is_the_whole_text() -> None:
+    """That of https://www.apache.org/licenses/LICENSE-2.0.txt."""
+    text = (ROOT / "LICENSE").read_bytes()
+    assert hashlib.sha256(text).hexdigest() == "cfc7749b96f63bd31c3c42b5c471bf756814053e847c10f3eb003417bc523d30"
+
+
+@pytest.mark.parametrize("tcf", ["host_jiwy.tcf", "rpi_pico_freertos_jiwy.tcf", "rpi_pico_zephyr_jiwy.tcf"])
+def test_generated_files_say_it_in_their_first_line(tcf: str, tmp_path: Path) -> None:
+    jiwy = ROOT / "examples/jiwy"
+    command = [sys.executable, str(ROOT / "epg"), "generate", "jiwy", "--tcf", tcf, "--model", str(jiwy / "model")]
+    command += ["--bindings", str(jiwy / "jiwy.bindings.yaml"), "--output", str(tmp_path)]
+    subprocess.run(command, check=True, capture_output=True)
+    files = [path for path in tmp_path.rglob("*") if path.is_file() and path.suffix != ".json"]
+    assert len(files) > 8
+    assert [path.name for path in files if LINE not in path.read_text(encoding="utf-8").split("\n")[0]] == []
+
+
+def test_what_is_not_epgs_text_has_no_line_or_another_one() -> None:
+    assert first_line("jiwy_copies/xxmodel.c") == first_line("jiwy_fmu/model.c") == first_line("jiwy.json") == ""
+    assert first_line("jiwy_headers/fmi2Functions.h") == "/* SPDX-License-Identifier: BSD-2-Clause */"
+    assert first_line("jiwy_headers/XXTypes.h") == f"/* {LINE} */"
+    assert "Modelica Association" in (ROOT / "NOTICE").read_text(encoding="utf-8")
