@@ -24,6 +24,7 @@ from epg.load.models.assignments import (
     output_lines,
 )
 from epg.load.models.c_code import Code, Function, integer_value, parse_code, typedefs
+from epg.load.models.completeness import check_variables
 from epg.load.models.features import check_features, check_method, check_tokens
 from epg.load.models.folders import source_files
 from epg.load.models.global_variables import base_type, global_variables
@@ -97,6 +98,7 @@ class _Importer:
         method, method_code, method_at = self._method()
         check_method(method, self.diagnostics, method_code, method_at)
         check_features(self.linked, roots, "", self.diagnostics)
+        check_variables(self.linked, self._prefix(), self.diagnostics)
         inputs_lines, outputs_lines = self._port_lines(roots)
         names = {kind: listed_names(self.file, kind) for kind in ("input", "output")}
         for kind, lines in (("input", inputs_lines), ("output", outputs_lines)):

@@ -17,6 +17,7 @@ from epg.load.models.assignments import (
     output_lines,
 )
 from epg.load.models.c_code import Code, Function, integer_value, typedefs
+from epg.load.models.completeness import check_methods
 from epg.load.models.features import FIXED_STEP_METHODS, check_features, check_method, check_tokens
 from epg.load.models.link import Linked, link
 from epg.load.models.metadata import cross_check, find_metadata
@@ -78,6 +79,8 @@ class _Importer:
         roots = list(self.methods.values())
         roots += [f for _, f in self.linked.functions() if f.owner == method and f.name in ("Initialize", "Step")]
         check_features(self.linked, roots, method, self.diagnostics)
+        for name in (self.class_name, method):
+            check_methods(self.linked, name, self.diagnostics)
         ports = [self._ports("input"), self._ports("output")]
         if step is None or self.diagnostics.error_count > before:
             return None

@@ -34,7 +34,7 @@ def open_classes(code: Code) -> set[str]:
     for match in _CLASS.finditer(text):
         if match.start() < at:  # of a class inside: no part of the text is looked at twice
             continue
-        at = _end(text, match.end())
+        at = end_of_block(text, match.end())
         if any(_METHOD.search(part) for part in _level(text[match.end() : at])):
             found.add(match[1])
     return found
@@ -46,11 +46,11 @@ def _without_classes(text: str) -> str:
     for match in _CLASS.finditer(text):
         if match.start() >= at:
             parts.append(text[at : match.end()])
-            at = _end(text, match.end())
+            at = end_of_block(text, match.end())
     return "".join([*parts, text[at:]])
 
 
-def _end(text: str, start: int) -> int:
+def end_of_block(text: str, start: int) -> int:
     """Where the brace that opens before ``start`` closes."""
     depth = 1
     for match in _BRACE.finditer(text, start):

@@ -122,6 +122,7 @@ def check_features(
     told: set[str] = set()
     declarations = _Declarations(linked)
     causes = _Causes(foreign)
+    declared = frozenset(name for header in linked.headers for name in header.identifiers)
     for code, function in reachable:
         of_files = causes.look_at_types(code, function)
         for name, start in code.calls(function):
@@ -135,7 +136,7 @@ def check_features(
                 _check_declared(name, start, code, declarations, told, diagnostics)
             elif name not in _LIBRARY_ALL and name not in stubs:
                 continue
-            _check_call(name, start, code, stubs, known, told, diagnostics, foreign)
+            _check_call(name, start, code, stubs, known, told, diagnostics, foreign, declared)
         if function.owner and not _may_allocate(function):
             for match in re.finditer(r"\bnew\b", code.body(function)):
                 start = function.body_start + match.start()
@@ -255,6 +256,7 @@ def _check_call(
     told: set[str],
     diagnostics: Diagnostics,
     foreign: bool,
+    declared: frozenset[str],
 ) -> None:
     span = code.file.span(start, start + len(name))
     if name in stubs:
@@ -285,7 +287,7 @@ def _check_call(
         diagnostics.warning("model-real-time", span, message, hint=hint)
     elif name not in _LIBRARY_ALL and not (name in _CPP_LIBRARY and code.file.path.suffix != ".c"):
         told.add(name)
-        if re.match(r"XX|YY", name) or name.endswith("Submodel"):
+        if re.match(r"XX|YY", name) or name.endswith("Submodel") or name in declared:
             message = f"'{name}' is called, but no file of the export defines it"
             hint = "are all files there, and renamed in the same way? else export again"
             diagnostics.error("model-incomplete", span, message, hint=hint)

@@ -99,7 +99,7 @@ class _Linker:
         self.suffixes = suffixes
         self.diagnostics = diagnostics
         self.directory = main.file.path.parent
-        self.near = Neighbours(self.directory)
+        self.near = Neighbours(self.directory, ".c" not in suffixes)
         self.definitions = _definitions(_pool(main, self.directory, suffixes, diagnostics))
         self.headers = Headers(_include_directories(self.directory), self.near, diagnostics)
         self.units = [main]

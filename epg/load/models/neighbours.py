@@ -39,14 +39,18 @@ _ENTRY_POINT = re.compile(
     r"CalculateSubmodel\w{0,80}\s{0,80}\([^();{]{0,500}\)\s{0,80}\{|::\s{0,80}CopyInputsToVariables\s{0,80}\("
 )
 _BLANK = re.compile(r"\s+")
-_NOT_IN_LISTS = re.compile(r"[\[\]$;\"\\]")  # of CMake
+_NOT_IN_LISTS = re.compile(r"[\[\]$;\"\\|]")  # of CMake
 
 
 class Neighbours:
-    """Folders beside ``directory``; nothing is read before somebody asks."""
+    """Folders beside ``directory``; nothing is read before somebody asks.
 
-    def __init__(self, directory: Path) -> None:
+    ``cpp`` models of 20-sim share a ``common/`` that does not depend on the model: that of another one will do.
+    """
+
+    def __init__(self, directory: Path, cpp: bool) -> None:
         self.directory = directory
+        self._cpp = cpp
         home = [above(directory)] if directory.name.lower() in SOURCE_FOLDERS else []
         self._homes = [directory, *home]
         self.looked = False
@@ -68,7 +72,7 @@ class Neighbours:
                         continue
                     is_model = holds_model(folder)
                     (models if is_model else searched)[folder] = None
-                    if is_model and may_hold_sources(folder / _SHARED):
+                    if is_model and self._cpp and may_hold_sources(folder / _SHARED):
                         searched[folder / _SHARED] = None
         return tuple(searched), tuple(models), "" if searched else reason
 

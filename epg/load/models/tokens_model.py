@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from epg.diagnostics import Diagnostics, did_you_mean
+from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.load.models import details
 from epg.load.models.assignments import assignments, exact_number, finite, input_lines, is_step, output_lines
 from epg.load.models.c_code import KEYWORDS
@@ -33,6 +33,32 @@ CODE = (
     *EQUATIONS,
 )
 
+#: values without which the frame around the equations is another one
+NEEDED = (
+    "TIME_STEP_SIZE",
+    "INTEGRATION_METHOD_NAME",
+    "VARPREFIX",
+    "NUMBER_INPUTS",
+    "NUMBER_OUTPUTS",
+    "NUMBER_PARAMETERS",
+    "NUMBER_INITIAL_VALUES",
+    "NUMBER_VARIABLES",
+    "NUMBER_STATES",
+)
+
+#: arrays by the token with their name: what it is by default, and the token with the number of elements
+ARRAYS = {
+    "XX_VARIABLE_ARRAY_NAME": ("V", "NUMBER_VARIABLES"),
+    "XX_PARAMETER_ARRAY_NAME": ("P", "NUMBER_PARAMETERS"),
+    "XX_INITIAL_VALUE_ARRAY_NAME": ("I", "NUMBER_INITIAL_VALUES"),
+    "XX_CONSTANT_ARRAY_NAME": ("C", "NUMBER_CONSTANTS"),
+    "XX_STATE_ARRAY_NAME": ("s", "NUMBER_STATES"),
+    "XX_RATE_ARRAY_NAME": ("R", "NUMBER_STATES"),
+    "XX_UNNAMED_ARRAY_NAME": ("U", "NUMBER_UNNAMED"),
+    "XX_FAVORITE_PARS_ARRAY_NAME": ("F", "NUMBER_FAVORITE_PARAMETERS"),
+    "XX_FAVORITE_VARS_ARRAY_NAME": ("f", "NUMBER_FAVORITE_VARIABLES"),
+}
+
 #: functions of <math.h> that equations call directly
 MATH = words(
     """
@@ -57,11 +83,7 @@ def load_tokens_model(tokens: Tokens, diagnostics: Diagnostics) -> Model | None:
     """The model that ``tokens`` hold, or None after reporting why it cannot be used."""
     before = diagnostics.error_count
     whole = tokens.span("SUBMODEL_NAME")
-    missing = [name for name in (*CODE, "TIME_STEP_SIZE", "INTEGRATION_METHOD_NAME") if name not in tokens.values]
-    if missing:
-        span = Span(str(tokens.path), 1, 1, 2)
-        message = f"token '{missing[0]}' is missing: '{tokens.path.name}' alone is no model"
-        diagnostics.error("model-tokens", span, message, hint="export the model again")
+    if not _is_complete(tokens, diagnostics):
         return None
     check_tokens(tokens, diagnostics)
     _check_method(tokens, diagnostics)
@@ -112,6 +134,35 @@ def load_tokens_model(tokens: Tokens, diagnostics: Diagnostics) -> Model | None:
         details=details.TokensExport(tokens, helpers),
         finish_time=finite(finish),
     )
+
+
+def _is_complete(tokens: Tokens, diagnostics: Diagnostics) -> bool:
+    """Reports tokens that are missing, all at once, and arrays that are smaller than the equations take them for."""
+    missing = [name for name in (*CODE, *NEEDED) if name not in tokens.values]
+    if missing:
+        span = Span(str(tokens.path), 1, 1, 2)
+        named = ", ".join(f"'{name}'" for name in missing[:6])
+        more = f" and {len(missing) - 6} more" if len(missing) > 6 else ""
+        word = "tokens are missing" if missing[1:] else "a token is missing"
+        message = f"{word}, without which '{tokens.path.name}' alone is not a model: {named}{more}"
+        diagnostics.error("model-tokens", span, message, hint="export the model again")
+        return False
+    before = diagnostics.error_count
+    prefix = tokens.trimmed("VARPREFIX")
+    for token, (default, count) in ARRAYS.items():
+        array = prefix + (tokens.trimmed(token) or default)
+        element = re.compile(rf"(?<![\w.]){re.escape(array)}\s{{0,80}}\[\s{{0,80}}(\d{{1,12}})\s{{0,80}}\]", re.ASCII)
+        for name in CODE:
+            file = tokens.code(name)
+            beyond = next((m for m in element.finditer(file.code) if int(m[1]) >= tokens.count(count)), None)
+            if beyond is not None:
+                message = f"the equations use {beyond[0]}, but '{count}' is {tokens.count(count)}"
+                note = Note("the count", tokens.span(count))
+                span = file.span(beyond.start(), beyond.end())
+                hint = "export the model again, or undo the edit of its tokens"
+                diagnostics.error("model-tokens", span, message, hint=hint, notes=[note])
+                break
+    return diagnostics.error_count == before
 
 
 def _check_method(tokens: Tokens, diagnostics: Diagnostics) -> None:

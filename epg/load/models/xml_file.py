@@ -9,12 +9,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from xml.parsers import expat
 
-from epg.diagnostics import Diagnostics
+from epg.diagnostics import Diagnostics, Note
+from epg.load.models.identifiers import one_line
 from epg.load.models.source_file import MAX_BYTES, decode
 from epg.source import Span
 
 MAX_DEPTH = 64
 MAX_ELEMENTS = 250_000
+_ENDS = ("no element found", "unclosed token", "unclosed CDATA section", "partial character")  # expat's words
 _IGNORED = "it is ignored; export the model again"
 
 
@@ -80,7 +82,15 @@ def parse_xml(
         builder.parser.Parse(data, True)
     except expat.ExpatError as error:
         span = builder.at(error.lineno, error.offset + 1, 1)
-        report("model-xml", span, f"XML: {expat.ErrorString(error.code)}", hint=hint)
+        reason = expat.ErrorString(error.code)
+        if reason in _ENDS and builder.stack:
+            element = builder.stack[-1]
+            name = element.attributes.get("name", "")
+            which = f"<{element.name}>" + (f" '{one_line(name)[:80]}'" if name else "")
+            message = f"XML: the file ends before {which} does: a part of it is missing"
+            report("model-xml", span, message, hint=hint, notes=[Note(f"{which} begins here", element.span)])
+        else:
+            report("model-xml", span, f"XML: {reason}", hint=hint)
         return None
     except _Refused as error:
         report("model-xml", builder.span(1), str(error), hint=hint)

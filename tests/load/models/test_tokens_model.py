@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -44,3 +45,33 @@ def test_refused(export: Export, id: str, tmp_path: Path) -> None:
     assert model is None
     assert [(item.severity, item.id) for item in diagnostics] == [("error", id)]
     assert diagnostics.items[0].hint and diagnostics.items[0].span.line > 0
+
+
+NEEDED = ["VARPREFIX", "NUMBER_INPUTS", "NUMBER_VARIABLES", "NUMBER_STATES", "TIME_STEP_SIZE", "DYNAMIC_EQUATIONS"]
+
+
+@pytest.mark.parametrize("count", [1, 2, len(NEEDED)])
+def test_tokens_that_are_gone_are_named_at_once(count: int, tmp_path: Path) -> None:
+    path = Export().write_tokens(tmp_path) / "tokens.xml"
+    for name in NEEDED[:count]:
+        path.write_text(re.sub(rf'<token name="{name}">.*?</token>', "", path.read_text(), flags=re.DOTALL))
+    model, diagnostics = load(tmp_path)
+    assert model is None and [item.id for item in diagnostics] == ["model-tokens"]
+    assert all(f"'{name}'" in diagnostics.items[0].message for name in NEEDED[:count])
+
+
+@pytest.mark.parametrize("name", ["NUMBER_VARIABLES", "NUMBER_STATES", "NUMBER_PARAMETERS", "NUMBER_INITIAL_VALUES"])
+def test_arrays_that_are_too_small_are_refused(name: str, tmp_path: Path) -> None:
+    """The equations would write behind their ends."""
+    model, diagnostics = load(Export(token_values={name: "1"}).write_tokens(tmp_path))
+    assert model is None and {item.id for item in diagnostics} == {"model-tokens"}
+    assert all(f"but '{name}' is 1" in item.message for item in diagnostics)
+
+
+def test_a_file_that_is_cut_off(tmp_path: Path) -> None:
+    path = Export().write_tokens(tmp_path) / "tokens.xml"
+    text = path.read_text()
+    path.write_text(text[: text.index("DYNAMIC_EQUATIONS") + 40])
+    model, diagnostics = load(tmp_path)
+    assert model is None and [item.id for item in diagnostics] == ["model-xml"]
+    assert "the file ends before <token> 'DYNAMIC_EQUATIONS' does" in diagnostics.items[0].message
