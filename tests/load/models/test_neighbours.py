@@ -181,3 +181,16 @@ def test_a_header_in_another_spelling(tmp_path: Path) -> None:
     (tmp_path / "common" / "xxtypes.h").rename(tmp_path / "common" / "XXTypes.h")
     model, _ = load(folder)
     assert model is not None and (tmp_path / "common" / "XXTypes.h") in model.files
+
+
+@pytest.mark.skipif(not HAVE_COMPILER, reason="needs gcc and g++")
+def test_the_common_folder_of_another_class(tmp_path: Path) -> None:
+    export = Export(method="Euler")
+    export.write_cpp(tmp_path / "robot" / "tilt")
+    folder, whole = export.write_cpp(tmp_path / "robot" / "pan"), export.write_cpp(tmp_path / "whole")
+    shutil.rmtree(folder / "common")
+    model, diagnostics = load(folder)
+    assert model is not None
+    assert [item.message.split(",")[0] for item in diagnostics] == ["taken from '../tilt/common'"]
+    expected = run_wrapper(build(loaded(whole), "whole", tmp_path / "build"), 20)
+    assert run_wrapper(build(model, "pan", tmp_path / "build"), 20) == expected
