@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 from collections.abc import Mapping
 from pathlib import Path
@@ -34,10 +35,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--force", action="store_true", help="overwrite files")
     units = parser.add_argument_group("services")
     units.add_argument("--systemd", action="store_true", help="write systemd units too, into FOLDER/systemd")
-    units.add_argument("--user", default="ubuntu", help="user that the agents run as; default: ubuntu")
-    units.add_argument("--distribution", default="jazzy", help="ROS 2 distribution; default: jazzy")
+    units.add_argument("--user", type=_user, default="ubuntu", help="user that the agents run as; default: ubuntu")
+    units.add_argument("--distribution", type=_distribution, default="jazzy", help="ROS 2 distribution; default: jazzy")
     units.add_argument(
-        "--workspace", metavar="FOLDER", help="where the agent was built; default: /home/<user>/microros_ws"
+        "--workspace",
+        type=_workspace,
+        metavar="FOLDER",
+        help="where the agent was built; default: /home/<user>/microros_ws",
     )
     units.add_argument("--domain", type=_domain, default=0, help="ROS_DOMAIN_ID; default: 0")
 
@@ -114,6 +118,26 @@ def _port(text: str) -> int:
 
 def _domain(text: str) -> int:
     return _between(text, 0, 232)
+
+
+def _user(text: str) -> str:
+    return _matching(text, r"[A-Za-z_][A-Za-z0-9_.-]*", "the name of a user")
+
+
+def _distribution(text: str) -> str:
+    return _matching(text, r"[a-z][a-z0-9_]*", "a ROS 2 distribution, such as jazzy")
+
+
+def _workspace(text: str) -> str:
+    if not text.isprintable():
+        raise argparse.ArgumentTypeError("the name of a folder is one line of text")
+    return _matching(text, "/[^`]*", "an absolute path")
+
+
+def _matching(text: str, pattern: str, what: str) -> str:
+    if not re.fullmatch(pattern, text):
+        raise argparse.ArgumentTypeError(f"'{text}' is not {what}")
+    return text
 
 
 def _between(text: str, low: int, high: int) -> int:

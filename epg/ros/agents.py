@@ -113,7 +113,7 @@ def _on_usb(robot: Robot, serials: Sequence[str], diagnostics: Diagnostics) -> l
 def _on_device(robot: Robot, text: str, diagnostics: Diagnostics) -> Agent:
     """``text`` is "/dev/ttyAMA0" or "/dev/ttyAMA0:921600"."""
     device, _, rate = text.partition(":")
-    if not device.startswith("/dev/") or not re.fullmatch("([1-9][0-9]{2,6})?", rate):
+    if not device.startswith("/dev/") or not device.isprintable() or not re.fullmatch("([1-9][0-9]{2,6})?", rate):
         span = _argument("--device", f"{robot.name}={text}")
         hint = "such as /dev/ttyAMA0 or /dev/ttyAMA0:921600"
         diagnostics.error("wrong-device", span, f"'{text}' is no tty, or no tty and baud rate", hint=hint)

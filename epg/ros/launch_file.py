@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 
 from epg.ros.agents import Agent
@@ -74,5 +75,5 @@ def _topics(robot: Robot) -> str:
 
 
 def _quoted(text: str) -> str:
-    escaped = text.replace("\\", "\\\\").replace('"', '\\"')
-    return f'"{escaped}"'
+    """A literal of Python; JSON's are all of them."""
+    return json.dumps(text, ensure_ascii=False)

@@ -9,10 +9,13 @@
 from __future__ import annotations
 
 import json
+import re
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from epg.check.names import identifier_problem, namespace_problem, node_name_problem, topic_problem
 from epg.diagnostics import Diagnostics
 from epg.source import Span
 
@@ -112,20 +115,39 @@ def _read(file: Path) -> Robot | None:
 
 def _robot(file: Path, data: dict[str, Any]) -> Robot:
     communication = data["communication"]
+    domain = communication.get("domain")
+    if domain is not None and (type(domain) is not int or not 0 <= domain <= 232):
+        raise ValueError("not a ROS domain")
+    transport = communication["transport"]
     return Robot(
         file=file,
-        name=data["name"],
-        board=data["target"]["board"],
-        platform=data["target"]["platform"],
-        node=data["node"],
-        namespace=data["namespace"],
-        domain=communication.get("domain"),
-        middleware=communication["middleware"],
-        transport=communication["transport"],
+        name=_checked(data["name"], identifier_problem),
+        board=_checked(data["target"]["board"], _word_problem),
+        platform=_checked(data["target"]["platform"], _word_problem),
+        node=_checked(data["node"], node_name_problem),
+        namespace=_checked(data["namespace"], namespace_problem),
+        domain=domain,
+        middleware=_checked(communication["middleware"], _word_problem),
+        transport=None if transport is None else _checked(transport, _word_problem),
         subscriptions=tuple(_topic(topic) for topic in data["subscriptions"]),
         publications=tuple(_topic(topic) for topic in data["publications"]),
     )
 
 
 def _topic(data: dict[str, Any]) -> Topic:
-    return Topic(data["topic"], data["type"], data["qos"], data["role"], tuple(data["values"]), tuple(data["elements"]))
+    name = _checked(data["topic"], topic_problem)
+    return Topic(name, data["type"], data["qos"], data["role"], tuple(data["values"]), tuple(data["elements"]))
+
+
+def _checked(text: object, problem: Callable[[str], str | None]) -> str:
+    """A text that EPG has checked before it wrote it; raises ValueError where somebody else has written another.
+
+    Names reach launch files and systemd units, where a line more is a command more.
+    """
+    if not isinstance(text, str) or (text and problem(text) is not None):
+        raise ValueError(f"{text!r} is not a name")
+    return text
+
+
+def _word_problem(text: str) -> str | None:
+    return None if re.fullmatch(r"[\w.+-]+", text) else "is not a word"

@@ -102,7 +102,12 @@ def udev_rules(serials: Sequence[str]) -> str:
 
 
 def _quoted(text: str) -> str:
-    """One word of ``ExecStart=``: systemd unquotes it, and takes ``%`` and ``$`` for something of its own."""
+    """One word of ``ExecStart=``: systemd unquotes it, and takes ``%`` and ``$`` for something of its own.
+
+    Raises ValueError for what would end the line.
+    """
+    if not text.isprintable():
+        raise ValueError(f"{text!r} is not one line of text")
     escaped = text.replace("\\", "\\\\").replace('"', '\\"').replace("%", "%%").replace("$", "$$")
     return f'"{escaped}"'
 

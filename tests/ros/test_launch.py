@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import importlib.util
+import json
 import re
 import shlex
 import shutil
@@ -192,3 +193,64 @@ def test_names_of_device_units_are_systemds(path: str) -> None:
         ["systemd-escape", "--path", "--suffix=device", path], capture_output=True, text=True, check=True
     )
     assert device_unit(path) == done.stdout.strip()
+
+
+HOSTILE = [
+    "x\nUser=root",
+    'x"""\nimport os; os.system("touch pwned")\n"""',
+    "x\r[Service]",
+    "x\u2028y",
+    "%n",
+    "$(touch pwned)",
+    "x\\",
+    "x'y",
+    "</node>",
+    "a b",
+]
+
+
+@pytest.mark.parametrize("text", HOSTILE, ids=repr)
+@pytest.mark.parametrize("key", ["name", "node", "namespace", "topic", "board", "middleware", "transport", "domain"])
+def test_names_that_epg_would_not_write_are_not_read(
+    key: str, text: str, robots: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A build folder may come from anybody; what it says would stand in a program, and in files for root."""
+    file = robots / "relbot.json"
+    data = json.loads(file.read_text(encoding="utf-8"))
+    place = {"topic": data["publications"][0], "board": data["target"]}.get(key, data)
+    place = data["communication"] if key in ("middleware", "transport", "domain") else place
+    place[key] = text
+    file.write_text(json.dumps(data), encoding="utf-8")
+    assert main(["launch", "relbot.json", "--board", f"relbot={FIRST}", "--systemd"]) == 1
+    assert "this is no description of a generated target [not-a-description]" in capsys.readouterr().err
+    assert not list(robots.rglob("*.service")) and not list(robots.glob("*.py"))
+
+
+@pytest.mark.parametrize("text", [*HOSTILE, ""], ids=repr)
+@pytest.mark.parametrize("option", ["--user", "--distribution"])
+def test_options_are_names(option: str, text: str, robots: Path) -> None:
+    assert main(["launch", "relbot.json", "--board", f"relbot={FIRST}", "--systemd", option, text]) == 2
+    assert not list(robots.rglob("*.service"))
+
+
+@pytest.mark.parametrize("text", HOSTILE, ids=repr)
+def test_paths_are_one_word_wherever_they_stand(text: str, robots: Path) -> None:
+    """A device and a workspace may be called anything that stands on one line."""
+    options = ["--device", f"crane=/dev/{text}", "--systemd", "--workspace", f"/home/{text}"]
+    status = main(["launch", "crane.json", *options])
+    if not text.isprintable():
+        assert status in (1, 2) and not list(robots.rglob("*.service"))
+        return
+    assert status == 0
+    (node,) = nodes((robots / "agents.launch.py").read_text(encoding="utf-8"))
+    assert node["arguments"][:5] == ["serial", "-b", "115200", "--dev", f"/dev/{text}"]
+    (unit,) = units(robots / "systemd").values()
+    assert unit["User"] == "ubuntu" and unit["BindsTo"] == device_unit(f"/dev/{text}")
+    quoted = unit["ExecStart"].split(" ", 2)[2]
+    script = re.sub(r'\\(["\\])', r"\1", quoted[1:-1]).replace("%%", "%").replace("$$", "$")
+    words = [shlex.split(step) for step in script.split(" && ")]
+    assert words[1] == [".", f"/home/{text}/install/local_setup.bash"] and words[2][-1] == f"/dev/{text}"
+    if shutil.which("systemd-analyze") is not None:
+        files = sorted((robots / "systemd").glob("*.service"))
+        done = subprocess.run(["systemd-analyze", "verify", *files], capture_output=True, text=True)
+        assert (done.returncode, done.stderr) == (0, "")
