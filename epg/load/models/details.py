@@ -175,7 +175,7 @@ class FmuExport:
     packed_include_dirs: tuple[str, ...]
     headers: tuple[str, ...]  # of the standard, that the FMU does not bring
     definitions: tuple[tuple[str, str], ...]
-    renames: tuple[str, ...]  # global symbols but FMI's functions
+    renames: tuple[str, ...]  # global symbols; FMI's functions, among them, get a prefix instead
     prefixes: tuple[str, ...]  # that the sources themselves put before the names of FMI's functions
     plain_names: bool  # no header puts a prefix before these names
     inputs: tuple[FmuPorts, ...]

@@ -314,13 +314,13 @@ def _global_memory(linked: Linked) -> tuple[GlobalVariable, ...]:
 
 
 def _renames(linked: Linked) -> tuple[str, ...]:
-    """Global symbols of the FMU but for the standard's functions, whose names are made by a prefix."""
+    """Global symbols of the FMU, those of the standard among them: their names are made by a prefix."""
     names: set[str] = set()
     for code in linked.all:
         names |= {function.name for function in code.functions if not function.static}
         names |= {variable.name for variable in code.variables if not variable.static and _is_defined(variable.type)}
     macros = linked.macro_names()
-    return tuple(sorted(name for name in _identifiers(names - macros) if not name.startswith(("fmi2", "fmi3"))))
+    return tuple(sorted(_identifiers(names - macros)))
 
 
 def _is_defined(type: str) -> bool:

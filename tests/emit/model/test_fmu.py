@@ -41,6 +41,15 @@ def test_a_prefix_that_is_put_together(tmp_path: Path) -> None:
     assert run_wrapper(library, 30) == run_fmu2(tmp_path / "direct", 30)
 
 
+def test_functions_of_its_own_that_are_named_like_the_standards(tmp_path: Path) -> None:
+    """Two FMUs with such a function go together."""
+    more = "int fmi2DoStepInternal(int steps)\n{\n    return steps + 1;\n}\n\nfmi2Component fmi2Instantiate("
+    folder = changed(FMU2, tmp_path / "fmu", "sources/servo.c", ("fmi2Component fmi2Instantiate(", more))
+    libraries = [build(loaded(folder), name, tmp_path) for name in ("pan", "tilt")]
+    text = '#include "pan.h"\n#include "tilt.h"\nint main(void) { return !pan_instance(0) || !tilt_instance(0); }\n'
+    run_program(tmp_path / "run", text, libraries)
+
+
 def test_arrays_with_a_size_of_their_own_and_text(tmp_path: Path) -> None:
     """A structural parameter keeps its start value, a state may be an array, and what is no number is left alone."""
     size, text = '<Dimension start="3"/>', '<String name="label" valueReference="21" causality="input"/>'
