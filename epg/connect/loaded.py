@@ -13,6 +13,7 @@ from epg.connect.places import Places
 from epg.diagnostics import Diagnostic, Diagnostics
 from epg.load.models import Model, load_model
 from epg.load.models.folders import searched_folders
+from epg.load.models.neighbours import Neighbours
 from epg.load.tcf import TcfFile, find_tcf, load_tcf_chain
 from epg.load.text_file import read_text
 from epg.load.yaml_file import parse_yaml
@@ -134,6 +135,9 @@ def files_of_model(path: Path, model: Model | None) -> Iterator[Path]:
         yield from model.twins
         yield from (model.directory, *model.searched)
         return
+    if path.exists():  # what it lacks may be put beside it
+        near = Neighbours(path if path.is_dir() else path.parent, cpp=True)
+        yield from (*near.folders, *near.watched)
     count = 0
     for folder in searched_folders(path) if path.is_dir() else ():
         try:

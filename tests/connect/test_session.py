@@ -290,6 +290,16 @@ def test_a_model_that_is_gone_comes_back(page: Page, project: Path) -> None:
     assert page.until(lambda state: state["model"] is not None)["diagnostics"] == []
 
 
+def test_a_file_of_the_model_that_comes_to_lie_beside_it(page: Page, project: Path) -> None:
+    (project / "model" / "xxtypes.h").rename(project / "types.bak")
+    state = page.until(lambda state: state["model"] is None)
+    assert {each["id"] for each in state["diagnostics"]} == {"model-file-missing"}
+    (project / "common").mkdir()
+    (project / "types.bak").rename(project / "common" / "xxtypes.h")
+    state = page.until(lambda state: state["model"] is not None)
+    assert [(each["severity"], each["id"]) for each in state["diagnostics"]] == [("note", "model-neighbour")]
+
+
 def test_bindings_that_are_not_there_yet(project: Path, bindings: Path) -> None:
     bindings.unlink()
     with serving(session_of(project)) as page:

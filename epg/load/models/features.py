@@ -136,7 +136,7 @@ def check_features(
                 _check_declared(name, start, code, declarations, told, diagnostics)
             elif name not in _LIBRARY_ALL and name not in stubs:
                 continue
-            _check_call(name, start, code, stubs, known, told, diagnostics, foreign, declared)
+            _check_call(name, start, code, stubs, known, told, diagnostics, foreign, declared, linked)
         if function.owner and not _may_allocate(function):
             for match in re.finditer(r"\bnew\b", code.body(function)):
                 start = function.body_start + match.start()
@@ -257,6 +257,7 @@ def _check_call(
     diagnostics: Diagnostics,
     foreign: bool,
     declared: frozenset[str],
+    linked: Linked,
 ) -> None:
     span = code.file.span(start, start + len(name))
     if name in stubs:
@@ -290,7 +291,10 @@ def _check_call(
         if re.match(r"XX|YY", name) or name.endswith("Submodel") or name in declared:
             message = f"'{name}' is called, but no file of the export defines it"
             hint = "are all files there, and renamed in the same way? else export again"
-            diagnostics.error("model-incomplete", span, message, hint=hint)
+            hint = f"{linked.looked}; {hint}" if linked.looked else hint
+            other = linked.elsewhere.get(name)
+            notes = [Note("it is defined here, in the folder of another model", other)] if other else []
+            diagnostics.error("model-incomplete", span, message, hint=hint, notes=notes)
         else:
             message = f"'{name}' is called, but it is no part of the export: dll() functions run inside 20-sim only"
             diagnostics.error(

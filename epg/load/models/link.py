@@ -10,7 +10,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics, Note
@@ -40,6 +40,10 @@ class Linked:
     """Folders outside of the model's, of which the list of files matters."""
     twins: tuple[Path, ...] = ()
     """Files that would make another model, or none, if they changed, though they are no part of it."""
+    looked: str = ""
+    """Where was looked for functions that no file defines; empty if there are none."""
+    elsewhere: Mapping[str, Span] = field(default_factory=dict)
+    """Where folders of other models define them."""
 
     @property
     def main(self) -> Code:
@@ -120,6 +124,7 @@ class _Linker:
         places = [self.directory, *self.headers.folders(), *(code.file.path.parent for code in rest)]
         taken = [*self.headers.taken, *self.taken]
         report_taken(taken, self.main.file.path, self.near, self.diagnostics)
+        missing = self._missing()
         return Linked(
             (self.main, *rest),
             tuple(self.headers.found[path] for path in sorted(self.headers.found)),
@@ -127,6 +132,8 @@ class _Linker:
             tuple(self.headers.shims[name] for name in sorted(self.headers.shims)),
             self.near.watched,
             tuple(sorted(self.headers.twins)),
+            self.near.description() if missing else "",
+            self._elsewhere(missing) if missing else {},
         )
 
     def _follow(self, unit: Code) -> None:
@@ -189,6 +196,17 @@ class _Linker:
             chosen = meant[0] if len(meant) == 1 else holders[0] if alike else _choose(holders, self.main.file.path)
             self._add(name, holders, chosen)
             self.taken += [chosen.file.path] if chosen is not None else []
+
+    def _elsewhere(self, names: set[str]) -> Mapping[str, Span]:
+        """Where other models define ``names``."""
+        found: dict[str, Span] = {}
+        for folder in self.near.models:
+            for file in self.near.sources(folder, self.suffixes, names):
+                code = parse_code(file)
+                for name, holders in _definitions([code]).items():
+                    if name in names:
+                        found.setdefault(name, _definition_span(holders[0], name))
+        return found
 
     def _missing(self) -> set[str]:
         """Functions, classes and variables that headers declare, that the model uses, and that no file defines."""

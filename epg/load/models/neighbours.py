@@ -81,11 +81,16 @@ class Neighbours:
         return self._found[0]
 
     @property
+    def models(self) -> tuple[Path, ...]:
+        """Folders of other models, of which nothing is used."""
+        return self._found[1]
+
+    @property
     def watched(self) -> tuple[Path, ...]:
         """Folders of which the list of files matters; none if nobody asked."""
         if not self.looked:
             return ()
-        return tuple(dict.fromkeys([*map(above, self._homes), *self.folders, *self._found[1]]))
+        return tuple(dict.fromkeys([*map(above, self._homes), *self.folders, *self.models]))
 
     def files(self, name: str) -> list[Path]:
         """The files that ``#include "name"`` may mean."""
@@ -108,7 +113,7 @@ class Neighbours:
         """Where else a file of that name lies, for the message that it was not found: two levels, and no further."""
         base = name.replace("\\", "/").rsplit("/", 1)[-1]
         found: dict[str, Path] = {}
-        for folder in (*self._homes, *self._found[1], *self.folders):
+        for folder in (*self._homes, *self.models, *self.folders):
             below = [entry for entry in entries_of(folder) or () if may_hold_sources(entry)]
             for place in (folder, *below[:MAX_FOLDERS]):
                 if is_file(place / base):
@@ -117,7 +122,7 @@ class Neighbours:
 
     def notes(self, name: str) -> list[Note]:
         """For the same message: each of those files."""
-        other = {os.path.realpath(folder) for folder in self._found[1]}
+        other = {os.path.realpath(folder) for folder in self.models}
         return [
             Note(
                 "a file of that name" + (", of another model" if os.path.realpath(path.parent) in other else ""),

@@ -194,3 +194,14 @@ def test_the_common_folder_of_another_class(tmp_path: Path) -> None:
     assert [item.message.split(",")[0] for item in diagnostics] == ["taken from '../tilt/common'"]
     expected = run_wrapper(build(loaded(whole), "whole", tmp_path / "build"), 20)
     assert run_wrapper(build(model, "pan", tmp_path / "build"), 20) == expected
+
+
+def test_a_function_that_another_model_defines(tmp_path: Path) -> None:
+    other = Export(name="Tilt").write(tmp_path / "tilt")
+    folder = Export(method="Euler").write(tmp_path / "pan")
+    (folder / "xxmodel.c").unlink()
+    model, diagnostics = load(folder)
+    assert model is None
+    problem = next(item for item in diagnostics if "'XXModelInitialize'" in item.message)
+    assert problem.id == "model-incomplete" and problem.hint.startswith("looked in 'pan' and below it;")
+    assert [note.span.file for note in problem.notes] == [str(other / "xxmodel.c")]
