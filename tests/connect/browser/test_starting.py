@@ -24,7 +24,7 @@ def test_from_model_to_project(started: Served, model: Path, open_page: Open) ->
     assert everything == len(started.state()["configurations"])
     page.get_by_label("Search").fill("pico 2 freertos")
     names = page.locator(".card .name").all_inner_texts()
-    assert names and all("rpi_pico2_freertos" in name for name in names)
+    assert names and all("pico2" in name and "freertos" in name for name in names)
     page.get_by_label("Search").fill("nothing like it")
     page.get_by_text("No target matches").wait_for()
     page.get_by_label("Search").fill("")
