@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Build hook: what a wheel holds besides the Python package.
 
 A wheel carries copies of ``cmake/``, ``targets/``, ``schemas/``, Zephyr's module and the page about messages in

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A project of any size: axes with an encoder, a motor, a setpoint and a published value each.
 
 The chip it is for grows with it and is built as an RP2350 is: slices of two PWM channels whose users agree on a

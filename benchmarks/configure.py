@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What EPG adds to CMake: configuring JIWY for the host against two projects without EPG.
 
 One is empty but for an executable; the other builds the files that EPG generated, with the same libraries, as if

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Prints how long one operation of the exchange takes, in nanoseconds, for values of several sizes: alone, and while

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How long a value takes through the exchange, by its size: the writer's and the reader's part."""
 
 from __future__ import annotations

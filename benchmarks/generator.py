@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What EPG's Python costs when a project is configured: JIWY, from nothing, after an edit, and for no reason.
 
 The unit is ``python -c pass`` of the same interpreter, taken in turns with everything else.  ``.pyc`` files are there:

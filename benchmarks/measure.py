@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Wall times of things that are to be compared: taken in turns, so that all of them see the same machine.
 
 >>> times = in_turns({"nothing": lambda: None, "sum": lambda: sum(range(1000))}, rounds=5)

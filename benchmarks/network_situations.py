@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The thesis's network situations through DDS: robots in real time on this computer, lags as in its tables 5.5 and 5.6.
 
 Setpoints every 33 ms, best effort.  The robots are simulated, the network is the loopback interface, and there is no

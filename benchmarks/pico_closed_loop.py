@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """JIWY's RP2040 images through the motion profile of examples/jiwy in EPG's emulator, beside the host's run.
 
 The emulator reads the PWM and direction pins, moves both motors, and drives the encoders' edges; setpoints go over the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What communication takes on a Pico: size of JIWY's images by middleware, and the stack of the communication side.
 
 All four targets with no middleware, the console, xrce, and xrce with the console beside it, which is the predefined

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a control cycle of JIWY costs on a Pico: instructions and time by part, and the size of images.
 
 RP2040: EPG's images and JIWY written by hand on the bare SDK (pico/handwritten.c) in EPG's emulator.  RP2350: EPG's

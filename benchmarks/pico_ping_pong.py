@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Round trip of a Float64 through a Pico: ``examples/ping_pong`` in the emulator, in the four combinations of QoS.
 
 In simulated time, with the tests' agent on USB: the host's packets, the board's poll, the echo and the way back.  An

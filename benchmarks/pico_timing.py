@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """When ticks, encoder reads and outputs of JIWY come on an RP2040: EPG's images, and other sorts of tick.
 
 Everything runs in EPG's emulator, which times every control cycle from outside.  Simulated are both cores to the cycle,

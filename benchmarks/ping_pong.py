@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Round trip of a Float64 through a target: ``examples/ping_pong`` on this computer, in the four combinations of QoS.
 
     python benchmarks/ping_pong.py [--pings 300] [--flat 5000] [--write]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Tables on the terminal and in ``docs/benchmarks.md``, with the machine they were measured on."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What generated code costs at run time: JIWY generated, against JIWY written by hand (runtime/handwritten.c).
 
 Both are compiled for this machine with the same options, linked with the same model and the same driver, and must give

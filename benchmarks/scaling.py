@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How EPG's time grows: 1000 components against 100 in one target, and 100 targets in one build.
 
 The components are axes of :mod:`big_project`, on a chip with enough pins for them.  Besides the whole time the growth

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """From a setpoint at the agent to the output that it changes, in control cycles of 1 ms: the host, and Picos.
 
 What is expected: the output changes in the next cycle that begins after the setpoint has been given to the control

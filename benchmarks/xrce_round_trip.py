@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Round trips over XRCE: a Float64 to a board and back, at 30 Hz and as fast as answers come.
 
 Boards are the ping-pong example on this computer and eProsima's client without EPG; agents are the one of the tests, in

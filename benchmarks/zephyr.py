@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What EPG adds to a Zephyr application: time to configure, and size of the image.
 
 Configuring is compared with the same application whose overlay, configuration and C files are those that EPG

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """When Zephyr's control cycles of JIWY come, and what they take, on the one core of a Pico that runs everything.
 
 The example's application as it is shipped, in EPG's RP2040 emulator, which times every control cycle from outside.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Answers find_package(EPG <version>): is PACKAGE_VERSION at least that, or in the range asked for?
 set(PACKAGE_VERSION_COMPATIBLE TRUE)
 set(PACKAGE_VERSION_EXACT FALSE)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The CMake package EPG: a controller modelled in 20-sim as ordinary build targets.
 #
 #   epg_add_target(<name> TCF <file> MODEL <folder> BINDINGS <file> ...)   library EPG::<name>: model, tables, runtime

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The target <name>_connect, which opens a target in a browser: `epg connect` with what epg_add_target() was told.
 
 # <ARGN> are the arguments that name the target's files.  The server runs inside the build, which it may start again:

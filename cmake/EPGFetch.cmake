@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Gets a small library that the build itself compiles, when it is nowhere: what targets/tools/<name>.json says under
 # "fetch".  It is pinned by the id of its commit, which is a hash of all it holds, and ends up in EPG's cache, from
 # where every later build takes it.  FETCHCONTENT_FULLY_DISCONNECTED forbids it, as it does CMake's own downloads.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # When the generator runs: only if something it has read, or would read now, is not what it was.
 #
 # A run that succeeds ends with a stamp: a key (how EPG was called, and which EPG it was) and a digest of the contents

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # What a computer lacks to build a project, said at once: SDKs, compiler and libraries, each with the command that gets it.
 #
 # A command stands on a line of its own with blanks before it: such lines of a message CMake does not wrap.

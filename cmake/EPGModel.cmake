@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # epg_add_model(<name> MODEL <folder or file> [INSTANCES <n>])
 #
 # The library EPG::<name> with the code of one model and a typed header <name>.h.  The model's own files are compiled as

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # How CMake calls EPG's Python backend.
 
 # Finds the interpreter once per build tree: Python3_EXECUTABLE or Python_EXECUTABLE if set, else west's when west

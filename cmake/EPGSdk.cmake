@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Where SDKs and tools are: targets/tools/<name>.json says it, for this file and for `epg doctor` alike.
 #
 # epg_import_pico_sdk()

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # epg_add_simulation(<name> EXECUTABLE <executable> SCENARIO <file> [OUTPUT <folder>] [REALTIME])
 #
 # A target that builds a host executable, or Zephyr's application `app` for native_sim, runs it through a scenario, prints

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # epg_add_target(<name> TCF <file> MODEL <folder> BINDINGS <file>
 #                [PLANT <folder> PLANT_BINDINGS <file>] [NODE <name>] [NAMESPACE <name>] [SET <key.key=value>...])
 #

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # epg_use_versions([EPG <version>] [PICO_SDK <version>] [ARM_GCC <version>] [PICOTOOL <version>] [FREERTOS_KERNEL <version>])
 #
 # Before epg_import_pico_sdk(): from several versions beside each other these are taken, and where another one would be

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """EPG turns a controller modelled in 20-sim into firmware that is a ROS 2 node.
 
 The package has four layers, each of which imports only from those above it in this list, and none of which

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``python -m epg``, and ``python <folder>/epg/__main__.py``, which works where PYTHONPATH is ignored."""
 
 import sys

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Makes EPG's Python packages importable in whatever Python was found.
 
 CMake selects a Python that may lack jinja2, PyYAML or jsonschema, and that may refuse ``pip install`` (Debian's

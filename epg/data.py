@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where EPG's own files are, in a checkout, an editable install and a wheel alike."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What EPG tells a user about their files: problems with position, caret and hint, as compilers do.
 
 >>> problems = Diagnostics()

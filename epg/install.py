@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How EPG is installed: the one text for messages and generated projects.  CMake's files, the README and
 ``docs/installing.md`` repeat it; ``tests/docs/test_installing.py`` compares them.
 """

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A complete project for a model and a target: which files, with what in them.
 
 >>> # project = new_project(ProjectRequest("jiwy", Path("jiwy"), "rpi_pico_freertos_jiwy", Path("export")), diagnostics)

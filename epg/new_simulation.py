@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a new project simulates: the robot's plant, where EPG has one, and a scenario that makes something move."""
 
 from __future__ import annotations

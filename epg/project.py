@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """From file names to an application: load, check and resolve, for callers such as the command line and tests.
 
 >>> # request = Request("jiwy", tcf="host_jiwy.tcf", model=Path("model"), bindings=Path("jiwy.bindings.yaml"))

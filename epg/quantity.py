@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Quantities with units: ``1 ms``, ``20 kHz``, ``180 deg``, and units of model ports.
 
 >>> parse_quantity("33 ms", "time")

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Positions in user files, and values that know theirs.
 
 >>> span = Span("jiwy.tcf", 3, 8, 12)

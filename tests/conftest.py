@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What all tests share: EPG on the module path, and a log of outcomes that tests/run.py reads."""
 
 from __future__ import annotations

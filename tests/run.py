@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs a tier of EPG's tests by ctest, and says at the end what was skipped and which tests were slowest.
 
 The targets ``check``, ``check_all`` and ``check_long`` start it::

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The tiers of tests: which test belongs where, how ctest groups them, what the end of a run says."""
 
 from __future__ import annotations

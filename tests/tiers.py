@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which tests belong to which tier, and how they are grouped into tests of ctest.
 
 ``tests/tiers.txt`` names the tests of ``check_all`` and ``check_long``; all others belong to ``check``.

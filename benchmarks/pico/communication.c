@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * A line protocol over the SDK's stdio: setpoints in, positions out.

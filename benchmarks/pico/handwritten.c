@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * JIWY's control cycle by somebody who has this one robot, the Pico SDK, and no generator.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * JIWY's control and communication, written by hand for the Pico SDK.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The tick by a repeating timer of the SDK's alarm pool, on core 0 beside communication, or on core 1.

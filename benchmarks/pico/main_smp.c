@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The tick by the wrap of a PWM slice, on a core 1 that the FreeRTOS kernel of both cores has parked in a task.

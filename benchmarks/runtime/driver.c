@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Drives a target against a small simulated robot: cycles to be counted, or everything that happens to be compared.

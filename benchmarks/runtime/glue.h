@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * What the driver asks of a target: the same of the generated one and of the one written by hand.

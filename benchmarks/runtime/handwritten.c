@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * JIWY written by hand, as somebody would who has this one robot and needs no generator.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Installed as share/EPG/cmake/EPGConfig.cmake, where find_package() looks: leads to the package inside the Python
 # package, wherever the interpreter of this prefix keeps it.
 get_filename_component(_epg_prefix "${CMAKE_CURRENT_LIST_DIR}/../../.." ABSOLUTE)

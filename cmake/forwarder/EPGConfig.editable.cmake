@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Leads to the checkout of an editable install.
 set(_epg_config [==[@CHECKOUT@/cmake/EPGConfig.cmake]==])
 if(EXISTS "${_epg_config}")

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whether a value fits a schema, without the time that importing jsonschema takes.
 
 jsonschema says what is wrong with a value; most values are right, and importing it takes longer than everything EPG

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Bindings as written: which model port belongs to which component port, checked in itself but not against a model."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The files of ``targets`` folders, checked: structure by schema, then what a schema cannot say."""
 
 from __future__ import annotations

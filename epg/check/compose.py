@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Components as their kinds describe them: the JSON Schema of a component, and its parameters as typed values."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A target configuration, complete and typed: the merged ``.tcf`` after every check that needs no model."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Components that name a node of a devicetree: ``encoder: {kind: quadrature_encoder, node: qdec0, ...}``."""
 
 from __future__ import annotations

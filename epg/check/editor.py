@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The JSON Schemas for editors: complete, with all kinds and targets, in the part of draft 2020-12 they understand.
 
 EPG itself checks files with ``schemas/*.schema.json`` and, part by part, with what kinds say of themselves.  An editor

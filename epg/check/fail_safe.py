@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The input that disables a target while it is off: which component it can be, and what a broken wire does to it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the schemas of chips, boards and platforms cannot say: that the names in them belong to each other."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the schema of component kinds cannot say: that names, ranges and defaults in them make sense."""
 
 from __future__ import annotations

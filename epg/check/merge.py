@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The merge of ``.tcf`` files that extend each other, as devicetree overlays do.
 
 Maps merge key by key, lists and scalars replace, ``null`` deletes.  Every value keeps the position of the file that

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the schema of middlewares cannot say: that their options make sense, and that platforms can carry them."""
 
 from __future__ import annotations

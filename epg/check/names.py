@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Names: C identifiers and the names ROS 2 allows.
 
 Rules for ROS names: https://design.ros2.org/articles/topic_and_service_names.html

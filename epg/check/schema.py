@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """JSON Schema validation that speaks of files, lines and keys.
 
 :func:`validate` runs jsonschema on the plain form of a :class:`~epg.source.Node` tree and turns every violation into

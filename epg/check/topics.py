@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Names of the node, its namespace and its topics: each possible, and no topic twice."""
 
 from __future__ import annotations

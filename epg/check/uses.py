@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Components that name other components: a guard its motor and its encoder, a probe its topic."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``epg bind``: bindings for the ports whose names match, and what a re-export changed."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``epg check``: everything that can be checked of the files that are given."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``epg connect``: connect a model's ports with a target's components, in the browser or in the terminal."""
 
 from __future__ import annotations

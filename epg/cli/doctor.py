@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``epg doctor``: what this computer has of what EPG and its targets need, and the command that gets what is missing.
 
 Works with nothing but Python's standard library, because missing packages are among the things it reports.

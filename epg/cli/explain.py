@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``epg explain``: the whole way of a port: model, conversion, component, pin or peripheral, C symbol."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``epg exported``: what follows an export by EPG's target for 20-sim, which starts this command."""
 
 from __future__ import annotations

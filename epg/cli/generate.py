@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``epg generate``: the sources of one target into a build folder; CMake calls this while it configures."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``epg generate-model``: the library of one model into a build folder; CMake calls this while it configures."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``epg graph``: pictures of a target."""
 
 from __future__ import annotations

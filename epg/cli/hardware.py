@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What components got of the hardware, as a table."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``epg launch``: writes a launch file, and systemd units, for the agents that targets need."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``epg``: parses the command line, runs a subcommand, prints what is wrong and says so in the exit status.
 
 Exit status: 0 success; 1 mistakes in the user's files; 2 wrong command line; 3 a bug in EPG; 4 something the computer

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The page ``docs/errors.md`` as data: what each kind of message means.
 
 >>> entry = find_entry("unknown-key")

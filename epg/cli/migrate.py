@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``epg migrate``: rewrites files of an older format in the newest one."""
 
 from __future__ import annotations

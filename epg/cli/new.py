@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``epg new``: a complete project for a model and a target, which builds as it is."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Brings an output folder up to date and remembers what EPG put there."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``epg plot``: recordings as pictures, a real run beside its simulation."""
 
 from __future__ import annotations

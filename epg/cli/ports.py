@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``epg ports``: what a model consists of."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How far a command has come, for whoever watches it in a terminal."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``epg record``: what a target says and hears on ROS 2, as CSV files."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Diagnostics as text, as compilers print them, or as JSON.
 
 ::

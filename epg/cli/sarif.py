@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Diagnostics as SARIF 2.1.0, which GitHub, GitLab, Azure DevOps and editors show beside the lines they are about.
 
 https://docs.oasis-open.org/sarif/sarif/v2.1.0/sarif-v2.1.0.html; section numbers below are those of that document.

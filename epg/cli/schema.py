@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``epg schema``: the JSON Schemas of EPG's files, complete, for editors."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``epg simulate``: runs a host executable through a scenario, prints how it went, leaves the numbers and a plot."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``epg targets``: what EPG can generate for, with the user's own folders."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``epg connect``: model ports and components are connected in a page of the browser, or in a terminal.
 
 The files stay the truth: everything shown is what the command line would say of them, everything changed is a line of

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a request to a session says, checked: nothing of it reaches a file unseen."""
 
 from __future__ import annotations

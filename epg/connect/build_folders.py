@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The build folders of a project: those that are there, those its presets want, the usual one."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The target configurations one can choose for a model: predefined ``.tcf`` files, and targets by themselves.
 
 >>> # catalogue = Configurations(roots)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A project is started for a model that has none: by the engine of ``epg new``, in its words."""
 
 from __future__ import annotations

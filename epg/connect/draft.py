@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a user has changed and not saved yet: operations on top of the files, which can be undone and applied again.
 
 >>> # draft = Draft(read_snapshot(bindings), read_snapshot(tcf), "version: 1\\nmodel: JIWY\\n")

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One target that is open: its files, the draft on top of them, and what all of it means."""
 
 from __future__ import annotations

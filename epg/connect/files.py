@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The files of a session: read as text, written at once and whole, watched for edits by others.
 
 A file keeps what people see only in their editor: line ends, a byte order mark, its permissions, and the link that

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which ends a wire can have without a word against it: what a page or a terminal offers first.
 
 The wires themselves are judged by :mod:`epg.resolve.wires`; nothing is refused here.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Who may use the page's server: one-time tokens in addresses, and the secrets that they are exchanged for.
 
 An address can be read by other users of the computer: a browser is started with it on its command line.  Its token

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Everything a request's files mean at one moment, with the command line's own messages about them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The user at the other end of a connection on this computer, as Linux says it.
 
 /proc/net/tcp lists both ends of such a connection, each with the user who owns it (proc_pid_net(5)).

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Pictures of what a session shows, drawn when somebody asks for them."""
 
 from __future__ import annotations

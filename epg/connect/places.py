@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which port, and which component, a message is about, by the place it points to."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The targets of a project that can be connected: the epg_add_target() calls of its CMakeLists.txt.
 
 >>> # find_jobs(Path("examples/jiwy"), diagnostics)[0].request.name  ->  "jiwy"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The build of a session: the one that runs, or ran last."""
 
 from __future__ import annotations

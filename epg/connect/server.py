@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The page's server: HTTP on this computer alone, for the page whose address it gave out.
 
 The page itself is public; all that it shows and does needs a secret in a header, which the page gets once for the token

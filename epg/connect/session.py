@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A session of ``epg connect``: what is shown, and everything a person can do to it.
 
 Page and terminal call the same two functions: :meth:`Session.wait` for the state, :meth:`Session.act` to change it.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The lines around a place that a message names; of no other file."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A model that has no project yet: what there is to say before one is chosen for it."""
 
 from __future__ import annotations

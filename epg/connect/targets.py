@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The targets of a project, found anew when a CMakeLists.txt changes."""
 
 from __future__ import annotations

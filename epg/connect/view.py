@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a page or a terminal shows of a target: plain data, made of nothing but the files and the draft.
 
 Messages are the command line's: the same words, places and order as ``epg check --json`` gives.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One port of a bindings file is bound otherwise, and everything else in the file stays as it was written.
 
 >>> text = "version: 1\\nmodel: servo\\ninputs:\\n  angle: encoder   # at the load\\n"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Ends of wires as bindings files say them: as texts to show and edit, and as data to compare."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Scalars as YAML text that every reader takes for the same value, in blocks and between ``{}`` and ``[]``.
 
 >>> scalar_text("encoder_pan.reset"), scalar_text("on"), scalar_text("1/4"), scalar_text("010")

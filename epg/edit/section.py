@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Ports of a bindings file as entries of its sections ``inputs`` and ``outputs``: put in at their place, taken out.
 
 A section may be missing, commented out by ``epg bind``, empty, or in braces; ports may stand in it as comments that

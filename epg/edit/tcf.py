@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The file that a ``.tcf`` builds on is another one, and everything else in it stays as it was written.
 
 >>> text = "# my robot\\nversion: 1\\nextends: host_jiwy.tcf   # for now\\nnode: me\\n"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The value of one port of a bindings file as text: a new one, and a change of one that is there.
 
 Maps are changed key by key and lists element by element, so that their comments stay.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Edits of YAML text that leave every character alone which the edit is not about.
 
 Each function takes the text, finds its place by the positions that PyYAML's nodes have, and returns the new text.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """An application as C: ``<name>.h``, ``<name>_version.c`` and ``.h``, ``<name>_app.c`` and what its platform adds.
 
 The layout of the files stands in ``templates/``; what each component contributes stands in the ``code.c.j2`` of its

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Bindings files as text: new ones, and old ones after a re-export with everything else kept as it was written."""
 
 from __future__ import annotations

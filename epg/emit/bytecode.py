@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Compiled templates kept in EPG's cache, as Python keeps compiled modules in ``__pycache__``.
 
 Compiling the templates of one target takes longer than all else that EPG does with it.  A file is named after

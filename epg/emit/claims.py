@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The hardware of an application as templates of platforms see it: every claim with the names of what it got.
 
 For platforms whose hardware is described in a language of its own, such as devicetree; C gets along with numbers.

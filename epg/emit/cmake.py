@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``<name>.cmake``: what CMake needs to compile generated code, as variables that ``EPGConfig.cmake`` reads.
 
 Paths are written relative to variables wherever that is possible, so that the same project gives the same text in

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``<name>.json``: an application for programs and for ``epg explain``.
 
 The only generated file with line numbers: an edit that only moves lines changes nothing that is compiled.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One hash over everything an application is made from: two that have the same behave the same.
 
 It is taken of what is generated and of the sources that are compiled with it, not of the files people write: a comment

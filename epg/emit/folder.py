@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes a whole folder at once: all of its files, or none of them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What components got of the hardware: peripherals, pins, and the frequencies that dividers reach."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A new project as text: the templates of ``targets/projects``, filled in.
 
 >>> # files = project_files(plan, folder_of_project("pico", roots), roots)

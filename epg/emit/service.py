@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the generator makes for a middleware: the model's ports by name, parameters, recordings, actuators by hand.
 
 A middleware's ``uses`` says which of them; ``templates/service.c.j2`` lays them out.  Its own ``code.c.j2``, if it has

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Jinja templates in which text cannot pass unescaped.
 
 >>> # env = environment([folder])

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Text of generated files: each output language has its own escaping, and unescaped text is an error.
 
 A template may print numbers and text that is code of its language already, by a filter: ``|cstring``, ``|comment``,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Topics as C: what ``templates/topics.c.j2`` lays out, with the messages that the templates of kinds name.
 
 A kind's ``code.c.j2`` says its message by macros: ``message(c)`` (an ``epg_message_t``), ``message_type(c)`` (as ROS

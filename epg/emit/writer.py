@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes generated files: only what changed, each at once and whole, and nothing outside the output folder."""
 
 from __future__ import annotations

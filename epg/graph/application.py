@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The application: what comes in by topics and pins, its way to the model, and what goes out again.
 
 Every port of the model has a line of its own: topic or pins, component, conversion, port.  Components without a port

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The schedule of one control cycle, as the generated code runs it, and what the communication does beside it.
 
 The boxes follow each other in time; their width says nothing of how long they take, which only the board knows.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A small writer of SVG: rectangles, lines and text, which is measured so that nothing overlaps.
 
 >>> picture = Picture("Pan", "One box.")

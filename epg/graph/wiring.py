@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The wiring of a board: its contacts where they are on the table, and what is soldered to them.
 
 A wire leaves its contact, changes its height in a lane of its own and arrives at its component.  Contacts stand on a

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The catalog: chips, boards, platforms, middlewares and component kinds of all ``targets`` folders, read on demand.
 
 >>> # catalog = load_catalog(targets_roots(), diagnostics)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where an SDK or program is: the same order of places for all.
 
 CMake variable, environment variable, ``PATH``, the places their own installers use, CMake's user package registry,

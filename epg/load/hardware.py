@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Chips, boards and platforms as data: ``socs/``, ``boards/`` and ``platforms/`` below the ``targets`` folders.
 
 The relations that a chip's peripherals can have are few, and all are here: an instance is exclusive or has *slots*;

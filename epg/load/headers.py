@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where the pins of a board are: its rows of contacts, for pictures of its wiring."""
 
 from __future__ import annotations

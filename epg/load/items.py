@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reading aids for the folders of ``targets/``: values of nodes whose structure a schema has checked already."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Component kinds as data: ``components/<kind>/component.yaml`` below the ``targets`` folders."""
 
 from __future__ import annotations

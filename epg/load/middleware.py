@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Middlewares as data: ``middlewares/<name>/middleware.yaml`` below the ``targets`` folders."""
 
 from __future__ import annotations

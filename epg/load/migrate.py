@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Files of older formats, rewritten in the newest one with everything else left as its author wrote it.
 
 Every file says the version of its format (``version: 1``, in the folders of ``targets`` ``api: 1``).  When a format

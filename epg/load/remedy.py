@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command that gets a tool, by the package manager that this computer has."""
 
 from __future__ import annotations

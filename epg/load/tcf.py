@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A ``.tcf`` with the files it extends, each still as it was written.
 
 >>> # chain = load_tcf_chain(Path("rpi_pico2_freertos_jiwy.tcf"), roots, diagnostics)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Text of user files, limited in size, with a diagnostic for everything that is no text."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The SDKs, compilers and programs that targets need: data in ``tools/<name>.json`` below the ``targets`` folders.
 
 JSON, because CMake reads it too, and because ``epg doctor`` must work before any Python package is there.

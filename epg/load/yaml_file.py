@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """YAML 1.2 files as trees of :class:`~epg.source.Node`, each value with its position.
 
 PyYAML's parser is used for its events only.  Building the tree here gives what its constructors do not: the scalar

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Mistakes in YAML that people make, in words: ``key value``, a tab, wrong indentation, ``//``.
 
 A parser says where it could not go on, which is often a line too late, and in terms of its own grammar.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Allocation: which pins, which peripheral and which settings each claim gets.
 
 Claims say a class of peripheral, pins and attributes; the chip's data say what implements the class and what it

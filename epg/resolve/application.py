@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The application: what the three kinds of file mean together, with nothing left to choose."""
 
 from __future__ import annotations

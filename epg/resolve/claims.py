@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What components and the control loop need of the hardware, as one list."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Says why claims cannot have their places together: the smallest sets of them that are in each other's way."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Steps of a conversion as the generated code computes them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Integer dividers: the prescaler and counter that make a frequency or a period of a clock.
 
 >>> divide(Fraction(125_000_000, 20_000), Divider((1, 255), (2, 65536)), exact=False)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which component a model port is probably meant for, by the words of their names.
 
 ``encoder_reset_pan`` and ``encoder_pan.reset`` have the same words; ``position_pan`` has only words of

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Pins: which of them exist, are free, and reach what is claimed."""
 
 from __future__ import annotations

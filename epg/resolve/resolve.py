@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """From checked files to an :class:`~epg.resolve.application.Application`."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Search for a place for every demand on one sort of peripheral.
 
 A peripheral has instances with slots.  A demand takes one of the places it can use: a slot of an instance, or the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Topics of an application: those of its components, and those that every ROS 2 node of EPG has.
 
 Values travel between the two sides of a target in *slots*: setpoints in the order of the subscriptions, monitoring

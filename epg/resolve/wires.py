@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Wires: bindings by name against the ports of a model and of the components, with directions, types and units."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which micro-ROS agents a set of targets needs: one per board, one for all targets that come by UDP.
 
 A board on USB is known by its serial number, because ``/dev/ttyACM0`` is whichever board was plugged in first::

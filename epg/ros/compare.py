@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Two recordings of the same motion: how much later one is than the other, and how far apart they are after that.
 
 One shift in time aligns all signals of the runs, because each run has one clock.  It is sought on a grid as the shift

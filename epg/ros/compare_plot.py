@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The plot of a comparison: both runs over each other, and their difference below, for each signal."""
 
 from __future__ import annotations

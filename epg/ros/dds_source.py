@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Messages by CycloneDDS: no ROS 2 needs to be installed.  The peers may use any DDS that ROS 2 does."""
 
 from __future__ import annotations

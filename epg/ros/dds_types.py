@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The ROS 2 messages that targets use, as CycloneDDS types under the names that ROS 2 gives them on DDS."""
 
 # mypy: disable-error-code="misc,call-arg,valid-type,no-any-unimported"

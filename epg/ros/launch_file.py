@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The ROS 2 launch file of a set of agents."""
 
 from __future__ import annotations

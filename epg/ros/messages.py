@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Messages as numbers: the values a target's topic carries, in the order of its ports.
 
 Works on any object with the fields of the message, so on those of CycloneDDS and of rclpy alike.

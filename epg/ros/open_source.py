@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where messages come from: DDS itself, or rclpy where ROS 2 is sourced."""
 
 from __future__ import annotations

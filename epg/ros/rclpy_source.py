@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Messages by rclpy, where ROS 2 is sourced: through whichever middleware ROS 2 is set to."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Records what a target says and hears, in the form in which the host platform reads and writes it.
 
 ``setpoints.csv`` can be given to a host executable (``--setpoints``) or compared like ``topics.csv``, which is what the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Recordings of runs, real or simulated, as signals over time.
 
 Reads what EPG writes: ``time,topic,value`` rows (topics, setpoints) and tables with a column ``time`` and one for each

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Descriptions of generated targets (``<build>/epg/<name>/<name>.json``) as the ROS tools need them.
 
 >>> full_name("pan_subscriber", "/robot1", "JIWY_node")

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What delivers messages of ROS 2, whichever library they come by."""
 
 from __future__ import annotations

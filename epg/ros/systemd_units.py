@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """systemd units that keep agents running from boot on: started when a board is plugged in, stopped when it goes.
 
 A unit that is wanted by, and bound to, a device's own unit needs no udev rule to be started: systemd makes device units

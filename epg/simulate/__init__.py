@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Closed-loop runs on the host platform: scenarios, setpoints, tracking errors and plots.
 
 >>> from epg.simulate import simulate, format_table             # doctest: +SKIP

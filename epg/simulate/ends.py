@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whether a run ended in the state that its scenario expects: enabled, unless it says otherwise."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs a host executable and reads what it wrote."""
 
 from __future__ import annotations

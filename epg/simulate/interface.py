@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The names that a target has, and what a scenario may therefore say."""
 
 from __future__ import annotations

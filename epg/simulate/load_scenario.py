@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Scenario files: reading, and every check that needs no run."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The plot of a run: setpoint, reference and position of each axis over time, and the error below."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The ideal loop that a scenario names: a Python file with one function, written independently of the model.
 
 ``reference(axis: str, time: Sequence[float], setpoint: Sequence[float]) -> list[float]`` gets the profile over time

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One run of a host executable under a scenario, from setpoints to plot."""
 
 from __future__ import annotations

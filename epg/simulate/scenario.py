@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A scenario as data: setpoint profiles, events, and what is evaluated.  Times in s, values in the topic's unit.
 
 >>> profile = Profile(0.0, (Part("move", start=1.0, duration=2.0, target=1.0),))

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A scenario as the rows of the file a host executable reads: time, topic, value."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The short table a run ends with."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How well each axis followed its setpoint."""
 
 from __future__ import annotations

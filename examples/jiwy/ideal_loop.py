@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The ideal loop of JIWY: what each axis would do under a controller and sensors without limits.
 
 Continuous time, no encoder counts, no PWM steps, no delay, no Coulomb friction, no end stops.  It shares no code and

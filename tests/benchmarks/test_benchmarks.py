@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Each benchmark runs, with counts too small to measure anything, and prints its tables."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The benchmark of Zephyr runs, with one board and one round: both applications make the same image."""
 
 from __future__ import annotations

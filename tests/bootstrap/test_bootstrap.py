@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """EPG in a Python that lacks its packages: installs them once, whole, into its cache, or says what to do."""
 
 from __future__ import annotations

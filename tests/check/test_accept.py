@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is accepted without jsonschema is what jsonschema accepts."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Files that extend each other: maps merge, lists and scalars replace, null deletes, positions stay."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Names that C and ROS 2 allow."""
 
 from __future__ import annotations

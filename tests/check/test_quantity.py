@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Quantities: exact where they can be, and clear about what is wrong."""
 
 from __future__ import annotations

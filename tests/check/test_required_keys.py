@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """docs/files.md says which keys are required: what the schemas and the kinds say."""
 
 from __future__ import annotations

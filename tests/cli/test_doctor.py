@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``epg doctor``: what is there, and the command for what is not."""
 
 from __future__ import annotations

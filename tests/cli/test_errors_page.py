@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``docs/errors.md`` has an entry for every kind of message, with an example that EPG really prints."""
 
 from __future__ import annotations

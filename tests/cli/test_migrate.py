@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``epg migrate``.  No format has changed so far, so the migrations here exist in these tests only."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``epg new``: the project it writes, what it does with the model, and what it leaves alone."""
 
 from __future__ import annotations

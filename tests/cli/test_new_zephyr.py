@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``epg new`` for Zephyr: an application and a workspace, and nothing of other build systems."""
 
 from __future__ import annotations

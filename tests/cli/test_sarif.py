@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``epg check --format``: SARIF for continuous integration, by the rules of the standard."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``epg schema``: what editors get says the same of a file as EPG itself."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Small CMake projects for tests: configure, build, and see what was done."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every component kind with its conversions, from setpoint file to plant and back, with sanitizers."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Small libraries that the build compiles are fetched by CMake when they are nowhere: pinned, whole or not at all."""
 
 from __future__ import annotations

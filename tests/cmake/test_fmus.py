@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """FMUs in epg_add_model and epg_add_target."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The copied ``epg_import.cmake``: where it looks, in which order, and what it says."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """epg_add_model: models as libraries, several in one image."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Wheels and editable installs carry the same files as the checkout, and CMake finds them."""
 
 from __future__ import annotations

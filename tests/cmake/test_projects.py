@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Projects that use EPG as a user would."""
 
 from __future__ import annotations

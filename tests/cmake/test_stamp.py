@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """When a configure run starts Python, and what it touches: nothing, unless something changed that matters."""
 
 from __future__ import annotations

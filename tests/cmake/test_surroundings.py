@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What EPG generates depends on the files it reads, and on nothing around them."""
 
 from __future__ import annotations

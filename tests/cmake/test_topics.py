@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Topics of several values, from CSV files and the console to the model and back, with sanitizers."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """find_package(EPG <version>), for a checkout and for an installed wheel."""
 
 from __future__ import annotations

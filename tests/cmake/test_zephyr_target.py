@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """epg_add_target() before find_package(Zephyr): what Zephyr is given, in every way that users set its variables.
 
 Zephyr's package is a stand-in with its rules for variables; tests/zephyr builds with the real one.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Builds of copies of examples, for tests."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Projects to connect, each test with a copy of its own."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the page of ``epg connect`` does, without a browser: requests to a server that runs."""
 
 from __future__ import annotations

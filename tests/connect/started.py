@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """`epg connect` as a program of its own: whatever starts it, until it says its address."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whatever stands in the files, and whatever is done to them: no exception but refusals, and files that agree."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Builds that `epg connect` runs: real ones, with real tools, of copies of an example."""
 
 from __future__ import annotations

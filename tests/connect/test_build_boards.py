@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Builds that `epg connect` runs for boards: what they make for people, and how west is started."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The target <name>_connect: it runs in a build, and starts that build again."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Files of a session: saved at once and whole, as they were otherwise; edits by others are noticed."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """From the page to a program: a project for this computer is created, generated, broken and mended."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is read out of the output of CMake, compilers, linkers and EPG: of tools that are run here, else as captured."""
 
 from __future__ import annotations

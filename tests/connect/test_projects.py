@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The targets that `epg connect` finds in a project, without CMake being run."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The server of the page: who gets in, what is answered, and how it ends."""
 
 from __future__ import annotations

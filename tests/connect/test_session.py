@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Connecting ports as the page does it: every action, through HTTP, on files of a real project."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """`epg connect --terminal`: the same questions, through a pipe and in a terminal, with the same files at the end."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is shown is what the command line says, of the same files."""
 
 from __future__ import annotations

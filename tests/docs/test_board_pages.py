@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The pages of the boards: wiring and limits are what EPG makes of its own configurations.
 
 ``EPG_UPDATE_GOLDEN=1`` writes the tables anew.

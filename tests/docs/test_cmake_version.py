@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """EPG needs CMake 3.22: every project, preset and page says so."""
 
 from __future__ import annotations

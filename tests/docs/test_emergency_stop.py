@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The page on wiring an emergency stop: its wiring gives no warning on any chip, and the table of pulls is true."""
 
 from __future__ import annotations

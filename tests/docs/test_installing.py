@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How EPG is installed is said the same everywhere: it is not on PyPI, and Debian wants a virtual environment."""
 
 from __future__ import annotations

@@ -1,8 +1,10 @@
+# SPDX-License-Identifier: Apache-2.0
 """The licence: its text, and the line that sources and generated files begin with."""
 
 from __future__ import annotations
 
 import hashlib
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -10,9 +12,9 @@ from pathlib import Path
 import pytest
 
 from epg.emit.licence import first_line
+from tests.docs.licence_lines import LINE, sources, with_line
 
 ROOT = Path(__file__).resolve().parents[2]
-LINE = "SPDX-License-Identifier: Apache-2.0"
 
 
 def test_the_licence_is_the_whole_text() -> None:
@@ -37,3 +39,33 @@ def test_what_is_not_epgs_text_has_no_line_or_another_one() -> None:
     assert first_line("jiwy_headers/fmi2Functions.h") == "/* SPDX-License-Identifier: BSD-2-Clause */"
     assert first_line("jiwy_headers/XXTypes.h") == f"/* {LINE} */"
     assert "Modelica Association" in (ROOT / "NOTICE").read_text(encoding="utf-8")
+
+
+def test_sources_say_it_at_their_beginning() -> None:
+    """``EPG_UPDATE_GOLDEN=1`` writes the lines that are missing."""
+    listed = subprocess.run(
+        ["git", "-C", str(ROOT), "ls-files", "--cached", "--others", "--exclude-standard"],
+        capture_output=True,
+        text=True,
+    )
+    if listed.returncode != 0:
+        pytest.skip("this is no checkout of git: apt install git")
+    names = sources(name for name in listed.stdout.splitlines() if (ROOT / name).is_file())
+    assert len(names) > 500
+    missing = []
+    for name in names:
+        text = (ROOT / name).read_text(encoding="utf-8")
+        wanted = with_line(name, text)
+        if wanted != text and os.environ.get("EPG_UPDATE_GOLDEN"):
+            (ROOT / name).write_text(wanted, encoding="utf-8")
+        elif wanted != text:
+            missing.append(name)
+    assert missing == []
+
+
+def test_the_line_stands_where_the_language_allows_it() -> None:
+    assert with_line("a.py", "#!/usr/bin/env python3\nx\n") == f"#!/usr/bin/env python3\n# {LINE}\nx\n"
+    assert with_line("a.c", f"/*\n * {LINE}\n */\n") == f"/*\n * {LINE}\n */\n"
+    assert with_line("a.html", "<!doctype html>\n<html>") == f"<!doctype html>\n<!-- {LINE} -->\n<html>"
+    assert with_line("a/Kconfig.epg", "x\n") == f"# {LINE}\nx\n"
+    assert with_line("__init__.py", "") == ""

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Random bindings files in every style people write them in, with comments that say whom they belong to.
 
 A comment of the user is ``#17`` with a number of its own, so that a test can tell which are there and in what order.

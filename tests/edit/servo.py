@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A model for tests of bindings: only the names of its ports count."""
 
 from __future__ import annotations

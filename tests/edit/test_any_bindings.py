@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Edits of random bindings files: what is wanted is said, nothing else is said otherwise or written otherwise."""
 
 from __future__ import annotations

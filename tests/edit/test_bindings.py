@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Edits of bindings files: what changes, what stays as it was, and what is refused.
 
 ``bindings_edits.txt`` holds examples as texts before and after.

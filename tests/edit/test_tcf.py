@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Another file that a .tcf builds on: the one line changes, or a line comes in."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The hash of an application: the same for the same behaviour, another one for any other."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Text of a user in the files of a new project."""
 
 from __future__ import annotations

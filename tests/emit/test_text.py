@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """No text of a user can break out of a C string, a comment, an identifier or a CMake argument."""
 
 from __future__ import annotations

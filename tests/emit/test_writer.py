@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The writer touches only what changed, writes whole files, and stays in its folder."""
 
 from __future__ import annotations

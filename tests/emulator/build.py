@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Builds Pico SDK projects for tests, in folders of EPG's cache used again: a second build takes half a second.
 
 >>> # build("tests/emulator/programs", board="pico", targets=["serial"]) / "serial.elf"

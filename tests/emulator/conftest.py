@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The programs that test the emulator, and a board that runs their cases."""
 
 from __future__ import annotations

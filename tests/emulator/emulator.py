@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The RP2040 emulator, driven from Python; docs/emulator.md says what it does and what is exact.
 
 >>> # with Emulator(elf) as pico:

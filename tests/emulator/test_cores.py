@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Two cores: launch, mailboxes, spinlocks, dividers, events, interrupts, faults."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Instructions against another emulator: registers and flags of random ones, with random operands."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The motor behind the bridge against a small-step integration of the same equations, and its end stops."""
 
 from __future__ import annotations

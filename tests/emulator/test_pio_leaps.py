@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """PIO blocks that run late and leap over idle cycles give what the cycle-by-cycle run gives, to the cycle."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """An image as it is shipped, with the boot ROM's own floating point, on a dump of that ROM."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """PWM, PIO, timers and pins to the cycle."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The USB host at the other end: serial port both ways, cable, bus reset, reboot by picotool's request."""
 
 from __future__ import annotations

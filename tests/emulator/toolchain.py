@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What emulator tests need besides Python, found where EPG looks for it, or a reason to skip.
 
 >>> # sdk = pico_sdk()            # folder of the Pico SDK

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every message EPG gives, to the letter.
 
 A file ``cases/<name>.case`` holds the files that are wrong and what EPG says about them::

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Pico projects in temporary folders: what is needed to build them, configuring and building."""
 
 from __future__ import annotations

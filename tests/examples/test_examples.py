@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The examples through CMake, as the README says, and what their robots do when things fail."""
 
 from __future__ import annotations

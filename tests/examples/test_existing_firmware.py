@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``examples/existing_firmware``: a repository with its own ways gains a controller, and nothing else in it changes."""
 
 from __future__ import annotations

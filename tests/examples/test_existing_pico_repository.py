@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``examples/existing_pico_repository``: one executable of several gains a controller, and the others do not notice."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Projects that ``epg new`` has written for boards, built with the Pico SDK."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Projects that ``epg new`` has written, as their users configure, build and run them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``examples/ping_pong``: every ping comes back, in all combinations of QoS, and the peer computes what it says."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``examples/ping_pong`` for a Pico 2: the image builds, without a warning.  On an emulated Pico the example runs."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the READMEs of the Zephyr examples say is what stands in their files."""
 
 from __future__ import annotations

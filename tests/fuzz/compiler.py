@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whether generated C compiles under the strictest warnings EPG promises."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """An environment without variables of EPG."""
 
 from __future__ import annotations

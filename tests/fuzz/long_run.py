@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How much is tried: HYPOTHESIS_PROFILE=longer tries four times as much, the same in each run; HYPOTHESIS_PROFILE=long
 twenty times as much, and other things in each run.
 """

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Mutations of a project's files: some that look at the structure of a file, some that do not."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A project in a folder of its own, EPG run on it within this process, and what must hold whatever its files are.
 
 :meth:`Project.generate` asserts, after every run: EPG ends in time with status 0 (and no error) or 1 (and at least one

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Robots that are right by construction: random components, wires, conversions and parameters with a model that fits.
 
 Whatever :func:`robots` draws must generate and compile; names are as odd as names may be.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whatever stands in a file: code that compiles, or errors with a position.  What must hold is asserted in project.py.
 
 Three ways to make files: arbitrary bytes, mutations of files that are right, and robots that are right by

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Sources made to be slow to read: nothing that EPG looks for in them takes more than linear time, or recurses.
 
 Every text is put at several places of every form of a model.  A normal run takes 32 KiB of each, in which anything

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Thousands of components, ports, wires and parameters, right and each of them wrong: time grows with their number."""
 
 from __future__ import annotations

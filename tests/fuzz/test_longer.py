@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The property tests again, with four times as many examples."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The output folder: whatever an earlier run, another program or a user left in it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Hostile bytes for a board that is a ROS 2 node: xrce/ has the programs, which run here without libFuzzer.
 
 With clang, a longer search (docs/development.md):

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whatever stands in the files of a user's ``targets`` folder: boards, chips, platforms and component kinds."""
 
 from __future__ import annotations

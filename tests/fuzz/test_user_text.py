@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Text of a user at every place where it reaches an output: it is seen as it is, and nothing of it takes effect."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Text of a user for Zephyr: none of it takes effect in the devicetree overlay, in Kconfig, or in CMake's part.
 
 Each text is either refused with a position, or the three files are those of a project without it, but for what the text

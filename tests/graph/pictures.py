@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What stands in an SVG that EPG drew: texts with the room they take, and lines."""
 
 from __future__ import annotations

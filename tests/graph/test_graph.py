@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``epg graph``: everything is in the pictures, nothing covers anything, and the same target gives the same bytes."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where SDKs and programs are looked for: the order of places, and the table of what there is to find."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """YAML 1.2 scalars, positions, and limits that hold before anything recurses."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A program at the other end of a console."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """JIWY on the host with its console, as a user builds it, under sanitizers."""
 
 from __future__ import annotations

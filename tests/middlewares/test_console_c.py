@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The console's protocol: each ``TEST(name)`` of ``c/console_tests.c``, under sanitizers."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``docs/console.md`` is true: its sessions are held with a real executable, and it names everything there is.
 
 In a ``session`` block ``> command`` is typed; the lines below are what comes, in that order.  ``...`` in a line stands

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The console of a real executable: JIWY with its simulated plant, in real time."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Programs that run an export through its own interface, as its authors would: what the wrapper is compared with."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Small models in the shape 20-sim exports, written by us for the tests: a PI controller with a filter and a limiter.
 
 :class:`Export` says what is different from one test to the next: version, integration method, prefixes, line ends,

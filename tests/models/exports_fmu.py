@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The shapes that 20-sim's FMUs give to :class:`~tests.models.exports.Export`, and FMI 2.0's functions for them.
 
 As in ``exports.py``, nothing here is text of 20-sim's templates: only the interfaces and what they promise is theirs.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Sample FMUs for tests, and programs that call their functions as the standard says: what EPG's library is compared
 with."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Builds a model's library with the compiler of this machine and runs it, or the model's own code, step by step.
 
 Both print the bits of every output of every step, so that results are compared exactly.  Inputs are a fixed sequence

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What tests of the ROS tools share: CycloneDDS for Python, and a network of their own."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Descriptions of targets for tests of what works on them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``epg plot``: known shifts, lags and differences are found in recordings."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``epg launch``: what it writes means what was asked for, to Python, to bash and to systemd."""
 
 from __future__ import annotations

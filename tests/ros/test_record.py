@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``epg record`` on a real DDS network: what was published stands in the files, to the last bit."""
 
 from __future__ import annotations

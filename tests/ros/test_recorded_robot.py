@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A robot's run, recorded over DDS, beside what the robot itself has traced: the same motion."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Builds the robots of ``robots/CMakeLists.txt``, as a user would."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Robots on a DDS network of their own, as a user builds them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How much later one signal is than another, as the thesis computes it for its tables 5.5 and 5.6."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """ROS 2 messages as CycloneDDS's Python package knows types, and the hashes by which ROS 2 tells types apart.
 
 The definitions are those of ROS 2 Jazzy's common_interfaces and rmw_dds_common.  Hashes are computed here from the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A network of its own for each test: loopback only, in a domain that no other test has at the moment."""
 
 from __future__ import annotations

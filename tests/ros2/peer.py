@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A peer on the DDS network that looks like a ROS 2 node with rmw_cyclonedds and the default QoS of rclpy.
 
 >>> # with Peer(domain=7, node="monitor") as peer:

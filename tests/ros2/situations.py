@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The thesis's five situations of robots on a network (sections 5.3 and 5.4), with robots simulated in real time.
 
 | situation | who follows whom |

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A target with the middleware `dds`, as another ROS 2 node sees it: real executables, a peer, the loopback network."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The middleware `dds` as Fast DDS sees it, which ROS 2 Jazzy speaks unless told otherwise."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The middleware `dds` and ROS 2 itself, where it is installed and sourced: the command line's tools and rclpy.
 
 None of this has run where there is no ROS 2: tests/ros2/test_dds_node.py does the same against a peer of our own.

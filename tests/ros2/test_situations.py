@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The thesis's network situations, short: tracking, teleoperation and their lags, in real time through DDS."""
 
 from __future__ import annotations

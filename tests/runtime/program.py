@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Compiles C tests against the runtime, the component drivers and a port layer the tests control."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The C of runtime, drivers and their tests as other tools see it: other compilers' modes, cppcheck, clang-format."""
 
 from __future__ import annotations

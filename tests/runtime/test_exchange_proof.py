@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The exchange proven: every interleaving by the model checker spin, real threads by ThreadSanitizer and by counting.
 
 Each check is also shown to fail: broken variants of the model, and of ``exchange.c`` itself, must be refused.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A real executable and its simulated robot: what broken and swapped wires do, and where timing probes toggle."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The handover proven as the exchange is: every interleaving by spin, real threads, and broken variants refused."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Names and hashes by which ROS 2 tells message types apart, computed from the definitions as REP 2016 says.
 
 A hash is the SHA-256 of a type's description and of the descriptions of all types it refers to, as JSON text with the

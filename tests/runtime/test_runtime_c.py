@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The C tests: each ``TEST(name)`` of ``c/*_tests.c`` is a test here, under Address- and UndefinedBehaviorSanitizer."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The kinds' code templates: rendered as the generator does, compiled, and run against simulated peripherals."""
 
 from __future__ import annotations

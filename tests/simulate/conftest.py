@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A host executable for the tests of simulation runs."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Compiles the motor of the host platform's own tests."""
 
 from __future__ import annotations

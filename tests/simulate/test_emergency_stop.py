@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A generated target whose plant, which has no init function, drives the fail-safe input in every cycle."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs of a real host executable through scenarios, and what is said when something is wrong with it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A program around the generated C alone, as somebody without EPG would write it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Fills templates for 20-sim's C-code generation as 20-sim does, from the tokens of a model.
 
 The language, as templates and exports that are public show it:

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Exports by EPG's own target for 20-sim, without 20-sim: our templates, filled from the tokens of a model."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command file that 20-sim starts after an export, run by Wine's command interpreter."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What follows an export in a window: `epg connect` for the folder 20-sim has written."""
 
 from __future__ import annotations

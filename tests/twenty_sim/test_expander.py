@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The token language, as exports and templates that are public show it."""
 
 from __future__ import annotations

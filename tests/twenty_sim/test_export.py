@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """EPG's target for 20-sim: its export computes what the C export of the same model computes, bit for bit."""
 
 from __future__ import annotations

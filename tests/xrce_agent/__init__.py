@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """An agent of DDS-XRCE 1.0 for tests: boards connect to it, and it does to them whatever a test wants.
 
 >>> with Agent(UdpLink()) as agent:                               # doctest: +SKIP

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The agent: a thread that serves a link, and what tests do to it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``programs/bare_client.c``, built once per version of its sources and of the client library."""
 
 from __future__ import annotations

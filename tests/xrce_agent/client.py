@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What an agent keeps of one client: its session's streams, its entities and what it wants to read."""
 
 from __future__ import annotations

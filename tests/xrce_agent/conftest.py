@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A client program, built once."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Topics of boards on a DDS network: what eProsima's agent does with Fast DDS, here with CycloneDDS for Python.
 
 Every writer and reader of a board becomes one on DDS, of the same topic, type and QoS, in a participant of its node's

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What happens to frames on their way: loss, delay, duplicates, another order, cut and changed bytes.
 
 All of it can be set at any time.  Chance has a seed, so that the same frames meet the same faults.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Frames on a serial line, as eProsima's client and agent send them (HDLC-like byte stuffing).
 
     7E, source, destination, length (2), payload, CRC of the payload (2)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """JIWY driven from the agent's side, in real time."""
 
 from __future__ import annotations

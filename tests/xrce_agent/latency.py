@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How long a setpoint takes from the agent to the output that it changes, and in which control cycle that happens."""
 
 from __future__ import annotations

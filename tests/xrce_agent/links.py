@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How an agent is reached: UDP, or a serial line, which is a pseudo terminal or a device that is there already."""
 
 from __future__ import annotations

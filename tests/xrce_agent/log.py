@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every frame that passes an agent, with the time of two clocks and what became of it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """ROS 2 messages as CDR, without the encapsulation header: what XRCE carries."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A serial cable: two pseudo terminals, and a thread that carries bytes from each to the other."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """eProsima's agent, where there is one: ``EPG_XRCE_AGENT`` names the program, or ``MicroXRCEAgent`` is on ``PATH``.
 
 It is confined to the loopback interface and to one DDS domain, so that tests see nothing of each other.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a CREATE says about an entity, in the binary form or in XML.
 
 Source: DDS-XRCE 1.0, 7.7.3 and annex A (binary), the DDS-XML profiles of Fast DDS (XML).

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Streams of a session: reliable ones number, store, acknowledge and repeat; best-effort ones drop what is old.
 
 Source: DDS-XRCE 1.0, 8.4; windows of 16 messages as in eProsima's agent.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The agent with eProsima's own client at the other end."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A client's topics on DDS, and a peer's at the client."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The agent's parts without a board: framing, streams, faults, descriptions of entities."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Topics between boards and tests, in the place of DDS: who matches whom, and what has been said.
 
 Matching is that of DDS as far as ROS 2 uses it: same topic, same type, and a best-effort writer gives nothing to a

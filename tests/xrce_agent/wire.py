@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Messages of DDS-XRCE on the wire.
 
 Source: OMG, "DDS for eXtremely Resource Constrained Environments" 1.0, chapter 8 and annex A; where that leaves a

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Zephyr and its modules as Git repositories on this computer, for workspaces of west without a network.
 
 A repository holds the files of this computer's workspace, in one commit; Zephyr's manifest names the commits of the

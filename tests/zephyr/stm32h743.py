@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A whole Zephyr image on an emulated STM32H743: unicorn's Cortex-M7, and registers of our own.
 
 >>> # chip = Stm32h743(elf)

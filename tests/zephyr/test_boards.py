@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Builds for real boards by Zephyr's own test runner."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a user's prj.conf and overlay say otherwise than the target needs is said before anything is compiled."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A scenario forces an input that the plant drives, in Zephyr on this computer: the host's numbers."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A workspace that nobody has used before: `west init`, `west update`, `west build`."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Zephyr's image for the STM32H743 on an emulated one: six timers count exactly, over wraps that nobody reads."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the hardware cannot do is an error of the build, in words: `mistakes` has a decoder for each."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """EPG as a module of Zephyr: free of charge for applications that do not use it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """JIWY in Zephyr on this computer: the host's numbers in simulated time; an agent and a console in real time."""
 
 from __future__ import annotations

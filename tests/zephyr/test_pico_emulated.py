@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Zephyr's image for the Pico in the RP2040 emulator: the PIO decoders count every edge, whatever the reader does.
 
 `firmware` has five decoders: four on PIO 0 that share the program, one on PIO 1; two with B below A, two inverted.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Zephyr's port layer in the RP2040 emulator, with a target of one motor (`port`): ticks, safe outputs, resets, bytes.
 
 The motor's PWM is at GP2 and its direction at GP3; what comes over USB and over the UART goes back.

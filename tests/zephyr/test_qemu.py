@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """JIWY's target on a Cortex-M3 that QEMU emulates, with emulated peripherals."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The snippet `epg-debug`: what it switches on, and that an application's own settings go before it."""
 
 from __future__ import annotations

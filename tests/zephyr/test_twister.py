@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Drivers, sample and a whole target on native_sim, as Zephyr's own test runner sees them."""
 
 from __future__ import annotations

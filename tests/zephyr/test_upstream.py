@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The patch to Zephyr's own decoder for STM32."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """`west epg`: the command line of EPG in a workspace whose manifest names its commands."""
 
 from __future__ import annotations

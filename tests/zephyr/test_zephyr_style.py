@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The module's sources as Zephyr's maintainers check them."""
 
 from __future__ import annotations

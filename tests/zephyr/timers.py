@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Timers of an STM32H743 in encoder mode, as far as a decoder uses them (RM0433, chapters 38 and 39).
 
 A timer counts the edges at its inputs as its registers say: encoder mode 3 counts each, the inputs' polarities turn the

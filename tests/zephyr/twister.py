@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Zephyr's own test runner over the module's drivers, tests and samples."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Workspaces that west has made from a manifest, and builds in them, as somebody makes them for the first time.
 
 >>> # place = fresh_workspace("examples/zephyr_jiwy", tmp_path / "ws")      # west init, west update

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A Zephyr workspace on this computer, and builds in it, in folders of EPG's cache that are used again.
 
 >>> # skip_if_missing(partial(workspace, "rpi_pico"), arm_gcc)

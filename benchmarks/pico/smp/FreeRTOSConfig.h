@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The FreeRTOS kernel on both cores, with core 1 for one task.

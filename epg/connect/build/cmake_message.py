@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One message of CMake: a line that says where, a text in wrapped paragraphs, the calls that led there.
 
 ::

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a build would run, said before the first one in a folder.
 
 A folder that somebody has handed on may name any program: in its CMake files, in the cache of a build folder.  So the

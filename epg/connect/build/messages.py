@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What went wrong in a build, out of what CMake, compilers, linkers and EPG print.
 
 >>> messages = Messages((Path("/home/me/robot"),))

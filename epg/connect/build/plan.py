@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is run to build a project: the commands a person would type, and the environment they run in.
 
 >>> # plan = make_plan(job, target, roots)

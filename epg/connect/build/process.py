@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A program that is started, read line by line, and ended with all that it has started itself.
 
 >>> # process = Process(("cmake", "--build", "build"), Path("."), os.environ, print)

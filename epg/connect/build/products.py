@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a build has made for people: asked of CMake before it configures, by its file API (cmake-file-api(7)).
 
 >>> # ask(build)                                 before CMake configures

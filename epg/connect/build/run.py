@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A build as somebody watches it: started, followed, cancelled; what it said and what it made.
 
 >>> # build = Build(job, changed=wake_the_page)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The tools that builds for a platform need, and what to do where one is missing: as ``epg doctor`` has it.
 
 >>> # [problem.message for problem in missing_tools(platform, roots)]  ->  ["The picotool was not found."]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Notices above the page: a lost connection, edits by others, conflicts, refusals.
 
 import { h } from "./dom.js";

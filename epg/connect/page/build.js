@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Generate: progress, messages, products, log.
 
 import { openDialog } from "./dialog.js";

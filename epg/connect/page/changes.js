@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What saving would change in the files.
 
 import { h } from "./dom.js";

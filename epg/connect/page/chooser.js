@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The dialog that gives the project another target.
 
 import { configurationCards } from "./configurations.js";

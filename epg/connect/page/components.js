@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the target offers: components with the ports of one direction, their pins, peripheral and topic.
 
 import { h, id } from "./dom.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cards of the configurations one can choose, grouped by robot and board, with search and filter.
 
 import { h, id } from "./dom.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The dialog of one wire: scale, offset, limits, unit.
 
 import { closeDialog, openDialog } from "./dialog.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Modal dialogs: the browser's own <dialog> keeps the focus inside and gives it back. An open dialog is drawn again
 // with every State, and what was typed into it stays.
 

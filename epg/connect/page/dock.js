@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The lower part: tabs with everything that is more than ports.
 
 import { buildPanel, buildTitle } from "./build.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Elements as a function of data: h() says what should be there, render() changes only what differs, so that focus,
 // scroll positions, open lists and half-typed text stay.
 //

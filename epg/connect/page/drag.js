@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Wires by pointer: pressed on a handle, released on a port of the other side.
 
 import { current } from "./server.js";

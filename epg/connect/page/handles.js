@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The dots where wires begin and end: for a pointer to drag, and for the keyboard. Of each side one handle is a stop of
 // the Tab key; the arrow keys go through the others.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What of the board every component got.
 
 import { h } from "./dom.js";

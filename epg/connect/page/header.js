@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Above everything: what this is, whether it is saved, and what can be done with it.
 
 import { generate } from "./build.js";

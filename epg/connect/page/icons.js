@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Small pictures that stand beside words, never alone without a name.
 
 import { h } from "./dom.js";

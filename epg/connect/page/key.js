@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The secret by which EPG knows its page. The page gets it once, for the token in its address, and keeps it for this tab
 // alone: never in the address, which other users of the computer can see, nor in a cookie, which browsers send to every
 // port of 127.0.0.1.

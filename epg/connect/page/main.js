@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws the page for every State, and listens to what concerns all of it.
 
 import { bars } from "./bars.js";

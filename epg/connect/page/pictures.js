@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pictures that the server draws, to look at and to zoom into.
 
 import { h } from "./dom.js";

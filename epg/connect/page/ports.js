@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The model in the middle: inputs with their source, outputs with what they drive.
 
 import { editConversion } from "./conversion.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Messages: where they are about, and as a list. Their text is the command line's.
 
 import { h, id } from "./dom.js";

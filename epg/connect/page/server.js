@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The other end: the newest State by long polling, and actions.
 
 import { lock, sign, unlock, whyLocked } from "./key.js";

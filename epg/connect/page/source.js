@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A dialog with the lines around a message.
 
 import { openDialog } from "./dialog.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The start page: a model that has no project yet. 1 Model, 2 Target, 3 Project.
 
 import { configurationCards } from "./configurations.js";

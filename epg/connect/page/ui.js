@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What belongs to the view and not to the project: which tab is open, what is searched for, what is being dragged.
 
 import { act } from "./server.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Wires as curves between handles, in one SVG behind the blocks.
 
 import { editConversion } from "./conversion.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the State says about wires, and the edits of them. A side is one of
 //   sources   component ports that give a value      inputs   of the model
 //   outputs   of the model                           sinks    component ports that take a value

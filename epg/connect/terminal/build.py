@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A build as the terminal shows it: one line of progress, then the messages and what to do with the products."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Questions and answers as lines of text: on a terminal, through a pipe, from a file of answers.
 
 >>> import io

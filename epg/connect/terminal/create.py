@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The terminal's first questions, where a model has no project yet: which target, which folder, which name."""
 
 from __future__ import annotations

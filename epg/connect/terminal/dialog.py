@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``epg connect --terminal``: the page's questions, one after the other, for who has no browser, and for scripts.
 
 >>> # status = run(session, sys.stdin, sys.stdout)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Messages in the terminal: as the command line prints them, with the line they point to."""
 
 from __future__ import annotations

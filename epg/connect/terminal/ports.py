@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The terminal's questions about ports: which component each is connected with."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A dialog about one target: its state, what is done to it, and what is said of that."""
 
 from __future__ import annotations

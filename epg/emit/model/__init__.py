@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The library of one model: a typed header, its implementation, and what keeps the model apart from others.
 
 >>> # files = emit_model(model, "pan")           # {"pan.h": ..., "pan.c": ..., "pan_export.c": ...}

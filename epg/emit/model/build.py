@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What to compile for a model's library."""
 
 from __future__ import annotations

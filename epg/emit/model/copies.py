@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Copies of a model's files with other parameter values, and headers under the names the model includes them by."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The C headers of FMI 2.0 and 3.0, for FMUs that leave them to the importer.
 
 Types and functions are those of the specifications, FMI 2.0.4 and FMI 3.0.1.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the templates of an FMU's library need: names of FMI's functions, variables by type, unpacked files."""
 
 from __future__ import annotations

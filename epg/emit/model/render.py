@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The templates of a model's library, filled."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """C code for a model that is given by its tokens alone.
 
 The equations stay as 20-sim writes them, but for the names of their arrays and system variables, which become members

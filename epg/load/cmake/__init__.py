@@ -1,1 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
 """CMake's files read without running CMake: as far as that can be known."""

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The commands of a CMakeLists.txt, put together to the blocks that if(), foreach() and others begin."""
 
 from __future__ import annotations

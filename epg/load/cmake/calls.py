@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which epg_add_target() calls a project makes, found without running CMake.
 
 Variables that are written in the files, or stand in the cache of an existing build folder, have values; everything else

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """CMake's if(): true, false, or None where that cannot be known.
 
 Source: cmake-commands(7), if(), sections "Basic Expressions", "Logic Operators" and "Condition Syntax".

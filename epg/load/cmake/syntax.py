@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The commands of a CMakeLists.txt as they are written, with positions; nothing is evaluated.
 
 >>> [command.name for command in parse_cmake("project(jiwy C) # a robot", "CMakeLists.txt")]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Values of CMake's variables as far as they can be known without running it.
 
 >>> variables = Variables({})

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Models: exports of 20-sim and controllers written by hand.
 
 >>> # model = load_model(Path("model"), diagnostics)

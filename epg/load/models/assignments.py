@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The lines of generated code that carry the model's data: array elements with their 20-sim names.
 
 ``xx_V[7] = u[0];  /* in {rad} */`` and ``xx_P[1] = 2.6;  /* PID1\\kp {} */`` look alike in every target and version of

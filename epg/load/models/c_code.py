@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a file of C or C++ defines and uses: enough of the language for generated code, and no more.
 
 >>> # unit = parse_code(SourceFile(path, text))

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Import of 20-sim's C function target (4.5 to 5.1) and of the C sources of its FMU target.
 
 The entry points are recognised by the middle of their name (``...InitializeSubmodel...``), which survives the changes

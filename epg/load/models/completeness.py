@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Variables and methods of an export that somebody has deleted: they would be missed by the compiler or the linker."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``ModelConfiguration.xml`` and an FMU's ``modelDescription.xml``: types, sizes and descriptions of ports.
 
 Both list variables in the order of their declaration, which is not the order of ``u[]`` and ``y[]``: use by name only.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Import of 20-sim's C++ class target: ``<Sub>.cpp``, ``<Sub>.h`` and ``common/``."""
 
 from __future__ import annotations

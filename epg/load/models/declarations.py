@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What headers declare: functions, variables and classes that some file must define."""
 
 from __future__ import annotations

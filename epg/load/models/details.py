@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the emitter needs of a model beyond :class:`~epg.load.models.model.Model`, one class per origin."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a model does that a target cannot run, found in the code that runs and not in what merely lies beside it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Source-code FMUs of FMI 2.0 and 3.0 for co-simulation: a ``.fmu``, or the folder it is unpacked to.
 
 >>> # model = load_fmu(Path("servo.fmu"), diagnostics)

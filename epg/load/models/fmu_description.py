@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``modelDescription.xml`` of FMI 2.0 and 3.0: what an FMU offers, and whether a target can use it."""
 
 from __future__ import annotations

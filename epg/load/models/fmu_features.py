@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What an FMU does that a target cannot: found in the code behind the functions EPG calls.
 
 FMUs get memory from an array of fixed size.  They may take some while they start, and for a while in a step: memory

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The files of an FMU: an unpacked folder, or a ``.fmu``, which is a zip archive.
 
 An archive is read and never unpacked here.  It may come from anybody: names that lead out of it, links, encrypted or

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``model.yaml`` of an FMU: its file, and what is said of it that it does not say itself.
 
 >>> # version: 1

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which files of an FMU are compiled, with which definitions, and what they include.
 
 FMI 2.0 lists the files in its description or, in FMUs of older tools, not at all: then it is every C file.  FMI 3.0 has

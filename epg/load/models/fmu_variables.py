@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Variables of an FMU, of its ``modelDescription.xml``."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Global variables of an export that a start must put back to their first values."""
 
 from __future__ import annotations

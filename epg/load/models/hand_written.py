@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``model.yaml`` of a controller written by hand: its ports, step size and functions.
 
 The whole file is checked here, by the same rules as ``schemas/model.schema.json`` states for editors.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whether the names in a ``model.yaml`` are those of its sources: a misspelt one must not end in the linker.
 
 What cannot be known is not judged: where an include is not found, or macros paste names together, there may be more

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The headers of a model: what its files include, where that is found, and what is said if it is not."""
 
 from __future__ import annotations

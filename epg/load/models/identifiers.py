@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """C identifiers for names of a model.
 
 >>> to_identifier("PID1\\\\kp"), to_identifier("p.e"), to_identifier("double"), to_identifier("2nd stage")

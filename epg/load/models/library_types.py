@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Classes of the C++ library that cannot be used on a target, and names before a parenthesis that are not called.
 
 Somebody lets a controller read its parameters with ``std::ifstream file("gains.txt");``.  What follows there, such as

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which files belong to one model: those that its functions need, found as a linker does.
 
 They are looked for in the model's folder first.  What is not there may lie beside it: see ``neighbours.py``.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Metadata beside the sources, and what it says differently.
 
 The sources are the truth, as developers rename prefixes in them and export again without these files.  A difference is

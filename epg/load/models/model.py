@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A controller or plant as the rest of EPG sees it, whatever tool it came from."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What all kinds of ``model.yaml`` share: version, step, keys that are known, and how mistakes are reported."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The folders beside a model's folder, where people put files that several models share.
 
 ::

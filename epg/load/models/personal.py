@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What 20-sim writes about people and their computers into ``ModelConfiguration.xml``.
 
 Its ``<general>`` names the model file with its whole path, the folder, the license and the person it is registered

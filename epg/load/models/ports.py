@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Ports and parameters as :class:`~epg.load.models.model.Model` wants them, from what sources and metadata say."""
 
 from __future__ import annotations

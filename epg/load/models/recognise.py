@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which kind of model lies in a folder, and where."""
 
 from __future__ import annotations

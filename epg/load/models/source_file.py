@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Source files of a model as text, with positions.
 
 Generated code is ASCII, but comments carry user and company names, units and port names, and editors save in many

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``tokens.xml``: every value and equation 20-sim fills into its templates, by name.
 
 Lists (``INPUT_NAMES3``, ``INPUT_UNITS``) hold one entry per line, an empty line where there is none.  ``*_NAMES3`` are

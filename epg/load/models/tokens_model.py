@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Import of ``tokens.xml`` alone: it holds all equations, so EPG's own template can make the model's code of it."""
 
 from __future__ import annotations

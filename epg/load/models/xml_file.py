@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """XML files of an export as trees whose elements know their line.
 
 Document type declarations are refused, so entities cannot expand.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A writer and a reader of std_msgs/msg/Float64 that ROS 2 nodes take for one of theirs."""
 
 # cyclonedds reads annotations as types: no "from __future__ import annotations"

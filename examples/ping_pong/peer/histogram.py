@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Histograms of round-trip times, as text and as a picture.  Bars are logarithmic, to show the few late ones."""
 
 from __future__ import annotations

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Measures how long a Float64 on /ping takes to come back on /pong, as a plain DDS participant: no ROS 2 needed.
 
     python measure.py --rate 30 --count 900                     a ping every 33 ms, as setpoints come

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Statistics of round-trip times, as a table.
 
     python summary.py runs/*.csv

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Copy this file into your repository and include it before the first epg_ function:
 #
 #   include(epg_import.cmake)

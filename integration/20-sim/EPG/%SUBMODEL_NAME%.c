@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The equations of the submodel `%SUBMODEL_NAME%`, as 20-sim writes them, in a frame of EPG's.

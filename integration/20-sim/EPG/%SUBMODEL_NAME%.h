@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The submodel `%SUBMODEL_NAME%` of 20-sim as re-entrant C: everything it remembers is in an instance.

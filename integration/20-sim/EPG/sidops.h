@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The functions of 20-sim's equation language (SIDOPS+) that C has not.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * An H-bridge with two PWM inputs, one for each direction: signed duty.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * An H-bridge with one PWM input and two direction inputs: signed duty.

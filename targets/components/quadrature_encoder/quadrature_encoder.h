@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * A quadrature encoder as an angle: counts accumulated into 64 bits, scaled, with a reset that loses no counts.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # EPG::pico_quadrature: quadrature encoders on the PIO of RP2040 and RP2350, for any project of the Pico SDK.
 #
 # Headers epg/pico_quadrature.h and epg/pico_quadrature_velocity.h.  An INTERFACE library, as those of the SDK: its

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The console: a target by lines of text, for people at a terminal and for programs.  docs/console.md defines it.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Lines that wait to be read: a ring of bytes that takes a line whole or not at all.

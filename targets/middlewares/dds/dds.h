@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * ROS 2 without an agent: the program is a DDS participant, by CycloneDDS.  For computers, not for microcontrollers.

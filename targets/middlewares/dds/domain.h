@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Which DDS domain, and who of its network is looked for: as the environment says it to ROS 2.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * What makes a DDS participant a node of the ROS graph: the topic `ros_discovery_info`, on which each participant says

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Topics whose other end asks for, or offers, what they cannot have: DDS lets no message through then, in silence.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Messages as CycloneDDS carries them, without knowing what is in them: bytes with their encapsulation header.

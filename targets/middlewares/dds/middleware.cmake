@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # CycloneDDS 0.10: Debian's and Ubuntu's package, and ROS 2 Jazzy's, whose environment puts it on CMAKE_PREFIX_PATH.
 # Later versions have other headers for messages that no generated code describes.
 

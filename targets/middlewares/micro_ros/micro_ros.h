@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * ROS 2 through an agent: the middleware `micro_ros`, on rcl and micro-ROS's libmicroros.  docs/micro-ros.md says what

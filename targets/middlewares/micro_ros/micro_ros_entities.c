@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * What a target is for rcl: a context, a node, and a publisher or subscription for each topic.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * What libmicroros was built for: its pools are as large as they were when it was compiled.

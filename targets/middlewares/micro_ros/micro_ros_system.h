@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * What libmicroros asks of an operating system: memory and, on a microcontroller, the time.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # libmicroros as its builders leave it: a folder with libmicroros.a and include/.  It is built for one processor, one
 # transport and pools of one size, so nothing is fetched or built here.
 

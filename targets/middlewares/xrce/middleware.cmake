@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # What the middleware xrce needs besides its own sources: eProsima's Micro-CDR and Micro XRCE-DDS client, of the versions
 # that it was written and tested with, compiled here for whatever this build compiles for.  Their own CMake files would
 # bring transports, options and install rules of theirs, and a compiler check that a cross build does not pass.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * ROS 2 through an agent: the middleware `xrce`, on eProsima's Micro XRCE-DDS client.  docs/ros2.md describes it.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The clock that the client library asks for, in place of its own, which needs an operating system.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * What a target asks an agent for: a participant, a publisher and a subscriber, and for each topic the topic and its

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Frames over a stream: as they are where the transport has packets, else with the framing of XRCE's serial transport.

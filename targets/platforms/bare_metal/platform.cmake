@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Bare metal on the Raspberry Pi Pico: core 1 controls, core 0 communicates in an interrupt of lowest priority.
 
 include("${CMAKE_CURRENT_LIST_DIR}/../pico/pico.cmake")

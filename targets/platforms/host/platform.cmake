@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The host platform for CMake: its port layer as the library EPG::host, and executables with EPG's main().
 
 function(_epg_host_library)

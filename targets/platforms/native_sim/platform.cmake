@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Zephyr as a program of this computer: as on boards.
 
 include("${CMAKE_CURRENT_LIST_DIR}/../zephyr/zephyr.cmake")

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # What the platforms on the Raspberry Pi Pico share: the port layer as sources of whoever links a target, and how
 # executables are made.  The Pico SDK is the user's: it is there when epg_add_target() is called, or the message says
 # what to write.

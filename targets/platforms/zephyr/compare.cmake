@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # What has become of the devicetree and of the configuration, compared with what the target was generated for: a user's
 # overlay and prj.conf go over EPG's, and may say something that the target cannot work with.
 #

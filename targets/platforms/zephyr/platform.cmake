@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Zephyr: epg_add_target() comes before find_package(Zephyr), which chooses the compiler and makes everything.
 
 include("${CMAKE_CURRENT_LIST_DIR}/zephyr.cmake")

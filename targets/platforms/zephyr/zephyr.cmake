@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # What the platforms in Zephyr share.
 #
 # Before find_package(Zephyr): the target's overlay and Kconfig defaults become a shield, which a user's own overlay and

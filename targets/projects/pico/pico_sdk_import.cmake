@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # EPG and the Pico SDK, in the versions that CMakeLists.txt states; include it before project().
 #
 # The VS Code extension "Raspberry Pi Pico" knows a project by a file of this name.

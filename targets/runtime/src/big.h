@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Whole numbers of up to 1376 bits: as large as the decimal representation of a double needs.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Doubles to text and back, by exact arithmetic on large whole numbers.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * std_msgs/msg/Float64MultiArray: a layout of dimensions (label, size, stride) and an offset, then the numbers.

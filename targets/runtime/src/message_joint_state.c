@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * sensor_msgs/msg/JointState: header, names, positions, velocities, efforts.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * What messages of several numbers have in common: which of their numbers are values of a topic.

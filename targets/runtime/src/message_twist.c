@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * geometry_msgs/msg/Twist and TwistStamped: linear x, y, z, then angular x, y, z.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Setpoints on the control side: newest sample, age, rate limit.  Internal to the control cycle.

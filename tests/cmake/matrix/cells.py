@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One cell of the matrix: a project that finds EPG in one way, under one toolchain, CMake and generator."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The oldest CMake that EPG supports and the newest there is, from PyPI, in EPG's cache."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """EPG in all the forms in which somebody may have it."""
 
 from __future__ import annotations

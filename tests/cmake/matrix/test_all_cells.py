@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The rest of the matrix: all ways, conventions, CMakes and generators.  Part of ``check_long``: it takes minutes."""
 
 from __future__ import annotations

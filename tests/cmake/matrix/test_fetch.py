@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """FetchContent beyond the matrix: another archive, two askers, no network."""
 
 from __future__ import annotations

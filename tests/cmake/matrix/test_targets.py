@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """epg_add_target with the oldest CMake and the newest, with every generator: editors, build, run."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every way of finding EPG, toolchain convention, CMake and generator, each together with each other's."""
 
 from __future__ import annotations

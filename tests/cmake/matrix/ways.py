@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The ways in which a project finds EPG: what it writes, and what its user passes and sets."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What people do on the page, and how tests wait for what comes of it."""
 
 from __future__ import annotations

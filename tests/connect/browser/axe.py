@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """axe-core, the usual checker of web pages' accessibility: installed once into EPG's cache, as rp2040js is."""
 
 from __future__ import annotations

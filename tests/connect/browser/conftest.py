@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A browser without a window, projects to open in it, and what holds for every page: nothing leaves this computer,
 and nothing goes wrong unseen."""
 

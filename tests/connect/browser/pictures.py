@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Takes the pictures of the page in docs/pictures anew; they are of the real page, on a real build.
 
     python -m tests.connect.browser.pictures

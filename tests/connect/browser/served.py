@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``epg connect`` as a user starts it, and what it says over HTTP.
 
 >>> # with Served(folder) as epg: epg.address, epg.state(), epg.post("undo")

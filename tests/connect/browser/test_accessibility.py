@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What axe-core finds, in light and dark, in every state of the page; and that it fits narrow and enlarged windows."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The address opens one page, and holds nothing that others can use afterwards."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Wires by pointer, by list and by keyboard; after Save, the bindings file says what the page shows."""
 
 from __future__ import annotations

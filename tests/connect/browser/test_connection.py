@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A page whose server is gone says so, keeps what it shows, and goes on when it is back."""
 
 from __future__ import annotations

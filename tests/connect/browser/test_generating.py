@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Generate: a real build for this computer, its progress, what it makes and what goes wrong."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """From a bare model to a finished program without a pointer; the build is CMake's, for this computer."""
 
 from __future__ import annotations

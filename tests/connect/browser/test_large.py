@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A model with 60 ports and a target with 80: everything is there, at the speed of a hand."""
 
 from __future__ import annotations

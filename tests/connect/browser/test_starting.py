@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """From a bare model to a project: choose, create, connect."""
 
 from __future__ import annotations

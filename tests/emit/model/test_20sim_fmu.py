@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """FMUs of 20-sim take one step of their own at each step of the library, whatever their integration method promises."""
 
 from __future__ import annotations

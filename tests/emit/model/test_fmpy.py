@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """FMUs of 20-sim give through the library what FMPy, an ordinary importer, gets from them.
 
 FMPy brings numpy, lxml, CMake and more, some 200 MB: this is a test of ``check_long``.

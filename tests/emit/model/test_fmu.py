@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The library of an FMU gives what calls of the standard's functions give, bit for bit, from memory of fixed size."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The library of a model: what it computes, and that several go together.
 
 Results are compared bit for bit with what the export's own code gives through its own interface.

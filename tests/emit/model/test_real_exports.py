@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Real exports give through the library what their own code gives, bit for bit.
 
 They are not part of EPG: the environment variable EPG_TEST_EXPORTS names a folder whose subfolders are repositories

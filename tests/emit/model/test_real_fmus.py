@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Real FMUs give through the library what calls of their own functions give, bit for bit, and fit microcontrollers.
 
 They are not part of EPG: the environment variable EPG_TEST_EXPORTS names a folder with unpacked FMUs anywhere below it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Simulated time in cycles of clk_sys, and what is to happen at which cycle.
 
 export class Alarm {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The commands of the driver: each method takes a command's parameters and returns what is answered.
 import { readFileSync } from 'node:fs';
 import { Encoder, ConstantSpeed, RandomWalk, ScheduledMotion } from './encoder.mjs';

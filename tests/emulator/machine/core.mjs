@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One Cortex-M0+: the package's instructions, with exceptions, faults, sleep and the bus as the architecture has them.
 //
 // What differs from the package: exceptions take time; interrupts stay pending when their line falls; PRIMASK holds

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Command line of the emulator: JSON lines in, JSON lines out.
 //
 //   {"id": 1, "call": "run", "with": {"cycles": 125000}}   ->   {"id": 1, "result": {...}}  or  {"id": 1, "error": "..."}

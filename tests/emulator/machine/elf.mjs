@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Images: 32-bit little-endian ELF (segments by their load address, symbols) and UF2.
 import { readFileSync } from 'node:fs';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Incremental encoders outside the chip: they drive two pins, and know how many edges they gave.
 import { Random } from './usb_host.mjs';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Core 1 in the boot ROM: what wait_for_vector does there (data sheet of the RP2040, 2.8.2), as a state machine.
 //
 // The ROM drains core 1's mailbox, sends a 0, and then echoes the sequence 0, 0, 1, vectors, stack, entry.

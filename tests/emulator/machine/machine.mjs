@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An RP2040 whose processors, PIO blocks, PWM slices and timers keep step to the cycle.
 //
 //   const machine = new Machine({ rom });

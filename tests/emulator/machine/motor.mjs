@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A DC motor behind an H-bridge, with gear, inertia, friction and end stops, that turns an encoder.
 //
 // Between two changes of what the bridge does, the motion is solved exactly (zero-order hold): at duty d

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The memory protection unit, as far as it forbids writes (Armv6-M Architecture Reference Manual, B3.5): what a stack
 // guard needs.  Reads and execution are not checked.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The npm package rp2040js, from the folder that EPG_RP2040JS names (emulator.py installs it into EPG's cache).
 //
 // Only its processor core and the peripherals that the harness leaves alone (clocks, PLLs, pads, IO bank, ADC,

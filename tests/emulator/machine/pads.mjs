@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The 30 GPIO pads: who drives them, what the chip sees, and a log of their edges.
 //
 // A pad's level is the chip's output where that is enabled, else what the test drives from outside, else the pull

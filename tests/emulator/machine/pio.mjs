@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A PIO block (data sheet of the RP2040, 3), in step with the processors to the cycle.
 //
 // A block whose state machines can be seen from outside only through its registers runs late: it is brought up to date

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One PIO state machine (data sheet of the RP2040, 3.4 and 3.5), exact to the cycle.
 //
 // run() executes many cycles at once, and leaps over those in which nothing can change: a state machine whose registers

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What each Cortex-M0+ has for itself: NVIC, SysTick, MPU and system control (data sheet of the RP2040, 2.4.8).
 import { Mpu } from './mpu.mjs';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The eight PWM slices (data sheet of the RP2040, 4.5), free-running, exact to the cycle.
 //
 // Compare values and TOP are double-buffered: what software writes takes effect when the counter wraps, and `taken`

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Resets of peripherals and of core 1 by software (data sheet of the RP2040, 2.13 and 2.14), and registers that are
 // nothing but memory here.
 import { BasePeripheral } from './package.mjs';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The single-cycle I/O block (data sheet of the RP2040, 2.3.1), seen by two cores: GPIO, mailboxes, spinlocks, dividers.
 import { IRQ, RPSIO } from './package.mjs';
 

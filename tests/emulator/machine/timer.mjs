@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The microsecond timer and its four alarms (data sheet of the RP2040, 4.6), exact to the cycle.
 import { BasePeripheral, IRQ } from './package.mjs';
 

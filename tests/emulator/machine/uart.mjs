@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A UART and what is wired to it (data sheet of the RP2040, 4.2: Arm's PL011): whole characters at their times.
 //
 // Levels of the pins are not simulated: a character goes out or comes in when a pin of this UART has its function.

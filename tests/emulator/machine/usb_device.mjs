@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The USB device controller's registers and buffers (data sheet of the RP2040, 4.1).
 //
 // A buffer that the firmware makes available stays so until the host (usb_host.mjs) has moved its packet: while the

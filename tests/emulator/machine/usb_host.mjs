@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A USB host: attaches, enumerates, and moves the packets of CDC serial ports, with the times of a real bus.
 //
 // Bus state machine: detached -> waiting for the pull-up -> bus reset -> enumeration -> configured.  Frames start every

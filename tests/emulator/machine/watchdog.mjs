@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The watchdog (data sheet of the RP2040, 4.7): its counter, the cause of the last reset, eight words that survive one.
 import { BasePeripheral } from './package.mjs';
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A closed loop of an example's C models, without EPG in between: what the models themselves are worth.
 
 Encoders count whole steps, are zero at the start, and read zero in the cycle after a reset; PWM has 6250 steps,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Puts the modules of this folder (``writer``, ``closed_loop``) on the module path."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The examples' models: that they are what their equations say, and that the JIWY pair works in closed loop."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The ideal loop of JIWY against a plain integration of the equations in its docstring, with very small steps."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """RELbot's C++ models in closed loop, without EPG in between: cycle 1 ms, controller every second cycle."""
 
 from __future__ import annotations

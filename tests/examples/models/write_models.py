@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Writes the models of the examples: ``python tests/examples/models/write_models.py``."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes a corpus of libFuzzer as lines for the tests: ``python samples.py corpus >> xrce_fuzz.txt``.
 
 Short inputs first; long ones, which say little more, are left out.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A board with the test program, in the emulator."""
 
 from __future__ import annotations

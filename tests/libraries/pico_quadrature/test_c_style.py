@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The library's C as other tools see it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Counts are exact: all state machines of both PIO blocks at once, with reversals, up to the stated rate."""
 
 from __future__ import annotations

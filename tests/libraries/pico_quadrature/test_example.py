@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The example builds for both boards, and does what its README says."""
 
 from __future__ import annotations

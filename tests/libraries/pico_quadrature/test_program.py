@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The committed words are what pioasm makes of the source, and their lengths and cycles are as stated."""
 
 from __future__ import annotations

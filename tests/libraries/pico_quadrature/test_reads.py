@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A read is bounded, fresh, says when its state machine is halted, and does not touch flash."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """RP2350: both variants build for it without a warning, and what it refuses is run on a Cortex-M33.
 
 There is no emulator of its PIO; the programs use no instruction that RP2040 does not have.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Pins, direction, and what happens when something is not free."""
 
 from __future__ import annotations

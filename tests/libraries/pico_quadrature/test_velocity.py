@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Velocity from edge times: right at low speed, where counts per cycle are 0 or 1."""
 
 from __future__ import annotations

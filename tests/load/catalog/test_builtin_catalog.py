@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """EPG's own chips, boards, platforms, kinds and robots: all of them right, and what the data sheets say."""
 
 from __future__ import annotations

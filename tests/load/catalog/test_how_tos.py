@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The how-tos are right: their files are written and their commands run as they stand there.
 
 A block that follows a line ending in "`path`:" is that file.  In a ``console`` block a line ``$ command`` is run, and

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Files of a user's targets folder may hold anything: that gives messages, never an exception."""
 
 from __future__ import annotations

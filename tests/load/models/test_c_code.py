@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The little that is understood of C."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Import of C function exports, as 20-sim writes them and as developers leave them."""
 
 from __future__ import annotations

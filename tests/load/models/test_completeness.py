@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Exports that somebody has trimmed: what is missing is said, and not by the linker."""
 
 from __future__ import annotations

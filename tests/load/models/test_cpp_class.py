@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Import of C++ class exports."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What models do that targets cannot run: refused where it runs, and only there."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """FMUs: what is read of them, from folders and archives, and what is said of those that cannot be used."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Controllers written by hand, described by model.yaml."""
 
 from __future__ import annotations

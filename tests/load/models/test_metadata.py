@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Files beside the sources: what they add, and what is said when they are of another export."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Files of a model that lie beside its folder: which are used, which are not, and what is said."""
 
 from __future__ import annotations

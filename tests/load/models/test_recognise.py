@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is a model, what is none, and what is said then."""
 
 from __future__ import annotations

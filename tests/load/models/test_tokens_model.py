@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``tokens.xml`` alone as a model."""
 
 from __future__ import annotations

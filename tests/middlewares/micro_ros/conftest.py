@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Host executables with the middleware ``micro_ros``, as a user builds them, against a libmicroros of the user's."""
 
 from __future__ import annotations

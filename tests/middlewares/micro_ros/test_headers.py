@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The middleware compiles with other releases of libmicroros: their headers are enough for that."""
 
 from __future__ import annotations

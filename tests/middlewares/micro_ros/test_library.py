@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A libmicroros that does not fit, or is not there: said before a target runs."""
 
 from __future__ import annotations

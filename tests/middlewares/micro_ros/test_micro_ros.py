@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The middleware ``micro_ros``: topics both ways, quality of service, an agent that comes and goes, a serial line."""
 
 from __future__ import annotations

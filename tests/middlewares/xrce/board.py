@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A board for tests: a host executable with the middleware ``xrce``, and what can be seen of it through an agent."""
 
 from __future__ import annotations

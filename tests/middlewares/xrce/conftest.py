@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Host executables with the middleware xrce, as a user builds them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Steps of a setpoint to a program on this computer, by UDP and in real time."""
 
 from __future__ import annotations

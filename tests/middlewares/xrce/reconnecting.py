@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A board that has to connect again and again: what that costs it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Connecting, losing and finding again: whatever the agent, the line and the board do."""
 
 from __future__ import annotations

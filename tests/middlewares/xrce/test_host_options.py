@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where the agent is, on the command line of a host executable, and what it tells people."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """JIWY follows setpoints from the agent's side, in real time, and is indifferent to the agent's fate."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A setpoint acts in the next control cycle after it has come, and not before the output delay."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """All that the control loop and the middleware share, under ThreadSanitizer."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A thousand restarts of the agent."""
 
 from __future__ import annotations

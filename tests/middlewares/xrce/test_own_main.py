@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A program with its own main(): the target is a node from its start to its stop, and so again."""
 
 from __future__ import annotations

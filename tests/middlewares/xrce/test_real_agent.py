@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The board, eProsima's agent with Fast DDS, and a peer with CycloneDDS that looks like a ROS 2 node."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Thirty restarts of the agent; test_long_reconnects.py has a thousand."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What goes over topics: periods, newest values, timeouts of setpoints, enabling, diagnostics, stamps."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Framing, and the middleware with eProsima's client in the clock of a test: each ``TEST(name)`` below ``c/``.
 
 Everything is compiled under sanitizers, the client library as well.

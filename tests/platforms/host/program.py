@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Compiles programs against the host platform and runs them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The communication side alone: what it hands to the control side, and when."""
 
 from __future__ import annotations

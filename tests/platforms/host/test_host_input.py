@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Wrong options and setpoint files: what is said, and the exit status."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The parts below: distribution of times, and numbers in files."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Real time.  Times of a shared machine are not asserted, only that what is reported is consistent."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Simulated time: what a user sees in the files of a run."""
 
 from __future__ import annotations

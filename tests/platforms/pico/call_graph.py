@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What code can reach, read from an ELF file: calls, branches, and addresses of functions and tables in literal pools.
 
 An address that code holds is taken for a call or a read that may happen, so the graph has more edges than any run has,

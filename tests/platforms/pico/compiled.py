@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What an image's build has compiled of EPG's own C, compiled again with warnings as errors."""
 
 from __future__ import annotations

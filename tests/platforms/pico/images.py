@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Images of ``project/`` for a board and a platform, built once and kept in EPG's cache."""
 
 from __future__ import annotations

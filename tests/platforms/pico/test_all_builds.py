@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every image that the predefined configurations give: JIWY and RELbot (a model in C++), by middleware."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Images for all four targets: they build, EPG's part without a warning, and how large they are."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """JIWY's firmware moves JIWY: two simulated motors on the pins, commands over the USB serial port.
 
 The console's setpoints are a person's; docs/emulator.md says how the motors are computed.

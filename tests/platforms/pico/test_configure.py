@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What CMake says when something is missing or does not fit: one sentence, and what mends it."""
 
 from __future__ import annotations

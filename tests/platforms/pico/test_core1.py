@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A program that uses core 1 itself: neither it nor the control loop takes the core from the other."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What happens to the outputs when something must not happen; RP2040 images in the emulator.
 
 The bench: an H-bridge driven at a quarter of full duty (pins 2, 7, 8), and a lamp that is off when pin 15 is high.

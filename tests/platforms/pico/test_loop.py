@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The control loop in the emulator: RP2040 images with the compiler's arithmetic.  Times are cycles of 8 ns.
 
 Contention for the bus and the flash cache are not simulated; docs/emulator.md says what is.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where code lies: nothing that the control cycle can reach is in flash, in a user's executable that runs from flash.
 
 RP2040's emulator finds accesses that happen (test_loop.py); the call graph finds those that could, on both chips.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Stopping and starting again, with bytes on USB all the time: RP2040 images in the emulator."""
 
 from __future__ import annotations

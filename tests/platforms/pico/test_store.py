@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Parameters that `save` has put into flash: there again after a restart, also when the supply failed meanwhile.
 
 JIWY's RP2040 images with the console; flash is erased and programmed by the emulator's boot ROM.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Configurations and allocations of text, for tests."""
 
 from __future__ import annotations

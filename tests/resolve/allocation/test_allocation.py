@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Hardware of whole targets: who gets what, and that what is possible is not refused."""
 
 from __future__ import annotations

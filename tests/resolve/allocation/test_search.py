@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The search against brute force, on what a greedy choice refuses, and against the clock."""
 
 from __future__ import annotations

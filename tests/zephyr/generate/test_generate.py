@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Overlay, Kconfig and needs that are generated for Zephyr, without Zephyr: as they were, and in dtc's grammar.
 
 ``EPG_UPDATE_GOLDEN=1`` rewrites what is in ``golden``: read the difference.

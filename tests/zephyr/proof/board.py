@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The example's application on an emulated Pico, enabled at start: JIWY on its pins, an agent and a person on USB."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What must hold of Zephyr's control loop on a Pico, whatever its communication does."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Zephyr's image of JIWY on a Pico in closed loop: homing and one motion, and the bits that the host computes."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The example's application for a Nucleo-H743ZI on an emulated chip: what its port layer reads and writes.
 
 The emulated processor has no arithmetic of doubles and no change of threads: test_h743_cycle.py runs the controller.

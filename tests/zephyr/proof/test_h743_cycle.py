@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """JIWY's control cycle on the emulated Nucleo-H743ZI, counted in instructions.
 
 The emulated processor has no arithmetic of doubles, so the example's application is built for one without an FPU: a

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Zephyr's image of JIWY on a Pico is a ROS 2 node that tracks, and its control cycles are on time."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Levels of the PWM act at the same wrap after each tick, in images whose code and clocks lie otherwise."""
 
 from __future__ import annotations

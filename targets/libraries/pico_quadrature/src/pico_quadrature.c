@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * Setting up and giving back quadrature decoders: epg/pico_quadrature.h.
  */

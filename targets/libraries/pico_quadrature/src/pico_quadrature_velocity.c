@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * Velocity from the times of edges: epg/pico_quadrature_velocity.h.
  */

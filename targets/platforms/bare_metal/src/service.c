@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Communication on bare metal: an interrupt of lowest priority on core 0, so that main() stays the user's.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The FreeRTOS kernel as EPG runs it: one core, static memory, a tick of 1 ms.

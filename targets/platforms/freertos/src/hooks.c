@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * What the kernel calls when something is wrong, outputs first, and when nothing is to be done.  A hook of the user's

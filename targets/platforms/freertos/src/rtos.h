@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The headers of the FreeRTOS kernel, as system headers: the user's warnings are for the user's code.

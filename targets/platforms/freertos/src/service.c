@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Communication on FreeRTOS: a task, from static memory, with the user's tasks beside it on core 0.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The host's two clocks: the monotonic one, and the simulated one that replaces it in simulated time.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Where the agent of a middleware is: a UDP address, or a terminal such as /dev/ttyUSB0.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The port layer against simulated peripherals: decoder counts, PWM levels and pin levels.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Real time: the control cycle in a thread of its own, woken at absolute times of the monotonic clock.

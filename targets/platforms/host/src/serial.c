@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * What tells one program from another: a word from the command line, as nothing else of a PC is one program's own.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The middlewares that run beside the control loop in real time: the target's own, and its console.

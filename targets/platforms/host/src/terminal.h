@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Streams between a middleware and whoever sits at the computer: standard input and output, or a terminal of its own.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * A link by a terminal: a serial port, or one that another program has made (pty).

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Interrupts of the user.  Part of the native simulator's runner: Zephyr's image knows nothing of signals.

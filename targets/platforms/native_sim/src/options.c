@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The command line of an image: EPG's options among those of native_sim, which are written -option=value.

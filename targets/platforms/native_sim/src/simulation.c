@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * A run: setpoints, plant and recording around the control cycles of the image, in the order and with the functions of

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Streams to the world outside of the simulation: the agent, and whoever sits at the computer.

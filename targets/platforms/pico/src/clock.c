@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Time: the chip's microsecond timer, refined within a control cycle by core 1's SysTick.

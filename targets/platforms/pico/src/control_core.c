@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Core 1: the control cycle in the wrap interrupt of a reserved PWM slice, and nothing else.

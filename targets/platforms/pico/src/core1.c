@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Core 1 belongs to the control loop while a target runs, and else to the program.

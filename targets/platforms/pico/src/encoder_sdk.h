@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The library pico_quadrature and the SDK's headers about the PIO, as system headers.

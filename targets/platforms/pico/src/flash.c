@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Writing to flash while a target runs: only while it is disabled, with core 1 waiting in RAM.

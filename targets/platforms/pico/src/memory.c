@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * memcpy() and memset() in RAM, for the chip whose SDK leaves them to the C library.

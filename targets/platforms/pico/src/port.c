@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * PWM, pins and quadrature decoders.  What the control cycle calls lies in RAM.

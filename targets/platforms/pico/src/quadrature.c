@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Quadrature decoders: state machines of the PIO, by the library pico_quadrature.

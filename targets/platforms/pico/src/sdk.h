@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The headers of the Pico SDK, as system headers: the user's warnings are for the user's code.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * What tells this board from all others: the unique id of its flash chip (RP2040) or of the chip itself (RP2350), which

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * A small store in flash: two sectors, of which the one with the higher number counts.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * UARTs: an interrupt of core 0 moves bytes between the FIFOs and the rings (RP2040 data sheet 4.2, PL011).

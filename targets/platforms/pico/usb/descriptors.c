@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Descriptors: one or two serial ports (CDC ACM) and the interface by which picotool reboots the board.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The interface by which `picotool reboot -f` and the boards' VS Code extension reboot a board that runs firmware.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The transport `usb`: serial ports over USB (CDC ACM).  Nothing here waits for the host.

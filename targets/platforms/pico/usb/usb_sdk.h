@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The headers of TinyUSB and of the Pico SDK that go with it, as system headers.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The communication thread: every millisecond, and at once when a transport's interrupt asks for it.

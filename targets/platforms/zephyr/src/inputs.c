@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Inputs: quadrature decoders, which are devices of the sensor API that give their count (epg/zephyr/qdec.h), and pins.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Devices of RP2040 and RP2350 that are registers: they may be used in interrupts, and while interrupts are locked.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * What tells this board from all others: the chip's device id, which is the serial number of the USB device too.

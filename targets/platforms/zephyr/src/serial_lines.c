@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Bytes between a device of the UART API and two rings, by its interrupts: real UARTs, and the serial ports of USB, whose

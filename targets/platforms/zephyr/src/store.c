@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * A small store in the flash partition storage_partition: records one after the other in up to two pages, of which the

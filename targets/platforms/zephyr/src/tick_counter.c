@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The tick of other chips: the top of a counter, which its hardware goes on from by itself.

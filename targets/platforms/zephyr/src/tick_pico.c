@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The tick of RP2040 and RP2350: the wrap interrupt of a PWM slice that nothing else uses.

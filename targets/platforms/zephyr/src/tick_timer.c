@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The tick of boards that are emulated (native_sim, QEMU): a k_timer.  Elsewhere it would be late whenever something

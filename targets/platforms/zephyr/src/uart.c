@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * UARTs.  Their baud rates and pins are the devicetree's.

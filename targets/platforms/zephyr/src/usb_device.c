@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The USB device, of Zephyr's newer device stack: all classes of the image in one configuration, and the board's serial

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The watchdog of the alias watchdog0: fed after a control cycle while communication is alive.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Adler-32 (RFC 1950, section 8.2): finds records in flash that were programmed in part.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * A motor on an H-bridge, whatever the bridge's pins are: what a signed duty asks of it.

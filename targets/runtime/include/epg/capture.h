@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Recording of chosen signals at every control cycle, around a trigger, into static memory.

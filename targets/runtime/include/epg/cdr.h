@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Common Data Representation, as ROS 2 messages have it on the wire: little endian, each number aligned to its size

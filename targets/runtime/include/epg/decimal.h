@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Decimal numbers, exactly: the shortest text that reads back as the same double, and the double nearest to a text.

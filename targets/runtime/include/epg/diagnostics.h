@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * State and statistics of a target as `diagnostic_msgs/msg/DiagnosticArray`, which rqt and other tools of ROS 2 show.

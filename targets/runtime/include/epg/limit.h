@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Limits of conversions: `limits: [low, high]` on a component or a wire.

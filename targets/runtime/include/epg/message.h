@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * ROS 2 messages: how values of a target become a message, and how a message becomes values.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Names of a node: as generated or as stored, with the board's serial number in the place of "$serial".

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Outputs whose hardware may refuse a write: what still makes the component safe.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * A simulated plant: what it moves and sees of a target's peripherals, and its place on the time line of a run.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * A ring of bytes between an interrupt and the communication side: one puts in, the other takes out, neither waits.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * What every platform with transports does with them and with its middlewares, on the communication side.

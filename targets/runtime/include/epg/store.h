@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * What a board keeps over a restart (epg_port_store_write()): its names, and parameters that were changed.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * A stream of bytes in both directions, such as a USB serial port: what a transport gives to a middleware.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * A transport: a stream of bytes with what a platform has to do for it, such as a USB serial port or a UART.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes the examples' models in the shape of 20-sim's exports, from their equations.
 
 20-sim generates such files from a block diagram.  EPG's examples must not contain generated code of others, so their

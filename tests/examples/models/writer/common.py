@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the C and the C++ shape share: file headers and tables of names."""
 
 from __future__ import annotations

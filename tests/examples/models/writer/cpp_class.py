@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # ruff: noqa: E101  (the templates indent by tabs, and continue comments by a blank)
 """The shape of 20-sim's C++ class target: ``<Sub>.cpp``, ``<Sub>.h`` and the folder ``common``."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Expressions in 20-sim's equation language and their form in C.
 
 >>> to_c("if a\\\\b > 1 then -a\\\\b else c * 2 end", {"a\\\\b": "xx_V[0]", "c": "xx_P[0]"}.__getitem__)

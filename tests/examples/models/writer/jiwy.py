@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """JIWY, a camera with a pan and a tilt axis: controller and plant.
 
 Numbers are those published for the laboratory's robots; see ``examples/jiwy/README.md`` for their sources and for

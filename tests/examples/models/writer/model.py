@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A model as equations, and the arrays in which 20-sim's code keeps its values.
 
 A definition is text, section by section::

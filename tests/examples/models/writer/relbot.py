@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """RELbot, a robot with two driven wheels: position controller of the wheels, and plant.
 
 Both are continuous-time models integrated with Runge-Kutta 4.

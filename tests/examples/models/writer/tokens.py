@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The metadata file: every token of the code generator with its value for one model.
 
 Only tokens that say something about the model are written; a real file also counts each of some 220 functions.

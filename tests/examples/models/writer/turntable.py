@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The turntable of ``examples/existing_firmware``: a PI controller of its angle with a limited duty cycle."""
 
 from __future__ import annotations

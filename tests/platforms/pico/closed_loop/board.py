@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """JIWY's firmware with the robot on its pins and somebody at its console.
 
 >>> # with Board(image("bare_metal"), {"pan": 0.12, "tilt": 0.12}) as board:

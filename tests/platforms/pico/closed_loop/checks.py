@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What must hold of an image that has run a scenario."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A scenario run by an image and by the host: how well each follows, and how far they differ."""
 
 from __future__ import annotations

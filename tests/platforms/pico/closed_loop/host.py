@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The same configuration on the host: against the simulated robot, and fed with what an image has sampled."""
 
 from __future__ import annotations

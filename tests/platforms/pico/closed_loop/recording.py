@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A scenario run by an image in the emulator: what each control cycle read, wrote and moved.
 
 The scenario's setpoints are sent over the console, each at its time since the first tick, so that they arrive as late

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """JIWY on the pins of a simulated Pico: motors behind its H-bridges, with the encoders that they turn.
 
 >>> # with Emulator(elf) as pico:

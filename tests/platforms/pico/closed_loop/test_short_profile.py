@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The RP2040 images of JIWY in closed loop: homing and one motion, compared with the host."""
 
 from __future__ import annotations

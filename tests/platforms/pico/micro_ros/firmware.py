@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """JIWY's firmware with the middleware ``micro_ros``, built with a libmicroros of the user's, for FreeRTOS on a Pico."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What an agent and a cable can do to JIWY's firmware with micro-ROS; its stack; a Pico 2."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """JIWY's firmware with micro-ROS is the same node as with xrce; its waiting is noticed by nobody but itself."""
 
 from __future__ import annotations

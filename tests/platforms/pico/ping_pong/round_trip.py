@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Round trips of a Float64 through ``examples/ping_pong`` on an emulated Pico, in simulated time.
 
 >>> # images = programs("bare_metal")

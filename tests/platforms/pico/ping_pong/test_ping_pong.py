@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """``examples/ping_pong`` on an emulated Pico: every ping comes back at once, and the control loop does not notice."""
 
 from __future__ import annotations

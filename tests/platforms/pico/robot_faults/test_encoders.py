@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Encoders with wires swapped or dead: JIWY's images stop the motors, as docs/runtime.md and the .tcf say."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """USB pulled during traffic, and garbage on it: control does not notice, and the console is there again afterwards."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Functions of an RP2350 image, run on an emulated Cortex-M33 (unicorn) with a small model of the registers they use.
 
 >>> # processor = Processor(elf)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The control cycle of an RP2350 image over a motion that the host has made, cycle by cycle."""
 
 from __future__ import annotations

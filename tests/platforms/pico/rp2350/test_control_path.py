@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The control cycle of both RP2350 images on an emulated Cortex-M33: the host's bits over the whole motion profile.
 
 The models of the examples use + - x / and comparisons only, so there is no tolerance.

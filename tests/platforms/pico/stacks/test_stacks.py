@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Stacks are a quarter larger than what JIWY's RP2040 images have ever used of them; the compiler's doubles."""
 
 from __future__ import annotations

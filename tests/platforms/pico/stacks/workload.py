@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The work that takes most of the stacks of JIWY's firmware, and how much it has taken.
 
 Everything the console can do, with USB flooded, pulled and put back and asked for its descriptors meanwhile; faults and

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What must hold of the timing of EPG's images."""
 
 from __future__ import annotations

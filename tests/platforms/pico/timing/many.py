@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Measurements over many seeds, as many at a time as there are processors."""
 
 from __future__ import annotations

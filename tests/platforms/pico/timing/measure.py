@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """When a program's ticks, encoder reads and PWM levels come, as the emulator sees it, to the cycle of 8 ns.
 
 Of every control cycle k: the deviation from t0 + k T of the tick's first instruction and of the encoder reads, and of

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The programs whose timing is measured: EPG's images, and JIWY written by hand with other sorts of tick."""
 
 from __future__ import annotations

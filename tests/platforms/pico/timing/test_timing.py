@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Ticks, encoder reads and outputs of JIWY's RP2040 images against t0 + k T, as the emulator times them."""
 
 from __future__ import annotations

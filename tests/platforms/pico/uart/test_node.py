@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A ROS 2 node whose agent is on a serial line, and its console on USB, in the emulator."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A serial line as transport: the console over a UART of the emulated chip, wired to the test."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A checker of USB configuration descriptors, as an operating system reads them.
 
 >>> interfaces(bytes.fromhex("09021200010100807d" "0904000000ff000105"))

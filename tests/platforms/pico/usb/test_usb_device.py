@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The USB device with one serial port and with two: descriptors, both ports at once, picotool's interface."""
 
 from __future__ import annotations

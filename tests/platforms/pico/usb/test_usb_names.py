@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the device is called by a target configuration and by an executable's definitions."""
 
 from __future__ import annotations

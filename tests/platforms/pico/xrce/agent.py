@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The XRCE agent on a serial port of the emulated board, in simulated time: each run gives the same frames.
 
 >>> # with Emulator(elf, usb={"seed": 3, "open": False}) as pico, BoardAgent(pico) as agent:

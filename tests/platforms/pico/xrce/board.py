@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """JIWY's predefined firmware as a ROS 2 node: the robot on its pins, an agent on one port, a person on the other.
 
 >>> # with Jiwy("bare_metal") as jiwy:

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What must hold of the control loop and of the board, whatever has been done to its communication."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Steps of a setpoint to an emulated Pico, by USB: until the level of its PWM takes effect."""
 
 from __future__ import annotations

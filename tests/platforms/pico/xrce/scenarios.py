@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is done to the board's communication while both axes hold a position: it comes back, the loop goes on."""
 
 from __future__ import annotations

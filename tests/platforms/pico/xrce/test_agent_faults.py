@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """An agent that is restarted, frozen or mad, and a cable that is pulled: the board comes back, the loop goes on.
 
 On FreeRTOS only what has to do with when the service runs; test_long_freertos_faults.py has the rest.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The predefined firmware is a ROS 2 node: names, topics, types and QoS, JIWY tracking, the console beside it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """From a setpoint at the agent to the level of the PWM: the next control cycle, at one instant of it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The faults of an agent that test_agent_faults.py leaves out on FreeRTOS."""
 
 from __future__ import annotations

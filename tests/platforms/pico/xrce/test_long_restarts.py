@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """200 restarts of the agent: the board finds each, nothing leaks, no control cycle notices."""
 
 from __future__ import annotations

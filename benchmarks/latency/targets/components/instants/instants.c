@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Instants are kept in memory while the loop runs, and written when the program ends.

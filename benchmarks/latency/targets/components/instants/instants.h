@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * When a value arrived, when the control cycle that used it began, and when it was written.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Quadrature encoders on the PIO of RP2040 and RP2350: four per PIO block, with 64-bit positions.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The PIO programs of src/pico_quadrature.pio as words: no header of an SDK is needed, so that any driver can use them.

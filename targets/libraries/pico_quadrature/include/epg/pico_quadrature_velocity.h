@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Velocity from the times of edges, for encoders of the variant EPG_PICO_QUADRATURE_VELOCITY.

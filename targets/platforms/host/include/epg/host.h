@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The host platform: a target runs on a PC against a simulated plant, in simulated or in real time.

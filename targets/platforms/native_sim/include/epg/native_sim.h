@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * native_sim: what a generated target, the port layer of Zephyr and the simulation know of each other.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Raspberry Pi Pico: what a generated target and the port layer know of each other.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * TinyUSB as EPG uses it: one device with one serial port, or two when the console has one of its own.
