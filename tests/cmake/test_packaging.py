@@ -3,17 +3,16 @@
 
 from __future__ import annotations
 
-import json
 import subprocess
 import sys
 import tarfile
-import urllib.request
 import zipfile
 from pathlib import Path
 
 import pytest
 
 from tests.cmake.project import ROOT, Project
+from tests.connect.started import started
 
 TREES = (
     "cmake",
@@ -92,16 +91,11 @@ def test_a_wheel_has_the_page_of_connect(prefix: Path) -> None:
     (site,) = prefix.glob("lib/*/site-packages")
     jiwy = ROOT / "examples/jiwy"
     files = ["--tcf", "host_jiwy.tcf", "--model", jiwy / "model", "--bindings", jiwy / "jiwy.bindings.yaml"]
-    command = [sys.executable, site / "epg", "connect", "--no-browser", "--json", *files]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
-        assert process.stdout is not None
-        address = json.loads("".join(process.stdout.readline() for _ in range(3)))["address"]
+    command = [sys.executable, site / "epg", "connect", "--no-browser", *files]
+    with started(command) as (page, _):
         for path in (ROOT / "epg/connect/page").iterdir():
-            with urllib.request.urlopen(address + path.name, timeout=30) as answer:
-                assert answer.read() == path.read_bytes()
-        with urllib.request.urlopen(f"{address}api/state", timeout=30) as answer:
-            assert json.load(answer)["diagnostics"] == []
-        process.terminate()
+            assert page.get(path.name)[0] == path.read_bytes()
+        assert page.state()["diagnostics"] == []
 
 
 def test_cmake_finds_a_wheel_by_its_prefix(prefix: Path, tmp_path: Path) -> None:

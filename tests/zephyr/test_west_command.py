@@ -12,11 +12,11 @@ import shutil
 import subprocess
 import sys
 import time
-import urllib.request
 from pathlib import Path
 
 import pytest
 
+from tests.connect.page import Page
 from tests.emulator.toolchain import ROOT, skip_if_missing
 
 from .workspace import workspace
@@ -156,9 +156,8 @@ def application(folder: Path) -> Path:
 def test_connect_knows_the_application_it_is_called_in(application: Path) -> None:
     """And Ctrl-C, which reaches west and EPG alike, ends both."""
     terminal = Terminal(application)
-    address = terminal.read_until(r"http://127\.0\.0\.1:\d+/\S+/")[0]
-    with urllib.request.urlopen(f"{address}api/state", timeout=30) as answer:
-        project = json.load(answer)["project"]
+    address = terminal.read_until(r"http://127\.0\.0\.1:\d+/#\S+\s")[0]
+    project = Page(address.strip()).state()["project"]
     assert (project["name"], project["folder"]) == ("turntable", str(application))
     terminal.type("\x03")
     assert terminal.wait() in (0, 130)
