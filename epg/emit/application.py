@@ -206,7 +206,8 @@ class Emitter:
         app = self.app
         parts = [self._part(number, component) for number, component in enumerate(app.components)]
         publishers = {c.name for c in app.components if c.kind.communication == "publish"}
-        headers = {str(header) for component in app.components for header in component.kind.headers}
+        drivers = {str(header) for component in app.components for header in component.kind.headers}
+        headers = set(drivers)
         for middleware in app.communication.middlewares:
             headers.update(middleware.headers)
         service = service_of(app, self._service_macro)
@@ -214,6 +215,7 @@ class Emitter:
             "app": app,
             "prefix": self.prefix,
             "headers": sorted(headers),
+            "driver_headers": sorted(drivers),
             "parts": parts,
             "numbers": {part.component.name: part.number for part in parts},
             "topics": topics_of(app, self.macro),
