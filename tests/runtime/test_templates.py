@@ -94,8 +94,15 @@ COMPONENTS_TRIED = [
         "{kind: quadrature_encoder, counts_per_revolution: 4096, preset: 90 deg}",
         {"encoder": claim({"a": 20, "b": 21}, 1, 3)},
     ),
-    Component("bridge", "{kind: pwm_h_bridge, frequency: 20 kHz, max_duty: 0.96}", bridge_claims(2, 7, 8, 1)),
-    Component("bridge_inverted", "{kind: pwm_h_bridge, frequency: 20 kHz, invert: true}", bridge_claims(4, 5, 6, 2)),
+    Component(
+        "bridge", "{kind: pwm_h_bridge, frequency: 20 kHz, max_duty: 0.96, dead_time: 0 s}", bridge_claims(2, 7, 8, 1)
+    ),
+    Component(
+        "bridge_inverted",
+        "{kind: pwm_h_bridge, frequency: 20 kHz, invert: true, dead_time: 0 s}",
+        bridge_claims(4, 5, 6, 2),
+    ),
+    Component("bridge_default", "{kind: pwm_h_bridge, frequency: 20 kHz}", bridge_claims(17, 18, 19, 11)),
     Component(
         "bridge_braking",
         "{kind: pwm_h_bridge, frequency: 20 kHz, zero: brake, dead_time: 1.5 ms}",

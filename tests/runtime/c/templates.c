@@ -130,6 +130,18 @@ TEST(bridge_says_what_it_applies)
     CHECK_EQUAL(bridge_applied_duty(), 0.0);
 }
 
+TEST(bridge_is_off_between_two_directions_by_default)
+{
+    begin();
+    bridge_default_write_duty(0.9);
+    CHECK_EQUAL(bridge_default_plant_read_duty(), 0.9);
+    bridge_default_write_duty(-0.1); /* the PWM may still have 0.9: it must not reach the other direction */
+    CHECK(!epg_plant_output(18) && !epg_plant_output(19));
+    CHECK_EQUAL(bridge_default_plant_read_duty(), 0.0);
+    bridge_default_write_duty(-0.1);
+    CHECK_EQUAL(bridge_default_plant_read_duty(), -0.1);
+}
+
 TEST(bridge_with_dead_time_and_brake)
 {
     begin();
@@ -364,8 +376,8 @@ RUN(ENTRY(span_gives_radians_at_the_load), ENTRY(inverted_span_counts_backwards_
     ENTRY(counts_per_revolution_and_gear), ENTRY(pins_and_pull_up_are_handed_on),
     ENTRY(reset_loads_the_preset_in_the_next_cycle), ENTRY(bridge_drives_the_plant_with_the_duty_written),
     ENTRY(preparing_changes_no_output), ENTRY(inverted_bridge_is_wired_the_other_way_and_moves_the_plant_the_same),
-    ENTRY(bridge_says_what_it_applies), ENTRY(bridge_with_dead_time_and_brake),
-    ENTRY(dual_bridge_drives_the_plant_with_the_duty_written),
+    ENTRY(bridge_says_what_it_applies), ENTRY(bridge_is_off_between_two_directions_by_default),
+    ENTRY(bridge_with_dead_time_and_brake), ENTRY(dual_bridge_drives_the_plant_with_the_duty_written),
     ENTRY(dual_bridge_with_slow_decay_moves_the_plant_the_same), ENTRY(guard_sees_duty_and_angle),
     ENTRY(guard_knows_the_resets_of_its_encoder), ENTRY(encoder_whose_decoder_has_stopped),
     ENTRY(probes_toggle_at_their_point_only), ENTRY(pwm_drives_the_plant_with_the_duty_written),
