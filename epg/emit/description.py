@@ -44,6 +44,7 @@ def describe(app: Application, topics: Topics, names: PathNames, hash: str = "")
             "domain": app.communication.domain,
             "diagnostics": float(app.communication.diagnostics),
             "console": app.communication.console is not None,
+            **({"usb": dict(sorted(app.communication.usb.items()))} if app.communication.usb else {}),
         },
         "model": _model(app.model, names),
         "parameters": dict(sorted(app.parameters.items())),

@@ -21,7 +21,7 @@ AGENT_MIDDLEWARES = ("xrce", "micro_ros")
 DEFAULT_BAUD_RATE = 115200
 """What the agent sets a tty to.  A board on USB takes whatever rate it is told."""
 
-_BY_ID = "/dev/serial/by-id/usb-Raspberry_Pi_Pico_{serial}-if00"
+_BY_ID = "/dev/serial/by-id/usb-{name}_{serial}-if00"
 """udev's name of a Pico's first port: manufacturer, product and serial number of its descriptors, interface 0."""
 
 
@@ -92,13 +92,18 @@ def _on_usb(robot: Robot, serials: Sequence[str], diagnostics: Diagnostics) -> l
         diagnostics.error("board-missing", Span(str(robot.file)), message, hint=hint)
     agents = []
     for serial in serials:
-        number = serial.upper()
-        if not re.fullmatch("[0-9A-F]{16}", number):
-            span = _argument("--board", f"{robot.name}={serial}")
-            message = f"'{serial}' is no serial number of a Pico"
+        number = serial.upper() if robot.usb_serial is None else serial
+        span = _argument("--board", f"{robot.name}={serial}")
+        if robot.usb_serial is None and not re.fullmatch("[0-9A-F]{16}", number):
+            message = f"'{serial}' is not the serial number of a Pico"
             diagnostics.error("wrong-serial-number", span, message, hint="it has 16 hexadecimal digits")
             continue
-        device = _BY_ID.format(serial=number)
+        if robot.usb_serial not in (None, serial):
+            message = f"'{serial}' is not the serial number of '{robot.name}'"
+            hint = f"'communication.usb' of its .tcf gives it the number '{robot.usb_serial}'"
+            diagnostics.error("wrong-serial-number", span, message, hint=hint)
+            continue
+        device = _BY_ID.format(name=robot.usb_name, serial=number)
         agents.append(
             Agent(
                 f"agent_{robot.name}_{number}",

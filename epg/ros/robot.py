@@ -22,6 +22,12 @@ from epg.source import Span
 
 SERIAL = "$serial"
 
+RASPBERRY_PI = 0x2E8A
+"""Vendor of a Pico's USB device without ``communication.usb``."""
+
+USB_NAMES = {"manufacturer": "Raspberry Pi", "product": "Pico"}
+"""Texts of a Pico's USB device without ``communication.usb``: targets/platforms/pico/usb/descriptors.c."""
+
 
 @dataclass(frozen=True)
 class Topic:
@@ -50,6 +56,12 @@ class Robot:
     domain: int | None
     middleware: str
     transport: str | None
+    usb_name: str
+    """How udev calls the maker and the product of its USB device, such as ``Raspberry_Pi_Pico``."""
+    usb_vendor: str
+    """The vendor of its USB device: four hexadecimal digits, in lower case as in sysfs."""
+    usb_serial: str | None
+    """The serial number that its ``.tcf`` gives to its USB device; None: each board has its own."""
     subscriptions: tuple[Topic, ...]
     publications: tuple[Topic, ...]
 
@@ -120,6 +132,7 @@ def _robot(file: Path, data: dict[str, Any]) -> Robot:
     if domain is not None and (type(domain) is not int or not 0 <= domain <= 232):
         raise ValueError("not a ROS domain")
     transport = communication["transport"]
+    usb = communication.get("usb", {})
     return Robot(
         file=file,
         name=_checked(data["name"], identifier_problem),
@@ -130,9 +143,24 @@ def _robot(file: Path, data: dict[str, Any]) -> Robot:
         domain=domain,
         middleware=_checked(communication["middleware"], _word_problem),
         transport=None if transport is None else _checked(transport, _word_problem),
+        usb_name="_".join(udev_name(usb.get(key, text)) for key, text in USB_NAMES.items()),
+        usb_vendor=f"{usb.get('vendor_id', RASPBERRY_PI):04x}",
+        usb_serial=udev_name(usb["serial"]) if "serial" in usb else None,
         subscriptions=tuple(_topic(topic) for topic in data["subscriptions"]),
         publications=tuple(_topic(topic) for topic in data["publications"]),
     )
+
+
+def udev_name(text: str) -> str:
+    """A text of a USB device as it stands in ``/dev/serial/by-id``.
+
+    udev puts "_" in the place of blanks and of characters that are neither letters nor digits nor one of ``#+-.:=@_``
+    (systemd, src/shared/device-nodes.c, allow_listed_char_for_devnode()).
+
+    >>> udev_name("Robots & Sons (Ltd)")
+    'Robots___Sons__Ltd_'
+    """
+    return re.sub(r"[^A-Za-z0-9#+\-.:=@_]", "_", "_".join(text.split()))
 
 
 def _topic(data: dict[str, Any]) -> Topic:

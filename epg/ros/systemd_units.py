@@ -31,10 +31,10 @@ class Installation:
 def unit_files(agents: Sequence[Agent], installation: Installation) -> dict[str, str]:
     """All files to install, by name: units, udev rules where boards are on USB, and a README that says how."""
     files = {unit_name(agent): unit(agent, installation) for agent in agents}
-    serials = [agent.serial for agent in agents if agent.serial is not None]
-    if serials:
-        files[RULES] = udev_rules(serials)
-    files["README.md"] = _readme(agents, installation, bool(serials))
+    boards = [(agent.serves[0].usb_vendor, agent.serial) for agent in agents if agent.serial is not None]
+    if boards:
+        files[RULES] = udev_rules(boards)
+    files["README.md"] = _readme(agents, installation, bool(boards))
     return files
 
 
@@ -91,12 +91,15 @@ def device_unit(path: str) -> str:
     return f"{name}.device"
 
 
-def udev_rules(serials: Sequence[str]) -> str:
-    """Rules for the boards: readable by the group, and left alone by ModemManager, which takes any tty for a modem."""
+def udev_rules(boards: Sequence[tuple[str, str]]) -> str:
+    """Rules for boards, by the vendor of their USB device (four hexadecimal digits) and their serial number.
+
+    The group may read them, and ModemManager, which takes any tty for a modem, leaves them alone.
+    """
     lines = ["# Boards with an EPG target: for the group dialout, and no modems."]
-    for serial in serials:
+    for vendor, serial in boards:
         lines.append(
-            f'SUBSYSTEM=="tty", ATTRS{{idVendor}}=="2e8a", ATTRS{{serial}}=="{serial}", '
+            f'SUBSYSTEM=="tty", ATTRS{{idVendor}}=="{vendor}", ATTRS{{serial}}=="{serial}", '
             'GROUP="dialout", MODE="0660", ENV{ID_MM_DEVICE_IGNORE}="1"'
         )
     return "\n".join(lines) + "\n"

@@ -28,6 +28,7 @@ def write_description(
     transport: str | None = "usb",
     node: str = "JIWY_node",
     namespace: str = "",
+    usb: dict[str, object] | None = None,
     subscriptions: Sequence[dict[str, Any]] = (topic("pan_subscriber"),),
     publications: Sequence[dict[str, Any]] = (topic("pan_publisher"),),
 ) -> Path:
@@ -37,7 +38,12 @@ def write_description(
         "target": {"board": "rpi_pico2", "platform": "freertos"},
         "node": node,
         "namespace": namespace,
-        "communication": {"middleware": middleware, "transport": transport, "period": 0.033},
+        "communication": {
+            "middleware": middleware,
+            "transport": transport,
+            "period": 0.033,
+            **({"usb": usb} if usb else {}),
+        },
         "subscriptions": list(subscriptions),
         "publications": list(publications),
     }

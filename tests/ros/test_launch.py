@@ -17,6 +17,7 @@ import pytest
 
 from epg.cli.main import main
 from epg.data import targets_roots
+from epg.ros.robot import USB_NAMES
 from epg.ros.systemd_units import device_unit
 
 from .description import write_description
@@ -78,13 +79,27 @@ def test_one_agent_for_each_board_and_one_for_all_by_udp(robots: Path, capsys: p
 
 
 def test_the_name_of_a_board_is_that_of_its_descriptors() -> None:
-    """udev makes the name of manufacturer, product and serial number, with "_" for a blank."""
+    """udev makes the name of manufacturer, product and serial number."""
     source = next(
         file for root in targets_roots([]) if (file := root / "platforms/pico/usb/descriptors.c").is_file()
     ).read_text(encoding="utf-8")
-    texts = dict(re.findall(r'case TEXT_(\w+):\s*return "([^"]*)"', source))
+    texts = dict(re.findall(r'#define EPG_PICO_USB_(\w+) "([^"]*)"', source))
+    assert {key.upper(): text for key, text in USB_NAMES.items()} == texts
     product = f"usb-{texts['MANUFACTURER']}_{texts['PRODUCT']}".replace(" ", "_")
     assert BY_ID.format(FIRST) == f"/dev/serial/by-id/{product}_{FIRST}-if00"
+
+
+def test_a_board_with_names_of_its_own(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    usb = {"manufacturer": "Robots & Sons", "product": "Turn  table", "serial": "7", "vendor_id": 0x1209}
+    file = write_description(tmp_path / "jiwy.json", usb=usb)
+    launch = ["launch", str(file), "--output", str(tmp_path / "out"), "--systemd"]
+    assert main([*launch, "--board", "jiwy=7"]) == 0
+    text = (tmp_path / "out" / "agents.launch.py").read_text(encoding="utf-8")
+    assert '"/dev/serial/by-id/usb-Robots___Sons_Turn_table_7-if00"' in text
+    (rules,) = (tmp_path / "out" / "systemd").glob("*.rules")
+    assert 'ATTRS{idVendor}=="1209", ATTRS{serial}=="7"' in rules.read_text(encoding="utf-8")
+    assert main([*launch, "--board", "jiwy=8"]) != 0
+    assert "'8' is not the serial number of 'jiwy'" in capsys.readouterr().err
 
 
 def test_the_launch_file_starts_where_ros_is(robots: Path) -> None:
