@@ -55,6 +55,11 @@ void epg_zephyr_communication_start(void (*serve)(void))
     running = true;
 }
 
+bool epg_zephyr_communication_calls(void)
+{
+    return running && k_current_get() == &thread;
+}
+
 void epg_zephyr_communication_stop(void)
 {
     if (running) {

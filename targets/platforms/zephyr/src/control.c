@@ -202,6 +202,11 @@ epg_zephyr_error_t epg_zephyr_control_start(const epg_zephyr_target_t *zephyr, e
     return EPG_ZEPHYR_OK;
 }
 
+bool epg_zephyr_control_calls(void)
+{
+    return running && k_current_get() == &thread;
+}
+
 void epg_zephyr_control_stop(void)
 {
     if (running) {

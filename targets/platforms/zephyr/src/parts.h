@@ -65,6 +65,9 @@ uint64_t epg_zephyr_tick_newest_ns(uint64_t *now_ns);
 epg_zephyr_error_t epg_zephyr_control_start(const epg_zephyr_target_t *zephyr, epg_fault_t fault);
 void epg_zephyr_control_stop(void);
 
+/** Whether the control thread is the caller. */
+bool epg_zephyr_control_calls(void);
+
 /** A tick: from its interrupt. */
 void epg_zephyr_control_tick(void);
 
@@ -89,6 +92,9 @@ uint32_t epg_zephyr_stack_used(const struct k_thread *thread, size_t size);
 void epg_zephyr_communication_start(void (*serve)(void));
 /** From any thread but that one. */
 void epg_zephyr_communication_stop(void);
+
+/** Whether the communication thread is the caller. */
+bool epg_zephyr_communication_calls(void);
 
 /** Asks for `serve` at once; from anywhere. */
 void epg_zephyr_communication_wake(void);

@@ -85,15 +85,21 @@ bool epg_zephyr_start(const epg_zephyr_target_t *zephyr)
     return error == EPG_ZEPHYR_OK;
 }
 
-void epg_zephyr_stop(void)
+bool epg_zephyr_stop(void)
 {
-    if (running != NULL) {
-        epg_zephyr_communication_stop();
-        epg_zephyr_control_stop();
-        stop_middleware(running->target->middleware, running->transport);
-        stop_middleware(running->target->console, running->console_transport);
-        running = NULL;
+    if (running == NULL) {
+        return true;
     }
+    if (k_is_in_isr() || epg_zephyr_communication_calls() || epg_zephyr_control_calls()) {
+        error = EPG_ZEPHYR_ERROR_CALLER;
+        return false;
+    }
+    epg_zephyr_communication_stop();
+    epg_zephyr_control_stop();
+    stop_middleware(running->target->middleware, running->transport);
+    stop_middleware(running->target->console, running->console_transport);
+    running = NULL;
+    return true;
 }
 
 void epg_zephyr_status(epg_zephyr_status_t *status)

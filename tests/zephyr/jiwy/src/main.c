@@ -136,6 +136,29 @@ ZTEST(jiwy, test_stop_and_start)
 	}
 }
 
+static bool stopped_in_interrupt;
+
+static void stop_in_interrupt(struct k_timer *timer)
+{
+	ARG_UNUSED(timer);
+	stopped_in_interrupt = jiwy_stop();
+}
+
+/* An interrupt cannot wait for the end of a thread: it is told so, and the target goes on. */
+ZTEST(jiwy, test_stop_in_an_interrupt_is_refused)
+{
+	static K_TIMER_DEFINE(timer, stop_in_interrupt, NULL);
+
+	stopped_in_interrupt = true;
+	k_timer_start(&timer, K_MSEC(1), K_NO_WAIT);
+	const uint32_t cycles = status_after(K_MSEC(5)).statistics.cycles;
+
+	zassert_false(stopped_in_interrupt);
+	zexpect_true(status_after(K_MSEC(5)).enabled);
+	zexpect_within(status_after(K_NO_WAIT).statistics.cycles, cycles + 5, 1);
+	zassert_false(jiwy_start(), "it runs still");
+}
+
 /* A decoder that says that it has stopped disables the target, and latches. */
 ZTEST(jiwy, test_decoder_fails)
 {

@@ -107,12 +107,13 @@ typedef struct epg_zephyr_target {
     const epg_transport_t *console_transport; /**< for the console beside it; NULL: there is none */
 } epg_zephyr_target_t;
 
-/** Why epg_zephyr_start() did not start. */
+/** Why epg_zephyr_start() did not start, or epg_zephyr_stop() did not stop. */
 typedef enum epg_zephyr_error {
     EPG_ZEPHYR_OK = 0,
     EPG_ZEPHYR_ERROR_RUNNING, /**< it runs already */
     EPG_ZEPHYR_ERROR_DEVICE,  /**< a device of the devicetree is not ready, or refused what was asked of it */
-    EPG_ZEPHYR_ERROR_TICK     /**< the tick's clock is not what the generator computed its period for */
+    EPG_ZEPHYR_ERROR_TICK,    /**< the tick's clock is not what the generator computed its period for */
+    EPG_ZEPHYR_ERROR_CALLER   /**< epg_zephyr_stop() was called where it cannot wait */
 } epg_zephyr_error_t;
 
 /** What the port layer counts besides the statistics of the control cycle. */
@@ -139,8 +140,14 @@ extern const epg_transport_t epg_zephyr_usb_second;
  */
 bool epg_zephyr_start(const epg_zephyr_target_t *zephyr);
 
-/** Ends communication and control; outputs are safe when this returns.  From a thread of lower priority than control. */
-void epg_zephyr_stop(void);
+/**
+ * Ends communication and control; outputs are safe when this returns true.  epg_zephyr_start() may follow.  Call it from a
+ * thread of lower priority than control's.
+ *
+ * False, and everything goes on, in an interrupt and in the threads of communication and control: these cannot wait for
+ * the end of a thread.
+ */
+bool epg_zephyr_stop(void);
 
 void epg_zephyr_status(epg_zephyr_status_t *status);
 

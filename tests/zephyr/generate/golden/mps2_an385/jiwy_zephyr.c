@@ -104,6 +104,5 @@ bool jiwy_start(void)
 
 bool jiwy_stop(void)
 {
-    epg_zephyr_stop();
-    return true;
+    return epg_zephyr_stop();
 }
