@@ -78,7 +78,12 @@ def test_drivers_work_with_fast_math(tmp_path: Path) -> None:
     """NaN is found by its bits, so even a compiler that assumes there is none finds it."""
     program = compile_program(
         tmp_path / "fast",
-        [SOURCES / "driver_tests.c", SOURCES / "fake_port.c", RUNTIME / "src" / "bridge.c", *component_sources()],
+        [
+            SOURCES / "driver_tests.c",
+            SOURCES / "fake_port.c",
+            *(RUNTIME / "src" / name for name in ("bridge.c", "outputs.c")),
+            *component_sources(),
+        ],
         options=["-O2", "-ffast-math"],
     )
     for name in ("bridge_coasts_on_a_duty_that_is_not_finite", "pwm_is_safe_on_a_duty_that_is_not_finite"):

@@ -27,7 +27,8 @@
 
 static epg_host_run_t run;
 static struct {
-    epg_application_t application; /* the target's, with read_and_stall() in place of read() */
+    epg_application_t application; /* that of Zephyr's port layer, with read_and_stall() in place of read() */
+    void (*read)(void);            /* what read_and_stall() stands for */
     FILE *topics;
     FILE *trace;
     FILE *statistics;
@@ -157,7 +158,7 @@ static void move_on(void)
  */
 static void read_and_stall(void)
 {
-    run.host->target->application->read();
+    simulation.read();
     const uint64_t stall_ns = run.communication.stall_ns;
     if (stall_ns > 0) {
         const uint64_t entered_ns = epg_host_monotonic_ns();
@@ -189,7 +190,8 @@ void epg_native_sim_starting(void)
 void epg_native_sim_started(void)
 {
     const epg_target_t *target = run.host->target;
-    simulation.application = *target->application;
+    simulation.application = *target->control->application;
+    simulation.read = simulation.application.read;
     simulation.application.read = read_and_stall;
     target->control->application = &simulation.application;
     epg_native_sim_shafts_turn();
