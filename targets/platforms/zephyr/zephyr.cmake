@@ -6,6 +6,7 @@
 # calls _epg_zephyr_build(), which compares what has become of the devicetree and the configuration with what the
 # target needs, and makes the libraries.
 
+include("${CMAKE_CURRENT_LIST_DIR}/c_library.cmake")
 include("${CMAKE_CURRENT_LIST_DIR}/compare.cmake")
 
 # Sets BOARD, BOARD_ROOT and EXTRA_ZEPHYR_MODULES where the caller is; SHIELD is Zephyr's in the cache.
@@ -28,6 +29,7 @@ A second target is a second image, which sysbuild builds beside this one; a mode
   list(APPEND BOARD_ROOT "${root}")
   list(REMOVE_DUPLICATES BOARD_ROOT)
   set(BOARD_ROOT "${BOARD_ROOT}" PARENT_SCOPE)
+  _epg_zephyr_find_c_library()
   _epg_zephyr_select_shield("epg_${name}")
   _epg_zephyr_add_module()
   set(EXTRA_ZEPHYR_MODULES "${EXTRA_ZEPHYR_MODULES}" PARENT_SCOPE)
