@@ -41,6 +41,7 @@ FILTERS: Mapping[type[Escaped], Mapping[str, Callable[..., object]]] = {
         "string": text.devicetree_string,
         "comment": lambda value: DevicetreeCode(text.comment(value)),
         "label": lambda value: DevicetreeCode(text.identifier(value)),
+        "node": lambda value: DevicetreeCode(str(text.identifier(value)).replace("_", "-")),
         "code": DevicetreeCode,
     },
     KconfigCode: {
