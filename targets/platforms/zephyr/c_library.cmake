@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The C library of a toolchain that Zephyr does not know well enough.
 #
 # Models need a complete <math.h>.  With ZEPHYR_TOOLCHAIN_VARIANT=gnuarmemb Zephyr takes newlib, and that of Debian is built
