@@ -161,7 +161,9 @@ def test_the_pages_have_the_same_sections() -> None:
     assert len(sections[1]) == len(sections[0]) + 1
 
 
-@pytest.mark.parametrize("file", [*(f"boards/{board}.md" for board in (*BOARDS, *WIRELESS)), "new-project.md"])
+@pytest.mark.parametrize(
+    "file", [*(f"boards/{board}.md" for board in (*BOARDS, *WIRELESS)), "new-project.md", "tutorial.md"]
+)
 def test_links_lead_somewhere(file: str) -> None:
     path = ROOT / "docs" / file
     links = re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", path.read_text(encoding="utf-8"))

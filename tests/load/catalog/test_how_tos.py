@@ -2,7 +2,7 @@
 """The how-tos are right: their files are written and their commands run as they stand there.
 
 A block that follows a line ending in "`path`:" is that file.  In a ``console`` block a line ``$ command`` is run, and
-what follows it is what it prints; a line ``...`` stands for any lines.
+what follows it is what it prints; a line ``...`` stands for any lines.  A ``session`` block is a talk with the console.
 """
 
 from __future__ import annotations
@@ -18,8 +18,13 @@ from pathlib import Path
 
 import pytest
 
+from tests.emulator.toolchain import arm_gcc, pico_sdk, skip_if_missing, tool
+from tests.middlewares.client import Host
+from tests.middlewares.test_console_docs import hold
+
 ROOT = Path(__file__).resolve().parents[3]
-PAGES = ["adding-a-board", "adding-a-component-kind", "adding-a-middleware", "adding-a-platform"]
+PAGES = ["adding-a-board", "adding-a-component-kind", "adding-a-middleware", "adding-a-platform", "tutorial"]
+NEEDS_PICO_SDK = "<!-- from here on the commands need the Pico SDK -->\n"
 _BLOCK = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 _FILE = re.compile(r"`([^`\s]+)`[^`\n]*:\s*\Z")
 
@@ -51,19 +56,25 @@ def steps(page: str) -> list[Step]:
 
 
 def run(command: str, folder: Path) -> str:
-    """What a command prints; ``epg`` is the one of this checkout."""
-    words = shlex.split(command)
-    if words[0] == "epg":
-        words[:1] = [sys.executable, str(ROOT / "epg")]
-    elif words[0] == "cmake" and "--build" not in words:
-        words += ["-G", "Ninja", f"-DEPG_DIR={ROOT / 'cmake'}", f"-DPython3_EXECUTABLE={sys.executable}"]
-    environment = {**os.environ, "EPG_TARGETS_PATH": "targets"}
-    if words[0] == "cmake":
-        environment["EPG_TARGETS_PATH"] = str(folder / "targets")
+    """What a command of the shell prints; ``epg`` is the one of this checkout."""
+    environment = {name: value for name, value in os.environ.items() if name not in ("EPG_PATH", "EPG_TARGETS_PATH")}
+    first = command.split()[0]
+    if first == "cmake" and "--build" not in command:
+        command += f" -G Ninja '-DEPG_DIR={ROOT / 'cmake'}' '-DPython3_EXECUTABLE={sys.executable}'"
+    if (folder / "targets").is_dir():
+        environment["EPG_TARGETS_PATH"] = str(folder / "targets") if first == "cmake" else "targets"
+    epg = f'epg() {{ {shlex.quote(sys.executable)} {shlex.quote(str(ROOT / "epg"))} "$@"; }}'
     done = subprocess.run(
-        words, cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=300
+        ["sh", "-c", f"{epg}\n{command}"],
+        cwd=folder,
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        timeout=300,
     )
     assert "Traceback" not in done.stdout
+    assert done.returncode == 0 or first == "epg", f"$ {command}\n{done.stdout}"
     return done.stdout
 
 
@@ -73,20 +84,50 @@ def matches(output: str, expected: str) -> bool:
     return re.fullmatch(r"(?:.*\n)*?".join(parts), output) is not None
 
 
-@pytest.mark.parametrize("name", PAGES)
-def test_how_to(name: str, tmp_path: Path) -> None:
-    found = steps((ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8"))
-    assert any(step.path for step in found) and any(step.command for step in found)
+def follow(found: list[Step], folder: Path) -> None:
+    """Writes the files and runs the commands; each must print what stands there."""
     if any(step.command.startswith("cmake") for step in found) and not shutil.which("ninja"):
         pytest.skip("ninja is missing: apt install ninja-build")
     for step in found:
         if step.path:
-            path = tmp_path / step.path
+            path = folder / step.path
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(step.text, encoding="utf-8")
             continue
-        output = run(step.command, tmp_path)
+        output = run(step.command, folder)
         assert matches(output, step.text), f"$ {step.command}\n{output}"
+
+
+def read(name: str) -> tuple[str, str]:
+    """A page in two parts: commands of the second one need the Pico SDK."""
+    here, _, board = (ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8").partition(NEEDS_PICO_SDK)
+    return here, board
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_how_to(name: str, tmp_path: Path) -> None:
+    found = steps(read(name)[0])
+    assert any(step.path for step in found) and any(step.command for step in found)
+    follow(found, tmp_path)
+
+
+def test_tutorial_on_a_board(tmp_path: Path) -> None:
+    """The firmware is built of the files of the simulation; what this computer ran is not run again."""
+    skip_if_missing(pico_sdk, arm_gcc, lambda: tool("picotool"))  # without it, the SDK fetches one
+    here, board = read("tutorial")
+    found = steps(board)
+    assert [step.command.split()[0] for step in found] == ["cmake", "cmake", "ls"]
+    follow([step for step in steps(here) if step.path or step.command.startswith(("epg ", "cp "))] + found, tmp_path)
+
+
+def test_tutorial_in_real_time(tmp_path: Path) -> None:
+    """Its first light is held with the simulated robot."""
+    here, board = read("tutorial")
+    (session,) = re.findall(r"^```session\n(.*?)^```$", board, re.MULTILINE | re.DOTALL)
+    follow([step for step in steps(here) if "build/stop" not in step.command], tmp_path)
+    with Host(tmp_path / "build" / "turntable_host") as console:
+        console.ask("version")
+        hold(console, session)
 
 
 def test_a_page_that_is_wrong_is_noticed() -> None:
