@@ -40,7 +40,7 @@ class Editor:
 
     def edit(self, operation: Operation) -> None:
         """Changes the draft; raises CannotEdit, or Refused, with all as it was."""
-        self._check_conflict()
+        self.check_conflict()
         self.draft.do(operation, self.loaded.parts.model)
         self._after_edit()
 
@@ -59,7 +59,7 @@ class Editor:
     def save(self, *, anyway: bool) -> None:
         """Writes what has changed; ``anyway`` also over what others have written since."""
         if not anyway:
-            self._check_conflict()
+            self.check_conflict()
         for after in self.draft.unsaved():
             save(self.draft.before_saving(after.path), after, project=self.job.source_dir, anyway=anyway)
             self.draft.saved(after)
@@ -147,7 +147,8 @@ class Editor:
         files = {"tcf": self._tcf_path, "model": request.model, "bindings": request.bindings}
         return {what: _relative(path, folder) for what, path in files.items()}
 
-    def _check_conflict(self) -> None:
+    def check_conflict(self) -> None:
+        """Raises :class:`Refused` while the files were edited outside so that the draft does not fit them."""
         if self.conflict is not None:
             raise Refused(self.conflict["message"], self.conflict["hint"], 409)
 

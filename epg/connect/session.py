@@ -225,7 +225,7 @@ class Session:
 
     def _generate(self, body: Body) -> None:
         self._runs.check_idle()
-        self._opened()
+        self._opened().check_conflict()
         count = sum(problem["severity"] == "error" for problem in self._shown["diagnostics"])
         if count:
             what = "is still a mistake" if count == 1 else f"are still {count} mistakes"

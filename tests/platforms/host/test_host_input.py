@@ -78,7 +78,12 @@ def test_names_for_programs(motor: Program) -> None:
     status, stdout, stderr = call(motor, "--interface")
     assert (status, stderr) == (0, "")
     lines = stdout.splitlines()
-    assert lines[:4] == ["topic,motor_setpoint", "topic,motor_enable", "input,emergency_stop", "signal,inputs.position"]
+    names = ["topic,motor_setpoint", "topic,motor_enable", "input,emergency_stop"]
+    assert lines[: len(names)] == names
+    components = [line for line in lines if line.startswith("component,")]
+    assert {"component,encoder", "component,emergency_stop"} <= set(components)
+    assert lines[len(names) : len(names) + len(components)] == components
+    assert lines[len(names) + len(components)] == "signal,inputs.position"
 
 
 def test_times_must_not_fall(motor: Program, tmp_path: Path) -> None:
