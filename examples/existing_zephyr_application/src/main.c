@@ -32,7 +32,7 @@ int main(void)
         /* --- the encoder's decoder, by EPG --- */
         int64_t count = 0;
 
-        if (qdec_get_count(turntable, &count) == 0) {
+        if (epg_qdec_get_count(turntable, &count) == 0) {
             LOG_INF("the turntable is at %lld counts", (long long)count);
         }
         /* --- */

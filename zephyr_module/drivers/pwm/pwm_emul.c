@@ -70,7 +70,7 @@ static int pwm_emul_get_cycles_per_sec(const struct device *dev, uint32_t channe
 	return 0;
 }
 
-int pwm_emul_get(const struct device *dev, uint32_t channel, uint32_t *period, uint32_t *high)
+int epg_pwm_emul_get(const struct device *dev, uint32_t channel, uint32_t *period, uint32_t *high)
 {
 	const struct pwm_emul_config *config = dev->config;
 	struct pwm_emul_data *data = dev->data;
@@ -87,14 +87,14 @@ int pwm_emul_get(const struct device *dev, uint32_t channel, uint32_t *period, u
 	return 0;
 }
 
-uint32_t pwm_emul_writes(const struct device *dev, uint32_t channel)
+uint32_t epg_pwm_emul_writes(const struct device *dev, uint32_t channel)
 {
 	const struct pwm_emul_config *config = dev->config;
 
 	return channel < config->channel_count ? config->channels[channel].writes : 0;
 }
 
-void pwm_emul_set_error(const struct device *dev, int error)
+void epg_pwm_emul_set_error(const struct device *dev, int error)
 {
 	struct pwm_emul_data *data = dev->data;
 

@@ -114,7 +114,7 @@ void epg_plant_quadrature_set(uint8_t unit, int64_t count)
     const int32_t edges = (int32_t)(uint32_t)((uint64_t)count - (uint64_t)counts[unit]);
     counts[unit] = count;
     if (turning && device != NULL && edges != 0) {
-        qdec_emul_move(device, edges);
+        epg_qdec_emul_move(device, edges);
     }
 }
 
@@ -122,7 +122,7 @@ void epg_plant_quadrature_fail(uint8_t unit, bool failed)
 {
     const struct device *device = decoder_of(unit);
     if (device != NULL) {
-        qdec_emul_set_error(device, failed ? -EIO : 0);
+        epg_qdec_emul_set_error(device, failed ? -EIO : 0);
     }
 }
 
@@ -135,7 +135,7 @@ double epg_plant_pwm_duty(uint8_t unit)
         const epg_zephyr_pwm_t *pwm = &hardware->pwms[i];
         uint32_t period = 0;
         uint32_t high = 0;
-        if (pwm->unit == unit && pwm_emul_get(pwm->device, pwm->channel, &period, &high) == 0 && period > 0) {
+        if (pwm->unit == unit && epg_pwm_emul_get(pwm->device, pwm->channel, &period, &high) == 0 && period > 0) {
             return (double)high / (double)period;
         }
     }

@@ -49,7 +49,7 @@ static size_t pin_rows(void)
 static void read_decoder(size_t row)
 {
     int64_t count = 0;
-    newest[row].healthy = qdec_get_count(epg_zephyr_hardware.decoders[row].device, &count) == 0;
+    newest[row].healthy = epg_qdec_get_count(epg_zephyr_hardware.decoders[row].device, &count) == 0;
     if (newest[row].healthy) {
         newest[row].count = (uint32_t)count;
     }

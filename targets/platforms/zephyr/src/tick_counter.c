@@ -14,6 +14,8 @@
 static struct {
     const struct device *counter;
     uint64_t ns_per_count; /* times 2^24 */
+    uint32_t top;
+    bool counts_up;
 } state;
 
 static void on_top(const struct device *counter, void *user)
@@ -37,6 +39,8 @@ epg_zephyr_error_t epg_zephyr_tick_start(const epg_zephyr_tick_t *tick, uint64_t
     const uint64_t prescaled_ns = (uint64_t)tick->prescaler * NS_PER_S;
     state.ns_per_count = ((prescaled_ns / tick->clock) << 24) + ((prescaled_ns % tick->clock) << 24) / tick->clock;
     state.counter = tick->device;
+    state.top = tick->top;
+    state.counts_up = counter_is_counting_up(tick->device);
     if (counter_set_top_value(tick->device, &top) < 0 || counter_start(tick->device) < 0) {
         epg_zephyr_tick_stop();
         return EPG_ZEPHYR_ERROR_DEVICE;
@@ -58,5 +62,8 @@ uint64_t epg_zephyr_tick_newest_ns(uint64_t *now_ns)
     *now_ns = epg_port_time_ns();
     (void)counter_get_value(state.counter, &count);
     irq_unlock(key);
+    if (!state.counts_up) { /* from top to 0, at which it begins again */
+        count = state.top - count;
+    }
     return *now_ns - (count * state.ns_per_count >> 24);
 }

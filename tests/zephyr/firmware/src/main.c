@@ -75,7 +75,7 @@ static int fetch(size_t n)
 static int read(size_t n)
 {
 	int64_t count = 0;
-	int ret = qdec_get_count(decoders[n], &count);
+	int ret = epg_qdec_get_count(decoders[n], &count);
 
 	positions[n] = count;
 
@@ -86,7 +86,7 @@ static int look_for_skips(size_t n)
 {
 	struct sensor_value value = {0};
 	int ret = sensor_attr_get(decoders[n], SENSOR_CHAN_ROTATION,
-				  (enum sensor_attribute)SENSOR_ATTR_QDEC_SKIPPED, &value);
+				  (enum sensor_attribute)SENSOR_ATTR_EPG_QDEC_SKIPPED, &value);
 
 	skipped[n] = value.val1;
 
@@ -101,7 +101,7 @@ static int serve(uint32_t what, size_t n)
 	case FETCH:
 		return fetch(n);
 	case PRESET:
-		return qdec_set_count(decoders[n], presets[n]);
+		return epg_qdec_set_count(decoders[n], presets[n]);
 	case SUSPEND:
 		return pm_device_action_run(decoders[n], PM_DEVICE_ACTION_SUSPEND);
 	case RESUME:

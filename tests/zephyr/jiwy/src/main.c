@@ -63,7 +63,7 @@ static uint32_t high_time(void)
 	uint32_t period = 0;
 	uint32_t high = 0;
 
-	zassert_ok(pwm_emul_get(PWM_PAN, CHANNEL_PAN, &period, &high));
+	zassert_ok(epg_pwm_emul_get(PWM_PAN, CHANNEL_PAN, &period, &high));
 	zassert_equal(period, 6250, "20 kHz of 125 MHz are 6250 clocks, not %u", period);
 
 	return high;
@@ -87,10 +87,10 @@ ZTEST(jiwy, test_encoder)
 {
 	const double before = jiwy_inputs.position_pan;
 
-	qdec_emul_move(ENCODER_PAN, 100);
+	epg_qdec_emul_move(ENCODER_PAN, 100);
 	(void)status_after(K_MSEC(3));
 	zassert_true(fabs(jiwy_inputs.position_pan - before - 100 * RAD_PER_COUNT) < 1e-9);
-	qdec_emul_move(ENCODER_PAN, -150);
+	epg_qdec_emul_move(ENCODER_PAN, -150);
 	(void)status_after(K_MSEC(3));
 	zassert_true(fabs(jiwy_inputs.position_pan - before + 50 * RAD_PER_COUNT) < 1e-9);
 }
@@ -164,12 +164,12 @@ ZTEST(jiwy, test_decoder_fails)
 {
 	epg_status_t status;
 
-	qdec_emul_set_error(ENCODER_PAN, -EIO);
+	epg_qdec_emul_set_error(ENCODER_PAN, -EIO);
 	status = status_after(K_MSEC(3));
 	zexpect_false(status.enabled);
 	zexpect_equal(status.fault, EPG_FAULT_SENSOR);
 	zexpect_equal(high_time(), 0);
-	qdec_emul_set_error(ENCODER_PAN, 0);
+	epg_qdec_emul_set_error(ENCODER_PAN, 0);
 	zexpect_false(status_after(K_MSEC(3)).enabled);
 	jiwy_enable(true);
 	zexpect_true(status_after(K_MSEC(3)).enabled);
@@ -186,7 +186,7 @@ ZTEST(jiwy_refused, test_output_fails)
 	zassert_true(status_after(K_MSEC(3)).enabled);
 	zassert_not_equal(high_time(), 0);
 	zassert_ok(gpio_emul_flags_get(pan.port, pan.pin, &flags));
-	pwm_emul_set_error(PWM_PAN, -EIO);
+	epg_pwm_emul_set_error(PWM_PAN, -EIO);
 	status = status_after(K_MSEC(3));
 	zexpect_false(status.enabled);
 	zexpect_equal(status.fault, EPG_FAULT_OUTPUT);
@@ -195,7 +195,7 @@ ZTEST(jiwy_refused, test_output_fails)
 	zexpect_equal(flags & (GPIO_OUTPUT | GPIO_OUTPUT_INIT_LOW),
 		      GPIO_OUTPUT | GPIO_OUTPUT_INIT_LOW);
 	zexpect_equal(pins_high(), 0);
-	pwm_emul_set_error(PWM_PAN, 0);
+	epg_pwm_emul_set_error(PWM_PAN, 0);
 	jiwy_enable(true);
 	for (int i = 0; i < 5; i++) {
 		status = status_after(K_MSEC(1));

@@ -23,7 +23,7 @@ static void expect_output(const struct device *dev, uint32_t channel, uint32_t p
 	uint32_t period_found = 0x55555555;
 	uint32_t high_found = 0x55555555;
 
-	zassert_ok(pwm_emul_get(dev, channel, &period_found, &high_found));
+	zassert_ok(epg_pwm_emul_get(dev, channel, &period_found, &high_found));
 	zexpect_equal(period_found, period, "a period of %u, not %u", period_found, period);
 	zexpect_equal(high_found, high, "high for %u, not %u", high_found, high);
 }
@@ -34,7 +34,7 @@ static void before(void *fixture)
 
 	zassert_true(device_is_ready(narrow));
 	zassert_true(device_is_ready(wide));
-	pwm_emul_set_error(narrow, 0);
+	epg_pwm_emul_set_error(narrow, 0);
 }
 
 /* Runs first, by its name. */
@@ -42,12 +42,12 @@ ZTEST(pwm_emul, test_a_nothing_is_set_at_the_start)
 {
 	expect_output(narrow, 0, 0, 0);
 	expect_output(narrow, 1, 0, 0);
-	zexpect_equal(pwm_emul_writes(narrow, 0), 0);
+	zexpect_equal(epg_pwm_emul_writes(narrow, 0), 0);
 }
 
 ZTEST(pwm_emul, test_remembers_each_channel)
 {
-	const uint32_t writes = pwm_emul_writes(narrow, 0);
+	const uint32_t writes = epg_pwm_emul_writes(narrow, 0);
 
 	zassert_ok(pwm_set_cycles(narrow, 0, 6250, 1563, 0));
 	zassert_ok(pwm_set_cycles(narrow, 1, 1000, 1000, PWM_POLARITY_NORMAL));
@@ -56,7 +56,7 @@ ZTEST(pwm_emul, test_remembers_each_channel)
 	zassert_ok(pwm_set_cycles(narrow, 0, 6250, 0, 0));
 	expect_output(narrow, 0, 6250, 0);
 	expect_output(narrow, 1, 1000, 1000);
-	zexpect_equal(pwm_emul_writes(narrow, 0), writes + 2);
+	zexpect_equal(epg_pwm_emul_writes(narrow, 0), writes + 2);
 }
 
 ZTEST(pwm_emul, test_polarity)
@@ -98,14 +98,14 @@ ZTEST(pwm_emul, test_no_such_channel)
 	uint32_t high;
 
 	zexpect_equal(pwm_set_cycles(narrow, 2, 100, 1, 0), -EINVAL);
-	zexpect_equal(pwm_emul_get(narrow, 2, &period, &high), -EINVAL);
-	zexpect_equal(pwm_emul_writes(narrow, 2), 0);
+	zexpect_equal(epg_pwm_emul_get(narrow, 2, &period, &high), -EINVAL);
+	zexpect_equal(epg_pwm_emul_writes(narrow, 2), 0);
 }
 
 ZTEST(pwm_emul, test_errors)
 {
 	zassert_ok(pwm_set_cycles(narrow, 0, 100, 30, 0));
-	pwm_emul_set_error(narrow, -EIO);
+	epg_pwm_emul_set_error(narrow, -EIO);
 	zexpect_equal(pwm_set_cycles(narrow, 0, 100, 50, 0), -EIO);
 	expect_output(narrow, 0, 100, 30);
 }

@@ -24,14 +24,14 @@ static const struct device *const fine = DEVICE_DT_GET(DT_NODELABEL(fine));
 
 static void preset(const struct device *dev, int64_t count)
 {
-	zassert_ok(qdec_set_count(dev, count));
+	zassert_ok(epg_qdec_set_count(dev, count));
 }
 
 static int64_t count_of(const struct device *dev)
 {
 	int64_t count = 0x5555555555555555;
 
-	zassert_ok(qdec_get_count(dev, &count));
+	zassert_ok(epg_qdec_get_count(dev, &count));
 
 	return count;
 }
@@ -55,7 +55,7 @@ static void before(void *fixture)
 
 	ARRAY_FOR_EACH(all, i) {
 		zassert_true(device_is_ready(all[i]));
-		qdec_emul_set_error(all[i], 0);
+		epg_qdec_emul_set_error(all[i], 0);
 		preset(all[i], 0);
 	}
 }
@@ -63,37 +63,37 @@ static void before(void *fixture)
 ZTEST(qdec_angle, test_fractions)
 {
 	expect_angle(qdec16, 0, 0);
-	qdec_emul_move(qdec16, 1);
+	epg_qdec_emul_move(qdec16, 1);
 	expect_angle(qdec16, 0, 180000);
-	qdec_emul_move(qdec16, 5);
+	epg_qdec_emul_move(qdec16, 5);
 	expect_angle(qdec16, 1, 80000);
 }
 
 ZTEST(qdec_angle, test_full_turns)
 {
-	qdec_emul_move(qdec16, 2000);
+	epg_qdec_emul_move(qdec16, 2000);
 	expect_angle(qdec16, 360, 0);
-	qdec_emul_move(qdec16, 2000 * 99 + 1);
+	epg_qdec_emul_move(qdec16, 2000 * 99 + 1);
 	expect_angle(qdec16, 36000, 180000);
 }
 
 ZTEST(qdec_angle, test_negative_angles)
 {
-	qdec_emul_move(qdec16, -1);
+	epg_qdec_emul_move(qdec16, -1);
 	expect_angle(qdec16, 0, -180000);
-	qdec_emul_move(qdec16, -2500);
+	epg_qdec_emul_move(qdec16, -2500);
 	expect_angle(qdec16, -450, -180000);
-	qdec_emul_move(qdec16, 2502);
+	epg_qdec_emul_move(qdec16, 2502);
 	expect_angle(qdec16, 0, 180000);
 }
 
 ZTEST(qdec_angle, test_thirds_are_cut_towards_zero)
 {
-	qdec_emul_move(odd, 1);
+	epg_qdec_emul_move(odd, 1);
 	expect_angle(odd, 51, 428571);
-	qdec_emul_move(odd, -2);
+	epg_qdec_emul_move(odd, -2);
 	expect_angle(odd, -51, -428571);
-	qdec_emul_move(odd, 1 + 7 * 3 + 6);
+	epg_qdec_emul_move(odd, 1 + 7 * 3 + 6);
 	expect_angle(odd, 1388, 571428);
 }
 
@@ -129,7 +129,7 @@ ZTEST(qdec_angle, test_get_shows_the_last_fetch)
 	struct sensor_value angle;
 
 	zassert_ok(sensor_sample_fetch(qdec16));
-	qdec_emul_move(qdec16, 100);
+	epg_qdec_emul_move(qdec16, 100);
 	zassert_ok(sensor_channel_get(qdec16, SENSOR_CHAN_ROTATION, &angle));
 	zexpect_equal(angle.val1, 0);
 	zassert_equal(count_of(qdec16), 100);
@@ -148,47 +148,55 @@ ZTEST(qdec_angle, test_other_channels_are_refused)
 	zexpect_equal(sensor_channel_get(qdec16, SENSOR_CHAN_RPM, &value), -ENOTSUP);
 	zexpect_equal(sensor_channel_get(qdec16, SENSOR_CHAN_ALL, &value), -ENOTSUP);
 	zexpect_equal(sensor_attr_get(qdec16, SENSOR_CHAN_RPM,
-				      (enum sensor_attribute)SENSOR_ATTR_QDEC_COUNT, &value),
+				      (enum sensor_attribute)SENSOR_ATTR_EPG_QDEC_SKIPPED, &value),
 		      -ENOTSUP);
 	zexpect_equal(sensor_attr_get(qdec16, SENSOR_CHAN_ROTATION, SENSOR_ATTR_OFFSET, &value),
 		      -ENOTSUP);
-	zexpect_equal(sensor_attr_set(qdec16, SENSOR_CHAN_ROTATION, SENSOR_ATTR_OFFSET, &value),
-		      -ENOTSUP);
 	zexpect_equal(sensor_attr_set(qdec16, SENSOR_CHAN_ROTATION,
-				      (enum sensor_attribute)SENSOR_ATTR_QDEC_SKIPPED, &value),
-		      -ENOTSUP);
+				      (enum sensor_attribute)SENSOR_ATTR_EPG_QDEC_SKIPPED, &value),
+		      -ENOSYS);
+}
+
+ZTEST(qdec_angle, test_other_devices_have_no_count)
+{
+	static const struct device other = {.name = "other"};
+	int64_t count = 7;
+
+	zexpect_equal(epg_qdec_get_count(&other, &count), -ENOTSUP);
+	zexpect_equal(epg_qdec_set_count(&other, 0), -ENOTSUP);
+	zexpect_equal(count, 7);
 }
 
 ZTEST(qdec_count, test_every_wrap_is_counted_when_nobody_reads)
 {
-	const uint32_t interrupts = qdec_emul_interrupts(qdec16);
+	const uint32_t interrupts = epg_qdec_emul_interrupts(qdec16);
 
-	qdec_emul_move(qdec16, 10000001);
+	epg_qdec_emul_move(qdec16, 10000001);
 	zexpect_equal(count_of(qdec16), 10000001);
-	qdec_emul_move(qdec16, -30000003);
+	epg_qdec_emul_move(qdec16, -30000003);
 	zexpect_equal(count_of(qdec16), -20000002);
 	/* A quarter of 65536 counts each. */
-	zexpect_equal(qdec_emul_interrupts(qdec16) - interrupts, 40000004 / 16384);
+	zexpect_equal(epg_qdec_emul_interrupts(qdec16) - interrupts, 40000004 / 16384);
 }
 
 ZTEST(qdec_count, test_wraps_of_32_bits)
 {
-	qdec_emul_move(qdec32, INT64_C(3) << 32);
+	epg_qdec_emul_move(qdec32, INT64_C(3) << 32);
 	zexpect_equal(count_of(qdec32), INT64_C(3) << 32);
-	qdec_emul_move(qdec32, -(INT64_C(7) << 32) - 5);
+	epg_qdec_emul_move(qdec32, -(INT64_C(7) << 32) - 5);
 	zexpect_equal(count_of(qdec32), -(INT64_C(4) << 32) - 5);
 }
 
 ZTEST(qdec_count, test_trembling_at_a_wrap_does_not_interrupt)
 {
-	const uint32_t interrupts = qdec_emul_interrupts(qdec16);
+	const uint32_t interrupts = epg_qdec_emul_interrupts(qdec16);
 
 	for (int i = 0; i < 1000; i++) {
-		qdec_emul_move(qdec16, 1);
-		qdec_emul_move(qdec16, -2);
-		qdec_emul_move(qdec16, 1);
+		epg_qdec_emul_move(qdec16, 1);
+		epg_qdec_emul_move(qdec16, -2);
+		epg_qdec_emul_move(qdec16, 1);
 	}
-	zexpect_equal(qdec_emul_interrupts(qdec16), interrupts);
+	zexpect_equal(epg_qdec_emul_interrupts(qdec16), interrupts);
 	zexpect_equal(count_of(qdec16), 0);
 }
 
@@ -202,7 +210,7 @@ ZTEST(qdec_count, test_random_walk)
 		random = random * 1664525U + 1013904223U;
 		const int32_t step = (int32_t)random >> 14;
 
-		qdec_emul_move(qdec16, step);
+		epg_qdec_emul_move(qdec16, step);
 		truth += step;
 		if ((random & 0x700) == 0) {
 			zassert_equal(count_of(qdec16), truth);
@@ -219,19 +227,19 @@ ZTEST(qdec_count, test_presets)
 	ARRAY_FOR_EACH(counts, i) {
 		preset(qdec16, counts[i]);
 		zexpect_equal(count_of(qdec16), counts[i]);
-		qdec_emul_move(qdec16, 1);
+		epg_qdec_emul_move(qdec16, 1);
 		zexpect_equal(count_of(qdec16), counts[i] + 1);
-		qdec_emul_move(qdec16, -2);
+		epg_qdec_emul_move(qdec16, -2);
 		zexpect_equal(count_of(qdec16), counts[i] - 1);
 	}
 }
 
 ZTEST(qdec_count, test_edges_before_a_preset_do_not_count_after_it)
 {
-	qdec_emul_move(qdec16, 777);
+	epg_qdec_emul_move(qdec16, 777);
 	preset(qdec16, 5);
 	zexpect_equal(count_of(qdec16), 5);
-	qdec_emul_move(qdec16, 70000);
+	epg_qdec_emul_move(qdec16, 70000);
 	zexpect_equal(count_of(qdec16), 70005);
 }
 
@@ -239,7 +247,7 @@ ZTEST(qdec_count, test_a_preset_leaves_the_fetched_sample)
 {
 	struct sensor_value angle;
 
-	qdec_emul_move(qdec16, 500);
+	epg_qdec_emul_move(qdec16, 500);
 	zassert_ok(sensor_sample_fetch(qdec16));
 	preset(qdec16, 0);
 	zassert_ok(sensor_channel_get(qdec16, SENSOR_CHAN_ROTATION, &angle));
@@ -249,11 +257,11 @@ ZTEST(qdec_count, test_a_preset_leaves_the_fetched_sample)
 
 ZTEST(qdec_count, test_invert)
 {
-	qdec_emul_move(inverted, 100000);
+	epg_qdec_emul_move(inverted, 100000);
 	zexpect_equal(count_of(inverted), -100000);
 	expect_angle(inverted, -18000, 0);
 	preset(inverted, 10);
-	qdec_emul_move(inverted, -1);
+	epg_qdec_emul_move(inverted, -1);
 	zexpect_equal(count_of(inverted), 11);
 }
 
@@ -262,18 +270,18 @@ ZTEST(qdec_count, test_errors_of_the_hardware_are_reported)
 	struct sensor_value angle;
 	int64_t count = 4711;
 
-	qdec_emul_move(qdec16, 2000);
+	epg_qdec_emul_move(qdec16, 2000);
 	zassert_ok(sensor_sample_fetch(qdec16));
-	qdec_emul_move(qdec16, 10);
-	qdec_emul_set_error(qdec16, -EIO);
+	epg_qdec_emul_move(qdec16, 10);
+	epg_qdec_emul_set_error(qdec16, -EIO);
 	zexpect_equal(sensor_sample_fetch(qdec16), -EIO);
-	zexpect_equal(qdec_get_count(qdec16, &count), -EIO);
+	zexpect_equal(epg_qdec_get_count(qdec16, &count), -EIO);
 	zexpect_equal(count, 4711, "an error must not touch the caller's count");
-	zexpect_equal(qdec_set_count(qdec16, 0), -EIO);
+	zexpect_equal(epg_qdec_set_count(qdec16, 0), -EIO);
 	zassert_ok(sensor_channel_get(qdec16, SENSOR_CHAN_ROTATION, &angle));
 	zexpect_equal(angle.val1, 360);
 
-	qdec_emul_set_error(qdec16, 0);
+	epg_qdec_emul_set_error(qdec16, 0);
 	zexpect_equal(count_of(qdec16), 2010);
 }
 
@@ -281,12 +289,12 @@ ZTEST(qdec_count, test_skipped)
 {
 	struct sensor_value first;
 	struct sensor_value then;
-	const enum sensor_attribute skipped = (enum sensor_attribute)SENSOR_ATTR_QDEC_SKIPPED;
+	const enum sensor_attribute skipped = (enum sensor_attribute)SENSOR_ATTR_EPG_QDEC_SKIPPED;
 
 	zassert_ok(sensor_attr_get(qdec16, SENSOR_CHAN_ROTATION, skipped, &first));
 	zassert_ok(sensor_attr_get(qdec16, SENSOR_CHAN_ROTATION, skipped, &then));
 	zexpect_equal(then.val1, first.val1);
-	qdec_emul_skip(qdec16);
+	epg_qdec_emul_skip(qdec16);
 	zassert_ok(sensor_attr_get(qdec16, SENSOR_CHAN_ROTATION, skipped, &then));
 	zexpect_equal(then.val1, first.val1 + 1);
 	zexpect_equal(count_of(qdec16), 0);
@@ -299,7 +307,7 @@ static void move(struct k_timer *timer)
 {
 	ARG_UNUSED(timer);
 
-	qdec_emul_move(qdec16, 20011);
+	epg_qdec_emul_move(qdec16, 20011);
 	moved += 20011;
 }
 
@@ -327,15 +335,15 @@ ZTEST(qdec_pm, test_suspended_devices_do_not_count)
 {
 	int64_t count;
 
-	qdec_emul_move(qdec16, 1234);
+	epg_qdec_emul_move(qdec16, 1234);
 	zassert_ok(pm_device_action_run(qdec16, PM_DEVICE_ACTION_SUSPEND));
-	zexpect_equal(qdec_get_count(qdec16, &count), -EHOSTDOWN);
-	zexpect_equal(qdec_set_count(qdec16, 0), -EHOSTDOWN);
+	zexpect_equal(epg_qdec_get_count(qdec16, &count), -EHOSTDOWN);
+	zexpect_equal(epg_qdec_set_count(qdec16, 0), -EHOSTDOWN);
 	zexpect_equal(sensor_sample_fetch(qdec16), -EHOSTDOWN);
-	qdec_emul_move(qdec16, 5000);
+	epg_qdec_emul_move(qdec16, 5000);
 	zassert_ok(pm_device_action_run(qdec16, PM_DEVICE_ACTION_RESUME));
 	zexpect_equal(count_of(qdec16), 1234);
-	qdec_emul_move(qdec16, -70000);
+	epg_qdec_emul_move(qdec16, -70000);
 	zexpect_equal(count_of(qdec16), 1234 - 70000);
 }
 #endif

@@ -75,7 +75,7 @@ void qdec_common_stop(const struct device *dev)
 	}
 }
 
-int qdec_common_sample_fetch(const struct device *dev, enum sensor_channel chan)
+static int sample_fetch(const struct device *dev, enum sensor_channel chan)
 {
 	struct qdec_common_data *data = dev->data;
 	int ret = 0;
@@ -117,8 +117,8 @@ static int count_to_degrees(int64_t count, int64_t counts_per_revolution, struct
 	return 0;
 }
 
-int qdec_common_channel_get(const struct device *dev, enum sensor_channel chan,
-			    struct sensor_value *val)
+static int channel_get(const struct device *dev, enum sensor_channel chan,
+		       struct sensor_value *val)
 {
 	const struct qdec_common_config *config = dev->config;
 	struct qdec_common_data *data = dev->data;
@@ -135,55 +135,21 @@ int qdec_common_channel_get(const struct device *dev, enum sensor_channel chan,
 	return count_to_degrees(fetched, config->counts_per_revolution, val);
 }
 
-int qdec_common_attr_set(const struct device *dev, enum sensor_channel chan,
-			 enum sensor_attribute attr, const struct sensor_value *val)
-{
-	struct qdec_common_data *data = dev->data;
-	int ret = 0;
-
-	if (chan != SENSOR_CHAN_ROTATION || (int)attr != SENSOR_ATTR_QDEC_COUNT) {
-		return -ENOTSUP;
-	}
-
-	K_SPINLOCK(&data->lock) {
-		ret = follow(dev);
-		if (ret == 0) {
-			data->count = (int64_t)(((uint64_t)(uint32_t)val->val1 << 32) |
-						(uint32_t)val->val2);
-		}
-	}
-
-	return ret;
-}
-
-int qdec_common_attr_get(const struct device *dev, enum sensor_channel chan,
-			 enum sensor_attribute attr, struct sensor_value *val)
+static int attr_get(const struct device *dev, enum sensor_channel chan, enum sensor_attribute attr,
+		    struct sensor_value *val)
 {
 	const struct qdec_common_config *config = dev->config;
 	struct qdec_common_data *data = dev->data;
 	uint32_t skipped = 0;
-	int64_t count = 0;
 	int ret = 0;
 
-	if (chan != SENSOR_CHAN_ROTATION) {
-		return -ENOTSUP;
-	}
-
-	switch ((int)attr) {
-	case SENSOR_ATTR_QDEC_COUNT:
-		break;
-	case SENSOR_ATTR_QDEC_SKIPPED:
-		if (!config->notices_skips) {
-			return -ENOTSUP;
-		}
-		break;
-	default:
+	if (chan != SENSOR_CHAN_ROTATION || (int)attr != SENSOR_ATTR_EPG_QDEC_SKIPPED ||
+	    !config->notices_skips) {
 		return -ENOTSUP;
 	}
 
 	K_SPINLOCK(&data->lock) {
 		ret = follow(dev);
-		count = data->count;
 		skipped = data->skipped;
 	}
 
@@ -191,13 +157,52 @@ int qdec_common_attr_get(const struct device *dev, enum sensor_channel chan,
 		return ret;
 	}
 
-	if ((int)attr == SENSOR_ATTR_QDEC_COUNT) {
-		val->val1 = (int32_t)(uint32_t)((uint64_t)count >> 32);
-		val->val2 = (int32_t)(uint32_t)count;
-	} else {
-		val->val1 = (int32_t)MIN(skipped, (uint32_t)INT32_MAX);
-		val->val2 = 0;
-	}
+	val->val1 = (int32_t)MIN(skipped, (uint32_t)INT32_MAX);
+	val->val2 = 0;
 
 	return 0;
+}
+
+DEVICE_API(sensor, qdec_common_driver_api) = {
+	.attr_get = attr_get,
+	.sample_fetch = sample_fetch,
+	.channel_get = channel_get,
+};
+
+int epg_qdec_get_count(const struct device *dev, int64_t *count)
+{
+	struct qdec_common_data *data = dev->data;
+	int ret = 0;
+
+	if (dev->api != &qdec_common_driver_api) {
+		return -ENOTSUP;
+	}
+
+	K_SPINLOCK(&data->lock) {
+		ret = follow(dev);
+		if (ret == 0) {
+			*count = data->count;
+		}
+	}
+
+	return ret;
+}
+
+int epg_qdec_set_count(const struct device *dev, int64_t count)
+{
+	struct qdec_common_data *data = dev->data;
+	int ret = 0;
+
+	if (dev->api != &qdec_common_driver_api) {
+		return -ENOTSUP;
+	}
+
+	K_SPINLOCK(&data->lock) {
+		ret = follow(dev);
+		if (ret == 0) {
+			data->count = count;
+		}
+	}
+
+	return ret;
 }

@@ -77,15 +77,7 @@ int qdec_common_start(const struct device *dev);
  */
 void qdec_common_stop(const struct device *dev);
 
-int qdec_common_sample_fetch(const struct device *dev, enum sensor_channel chan);
-
-int qdec_common_channel_get(const struct device *dev, enum sensor_channel chan,
-			    struct sensor_value *val);
-
-int qdec_common_attr_set(const struct device *dev, enum sensor_channel chan,
-			 enum sensor_attribute attr, const struct sensor_value *val);
-
-int qdec_common_attr_get(const struct device *dev, enum sensor_channel chan,
-			 enum sensor_attribute attr, struct sensor_value *val);
+/** The API of all decoders: by it epg_qdec_get_count() knows that a device is one. */
+extern const struct sensor_driver_api qdec_common_driver_api;
 
 #endif /* EPG_ZEPHYR_DRIVERS_SENSOR_QDEC_COMMON_H_ */

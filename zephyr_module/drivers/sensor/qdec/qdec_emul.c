@@ -52,7 +52,7 @@ static int qdec_emul_read(const struct device *dev, uint32_t *counter)
 	return 0;
 }
 
-void qdec_emul_move(const struct device *dev, int64_t edges)
+void epg_qdec_emul_move(const struct device *dev, int64_t edges)
 {
 	const struct qdec_emul_config *config = dev->config;
 	struct qdec_emul_data *data = dev->data;
@@ -82,21 +82,21 @@ void qdec_emul_move(const struct device *dev, int64_t edges)
 	}
 }
 
-void qdec_emul_skip(const struct device *dev)
+void epg_qdec_emul_skip(const struct device *dev)
 {
 	struct qdec_emul_data *data = dev->data;
 
 	data->skipped_flag = true;
 }
 
-void qdec_emul_set_error(const struct device *dev, int error)
+void epg_qdec_emul_set_error(const struct device *dev, int error)
 {
 	struct qdec_emul_data *data = dev->data;
 
 	data->error = error;
 }
 
-uint32_t qdec_emul_interrupts(const struct device *dev)
+uint32_t epg_qdec_emul_interrupts(const struct device *dev)
 {
 	const struct qdec_emul_data *data = dev->data;
 
@@ -126,13 +126,6 @@ static int qdec_emul_init(const struct device *dev)
 	return pm_device_driver_init(dev, qdec_emul_pm_action);
 }
 
-static DEVICE_API(sensor, qdec_emul_driver_api) = {
-	.attr_set = qdec_common_attr_set,
-	.attr_get = qdec_common_attr_get,
-	.sample_fetch = qdec_common_sample_fetch,
-	.channel_get = qdec_common_channel_get,
-};
-
 #define QDEC_EMUL_INIT(n)                                                                          \
 	QDEC_COMMON_ASSERT_DT_INST(n);                                                             \
 	static const struct qdec_emul_config qdec_emul_config_##n = {                              \
@@ -143,6 +136,6 @@ static DEVICE_API(sensor, qdec_emul_driver_api) = {
 	PM_DEVICE_DT_INST_DEFINE(n, qdec_emul_pm_action);                                          \
 	SENSOR_DEVICE_DT_INST_DEFINE(n, qdec_emul_init, PM_DEVICE_DT_INST_GET(n),                  \
 				     &qdec_emul_data_##n, &qdec_emul_config_##n, POST_KERNEL,      \
-				     CONFIG_SENSOR_INIT_PRIORITY, &qdec_emul_driver_api);
+				     CONFIG_SENSOR_INIT_PRIORITY, &qdec_common_driver_api);
 
 DT_INST_FOREACH_STATUS_OKAY(QDEC_EMUL_INIT)

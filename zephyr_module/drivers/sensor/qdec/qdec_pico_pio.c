@@ -136,6 +136,7 @@ static int qdec_pico_pio_resume(const struct device *dev)
 	ret = qdec_common_start(dev);
 	if (ret < 0) {
 		LOG_ERR("%s: the state machine does not run (%d)", dev->name, ret);
+		pio_sm_set_enabled(data->pio, data->sm, false);
 		return ret;
 	}
 
@@ -221,13 +222,6 @@ static int qdec_pico_pio_init(const struct device *dev)
 	return pm_device_driver_init(dev, qdec_pico_pio_pm_action);
 }
 
-static DEVICE_API(sensor, qdec_pico_pio_driver_api) = {
-	.attr_set = qdec_common_attr_set,
-	.attr_get = qdec_common_attr_get,
-	.sample_fetch = qdec_common_sample_fetch,
-	.channel_get = qdec_common_channel_get,
-};
-
 #define QDEC_PICO_PIO_PINS(n) DT_CHILD(DT_INST_PINCTRL_BY_NAME(n, default, 0), ab_pins)
 #define QDEC_PICO_PIO_PIN(n, idx)                                                                  \
 	RP2_GET_PIN_NUM(DT_PROP_BY_IDX(QDEC_PICO_PIO_PINS(n), pinmux, idx))
@@ -285,6 +279,6 @@ static DEVICE_API(sensor, qdec_pico_pio_driver_api) = {
 	SENSOR_DEVICE_DT_INST_DEFINE(n, qdec_pico_pio_init, PM_DEVICE_DT_INST_GET(n),              \
 				     &qdec_pico_pio_data_##n, &qdec_pico_pio_config_##n,           \
 				     POST_KERNEL, CONFIG_SENSOR_INIT_PRIORITY,                     \
-				     &qdec_pico_pio_driver_api);
+				     &qdec_common_driver_api);
 
 DT_INST_FOREACH_STATUS_OKAY(QDEC_PICO_PIO_INIT)

@@ -116,13 +116,13 @@ static int qdec_stm32_resume(const struct device *dev)
 	ret = reset_line_toggle_dt(&config->reset);
 	if (ret < 0) {
 		LOG_ERR("%s: could not reset the timer (%d)", dev->name, ret);
-		return ret;
+		goto clock_off;
 	}
 
 	ret = pinctrl_apply_state(config->pincfg, PINCTRL_STATE_DEFAULT);
 	if (ret < 0) {
 		LOG_ERR("%s: could not set up the pins (%d)", dev->name, ret);
-		return ret;
+		goto clock_off;
 	}
 
 	LL_TIM_SetPrescaler(timer, 0);
@@ -137,7 +137,7 @@ static int qdec_stm32_resume(const struct device *dev)
 
 	ret = qdec_common_start(dev);
 	if (ret < 0) {
-		return ret;
+		goto clock_off;
 	}
 
 	LL_TIM_ClearFlag_CC3(timer);
@@ -148,6 +148,11 @@ static int qdec_stm32_resume(const struct device *dev)
 	irq_enable(config->irq);
 
 	return 0;
+
+clock_off:
+	(void)clock_control_off(clk, (clock_control_subsys_t)&config->pclken);
+
+	return ret;
 }
 
 static int qdec_stm32_suspend(const struct device *dev)
@@ -203,13 +208,6 @@ static int qdec_stm32_init(const struct device *dev)
 	return pm_device_driver_init(dev, qdec_stm32_pm_action);
 }
 
-static DEVICE_API(sensor, qdec_stm32_driver_api) = {
-	.attr_set = qdec_common_attr_set,
-	.attr_get = qdec_common_attr_get,
-	.sample_fetch = qdec_common_sample_fetch,
-	.channel_get = qdec_common_channel_get,
-};
-
 #define QDEC_STM32_TIMER(n) ((TIM_TypeDef *)DT_REG_ADDR(DT_INST_PARENT(n)))
 
 /* Advanced timers have a line for the channels, the others one for all. */
@@ -258,6 +256,6 @@ static DEVICE_API(sensor, qdec_stm32_driver_api) = {
 	PM_DEVICE_DT_INST_DEFINE(n, qdec_stm32_pm_action);                                         \
 	SENSOR_DEVICE_DT_INST_DEFINE(n, qdec_stm32_init, PM_DEVICE_DT_INST_GET(n),                 \
 				     &qdec_stm32_data_##n, &qdec_stm32_config_##n, POST_KERNEL,    \
-				     CONFIG_SENSOR_INIT_PRIORITY, &qdec_stm32_driver_api);
+				     CONFIG_SENSOR_INIT_PRIORITY, &qdec_common_driver_api);
 
 DT_INST_FOREACH_STATUS_OKAY(QDEC_STM32_INIT)

@@ -33,7 +33,7 @@ extern "C" {
  * @retval 0 On success
  * @retval -EINVAL If there is no such channel
  */
-int pwm_emul_get(const struct device *dev, uint32_t channel, uint32_t *period, uint32_t *high);
+int epg_pwm_emul_get(const struct device *dev, uint32_t channel, uint32_t *period, uint32_t *high);
 
 /**
  * @brief Get how often a channel has been set
@@ -43,7 +43,7 @@ int pwm_emul_get(const struct device *dev, uint32_t channel, uint32_t *period, u
  *
  * @return How often, modulo 2^32; 0 if there is no such channel
  */
-uint32_t pwm_emul_writes(const struct device *dev, uint32_t channel);
+uint32_t epg_pwm_emul_writes(const struct device *dev, uint32_t channel);
 
 /**
  * @brief Let writes to the hardware fail
@@ -51,7 +51,7 @@ uint32_t pwm_emul_writes(const struct device *dev, uint32_t channel);
  * @param dev Emulated controller
  * @param error What pwm_set_cycles() returns: 0, or a negative error number
  */
-void pwm_emul_set_error(const struct device *dev, int error);
+void epg_pwm_emul_set_error(const struct device *dev, int error);
 
 #ifdef __cplusplus
 }

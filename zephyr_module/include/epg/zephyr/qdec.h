@@ -19,12 +19,13 @@
  *	const struct device *const dev = DEVICE_DT_GET(DT_NODELABEL(qdec));
  *	int64_t count;
  *
- *	if (qdec_get_count(dev, &count) == 0) {
+ *	if (epg_qdec_get_count(dev, &count) == 0) {
  *		...
  *	}
  * @endcode
  *
- * All functions can be called from threads and interrupts, also for one device at a time.
+ * All functions can be called from interrupts and from threads in supervisor mode, also for one
+ * device at a time.
  */
 
 #ifndef EPG_ZEPHYR_QDEC_H_
@@ -35,6 +36,7 @@
 
 #include <zephyr/device.h>
 #include <zephyr/drivers/sensor.h>
+#include <zephyr/sys/util.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -43,24 +45,21 @@ extern "C" {
 /** @brief Attributes of SENSOR_CHAN_ROTATION */
 enum sensor_attribute_epg_qdec {
 	/**
-	 * The count now, read from the hardware, as 64-bit two's complement: val1 is the upper
-	 * half, val2 the lower. Setting it is a preset: the count at this moment becomes the given
-	 * one, no edge is lost, and a sample that has been fetched before stays as it is.
-	 */
-	SENSOR_ATTR_QDEC_COUNT = SENSOR_ATTR_PRIV_START,
-	/**
 	 * How often both phases had changed at once, which counts nothing: edges too fast, noise,
 	 * or a broken wire. val1, up to INT32_MAX; several such changes between two reads are one.
 	 * Only epg,pico-pio-qdec and epg,qdec-emul can tell; read-only.
 	 */
-	SENSOR_ATTR_QDEC_SKIPPED,
+	SENSOR_ATTR_EPG_QDEC_SKIPPED = SENSOR_ATTR_PRIV_START,
 };
+
+#if defined(CONFIG_EPG_QDEC) || defined(__DOXYGEN__)
 
 /**
  * @brief Read the count
  *
  * The count of this moment, not of the last fetch. Every edge counts (x4), rising when A leads B
- * (falling with the property invert).
+ * (falling with the property invert). The value of a sensor channel or attribute cannot hold it:
+ * it has 32 bits and millionths.
  *
  * @param dev Decoder
  * @param count Where to put the count
@@ -68,44 +67,42 @@ enum sensor_attribute_epg_qdec {
  * @retval 0 On success
  * @retval -EHOSTDOWN If the device is suspended
  * @retval -EIO If the hardware has stopped counting (something else has changed its registers)
- * @retval -ENOTSUP, -ENOSYS If the device is no such decoder
+ * @retval -ENOTSUP If the device is not such a decoder
  */
-static inline int qdec_get_count(const struct device *dev, int64_t *count)
-{
-	struct sensor_value value;
-	int ret;
-
-	ret = sensor_attr_get(dev, SENSOR_CHAN_ROTATION,
-			      (enum sensor_attribute)SENSOR_ATTR_QDEC_COUNT, &value);
-	if (ret < 0) {
-		return ret;
-	}
-
-	*count = (int64_t)(((uint64_t)(uint32_t)value.val1 << 32) | (uint32_t)value.val2);
-
-	return 0;
-}
+int epg_qdec_get_count(const struct device *dev, int64_t *count);
 
 /**
  * @brief Preset the count
  *
- * The count at this moment becomes @p count; edges after it are counted from there.
+ * The count at this moment becomes @p count; edges after it are counted from there. No edge is
+ * lost, and a sample that has been fetched before stays as it is.
  *
  * @param dev Decoder
- * @param count What the count shall be
+ * @param count New count
  *
- * @return As qdec_get_count()
+ * @return As epg_qdec_get_count()
  */
-static inline int qdec_set_count(const struct device *dev, int64_t count)
-{
-	struct sensor_value value = {
-		.val1 = (int32_t)(uint32_t)((uint64_t)count >> 32),
-		.val2 = (int32_t)(uint32_t)count,
-	};
+int epg_qdec_set_count(const struct device *dev, int64_t count);
 
-	return sensor_attr_set(dev, SENSOR_CHAN_ROTATION,
-			       (enum sensor_attribute)SENSOR_ATTR_QDEC_COUNT, &value);
+#else /* an image without such a decoder */
+
+static inline int epg_qdec_get_count(const struct device *dev, int64_t *count)
+{
+	ARG_UNUSED(dev);
+	ARG_UNUSED(count);
+
+	return -ENOTSUP;
 }
+
+static inline int epg_qdec_set_count(const struct device *dev, int64_t count)
+{
+	ARG_UNUSED(dev);
+	ARG_UNUSED(count);
+
+	return -ENOTSUP;
+}
+
+#endif
 
 #ifdef __cplusplus
 }

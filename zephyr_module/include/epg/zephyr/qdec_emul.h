@@ -29,14 +29,14 @@ extern "C" {
  * @param dev Emulated decoder
  * @param edges How far: positive when A leads B
  */
-void qdec_emul_move(const struct device *dev, int64_t edges);
+void epg_qdec_emul_move(const struct device *dev, int64_t edges);
 
 /**
  * @brief Let both phases change at once, which counts nothing
  *
  * @param dev Emulated decoder
  */
-void qdec_emul_skip(const struct device *dev);
+void epg_qdec_emul_skip(const struct device *dev);
 
 /**
  * @brief Let reads of the hardware fail
@@ -44,14 +44,14 @@ void qdec_emul_skip(const struct device *dev);
  * @param dev Emulated decoder
  * @param error What a read returns: 0, or a negative error number
  */
-void qdec_emul_set_error(const struct device *dev, int error);
+void epg_qdec_emul_set_error(const struct device *dev, int error);
 
 /**
  * @brief How often the counter has interrupted
  *
  * @param dev Emulated decoder
  */
-uint32_t qdec_emul_interrupts(const struct device *dev);
+uint32_t epg_qdec_emul_interrupts(const struct device *dev);
 
 #ifdef __cplusplus
 }

@@ -27,7 +27,7 @@ static void turn(struct k_timer *timer)
 {
 	ARG_UNUSED(timer);
 
-	qdec_emul_move(qdec, -3);
+	epg_qdec_emul_move(qdec, -3);
 }
 
 static K_TIMER_DEFINE(shaft, turn, NULL);
@@ -39,7 +39,7 @@ static int show(void)
 	int64_t count;
 	int ret;
 
-	ret = qdec_get_count(qdec, &count);
+	ret = epg_qdec_get_count(qdec, &count);
 	if (ret < 0) {
 		return ret;
 	}
@@ -71,7 +71,7 @@ int main(void)
 	}
 
 	/* Where the shaft stands now is 0. */
-	ret = qdec_set_count(qdec, 0);
+	ret = epg_qdec_set_count(qdec, 0);
 	if (ret < 0) {
 		printk("%s cannot be preset (%d)\n", qdec->name, ret);
 		return 0;
