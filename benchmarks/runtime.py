@@ -25,11 +25,16 @@ RUNTIME = ROOT / "targets" / "runtime"
 OPTIONS = ["-std=c11", "-O2", "-ffp-contract=off"]
 WARNINGS = ["-Wall", "-Wextra", "-Wconversion", "-Wdouble-promotion", "-Werror"]
 BORDER = 1.2
+# The program written by hand has no dead time: without it, both write the same levels in each cycle.
 BARE = """version: 1
 extends: host_jiwy.tcf
 control: {enable_at_start: true}
 communication: {middleware: none}
-components: {guard_pan: null, guard_tilt: null}
+components:
+  guard_pan: null
+  guard_tilt: null
+  pwm_pan: {dead_time: 0 s}
+  pwm_tilt: {dead_time: 0 s}
 """
 # All checks run, and nothing that the driver's robot does is a fault.
 GUARD = (
@@ -42,6 +47,8 @@ communication: {{middleware: none}}
 components:
   guard_pan: {GUARD}
   guard_tilt: {GUARD}
+  pwm_pan: {{dead_time: 0 s}}
+  pwm_tilt: {{dead_time: 0 s}}
 """
 
 
