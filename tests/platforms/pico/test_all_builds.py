@@ -3,15 +3,39 @@
 
 from __future__ import annotations
 
+from itertools import combinations
+
 import pytest
 
 from tests.platforms.pico.compiled import own_sources, problems
-from tests.platforms.pico.images import TARGETS, images, size_of, skip_unless_buildable
+from tests.platforms.pico.images import BOARDS, PLATFORMS, TARGETS, images, size_of, skip_unless_buildable
+
+MIDDLEWARES = ("none", "console", "xrce", "xrce_console")
+CELLS = [(*target, middleware) for target in TARGETS for middleware in MIDDLEWARES]
+PAIRWISE = [
+    (board, platform, middleware)
+    for board, platform, middleware in CELLS
+    if (BOARDS.index(board) + PLATFORMS.index(platform) + MIDDLEWARES.index(middleware)) % 2 == 0
+]
+"""Every board, every platform and every middleware, each with each other."""
 
 
-@pytest.mark.parametrize("middleware", ["none", "console", "xrce", "xrce_console"])
-@pytest.mark.parametrize(("board", "platform"), TARGETS)
-def test_both_robots(board: str, platform: str, middleware: str) -> None:
+@pytest.mark.parametrize(("board", "platform", "middleware"), PAIRWISE)
+def test_pairs(board: str, platform: str, middleware: str) -> None:
+    build_both_robots(board, platform, middleware)
+
+
+@pytest.mark.parametrize(("board", "platform", "middleware"), [cell for cell in CELLS if cell not in PAIRWISE])
+def test_all_others(board: str, platform: str, middleware: str) -> None:
+    build_both_robots(board, platform, middleware)
+
+
+def test_every_pair_meets() -> None:
+    for one, other in combinations(range(3), 2):
+        assert {(cell[one], cell[other]) for cell in PAIRWISE} == {(cell[one], cell[other]) for cell in CELLS}
+
+
+def build_both_robots(board: str, platform: str, middleware: str) -> None:
     skip_unless_buildable(platform)
     folder = images(board, platform, "jiwy_firmware", "relbot_firmware", middleware=middleware)
     for robot in ("jiwy", "relbot"):
