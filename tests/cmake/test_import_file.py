@@ -23,6 +23,8 @@ message(STATUS "EPG of ${EPG_DIR}")
 
 STAND_IN = "function(epg_add_target)\nendfunction()\n"
 
+BUILD_PROGRAM = "ninja" if shutil.which("ninja") else "make"
+
 
 class User:
     """Somebody with a project that has copied the file, checkouts (stand-ins), and programs on the PATH."""
@@ -36,7 +38,7 @@ class User:
         self.programs = folder / "programs"
         self.programs.mkdir()
         # nothing but CMake and what is put beside it, so that this computer's own EPG is out of reach
-        for name in ("cmake", "ninja", "sh"):
+        for name in ("cmake", BUILD_PROGRAM, "sh"):
             (self.programs / name).symlink_to(shutil.which(name) or name)
 
     def checkout(self, name: str) -> Path:
@@ -69,7 +71,7 @@ class User:
                 "-B",
                 self.folder / "build",
                 "-G",
-                "Ninja",
+                "Ninja" if BUILD_PROGRAM == "ninja" else "Unix Makefiles",
                 *arguments,
             ],
             env={"PATH": str(self.programs), "HOME": str(self.folder), **(variables or {})},

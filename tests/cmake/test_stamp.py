@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cmake.project import ROOT, Project
+from tests.cmake.project import NINJA, ROOT, Project
 from tests.models.exports import Export
 
 SITECUSTOMIZE = 'import os\nwith open(os.environ["PYTHON_STARTS"], "a") as log:\n    log.write("start\\n")\n'
@@ -302,6 +302,8 @@ def test_a_model_around_the_build_folder_does_not_configure_without_end(tmp_path
         path.rename(source / path.name)
     watched.replace("CMakeLists.txt", "MODEL model", 'MODEL "${CMAKE_CURRENT_SOURCE_DIR}"')
     project = watched.project
+    if not NINJA:
+        pytest.skip("Ninja is not installed: apt install ninja-build")
     command = ["cmake", "-G", "Ninja", f"-DPython3_EXECUTABLE={sys.executable}", f"-DEPG_DIR={ROOT / 'cmake'}"]
     project._run([*command, "-S", str(source), "-B", str(source)], True)
     project._run(["cmake", "--build", str(source)], True)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -17,6 +18,8 @@ TEXTS = ("*.md", "*.cmake", "*.j2", "*.py", "*.json", "*.yaml", "*.txt", "*.cmd"
 
 def files() -> list[Path]:
     """All texts of the project but its tests."""
+    if shutil.which("git") is None:
+        pytest.skip("git is not installed: apt install git")
     listed = subprocess.run(["git", "-C", str(ROOT), "ls-files", "--", *TEXTS], capture_output=True, text=True)
     if listed.returncode != 0:
         pytest.skip("this is no checkout of git: apt install git")
