@@ -39,7 +39,10 @@ endfunction()
 
 # Puts <commit> of the repository at <url> into <folder>, whole or not at all.
 function(_epg_clone result url commit folder)
-  set(part "${folder}.part")
+  # With a point before its name, no pattern of a tool's "cached" finds a folder that another build is still filling.
+  get_filename_component(parent "${folder}" DIRECTORY)
+  get_filename_component(name "${folder}" NAME)
+  set(part "${parent}/.${name}.part")
   file(REMOVE_RECURSE "${part}")
   file(MAKE_DIRECTORY "${part}")
   set(git "${EPG_GIT}" -C "${part}")
