@@ -25,7 +25,8 @@ RUNTIME = ROOT / "targets" / "runtime"
 OPTIONS = ["-std=c11", "-O2", "-ffp-contract=off"]
 WARNINGS = ["-Wall", "-Wextra", "-Wconversion", "-Wdouble-promotion", "-Werror"]
 BORDER = 1.2
-# The program written by hand has no dead time: without it, both write the same levels in each cycle.
+# The program written by hand has no dead time. With the default dead time, the generated program would write other
+# levels than that program.
 BARE = """version: 1
 extends: host_jiwy.tcf
 control: {enable_at_start: true}
