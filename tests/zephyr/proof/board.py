@@ -16,7 +16,7 @@ APPLICATION = "tests/zephyr/proof/application"
 SPANS = {
     "tick": ("on_wrap", "epg_zephyr_watchdog_feed"),
     "cycle": ("epg_control_cycle", "return"),
-    "read": ("qdec_common_attr_get", "return"),
+    "read": ("epg_qdec_get_count", "return"),
     "write": ("epg_port_pwm_write", "return"),
     "locked": ("write_outputs", "return"),
 }
