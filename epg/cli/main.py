@@ -34,7 +34,6 @@ COMMANDS = {
     "plot": "compare a recorded run with another one, or with its simulation",
     "doctor": "show what this computer has and lacks",
     "schema": "write the JSON Schemas of EPG's files, for editors",
-    "migrate": "rewrite files of an older format in the newest one",
 }
 
 EXIT_OK, EXIT_MISTAKES, EXIT_USAGE, EXIT_BUG, EXIT_MISSING = range(5)
