@@ -15,6 +15,7 @@ from epg.diagnostics import Diagnostics, did_you_mean
 from epg.load.catalog import Catalog, CatalogCheck
 from epg.load.hardware import Target
 from epg.load.text_file import is_file
+from epg.load.yaml_file import newer_version
 from epg.source import Node, Span
 
 
@@ -45,7 +46,7 @@ class _Check(CatalogCheck):
                 "wrong-type", span, f"a {sort}.yaml is a map (key: value)", hint="it begins with 'api: 1'"
             )
             return False
-        if _newer(node, diagnostics) or not validate(node, load_schema(sort), diagnostics):
+        if newer_version(node, "api", diagnostics) or not validate(node, load_schema(sort), diagnostics):
             return False
         errors = diagnostics.error_count
         if node[key].value != name:
@@ -76,15 +77,6 @@ class _Check(CatalogCheck):
         errors = diagnostics.error_count
         check_offers(target, self._catalog, diagnostics)
         return check_target(target, diagnostics) and diagnostics.error_count == errors
-
-
-def _newer(node: Node, diagnostics: Diagnostics) -> bool:
-    api = node.get("api")
-    if api is None or not isinstance(api.value, int) or isinstance(api.value, bool) or api.value <= 1:
-        return False
-    message = f"file format {api.value} is newer than this EPG, which reads up to 1"
-    diagnostics.error("newer-version", api.span, message, hint="update EPG")
-    return True
 
 
 def _names_in(node: Node, path: tuple[str, ...]) -> list[Node]:

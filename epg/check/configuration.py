@@ -29,6 +29,7 @@ from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.load.catalog import Catalog, Kind, Target
 from epg.load.middleware import Middleware
 from epg.load.tcf import TcfFile
+from epg.load.yaml_file import newer_version
 from epg.quantity import QuantityError, parse_quantity
 from epg.source import Node, Span
 
@@ -118,7 +119,7 @@ def check_configuration(
     errors = diagnostics.error_count
     schema = load_schema("tcf")
     for file in chain:
-        version_problem(file.node, diagnostics)
+        newer_version(file.node, "version", diagnostics)
     if diagnostics.error_count > errors:
         return None
     for file in chain[1:]:
@@ -150,23 +151,6 @@ def check_configuration(
         absent=tuple(path for file in chain for path in file.absent),
         root=root,
     )
-
-
-def version_problem(node: Node, diagnostics: Diagnostics) -> None:
-    """Reports a file format that is newer than this EPG."""
-    version = node.get("version")
-    if (
-        version is not None
-        and isinstance(version.value, int)
-        and not isinstance(version.value, bool)
-        and version.value > 1
-    ):
-        diagnostics.error(
-            "newer-version",
-            version.span,
-            f"file format {version.value} is newer than this EPG, which reads up to 1",
-            hint="update EPG",
-        )
 
 
 def _components(root: Node, target: Target | None, catalog: Catalog, diagnostics: Diagnostics) -> dict[str, Component]:

@@ -22,6 +22,9 @@ from epg.load.yaml_mistakes import LINE_END, find_mistake, foreign_comment, miss
 from epg.quantity import decimal_comma
 from epg.source import Node, Scalar, Span
 
+VERSION = 1
+"""Of all formats: each file states it as ``version``, those in folders of ``targets`` as ``api``."""
+
 MAX_DEPTH = 32
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 """libyaml's parser where there is one.  The two differ: PyYAML's own takes no tab before a comment."""
@@ -42,6 +45,16 @@ def load_yaml(
     """The document in ``path``, or None after reporting what is wrong with the file."""
     text = read_text(path, diagnostics, wanted_by, drafts)
     return None if text is None else parse_yaml(text, str(path), diagnostics)
+
+
+def newer_version(node: Node, key: str, diagnostics: Diagnostics) -> bool:
+    """Whether a file states, at ``key``, a format that is newer than this EPG; reports it."""
+    stated = node.get(key)
+    if stated is None or type(stated.value) is not int or stated.value <= VERSION:
+        return False
+    message = f"file format {stated.value} is newer than this EPG, which reads up to {VERSION}"
+    diagnostics.error("newer-version", stated.span, message, hint="update EPG")
+    return True
 
 
 def parse_yaml(text: str, file: str, diagnostics: Diagnostics) -> Node | None:

@@ -8,11 +8,11 @@ from pathlib import Path
 
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.load.models.assignments import is_step
+from epg.load.yaml_file import VERSION, newer_version
 from epg.quantity import QuantityError, parse_quantity
 from epg.source import Node, Span
 
 FILE_NAME = "model.yaml"
-VERSION = 1
 
 
 class ModelYaml:
@@ -41,10 +41,7 @@ class ModelYaml:
         node = self.node.get("version")
         if node is None or (node.value == VERSION and not isinstance(node.value, bool)):
             return True
-        if isinstance(node.value, int) and not isinstance(node.value, bool) and node.value > VERSION:
-            message = f"version {node.value} is newer than this EPG, which reads version {VERSION}"
-            self._error("newer-version", node.span, message, "install a newer EPG")
-        else:
+        if not newer_version(self.node, "version", self.diagnostics):
             self._error("wrong-value", node.span, f"expected version {VERSION}", f"write 'version: {VERSION}'")
         return False
 
