@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Build hook: what a wheel holds besides the Python package.
+"""Hooks of the build: what a wheel holds besides the Python package, and which packages it needs.
 
 A wheel carries copies of ``cmake/``, ``targets/``, ``schemas/``, Zephyr's module and the page about messages in
 ``epg/_data``; an editable install reads those of the checkout, so that an edit there is seen at once.  Both get
@@ -14,10 +14,31 @@ from pathlib import Path
 from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+from hatchling.metadata.plugin.interface import MetadataHookInterface
 
 PLANTS = tuple(f"examples/{robot}/{name}" for robot in ("jiwy", "relbot") for name in ("plant", "plant.bindings.yaml"))
 """The simulated robots that `epg new` writes into projects."""
 DATA = ("cmake", "targets", "schemas", "integration", "zephyr", "zephyr_module", "docs/errors.md", *PLANTS)
+
+
+EXTRAS = {"zephyr": "zephyr", "plot": "plot", "ros": "ros", "test": "test_all"}
+"""The optional dependencies that pip knows, and the file of ``epg/lock`` that lists each."""
+
+
+class EpgMetadataHook(MetadataHookInterface):
+    """``epg/lock/*.in`` is the one place that names packages and their oldest versions."""
+
+    PLUGIN_NAME = "custom"
+
+    def update(self, metadata: dict[str, Any]) -> None:
+        metadata["dependencies"] = self._packages("generator")
+        metadata["optional-dependencies"] = {extra: self._packages(group) for extra, group in EXTRAS.items()}
+
+    def _packages(self, group: str) -> list[str]:
+        packages: list[str] = []
+        for line in (Path(self.root) / f"epg/lock/{group}.in").read_text(encoding="utf-8").splitlines():
+            packages += self._packages(line[3:].removesuffix(".in")) if line.startswith("-r ") else [line]
+        return packages
 
 
 class EpgBuildHook(BuildHookInterface):

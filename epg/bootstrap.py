@@ -3,9 +3,9 @@
 
 CMake selects a Python that may lack jinja2, PyYAML or jsonschema, and that may refuse ``pip install`` (Debian's
 externally managed one has no ensurepip either).  So packages are installed, once, with ``pip install --target`` into
-a folder of EPG's cache that is named after the interpreter and the lock file.  The lock files (``epg/lock/*.txt``)
-pin every file by hash.  The folder is prepared under a temporary name and renamed when it is complete, so an
-interrupted or concurrent installation never leaves half of it.
+a folder of EPG's cache that is named after the interpreter and the lock file.  ``epg/lock/*.in`` name the packages and
+their oldest versions; the lock files (``epg/lock/*.txt``) pin every file by hash.  The folder is prepared under a
+temporary name and renamed when it is complete, so an interrupted or concurrent installation never leaves half of it.
 
 Uses only the standard library.  To renew a lock file::
 
@@ -25,26 +25,24 @@ from pathlib import Path
 
 LOCKS = Path(__file__).resolve().parent / "lock"
 
-#: for each lock file: modules that must be there, and distributions with the oldest version that will do
-REQUIREMENTS: dict[str, dict[str, tuple[str, tuple[int, ...]]]] = {
-    "generator": {"yaml": ("PyYAML", (5, 4)), "jinja2": ("Jinja2", (3, 0)), "jsonschema": ("jsonschema", (4, 10))},
-    "plot": {"matplotlib": ("matplotlib", (3, 5)), "numpy": ("numpy", (1, 23))},
-    "ros": {"cyclonedds": ("cyclonedds", (0, 10, 5))},
-}
-REQUIREMENTS["test"] = {
-    "pytest": ("pytest", (8, 0)),
-    "pytest_cmake": ("pytest-cmake", (1, 6)),
-    "hypothesis": ("hypothesis", (6, 100)),
-    **REQUIREMENTS["generator"],
-}
-REQUIREMENTS["test_all"] = {
-    "hatchling": ("hatchling", (1, 27)),
-    "editables": ("editables", (0, 5)),
-    "playwright": ("playwright", (1, 45)),
-    **REQUIREMENTS["test"],
-    **REQUIREMENTS["plot"],
-    **REQUIREMENTS["ros"],
-}
+Requirements = dict[str, tuple[str, tuple[int, ...]]]
+"""For each module that must be there: its distribution, and the oldest version that will do."""
+
+
+def requirements(group: str) -> Requirements:
+    """The packages of ``epg/lock/<group>.in``, from which the lock file and the extras of EPG's wheel are made, too.
+
+    A line is ``-r <other>.in`` or ``<distribution>>=<version>``.
+    """
+    result: Requirements = {}
+    for line in (LOCKS / f"{group}.in").read_text(encoding="utf-8").splitlines():
+        if line.startswith("-r "):
+            result |= requirements(line[3:].rpartition(".")[0])
+        else:
+            distribution, _, oldest = line.partition(">=")
+            module = "yaml" if distribution == "PyYAML" else distribution.lower().replace("-", "_")
+            result[module] = distribution, version_numbers(oldest)
+    return result
 
 
 class MissingPackages(Exception):
@@ -142,7 +140,7 @@ def main(arguments: list[str]) -> int:
 def _missing(group: str) -> list[str]:
     """Distributions of ``group`` that cannot be imported or are too old."""
     result = []
-    for module, (distribution, oldest) in REQUIREMENTS[group].items():
+    for module, (distribution, oldest) in requirements(group).items():
         if module in sys.modules:
             continue
         spec = importlib.util.find_spec(module)

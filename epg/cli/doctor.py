@@ -71,9 +71,9 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         return _report_project(list(found.values()), options.json)
     items = [
         Item("python", "Python", HOST, True, "found", platform.python_version(), sys.executable),
-        *(_package("generator", *package, required=True) for package in bootstrap.REQUIREMENTS["generator"].values()),
-        *(_package("plot", *package, required=False) for package in bootstrap.REQUIREMENTS["plot"].values()),
-        *(_package("ros", *package, required=False) for package in bootstrap.REQUIREMENTS["ros"].values()),
+        *(_package("generator", *package, required=True) for package in bootstrap.requirements("generator").values()),
+        *(_package("plot", *package, required=False) for package in bootstrap.requirements("plot").values()),
+        *(_package("ros", *package, required=False) for package in bootstrap.requirements("ros").values()),
         *found.values(),
     ]
     host = all(item.good for item in items if item.needed_for == HOST and item.required)

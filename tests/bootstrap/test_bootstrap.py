@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 import venv
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -114,7 +115,7 @@ def test_cmake_with_a_bare_python(bare_python: Path, tmp_path: Path) -> None:
     assert not (tmp_path / "other").exists()
 
 
-@pytest.mark.parametrize("group", sorted(bootstrap.REQUIREMENTS))
+@pytest.mark.parametrize("group", sorted(path.stem for path in bootstrap.LOCKS.glob("*.txt")))
 def test_every_lock_file_pins_all_its_packages_by_hash(group: str) -> None:
     text = (bootstrap.LOCKS / f"{group}.txt").read_text()
     entries = [entry for entry in text.replace("\\\n", " ").splitlines() if entry and not entry.startswith("#")]
@@ -123,15 +124,37 @@ def test_every_lock_file_pins_all_its_packages_by_hash(group: str) -> None:
         assert "==" in entry
         assert "--hash=sha256:" in entry
     names = {entry.split("==")[0].casefold() for entry in entries}
-    assert {name.casefold() for name, _ in bootstrap.REQUIREMENTS[group].values()} <= names
+    assert {name.casefold() for name, _ in bootstrap.requirements(group).values()} <= names
 
 
-def test_the_oldest_versions_are_those_of_the_package() -> None:
-    text = (ROOT / "pyproject.toml").read_text()
-    for module, (name, oldest) in bootstrap.REQUIREMENTS["generator"].items():
-        assert module
-        assert f'"{name.lower()}>={".".join(map(str, oldest))}"' in text
-    assert sys.version_info >= (3, 10)
+def test_pip_and_the_bootstrap_want_the_same_packages(tmp_path: Path) -> None:
+    """One file names them: what a wheel requires is what the generator looks for."""
+    command = [
+        sys.executable,
+        "-m",
+        "pip",
+        "wheel",
+        "--no-deps",
+        "--no-build-isolation",
+        "-w",
+        str(tmp_path),
+        str(ROOT),
+    ]
+    done = subprocess.run(command, capture_output=True, text=True)
+    if "No module named 'hatchling'" in done.stderr + done.stdout or "Cannot import 'hatchling" in done.stdout:
+        pytest.skip("hatchling is not installed: pip install hatchling")
+    assert done.returncode == 0, done.stdout + done.stderr
+    [wheel] = tmp_path.glob("*.whl")
+    with zipfile.ZipFile(wheel) as archive:
+        [name] = [name for name in archive.namelist() if name.endswith(".dist-info/METADATA")]
+        metadata = archive.read(name).decode()
+    required = {line for line in metadata.splitlines() if line.startswith("Requires-Dist:")}
+    for group, extra in {"generator": "", "zephyr": "zephyr", "plot": "plot", "ros": "ros", "test_all": "test"}.items():
+        for distribution, oldest in bootstrap.requirements(group).values():
+            condition = f"; extra == '{extra}'" if extra else ""
+            assert f"Requires-Dist: {distribution.lower()}>={'.'.join(map(str, oldest))}{condition}" in required, (
+                required
+            )
 
 
 @pytest.mark.skipif(os.name == "nt", reason="EPG: the user's folders are private on Windows")

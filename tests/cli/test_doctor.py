@@ -201,7 +201,9 @@ def test_packages_of_the_cache_count(
 ) -> None:
     from epg import bootstrap
 
-    monkeypatch.setitem(bootstrap.REQUIREMENTS, "plot", {"plotpackage": ("plotpackage", (1, 2))})
+    real = bootstrap.requirements
+    others = {"plot": {"plotpackage": ("plotpackage", (1, 2))}}
+    monkeypatch.setattr(bootstrap, "requirements", lambda group: others.get(group) or real(group))
     folder = bootstrap.package_folder("plot") / "plotpackage-1.3.dist-info"
     _, items, _ = doctor(capsys)
     assert items["plotpackage"]["status"] == "later"

@@ -159,14 +159,3 @@ def test_the_pages_have_the_same_sections() -> None:
     sections = [re.findall(r"^##+ (.+)$", page(board).read_text(encoding="utf-8"), re.M) for board in BOARDS]
     assert [title for title in sections[1] if "E9" not in title] == sections[0]
     assert len(sections[1]) == len(sections[0]) + 1
-
-
-@pytest.mark.parametrize(
-    "file", [*(f"boards/{board}.md" for board in (*BOARDS, *WIRELESS)), "new-project.md", "tutorial.md"]
-)
-def test_links_lead_somewhere(file: str) -> None:
-    path = ROOT / "docs" / file
-    links = re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", path.read_text(encoding="utf-8"))
-    assert links
-    for link in links:
-        assert (path.parent / link).exists(), link
