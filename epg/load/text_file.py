@@ -79,6 +79,15 @@ def is_folder(path: Path) -> bool:
         return False
 
 
+def one_line(text: str) -> str:
+    """Names, units and descriptions as people see them: controls and line ends, which none should have, become ``?``.
+
+    >>> one_line("in\\x1b[2J")
+    'in?[2J'
+    """
+    return text if text.isprintable() else "".join(char if char.isprintable() else "?" for char in text)
+
+
 def _position(before: str) -> tuple[int, int]:
     lines = re.split("\r\n|\r|\n|\x85|\u2028|\u2029", before)
     return len(lines), len(lines[-1]) + 1

@@ -29,12 +29,12 @@ from epg.load.models.completeness import check_variables
 from epg.load.models.features import check_features, check_method, check_tokens
 from epg.load.models.folders import source_files
 from epg.load.models.global_variables import base_type, global_variables
-from epg.load.models.identifiers import one_line
 from epg.load.models.link import Linked, link
 from epg.load.models.metadata import Metadata, cross_check, find_metadata
 from epg.load.models.model import Model
 from epg.load.models.ports import check_identifiers, make_parameters, make_ports
 from epg.load.models.source_file import SourceFile, read_source
+from epg.load.text_file import one_line
 from epg.source import Span
 
 SUFFIXES = (".c",)

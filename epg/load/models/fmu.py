@@ -23,12 +23,13 @@ from epg.load.models.fmu_files import DESCRIPTION, FmuFiles, read_fmu_files
 from epg.load.models.fmu_sources import FMI_HEADERS, FmuSources, find_sources
 from epg.load.models.fmu_variables import TYPES_2, TYPES_3, Variable
 from epg.load.models.global_variables import global_variables
-from epg.load.models.identifiers import one_line, to_identifier, unique_identifiers
+from epg.load.models.identifiers import to_identifier, unique_identifiers
 from epg.load.models.link import Linked
 from epg.load.models.metadata import warn_of_values
 from epg.load.models.model import Model, Parameter, Port
 from epg.load.models.ports import check_identifiers
 from epg.load.models.xml_file import parse_xml
+from epg.load.text_file import one_line
 from epg.source import Span
 
 HEAP = 16 << 10

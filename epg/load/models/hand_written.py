@@ -16,12 +16,12 @@ from epg.load.models import details
 from epg.load.models.c_code import parse_code
 from epg.load.models.folders import source_files
 from epg.load.models.hand_written_names import Names
-from epg.load.models.identifiers import is_reserved, one_line, to_identifier
+from epg.load.models.identifiers import is_reserved, to_identifier
 from epg.load.models.model import Model, Parameter, Port
 from epg.load.models.model_yaml import ModelYaml
 from epg.load.models.ports import check_identifiers
 from epg.load.models.source_file import is_includable, read_source
-from epg.load.text_file import is_file, is_folder
+from epg.load.text_file import is_file, is_folder, one_line
 from epg.load.yaml_file import load_yaml
 from epg.source import Node, Span
 

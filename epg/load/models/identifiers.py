@@ -58,15 +58,6 @@ def to_identifier(name: str) -> str:
     return f"{identifier}_" if is_reserved(identifier) else identifier
 
 
-def one_line(text: str) -> str:
-    """Names, units and descriptions as people see them: controls and line ends, which none should have, become ``?``.
-
-    >>> one_line("in\\x1b[2J")
-    'in?[2J'
-    """
-    return text if text.isprintable() else "".join(char if char.isprintable() else "?" for char in text)
-
-
 def unique_identifiers(names: Iterable[str]) -> list[str]:
     """Identifiers for ``names`` in order; the second and later ones of a collision get a number."""
     used: set[str] = set()
