@@ -24,12 +24,12 @@ from epg.check.names import (
 )
 from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
+from epg.documents.tcf import load_tcf_chain, settings_node
+from epg.documents.text_file import Drafts
 from epg.load.catalog import Catalog, Target, load_catalog
 from epg.load.models import load_model
 from epg.load.models.details import FmuExport
 from epg.load.models.model import Model
-from epg.load.tcf import load_tcf_chain, settings_node
-from epg.load.text_file import Drafts
 from epg.resolve.allocation import Assignment
 from epg.resolve.application import Application
 from epg.resolve.claims import TICK, ClaimKey

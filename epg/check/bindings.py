@@ -10,10 +10,10 @@ from fractions import Fraction
 from pathlib import Path
 from types import MappingProxyType
 
-from epg.check.schema import load_schema, validate
 from epg.diagnostics import Diagnostics
-from epg.load.text_file import NO_DRAFTS, Drafts
-from epg.load.yaml_file import load_yaml
+from epg.documents.schema import load_schema, validate
+from epg.documents.text_file import NO_DRAFTS, Drafts
+from epg.documents.yaml_file import load_yaml
 from epg.quantity import QuantityError, parse_ratio
 from epg.source import Node, Span
 

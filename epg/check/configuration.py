@@ -22,14 +22,14 @@ from epg.check.fail_safe import check_fail_safe
 from epg.check.merge import apply_settings, merge_chain
 from epg.check.middleware import check_lack, check_offer, offered, unoffered_hint
 from epg.check.names import identifier_problem, normal_namespace
-from epg.check.schema import extended_from, load_schema, validate
 from epg.check.topics import Use, check_names
 from epg.check.uses import Used, used_components
 from epg.diagnostics import Diagnostics, Note, did_you_mean
+from epg.documents.schema import extended_from, load_schema, validate
+from epg.documents.tcf import TcfFile
+from epg.documents.yaml_file import newer_version
 from epg.load.catalog import Catalog, Kind, Target
 from epg.load.middleware import Middleware
-from epg.load.tcf import TcfFile
-from epg.load.yaml_file import newer_version
 from epg.quantity import QuantityError, parse_quantity
 from epg.source import Node, Span
 

@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-from epg.check.schema import extended_from
 from epg.diagnostics import Diagnostics
+from epg.documents.schema import extended_from
 from epg.load.hardware import Target
 from epg.load.kind import Kind
 from epg.source import Node

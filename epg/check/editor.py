@@ -16,7 +16,7 @@ from typing import Any
 
 from epg.check.compose import communication_schema, component_schema
 from epg.check.middleware import offered
-from epg.check.schema import load_schema
+from epg.documents.schema import load_schema
 from epg.load.catalog import Catalog, Kind, Target
 from epg.load.middleware import Middleware
 from epg.quantity import SPELLINGS, units_of

@@ -7,8 +7,8 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 
 from epg.diagnostics import Diagnostics, Note, did_you_mean
+from epg.documents.items import integer_range, map_of, pin_list, pin_names
 from epg.load.hardware import Target
-from epg.load.items import integer_range, map_of, pin_list, pin_names
 from epg.quantity import QuantityError, parse_quantity
 from epg.source import Node, Span
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 
 from epg.check.compose import COMMON_PARAMETERS, parameter_problems
 from epg.diagnostics import Diagnostics, Note, did_you_mean
-from epg.load.items import flag_of, map_of, texts_of
+from epg.documents.items import flag_of, map_of, texts_of
 from epg.load.kind import OUTPUT_CLASSES
 from epg.source import Node, Span
 

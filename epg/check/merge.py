@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from types import MappingProxyType
 
-from epg.load.tcf import TcfFile
+from epg.documents.tcf import TcfFile
 from epg.source import Node, Span
 
 

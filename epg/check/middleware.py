@@ -6,11 +6,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from epg.check.compose import parameter_problems
-from epg.check.schema import extended_from
 from epg.diagnostics import Diagnostics, Note, did_you_mean
+from epg.documents.items import map_of, texts_of
+from epg.documents.schema import extended_from
 from epg.load.catalog import Catalog
 from epg.load.hardware import Target
-from epg.load.items import map_of, texts_of
 from epg.load.middleware import Middleware
 from epg.source import Node
 

@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from epg.check.names import absolute_topic, namespace_problem, node_name_problem, topic_problem
-from epg.check.schema import extended_from
 from epg.diagnostics import Diagnostics, Note
+from epg.documents.schema import extended_from
 from epg.source import Node, Span
 
 Use = tuple[str, str, Span, Node | None]

@@ -19,7 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from epg.check.middleware import offered
     from epg.data import targets_roots
-    from epg.load.tcf import predefined_tcf_names
+    from epg.documents.tcf import predefined_tcf_names
     from epg.project import make_catalog
 
     roots = targets_roots(user_roots())

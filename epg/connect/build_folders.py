@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from epg.diagnostics import Diagnostics
+from epg.documents.text_file import is_file
 from epg.load.find_tool import read_cmake_cache
-from epg.load.text_file import is_file
 
 USUAL = "build"
 CACHE = "CMakeCache.txt"

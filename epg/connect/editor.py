@@ -16,10 +16,10 @@ from epg.connect.loaded import Models, load, tcf_path
 from epg.connect.projects import Job
 from epg.connect.view import view_of
 from epg.diagnostics import Diagnostics
+from epg.documents.yaml_file import parse_yaml
 from epg.edit.bindings import CannotEdit
 from epg.edit.scalars import scalar_text
 from epg.load.models import load_model
-from epg.load.yaml_file import parse_yaml
 
 _CONFLICT_HINT = "reload: your changes go; or save anyway: the others' changes go"
 

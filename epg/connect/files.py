@@ -16,7 +16,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from epg.load.text_file import MAX_BYTES
+from epg.documents.text_file import MAX_BYTES
 
 BOM = b"\xef\xbb\xbf"
 

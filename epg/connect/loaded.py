@@ -12,12 +12,12 @@ from pathlib import Path
 from epg.connect.files import Watch
 from epg.connect.places import Places
 from epg.diagnostics import Diagnostic, Diagnostics
+from epg.documents.tcf import TcfFile, find_tcf, load_tcf_chain
+from epg.documents.text_file import read_text
+from epg.documents.yaml_file import parse_yaml
 from epg.load.models import Model, load_model
 from epg.load.models.folders import searched_folders
 from epg.load.models.neighbours import Neighbours
-from epg.load.tcf import TcfFile, find_tcf, load_tcf_chain
-from epg.load.text_file import read_text
-from epg.load.yaml_file import parse_yaml
 from epg.project import Hardware, Parts, Request, hardware_of, load_parts
 from epg.resolve.matching import Match, match_ports
 from epg.resolve.resolve import allocate_hardware

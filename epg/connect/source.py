@@ -9,7 +9,7 @@ from typing import Any
 
 from epg.connect.body import Refused
 from epg.connect.files import read_snapshot
-from epg.load.text_file import Drafts
+from epg.documents.text_file import Drafts
 
 AROUND = 10
 """Lines shown before and after the one that is meant."""

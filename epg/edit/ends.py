@@ -8,8 +8,8 @@ from typing import Any
 
 from epg.check.bindings import UNCONNECTED
 from epg.diagnostics import Diagnostics
+from epg.documents.yaml_file import parse_yaml
 from epg.edit.scalars import scalar_text
-from epg.load.yaml_file import parse_yaml
 from epg.source import Node
 
 REFERENCE = {"inputs": "from", "outputs": "to"}

@@ -14,10 +14,10 @@ from __future__ import annotations
 import yaml
 
 from epg.diagnostics import Diagnostics
+from epg.documents.yaml_file import parse_yaml
 from epg.edit import yaml_edit
 from epg.edit.scalars import scalar_text
 from epg.edit.yaml_edit import CannotEdit, parse_map
-from epg.load.yaml_file import parse_yaml
 from epg.source import Node
 
 KEY = "extends"

@@ -13,11 +13,11 @@ import yaml
 
 from epg.check.bindings import UNCONNECTED
 from epg.diagnostics import Diagnostics
+from epg.documents.yaml_file import parse_yaml
 from epg.edit import yaml_edit
 from epg.edit.ends import KEYS, REFERENCE, End, typed_value
 from epg.edit.scalars import scalar_text
 from epg.edit.yaml_edit import Steps
-from epg.load.yaml_file import parse_yaml
 
 
 def change_value(text: str, path: Steps, old: Sequence[End], new: Sequence[End]) -> str:

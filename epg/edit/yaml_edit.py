@@ -15,7 +15,7 @@ from typing import Any
 import yaml
 
 from epg.diagnostics import Diagnostics
-from epg.load import yaml_file
+from epg.documents import yaml_file
 from epg.source import Node
 
 _BREAK = re.compile("\r\n|[\r\n\x85\u2028\u2029]")
@@ -43,7 +43,7 @@ def parse_map(text: str, file: str) -> Node:
 
 
 def compose(text: str) -> yaml.Node:
-    """The nodes of ``text``, which :func:`epg.load.yaml_file.parse_yaml` has accepted."""
+    """The nodes of ``text``, which :func:`epg.documents.yaml_file.parse_yaml` has accepted."""
     return _compose(text, yaml_file.LOADER)
 
 

@@ -6,13 +6,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from epg.check.schema import load_schema, validate
 from epg.diagnostics import Diagnostics
+from epg.documents.schema import load_schema, validate
+from epg.documents.yaml_file import parse_yaml
 from epg.edit.scalars import scalar_text
 from epg.edit.section import add_open_port, add_port, comment_out_port, open_port, open_section
 from epg.edit.yaml_edit import CannotEdit
 from epg.load.models.model import Model
-from epg.load.yaml_file import parse_yaml
 from epg.resolve.matching import Match
 
 

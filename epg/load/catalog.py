@@ -12,10 +12,10 @@ from pathlib import Path
 from typing import TypeVar
 
 from epg.diagnostics import Diagnostics, did_you_mean
+from epg.documents.yaml_file import load_yaml
 from epg.load.hardware import Board, Platform, Soc, Target, make_board, make_platform, make_soc
 from epg.load.kind import Kind, KindPort, make_kind
 from epg.load.middleware import Middleware, make_middleware
-from epg.load.yaml_file import load_yaml
 from epg.source import Node, Span
 
 __all__ = ["Catalog", "CatalogCheck", "Kind", "KindPort", "Target", "load_catalog"]

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics
-from epg.load.text_file import read_text
+from epg.documents.text_file import read_text
 from epg.load.tools import Tool
 
 TIMEOUT = 5.0

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from epg.load.items import map_of, text_of, texts_of
+from epg.documents.items import map_of, text_of, texts_of
 from epg.source import Node
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from epg.load.items import flag_of, map_of, text_of, texts_of
+from epg.documents.items import flag_of, map_of, text_of, texts_of
 from epg.source import Node, Span
 
 OUTPUT_CLASSES = ("digital_output", "pwm")

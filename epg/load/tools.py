@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from epg.diagnostics import Diagnostics
-from epg.load.text_file import read_text
+from epg.documents.text_file import read_text
 from epg.source import Span
 
 _NUMBERS = r"(\d+(?:\.\d+)+)"

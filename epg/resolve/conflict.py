@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from epg.diagnostics import Diagnostics, Note
+from epg.documents.items import pin_list
 from epg.load.hardware import Peripheral, ResourceClass, Target
-from epg.load.items import pin_list
 from epg.resolve.claims import Claim
 from epg.resolve.divider import show
 from epg.resolve.pins import Pins

@@ -11,8 +11,8 @@ from pathlib import Path
 
 from epg.check.bindings import Bindings
 from epg.check.configuration import Component, Configuration
-from epg.check.schema import extended_from
 from epg.diagnostics import Diagnostics, Note
+from epg.documents.schema import extended_from
 from epg.load.models.model import Model
 from epg.quantity import parse_quantity
 from epg.resolve.allocation import Assignment, allocate

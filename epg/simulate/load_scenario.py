@@ -7,10 +7,10 @@ from collections.abc import Mapping
 from fractions import Fraction
 from pathlib import Path
 
-from epg.check.schema import load_schema, validate
 from epg.diagnostics import Diagnostics, did_you_mean
-from epg.load.text_file import is_file
-from epg.load.yaml_file import load_yaml
+from epg.documents.schema import load_schema, validate
+from epg.documents.text_file import is_file
+from epg.documents.yaml_file import load_yaml
 from epg.quantity import QuantityError, dimension_of, normal_unit, parse_quantity
 from epg.simulate.scenario import Axis, Event, Homing, Part, Profile, Scenario, Window
 from epg.source import Node, Span

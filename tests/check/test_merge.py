@@ -9,7 +9,7 @@ import pytest
 
 from epg.check.merge import apply_settings, merge_chain
 from epg.diagnostics import Diagnostics
-from epg.load.tcf import load_tcf_chain, settings_node
+from epg.documents.tcf import load_tcf_chain, settings_node
 from epg.source import Node, Span
 
 

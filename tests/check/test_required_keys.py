@@ -6,10 +6,10 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from epg.check.schema import load_schema
 from epg.cli.main import main
 from epg.data import data_folder
 from epg.diagnostics import Diagnostics
+from epg.documents.schema import load_schema
 from epg.load.catalog import Kind, load_catalog
 
 FILES_PAGE = Path(__file__).resolve().parents[2] / "docs" / "files.md"

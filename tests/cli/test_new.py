@@ -15,9 +15,9 @@ import epg
 from epg.cli.main import main
 from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
+from epg.documents.yaml_file import load_yaml
 from epg.emit.folder import write_folder
 from epg.load.tools import load_tools
-from epg.load.yaml_file import load_yaml
 from tests.cmake.project import snapshot
 
 ROOT = Path(__file__).resolve().parent.parent.parent

@@ -16,7 +16,7 @@ from epg.check.editor import TARGET_FILES, USER_FILES, editor_schema
 from epg.cli.main import main
 from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
-from epg.load.yaml_file import load_yaml
+from epg.documents.yaml_file import load_yaml
 from epg.project import make_catalog
 from epg.quantity import SPELLINGS, UNITS, QuantityError, parse_quantity, parse_ratio
 from tests.errors.test_errors import CASES, COMMAND, lay_out, read_case

@@ -10,10 +10,10 @@ from hypothesis import event, given, note, settings
 from hypothesis import strategies as st
 
 from epg.diagnostics import Diagnostics
+from epg.documents.yaml_file import parse_yaml
 from epg.edit.bindings import CannotEdit, End, ends_of, set_ends
 from epg.edit.ends import data_of
 from epg.edit.scalars import scalar_text
-from epg.load.yaml_file import parse_yaml
 from epg.source import Node
 from tests.edit.bindings_texts import PORTS, Text, bindings_texts, ends
 from tests.edit.servo import model_of

@@ -15,10 +15,10 @@ import epg.edit.bindings
 import epg.edit.scalars
 from epg.check.bindings import load_bindings
 from epg.diagnostics import Diagnostics
+from epg.documents import yaml_file
+from epg.documents.yaml_file import parse_yaml
 from epg.edit.bindings import CannotEdit, End, ends_of, set_ends
-from epg.load import yaml_file
 from epg.load.models.model import Model
-from epg.load.yaml_file import parse_yaml
 from epg.source import Node
 from tests.edit.servo import model_of
 

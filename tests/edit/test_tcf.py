@@ -10,9 +10,9 @@ import pytest
 
 import epg.edit.tcf
 from epg.diagnostics import Diagnostics
+from epg.documents.yaml_file import parse_yaml
 from epg.edit.tcf import set_extends
 from epg.edit.yaml_edit import CannotEdit
-from epg.load.yaml_file import parse_yaml
 
 ROOT = Path(__file__).resolve().parents[2]
 CONFIGURATIONS = sorted([*ROOT.glob("examples/**/*.tcf"), *ROOT.glob("targets/**/*.tcf")])

@@ -14,10 +14,10 @@ import pytest
 
 from epg.check.compose import typed_parameters
 from epg.diagnostics import Diagnostics
+from epg.documents.yaml_file import parse_yaml
 from epg.emit.template import environment
 from epg.emit.text import Code, identifier
 from epg.load.catalog import Catalog, load_catalog
-from epg.load.yaml_file import parse_yaml
 
 from .program import (
     COMPONENTS,

@@ -6,11 +6,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
+from epg.documents.source_file import is_includable
 from epg.emit.text import double
 from epg.load.models.details import CFunctionExport, CppClassExport
 from epg.load.models.link import Linked
 from epg.load.models.model import Model
-from epg.load.models.source_file import is_includable
 
 
 def copies(model: Model, name: str, values: Mapping[str, float]) -> dict[str, str]:

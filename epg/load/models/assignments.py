@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TypeGuard
 
-from epg.load.models.source_file import STRING, SourceFile
+from epg.documents.source_file import STRING, SourceFile
 from epg.source import Span
 
 # Two steps: one expression for a whole statement takes quadratic time where its `;` is missing.

@@ -13,8 +13,8 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
+from epg.documents.source_file import SourceFile
 from epg.load.models.identifiers import words
-from epg.load.models.source_file import SourceFile
 
 KEYWORDS = words(
     """

@@ -13,6 +13,8 @@ from fractions import Fraction
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics
+from epg.documents.source_file import SourceFile, read_source
+from epg.documents.text_file import one_line
 from epg.load.models import details
 from epg.load.models.assignments import (
     PortLine,
@@ -33,8 +35,6 @@ from epg.load.models.link import Linked, link
 from epg.load.models.metadata import Metadata, cross_check, find_metadata
 from epg.load.models.model import Model
 from epg.load.models.ports import check_identifiers, make_parameters, make_ports
-from epg.load.models.source_file import SourceFile, read_source
-from epg.load.text_file import one_line
 from epg.source import Span
 
 SUFFIXES = (".c",)

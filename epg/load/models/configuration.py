@@ -12,7 +12,7 @@ from functools import cached_property
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics
-from epg.load.models.xml_file import Element, load_xml
+from epg.documents.xml_file import Element, load_xml
 from epg.source import Span
 
 _INDEX = re.compile(r"[0-9]{1,9}")

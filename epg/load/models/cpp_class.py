@@ -7,6 +7,7 @@ import re
 from fractions import Fraction
 
 from epg.diagnostics import Diagnostics
+from epg.documents.source_file import is_includable
 from epg.load.models import details
 from epg.load.models.assignments import (
     Assignment,
@@ -24,7 +25,6 @@ from epg.load.models.link import Linked, link
 from epg.load.models.metadata import cross_check, find_metadata
 from epg.load.models.model import Model, Port
 from epg.load.models.ports import check_identifiers, make_parameters, make_ports
-from epg.load.models.source_file import is_includable
 from epg.source import Span
 
 SUFFIXES = (".cpp", ".cc", ".cxx")

@@ -14,6 +14,8 @@ from fractions import Fraction
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics
+from epg.documents.text_file import one_line
+from epg.documents.xml_file import parse_xml
 from epg.load.models.assignments import assignments, exact_number, is_step, number
 from epg.load.models.c_code import typedefs
 from epg.load.models.details import FmuExport, FmuParameter, FmuPorts, GlobalVariable
@@ -28,8 +30,6 @@ from epg.load.models.link import Linked
 from epg.load.models.metadata import warn_of_values
 from epg.load.models.model import Model, Parameter, Port
 from epg.load.models.ports import check_identifiers
-from epg.load.models.xml_file import parse_xml
-from epg.load.text_file import one_line
 from epg.source import Span
 
 HEAP = 16 << 10

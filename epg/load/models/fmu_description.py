@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from epg.diagnostics import Diagnostics
+from epg.documents.text_file import one_line
+from epg.documents.xml_file import Element
 from epg.load.models.assignments import exact_number, is_step
 from epg.load.models.fmu_variables import Variable, read_variables
-from epg.load.models.xml_file import Element
-from epg.load.text_file import one_line
 from epg.source import Span
 
 

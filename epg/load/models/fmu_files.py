@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from epg.diagnostics import Diagnostics
-from epg.load.models.source_file import MAX_BYTES
+from epg.documents.source_file import MAX_BYTES
 from epg.source import Span
 
 if TYPE_CHECKING:

@@ -12,12 +12,12 @@ from __future__ import annotations
 
 import re
 
+from epg.documents.text_file import is_file
 from epg.load.models.fmu import load_fmu
 from epg.load.models.fmu_files import SUFFIX, is_fmu_folder
 from epg.load.models.fmu_sources import is_definition, is_identifier
 from epg.load.models.model import Model
 from epg.load.models.model_yaml import ModelYaml
-from epg.load.text_file import is_file
 
 _KEYS = ("version", "description", "fmu", "step", "heap", "definitions")
 _SIZE = re.compile(r"\s*(\d{1,9})\s*(B|KiB|MiB)\s*", re.ASCII)

@@ -15,14 +15,14 @@ from functools import cached_property
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics
+from epg.documents.source_file import SourceFile, decode
+from epg.documents.text_file import one_line
+from epg.documents.xml_file import Element, parse_xml
 from epg.load.models.c_code import Code, Include, parse_code
 from epg.load.models.fmu_description import Description
 from epg.load.models.fmu_files import SOURCES, FmuFiles
 from epg.load.models.identifiers import words
 from epg.load.models.link import Linked
-from epg.load.models.source_file import SourceFile, decode
-from epg.load.models.xml_file import Element, parse_xml
-from epg.load.text_file import one_line
 from epg.source import Span
 
 BUILD = f"{SOURCES}/buildDescription.xml"

@@ -9,8 +9,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from epg.diagnostics import Diagnostics
-from epg.load.models.xml_file import Element
-from epg.load.text_file import one_line
+from epg.documents.text_file import one_line
+from epg.documents.xml_file import Element
 from epg.source import Span
 
 #: types of variables that have a number, and what a port of that type is called (FMI 2.0.4, 2.2.7)

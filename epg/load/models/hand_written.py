@@ -12,6 +12,9 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics, did_you_mean
+from epg.documents.source_file import is_includable, read_source
+from epg.documents.text_file import is_file, is_folder, one_line
+from epg.documents.yaml_file import load_yaml
 from epg.load.models import details
 from epg.load.models.c_code import parse_code
 from epg.load.models.folders import source_files
@@ -20,9 +23,6 @@ from epg.load.models.identifiers import is_reserved, to_identifier
 from epg.load.models.model import Model, Parameter, Port
 from epg.load.models.model_yaml import ModelYaml
 from epg.load.models.ports import check_identifiers
-from epg.load.models.source_file import is_includable, read_source
-from epg.load.text_file import is_file, is_folder, one_line
-from epg.load.yaml_file import load_yaml
 from epg.source import Node, Span
 
 _KEYS = {

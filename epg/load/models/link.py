@@ -15,12 +15,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics, Note
+from epg.documents.source_file import SourceFile, read_source
 from epg.load.models.c_code import Code, Function, parse_code
 from epg.load.models.declarations import declared_names, open_classes
 from epg.load.models.folders import searched_folders, source_files
 from epg.load.models.headers import Headers, Shim
 from epg.load.models.neighbours import SOURCE_FOLDERS, Neighbours, all_alike, report_taken
-from epg.load.models.source_file import SourceFile, read_source
 from epg.source import Span
 
 _FMI_FILE = re.compile(r"fmi\w*functions?\w*\.c$", re.IGNORECASE)

@@ -6,11 +6,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from epg.diagnostics import Diagnostics, Note
+from epg.documents.text_file import one_line
 from epg.load.models.assignments import Assignment, PortLine, number
 from epg.load.models.configuration import Configuration
 from epg.load.models.identifiers import to_identifier, unique_identifiers
 from epg.load.models.model import Parameter, Port
-from epg.load.text_file import one_line
 from epg.source import Span
 
 

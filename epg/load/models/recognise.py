@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics
+from epg.documents.source_file import read_any_text, read_source
 from epg.load.models import c_function, cpp_class, hand_written
 from epg.load.models.c_code import Code, parse_code
 from epg.load.models.fmu_files import DESCRIPTION, SUFFIX, is_fmu_folder
@@ -15,7 +16,6 @@ from epg.load.models.folders import source_files
 from epg.load.models.link import is_program
 from epg.load.models.model import Model
 from epg.load.models.model_yaml import FILE_NAME
-from epg.load.models.source_file import read_any_text, read_source
 from epg.load.models.tokens import is_tokens_file, load_tokens
 from epg.load.models.tokens_model import load_tokens_model
 from epg.source import Span

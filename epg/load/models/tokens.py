@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics
-from epg.load.models.source_file import STRING, SourceFile
-from epg.load.models.xml_file import load_xml
+from epg.documents.source_file import STRING, SourceFile
+from epg.documents.xml_file import load_xml
 from epg.source import Span
 
 _CDATA = "<![CDATA["

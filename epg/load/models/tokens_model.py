@@ -6,6 +6,7 @@ from __future__ import annotations
 import re
 
 from epg.diagnostics import Diagnostics, Note, did_you_mean
+from epg.documents.text_file import one_line
 from epg.load.models import details
 from epg.load.models.assignments import assignments, exact_number, finite, input_lines, is_step, output_lines
 from epg.load.models.c_code import KEYWORDS
@@ -14,7 +15,6 @@ from epg.load.models.identifiers import words
 from epg.load.models.model import Model
 from epg.load.models.ports import check_identifiers, make_parameters, make_ports
 from epg.load.models.tokens import Tokens
-from epg.load.text_file import one_line
 from epg.source import Span
 
 EQUATIONS = (

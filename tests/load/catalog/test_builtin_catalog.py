@@ -16,12 +16,12 @@ from epg.check.catalog import check_all, check_catalog
 from epg.check.compose import component_schema, typed_parameters
 from epg.check.configuration import check_configuration
 from epg.check.merge import merge_chain
-from epg.check.schema import validate
 from epg.data import data_folder, targets_roots
 from epg.diagnostics import Diagnostics
+from epg.documents.schema import validate
+from epg.documents.tcf import load_tcf_chain, predefined_tcf_names, settings_node
+from epg.documents.yaml_file import parse_yaml
 from epg.load.catalog import FOLDERS, Catalog, load_catalog
-from epg.load.tcf import load_tcf_chain, predefined_tcf_names, settings_node
-from epg.load.yaml_file import parse_yaml
 from epg.source import Span
 
 TARGETS = data_folder("targets")

@@ -7,8 +7,8 @@ import pytest
 import yaml
 
 from epg.diagnostics import Diagnostics
-from epg.load import yaml_file
-from epg.load.yaml_file import parse_yaml
+from epg.documents import yaml_file
+from epg.documents.yaml_file import parse_yaml
 
 MISTAKES = [
     ("control:\n\tperiod: 1 ms\n", 2, 1, "tab", "spaces"),

@@ -17,8 +17,8 @@ from types import MappingProxyType
 import yaml
 
 from epg.diagnostics import Diagnostics, Note
-from epg.load.text_file import NO_DRAFTS, Drafts, read_text
-from epg.load.yaml_mistakes import LINE_END, find_mistake, foreign_comment, missing_colon
+from epg.documents.text_file import NO_DRAFTS, Drafts, read_text
+from epg.documents.yaml_mistakes import LINE_END, find_mistake, foreign_comment, missing_colon
 from epg.quantity import decimal_comma
 from epg.source import Node, Scalar, Span
 

@@ -11,8 +11,8 @@ from pathlib import Path
 from xml.parsers import expat
 
 from epg.diagnostics import Diagnostics, Note
-from epg.load.models.source_file import MAX_BYTES, decode
-from epg.load.text_file import one_line
+from epg.documents.source_file import MAX_BYTES, decode
+from epg.documents.text_file import one_line
 from epg.source import Span
 
 MAX_DEPTH = 64

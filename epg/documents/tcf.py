@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics, did_you_mean
-from epg.load.text_file import NO_DRAFTS, Drafts, is_file, read_text
-from epg.load.yaml_file import MAX_DEPTH, parse_yaml
+from epg.documents.text_file import NO_DRAFTS, Drafts, is_file, read_text
+from epg.documents.yaml_file import MAX_DEPTH, parse_yaml
 from epg.source import Node, Span
 
 _20SIM_4C = re.compile(r"\s*(<\?xml|<!DOCTYPE|<[A-Za-z])")

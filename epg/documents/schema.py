@@ -19,9 +19,9 @@ from functools import cache
 from pathlib import Path as FilePath
 from typing import Any
 
-from epg.check.accept import accepts
 from epg.data import data_folder
 from epg.diagnostics import Diagnostics, Note, did_you_mean
+from epg.documents.accept import accepts
 from epg.quantity import QuantityError, number_hint, parse_quantity, parse_ratio
 from epg.source import Node, Path, Span
 

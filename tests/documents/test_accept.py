@@ -12,11 +12,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 
-from epg.check.accept import accepts
-from epg.check.schema import load_schema
 from epg.data import data_folder
 from epg.diagnostics import Diagnostics
-from epg.load.yaml_file import load_yaml
+from epg.documents.accept import accepts
+from epg.documents.schema import load_schema
+from epg.documents.yaml_file import load_yaml
 
 SCALARS = st.one_of(
     st.none(),

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from epg.diagnostics import Diagnostics
-from epg.load.yaml_file import load_yaml, parse_yaml
+from epg.documents.yaml_file import load_yaml, parse_yaml
 from epg.source import Node, Span
 
 
