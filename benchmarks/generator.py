@@ -101,7 +101,7 @@ def cost_table(times: Mapping[str, list[float]]) -> Table:
 
 GROUPS = (
     (r"frozen importlib|marshal|/importlib/|imp\.|io\.open_code|builtins\.exec", "finding and loading modules"),
-    (r"/epg/load/models/", "epg: reading the models"),
+    (r"/epg/models/", "epg: reading the models"),
     (r"/epg/load/", "epg: reading .tcf, bindings and targets/"),
     (r"/epg/check/", "epg: checking"),
     (r"/epg/resolve/", "epg: wires and pins"),

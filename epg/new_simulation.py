@@ -12,7 +12,7 @@ from epg.data import data_folder
 from epg.diagnostics import Diagnostics
 from epg.documents.yaml_file import load_yaml
 from epg.emit.project import Axis
-from epg.load.models import Model
+from epg.models import Model
 
 PLANT, BINDINGS = "plant", "plant.bindings.yaml"
 _SIGNAL_PART = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")

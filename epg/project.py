@@ -27,9 +27,9 @@ from epg.diagnostics import Diagnostics
 from epg.documents.tcf import load_tcf_chain, settings_node
 from epg.documents.text_file import Drafts
 from epg.load.catalog import Catalog, Target, load_catalog
-from epg.load.models import load_model
-from epg.load.models.details import FmuExport
-from epg.load.models.model import Model
+from epg.models import load_model
+from epg.models.details import FmuExport
+from epg.models.model import Model
 from epg.resolve.allocation import Assignment
 from epg.resolve.application import Application
 from epg.resolve.claims import TICK, ClaimKey

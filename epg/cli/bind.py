@@ -27,7 +27,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from epg.documents.text_file import read_text
     from epg.edit.yaml_edit import CannotEdit
     from epg.emit.bindings import new_bindings, updated_bindings
-    from epg.load.models import load_model
+    from epg.models import load_model
     from epg.project import Request, load_configuration, make_catalog
     from epg.resolve.matching import match_ports
 

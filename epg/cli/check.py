@@ -30,7 +30,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from dataclasses import replace
 
     from epg.check.bindings import load_bindings
-    from epg.load.models import load_model
+    from epg.models import load_model
     from epg.project import check_target, hardware_of, load_application, make_catalog
 
     options.json = options.json or options.format == "json"

@@ -150,7 +150,7 @@ def _jobs(folder: Path, name: str | None, diagnostics: Diagnostics) -> list[Job]
 def _check_model(folder: Path, diagnostics: Diagnostics) -> None:
     """Says what is wrong with a folder that holds neither a target nor a model."""
     from epg.connect.projects import report_no_target
-    from epg.load.models import load_model
+    from epg.models import load_model
 
     problems = Diagnostics()
     load_model(folder, problems)

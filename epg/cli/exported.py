@@ -48,7 +48,7 @@ def _connect(folder: Path, diagnostics: Diagnostics) -> int:
 
 def _forget_people(configuration: Path) -> bool:
     """Takes the path of the model file and the license out of a file, at once or not at all; whether they were in."""
-    from epg.load.models.personal import without_personal_data
+    from epg.models.personal import without_personal_data
 
     try:
         before = configuration.read_bytes()

@@ -23,7 +23,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from epg.emit.cmake import PathNames
     from epg.emit.outputs import model_outputs
-    from epg.load.models import load_model
+    from epg.models import load_model
     from epg.project import check_instances, check_library_name, check_model_names, check_paths
 
     caller = Span(options.caller or "command line")

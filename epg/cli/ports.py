@@ -18,7 +18,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
-    from epg.load.models import load_model
+    from epg.models import load_model
 
     model = load_model(options.model, diagnostics)
     diagnostics.stop_if_errors()

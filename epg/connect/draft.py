@@ -15,7 +15,7 @@ from pathlib import Path
 from epg.connect.files import Snapshot
 from epg.edit.bindings import CannotEdit, End, set_ends
 from epg.edit.tcf import set_extends
-from epg.load.models.model import Model
+from epg.models.model import Model
 
 
 @dataclass(frozen=True)

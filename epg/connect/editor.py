@@ -19,7 +19,7 @@ from epg.diagnostics import Diagnostics
 from epg.documents.yaml_file import parse_yaml
 from epg.edit.bindings import CannotEdit
 from epg.edit.scalars import scalar_text
-from epg.load.models import load_model
+from epg.models import load_model
 
 _CONFLICT_HINT = "reload: your changes go; or save anyway: the others' changes go"
 

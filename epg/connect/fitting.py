@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from epg.check.configuration import Component
 from epg.load.kind import KindPort
-from epg.load.models.model import Port
+from epg.models.model import Port
 from epg.quantity import dimension_of, normal_unit
 from epg.resolve.wires import component_steps
 

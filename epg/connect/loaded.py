@@ -15,9 +15,9 @@ from epg.diagnostics import Diagnostic, Diagnostics
 from epg.documents.tcf import TcfFile, find_tcf, load_tcf_chain
 from epg.documents.text_file import read_text
 from epg.documents.yaml_file import parse_yaml
-from epg.load.models import Model, load_model
-from epg.load.models.folders import searched_folders
-from epg.load.models.neighbours import Neighbours
+from epg.models import Model, load_model
+from epg.models.folders import searched_folders
+from epg.models.neighbours import Neighbours
 from epg.project import Hardware, Parts, Request, hardware_of, load_parts
 from epg.resolve.matching import Match, match_ports
 from epg.resolve.resolve import allocate_hardware
@@ -95,7 +95,7 @@ class Models:
         self._known: dict[Path, tuple[Watch, Model | None, Diagnostics]] = {}
 
     def read(self, path: Path, diagnostics: Diagnostics) -> Model | None:
-        """As :func:`epg.load.models.load_model`, with the same messages each time."""
+        """As :func:`epg.models.load_model`, with the same messages each time."""
         known = self._known.pop(path, None)
         if known is None or known[0].changed():
             problems = Diagnostics()

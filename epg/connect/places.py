@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from epg.diagnostics import Diagnostic
 from epg.documents.tcf import TcfFile
-from epg.load.models.model import Model
+from epg.models.model import Model
 from epg.source import Node, Span
 
 _SECTIONS = ("inputs", "outputs")

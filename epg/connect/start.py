@@ -11,7 +11,7 @@ from epg.connect.files import Watch
 from epg.connect.loaded import files_of_model
 from epg.connect.view import diagnostic_view, model_view
 from epg.diagnostics import Diagnostics
-from epg.load.models import load_model
+from epg.models import load_model
 
 
 class Start:

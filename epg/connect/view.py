@@ -19,7 +19,7 @@ from epg.emit.hardware import hardware_rows
 from epg.graph.application import conversion
 from epg.graph.wiring import wire_texts
 from epg.load.kind import KindPort
-from epg.load.models.model import Model, Port
+from epg.models.model import Model, Port
 from epg.quantity import normal_unit
 from epg.resolve.application import Step
 from epg.resolve.claims import TICK

@@ -31,7 +31,7 @@ from epg.edit.ends import REFERENCE, End, data_of, ends_of, said_ends
 from epg.edit.section import add_port, remove_port
 from epg.edit.value import change_value, value_text
 from epg.edit.yaml_edit import CannotEdit, parse_map
-from epg.load.models.model import Model
+from epg.models.model import Model
 from epg.source import Node
 
 __all__ = ["CannotEdit", "End", "ends_of", "set_ends"]

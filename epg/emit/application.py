@@ -25,7 +25,7 @@ from epg.emit.template import CodeMacro, environment, macro_mistake
 from epg.emit.text import CMakeCode, Code, DevicetreeCode, Escaped, KconfigCode, double, identifier
 from epg.emit.topics import Topics, topics_of
 from epg.load.kind import OUTPUT_CLASSES
-from epg.load.models.details import HandWritten
+from epg.models.details import HandWritten
 from epg.resolve.application import Application, ResolvedComponent, Step, Wire
 from epg.resolve.conversion import folded
 

@@ -12,7 +12,7 @@ from epg.documents.yaml_file import parse_yaml
 from epg.edit.scalars import scalar_text
 from epg.edit.section import add_open_port, add_port, comment_out_port, open_port, open_section
 from epg.edit.yaml_edit import CannotEdit
-from epg.load.models.model import Model
+from epg.models.model import Model
 from epg.resolve.matching import Match
 
 

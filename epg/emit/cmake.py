@@ -15,8 +15,8 @@ from pathlib import Path
 from epg.data import data_folder
 from epg.emit.model import ModelBuild
 from epg.emit.text import cmake
-from epg.load.models.folders import searched_folders
-from epg.load.models.model import Model
+from epg.models.folders import searched_folders
+from epg.models.model import Model
 from epg.resolve.application import Application
 
 

@@ -12,7 +12,7 @@ from typing import Any
 from epg import __version__
 from epg.emit.cmake import PathNames
 from epg.emit.topics import Topics, TopicView
-from epg.load.models.model import Model
+from epg.models.model import Model
 from epg.resolve.allocation import Assignment
 from epg.resolve.application import Application, ResolvedComponent, Step, Wire
 from epg.source import Span

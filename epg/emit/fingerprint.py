@@ -14,7 +14,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from epg.emit.text import Code
-from epg.load.models.model import Model
+from epg.models.model import Model
 from epg.resolve.application import Application
 
 DIGITS = 16

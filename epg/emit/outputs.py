@@ -12,7 +12,7 @@ from epg.emit.description import describe
 from epg.emit.fingerprint import PLACE, application_hash
 from epg.emit.licence import with_licence
 from epg.emit.model import emit_model, model_build
-from epg.load.models.model import Model
+from epg.models.model import Model
 from epg.resolve.application import Application
 
 

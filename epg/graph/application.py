@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from epg.emit.topics import Topics
 from epg.graph.svg import Picture, width
 from epg.graph.wiring import wire_texts
-from epg.load.models.model import Port
+from epg.models.model import Port
 from epg.resolve.application import Application, ResolvedComponent, Step, Wire
 from epg.resolve.divider import show
 

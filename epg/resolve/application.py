@@ -11,7 +11,7 @@ from pathlib import Path
 from epg.check.configuration import Communication, Control
 from epg.check.uses import Used
 from epg.load.catalog import Kind, KindPort, Target
-from epg.load.models.model import Model, Port
+from epg.models.model import Model, Port
 from epg.resolve.allocation import Assignment
 from epg.source import Span
 

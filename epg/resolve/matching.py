@@ -14,7 +14,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from epg.check.configuration import Component
-from epg.load.models.model import Model, Port
+from epg.models.model import Model, Port
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from epg.check.bindings import Bindings
 from epg.check.configuration import Component, Configuration
 from epg.diagnostics import Diagnostics, Note
 from epg.documents.schema import extended_from
-from epg.load.models.model import Model
+from epg.models.model import Model
 from epg.quantity import parse_quantity
 from epg.resolve.allocation import Assignment, allocate
 from epg.resolve.application import Application, Plant, ResolvedComponent, Wire

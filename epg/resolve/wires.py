@@ -10,7 +10,7 @@ from epg.check.bindings import Binding, Bindings, Conversion
 from epg.check.configuration import Component
 from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.load.catalog import KindPort
-from epg.load.models.model import Model, Port
+from epg.models.model import Model, Port
 from epg.quantity import conversion_factor, dimension_of, normal_unit
 from epg.resolve.application import ResolvedComponent, Step, Wire
 from epg.resolve.conversion import is_computable

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import Path
 
-from epg.load.models.model import Model, Port
+from epg.models.model import Model, Port
 from epg.source import Span
 
 HERE = Span("model.yaml", 1, 1, 2)

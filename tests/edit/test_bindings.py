@@ -18,7 +18,7 @@ from epg.diagnostics import Diagnostics
 from epg.documents import yaml_file
 from epg.documents.yaml_file import parse_yaml
 from epg.edit.bindings import CannotEdit, End, ends_of, set_ends
-from epg.load.models.model import Model
+from epg.models.model import Model
 from epg.source import Node
 from tests.edit.servo import model_of
 

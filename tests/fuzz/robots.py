@@ -14,7 +14,7 @@ from typing import Any
 from hypothesis import strategies as st
 
 from epg.check.names import STANDARD_HEADERS, identifier_problem
-from epg.load.models.identifiers import is_reserved
+from epg.models.identifiers import is_reserved
 
 ARGUMENTS = ("--tcf", "robot.tcf", "--model", "model", "--bindings", "bindings.yaml")
 

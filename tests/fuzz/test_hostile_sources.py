@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from epg.diagnostics import Diagnostics
-from epg.load.models import load_model
+from epg.models import load_model
 from tests.fuzz.long_run import LONG
 from tests.fuzz.project import TookTooLong, time_limit
 from tests.models.exports import Export

@@ -17,7 +17,7 @@ from pathlib import Path
 
 from epg.diagnostics import Diagnostics
 from epg.emit.model import emit_model, model_build
-from epg.load.models import Model, load_model
+from epg.models import Model, load_model
 
 MODELS = Path(__file__).resolve().parent
 HAVE_COMPILER = shutil.which("gcc") is not None and shutil.which("g++") is not None

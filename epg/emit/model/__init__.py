@@ -27,7 +27,7 @@ from collections.abc import Mapping
 from epg.emit.model.build import ModelBuild, model_build
 from epg.emit.model.copies import copies, shims
 from epg.emit.model.render import render
-from epg.load.models.model import Model
+from epg.models.model import Model
 
 __all__ = ["ModelBuild", "emit_model", "model_build"]
 

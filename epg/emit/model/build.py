@@ -9,8 +9,8 @@ from pathlib import Path
 
 from epg.emit.model.copies import copies, copy_name
 from epg.emit.model.fmu_code import fmu_folder
-from epg.load.models.details import CFunctionExport, CppClassExport, FmuExport, HandWritten
-from epg.load.models.model import Model
+from epg.models.details import CFunctionExport, CppClassExport, FmuExport, HandWritten
+from epg.models.model import Model
 
 
 @dataclass(frozen=True)

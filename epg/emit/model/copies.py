@@ -8,9 +8,9 @@ from pathlib import Path
 
 from epg.documents.source_file import is_includable
 from epg.emit.text import double
-from epg.load.models.details import CFunctionExport, CppClassExport
-from epg.load.models.link import Linked
-from epg.load.models.model import Model
+from epg.models.details import CFunctionExport, CppClassExport
+from epg.models.link import Linked
+from epg.models.model import Model
 
 
 def copies(model: Model, name: str, values: Mapping[str, float]) -> dict[str, str]:

@@ -9,8 +9,8 @@ from typing import Any
 
 from epg.emit.model.fmi_headers import fmi_functions, fmi_headers
 from epg.emit.text import Code, cstring
-from epg.load.models.details import FmuExport, FmuPorts
-from epg.load.models.model import Model
+from epg.models.details import FmuExport, FmuPorts
+from epg.models.model import Model
 
 
 @dataclass(frozen=True)

@@ -17,9 +17,9 @@ from epg.emit.model.fmu_code import fmu_code, fmu_files
 from epg.emit.model.tokens_code import helper_texts, tokens_code
 from epg.emit.template import environment
 from epg.emit.text import Code, comment
-from epg.load.models.details import CFunctionExport, CppClassExport, FmuExport, HandWritten, TokensExport
-from epg.load.models.link import Linked
-from epg.load.models.model import Model, Parameter, Port
+from epg.models.details import CFunctionExport, CppClassExport, FmuExport, HandWritten, TokensExport
+from epg.models.link import Linked
+from epg.models.model import Model, Parameter, Port
 
 
 def render(model: Model, name: str, values: Mapping[str, float], instances: int) -> dict[str, str]:

@@ -15,11 +15,11 @@ from types import SimpleNamespace
 from typing import Any
 
 from epg.emit.text import Code, double
-from epg.load.models.assignments import assignments, exact_number
-from epg.load.models.details import TokensExport
-from epg.load.models.model import Model
-from epg.load.models.tokens import Tokens
-from epg.load.models.tokens_model import CODE
+from epg.models.assignments import assignments, exact_number
+from epg.models.details import TokensExport
+from epg.models.model import Model
+from epg.models.tokens import Tokens
+from epg.models.tokens_model import CODE
 
 _ARRAYS = {
     "XX_VARIABLE_ARRAY_NAME": ("V", "variables"),

@@ -17,7 +17,7 @@ from typing import Any
 import pytest
 
 from epg.emit.model.fmi_headers import fmi_functions, fmi_headers
-from epg.load.models.fmu_files import is_fmu_folder
+from epg.models.fmu_files import is_fmu_folder
 from tests.models.exports import Export
 from tests.models.harness import COMMON, build, load, run, run_program
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from epg.emit.model import emit_model, model_build
-from epg.load.models.details import FmuExport
+from epg.models.details import FmuExport
 from tests.models.fmus import FMU2, FMU3, changed, pack, run_fmu2, run_fmu3
 from tests.models.harness import Library, build, loaded, run, run_program, run_wrapper
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from epg.load.models import Model
+from epg.models import Model
 from tests.models.direct import has_entry_points, run_c_vectors, run_cpp_class, run_fmu
 from tests.models.harness import build, load, loaded, run_program, run_wrapper
 from tests.twenty_sim.direct import close, compile_export, difference

@@ -16,8 +16,8 @@ from pathlib import Path
 import pytest
 
 from epg.emit.model import emit_model, model_build
-from epg.load.models import Model
-from epg.load.models.fmu_files import is_fmu_folder
+from epg.models import Model
+from epg.models.fmu_files import is_fmu_folder
 from tests.models.direct import run_fmu
 from tests.models.fmus import pack, run_any
 from tests.models.harness import build, load, loaded, run_program, run_wrapper

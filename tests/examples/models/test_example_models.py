@@ -13,7 +13,7 @@ from write_models import EXAMPLES, model_files
 from writer import equations
 
 from epg.diagnostics import Diagnostics
-from epg.load.models import load_model
+from epg.models import load_model
 
 JIWY = EXAMPLES / "jiwy"
 START, LENGTH = 5.0, 3.0

@@ -14,7 +14,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from epg.documents.source_file import SourceFile
-from epg.load.models.identifiers import words
+from epg.models.identifiers import words
 
 KEYWORDS = words(
     """

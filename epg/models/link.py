@@ -16,11 +16,11 @@ from pathlib import Path
 
 from epg.diagnostics import Diagnostics, Note
 from epg.documents.source_file import SourceFile, read_source
-from epg.load.models.c_code import Code, Function, parse_code
-from epg.load.models.declarations import declared_names, open_classes
-from epg.load.models.folders import searched_folders, source_files
-from epg.load.models.headers import Headers, Shim
-from epg.load.models.neighbours import SOURCE_FOLDERS, Neighbours, all_alike, report_taken
+from epg.models.c_code import Code, Function, parse_code
+from epg.models.declarations import declared_names, open_classes
+from epg.models.folders import searched_folders, source_files
+from epg.models.headers import Headers, Shim
+from epg.models.neighbours import SOURCE_FOLDERS, Neighbours, all_alike, report_taken
 from epg.source import Span
 
 _FMI_FILE = re.compile(r"fmi\w*functions?\w*\.c$", re.IGNORECASE)

@@ -7,14 +7,14 @@ import re
 
 from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.documents.text_file import one_line
-from epg.load.models import details
-from epg.load.models.assignments import assignments, exact_number, finite, input_lines, is_step, output_lines
-from epg.load.models.c_code import KEYWORDS
-from epg.load.models.features import FIXED_STEP_METHODS, STUBS, check_tokens
-from epg.load.models.identifiers import words
-from epg.load.models.model import Model
-from epg.load.models.ports import check_identifiers, make_parameters, make_ports
-from epg.load.models.tokens import Tokens
+from epg.models import details
+from epg.models.assignments import assignments, exact_number, finite, input_lines, is_step, output_lines
+from epg.models.c_code import KEYWORDS
+from epg.models.features import FIXED_STEP_METHODS, STUBS, check_tokens
+from epg.models.identifiers import words
+from epg.models.model import Model
+from epg.models.ports import check_identifiers, make_parameters, make_ports
+from epg.models.tokens import Tokens
 from epg.source import Span
 
 EQUATIONS = (

@@ -8,8 +8,8 @@ from fractions import Fraction
 
 from epg.diagnostics import Diagnostics
 from epg.documents.source_file import is_includable
-from epg.load.models import details
-from epg.load.models.assignments import (
+from epg.models import details
+from epg.models.assignments import (
     Assignment,
     assignments,
     exact_number,
@@ -18,13 +18,13 @@ from epg.load.models.assignments import (
     is_step,
     output_lines,
 )
-from epg.load.models.c_code import Code, Function, integer_value, typedefs
-from epg.load.models.completeness import check_methods
-from epg.load.models.features import FIXED_STEP_METHODS, check_features, check_method, check_tokens
-from epg.load.models.link import Linked, link
-from epg.load.models.metadata import cross_check, find_metadata
-from epg.load.models.model import Model, Port
-from epg.load.models.ports import check_identifiers, make_parameters, make_ports
+from epg.models.c_code import Code, Function, integer_value, typedefs
+from epg.models.completeness import check_methods
+from epg.models.features import FIXED_STEP_METHODS, check_features, check_method, check_tokens
+from epg.models.link import Linked, link
+from epg.models.metadata import cross_check, find_metadata
+from epg.models.model import Model, Port
+from epg.models.ports import check_identifiers, make_parameters, make_ports
 from epg.source import Span
 
 SUFFIXES = (".cpp", ".cc", ".cxx")

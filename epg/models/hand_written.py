@@ -15,14 +15,14 @@ from epg.diagnostics import Diagnostics, did_you_mean
 from epg.documents.source_file import is_includable, read_source
 from epg.documents.text_file import is_file, is_folder, one_line
 from epg.documents.yaml_file import load_yaml
-from epg.load.models import details
-from epg.load.models.c_code import parse_code
-from epg.load.models.folders import source_files
-from epg.load.models.hand_written_names import Names
-from epg.load.models.identifiers import is_reserved, to_identifier
-from epg.load.models.model import Model, Parameter, Port
-from epg.load.models.model_yaml import ModelYaml
-from epg.load.models.ports import check_identifiers
+from epg.models import details
+from epg.models.c_code import parse_code
+from epg.models.folders import source_files
+from epg.models.hand_written_names import Names
+from epg.models.identifiers import is_reserved, to_identifier
+from epg.models.model import Model, Parameter, Port
+from epg.models.model_yaml import ModelYaml
+from epg.models.ports import check_identifiers
 from epg.source import Node, Span
 
 _KEYS = {
@@ -64,7 +64,7 @@ def load_hand_written(path: Path, diagnostics: Diagnostics) -> Model | None:
 
 def _load(path: Path, node: Node, diagnostics: Diagnostics) -> Model | None:
     if "fmu" in node:
-        from epg.load.models.fmu_settings import FmuSettings  # as rare as it is large
+        from epg.models.fmu_settings import FmuSettings  # as rare as it is large
 
         return FmuSettings(path, node, diagnostics).load()
     return _Reader(path, node, diagnostics).load()

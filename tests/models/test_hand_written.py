@@ -13,7 +13,7 @@ import yaml
 
 from tests.models.harness import MODELS, load, loaded
 
-SCHEMA = Path(__file__).resolve().parents[3] / "schemas" / "model.schema.json"
+SCHEMA = Path(__file__).resolve().parents[2] / "schemas" / "model.schema.json"
 
 
 def test_reads_everything() -> None:

@@ -10,8 +10,8 @@ from fractions import Fraction
 from epg.diagnostics import Diagnostics
 from epg.documents.text_file import one_line
 from epg.documents.xml_file import Element
-from epg.load.models.assignments import exact_number, is_step
-from epg.load.models.fmu_variables import Variable, read_variables
+from epg.models.assignments import exact_number, is_step
+from epg.models.fmu_variables import Variable, read_variables
 from epg.source import Span
 
 

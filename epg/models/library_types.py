@@ -11,8 +11,8 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from epg.load.models.c_code import KEYWORDS, Code, Function
-from epg.load.models.identifiers import words
+from epg.models.c_code import KEYWORDS, Code, Function
+from epg.models.identifiers import words
 
 FILES = words("ifstream ofstream fstream wifstream wofstream wfstream basic_ifstream basic_ofstream filebuf")
 HEAP = words(

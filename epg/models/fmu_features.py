@@ -12,9 +12,9 @@ from collections.abc import Collection, Iterable
 
 from epg.diagnostics import Diagnostics, Note
 from epg.documents.text_file import one_line
-from epg.load.models.c_code import Code, Function
-from epg.load.models.features import HEAP, check_features
-from epg.load.models.link import Linked
+from epg.models.c_code import Code, Function
+from epg.models.features import HEAP, check_features
+from epg.models.link import Linked
 from epg.source import Span
 
 #: the heap that EPG gives to FMUs; their callbacks (FMI 2.0.4, 2.1.5) lead to the same

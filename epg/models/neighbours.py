@@ -24,7 +24,7 @@ from pathlib import Path
 from epg.diagnostics import Diagnostics, Note
 from epg.documents.source_file import SourceFile, decode
 from epg.documents.text_file import is_file
-from epg.load.models.folders import may_hold_sources
+from epg.models.folders import may_hold_sources
 from epg.source import Span
 
 MAX_ENTRIES = 1000  # of a folder that is searched

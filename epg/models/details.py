@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the emitter needs of a model beyond :class:`~epg.load.models.model.Model`, one class per origin."""
+"""What the emitter needs of a model beyond :class:`~epg.models.model.Model`, one class per origin."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 
-from epg.load.models.link import Linked
-from epg.load.models.tokens import Tokens
+from epg.models.link import Linked
+from epg.models.tokens import Tokens
 
 
 @dataclass(frozen=True)

@@ -9,15 +9,15 @@ from pathlib import Path
 
 from epg.diagnostics import Diagnostics
 from epg.documents.source_file import read_any_text, read_source
-from epg.load.models import c_function, cpp_class, hand_written
-from epg.load.models.c_code import Code, parse_code
-from epg.load.models.fmu_files import DESCRIPTION, SUFFIX, is_fmu_folder
-from epg.load.models.folders import source_files
-from epg.load.models.link import is_program
-from epg.load.models.model import Model
-from epg.load.models.model_yaml import FILE_NAME
-from epg.load.models.tokens import is_tokens_file, load_tokens
-from epg.load.models.tokens_model import load_tokens_model
+from epg.models import c_function, cpp_class, hand_written
+from epg.models.c_code import Code, parse_code
+from epg.models.fmu_files import DESCRIPTION, SUFFIX, is_fmu_folder
+from epg.models.folders import source_files
+from epg.models.link import is_program
+from epg.models.model import Model
+from epg.models.model_yaml import FILE_NAME
+from epg.models.tokens import is_tokens_file, load_tokens
+from epg.models.tokens_model import load_tokens_model
 from epg.source import Span
 
 LOOKED_FOR = (
@@ -110,7 +110,7 @@ def _fmu_candidate(path: Path, file: Path) -> Candidate:
 
 
 def _load_fmu(path: Path, diagnostics: Diagnostics) -> Model | None:
-    from epg.load.models.fmu import load_fmu  # a quarter of what loading a model imports, and few models are FMUs
+    from epg.models.fmu import load_fmu  # a quarter of what loading a model imports, and few models are FMUs
 
     return load_fmu(path, diagnostics)
 

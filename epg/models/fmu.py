@@ -16,20 +16,20 @@ from pathlib import Path
 from epg.diagnostics import Diagnostics
 from epg.documents.text_file import one_line
 from epg.documents.xml_file import parse_xml
-from epg.load.models.assignments import assignments, exact_number, is_step, number
-from epg.load.models.c_code import typedefs
-from epg.load.models.details import FmuExport, FmuParameter, FmuPorts, GlobalVariable
-from epg.load.models.fmu_description import Description, read_description
-from epg.load.models.fmu_features import check_fmu, check_guid, uses_heap
-from epg.load.models.fmu_files import DESCRIPTION, FmuFiles, read_fmu_files
-from epg.load.models.fmu_sources import FMI_HEADERS, FmuSources, find_sources
-from epg.load.models.fmu_variables import TYPES_2, TYPES_3, Variable
-from epg.load.models.global_variables import global_variables
-from epg.load.models.identifiers import to_identifier, unique_identifiers
-from epg.load.models.link import Linked
-from epg.load.models.metadata import warn_of_values
-from epg.load.models.model import Model, Parameter, Port
-from epg.load.models.ports import check_identifiers
+from epg.models.assignments import assignments, exact_number, is_step, number
+from epg.models.c_code import typedefs
+from epg.models.details import FmuExport, FmuParameter, FmuPorts, GlobalVariable
+from epg.models.fmu_description import Description, read_description
+from epg.models.fmu_features import check_fmu, check_guid, uses_heap
+from epg.models.fmu_files import DESCRIPTION, FmuFiles, read_fmu_files
+from epg.models.fmu_sources import FMI_HEADERS, FmuSources, find_sources
+from epg.models.fmu_variables import TYPES_2, TYPES_3, Variable
+from epg.models.global_variables import global_variables
+from epg.models.identifiers import to_identifier, unique_identifiers
+from epg.models.link import Linked
+from epg.models.metadata import warn_of_values
+from epg.models.model import Model, Parameter, Port
+from epg.models.ports import check_identifiers
 from epg.source import Span
 
 HEAP = 16 << 10

@@ -5,7 +5,7 @@
 >>> # [port.name for port in model.inputs]
 """
 
-from epg.load.models.model import Model, Parameter, Port
-from epg.load.models.recognise import load_model
+from epg.models.model import Model, Parameter, Port
+from epg.models.recognise import load_model
 
 __all__ = ["Model", "Parameter", "Port", "load_model"]

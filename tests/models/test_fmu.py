@@ -17,12 +17,12 @@ from random import Random
 import pytest
 import yaml
 
-from epg.load.models.details import FmuExport
+from epg.models.details import FmuExport
 from tests.models.exports import Export
 from tests.models.fmus import FMU2, FMU3, changed, pack
 from tests.models.harness import HAVE_COMPILER, build, load, loaded, run_wrapper
 
-SCHEMA = Path(__file__).resolve().parents[3] / "schemas" / "model.schema.json"
+SCHEMA = Path(__file__).resolve().parents[2] / "schemas" / "model.schema.json"
 
 
 def only_error(path: Path) -> tuple[str, str]:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from epg.diagnostics import Diagnostics
-from epg.load.models import load_model
+from epg.models import load_model
 from epg.source import Span
 from tests.models.exports import Export
 from tests.models.harness import load

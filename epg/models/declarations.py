@@ -6,7 +6,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from epg.load.models.c_code import KEYWORDS, Code
+from epg.models.c_code import KEYWORDS, Code
 
 _FUNCTION = re.compile(r"(?<![\w.>])([A-Za-z_]\w{0,255})\s{0,80}\(", re.ASCII)
 _EXTERN = re.compile(r"\bextern\s[^;(){}]{0,300};")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Ports and parameters as :class:`~epg.load.models.model.Model` wants them, from what sources and metadata say."""
+"""Ports and parameters as :class:`~epg.models.model.Model` wants them, from what sources and metadata say."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from collections.abc import Iterable, Sequence
 
 from epg.diagnostics import Diagnostics, Note
 from epg.documents.text_file import one_line
-from epg.load.models.assignments import Assignment, PortLine, number
-from epg.load.models.configuration import Configuration
-from epg.load.models.identifiers import to_identifier, unique_identifiers
-from epg.load.models.model import Parameter, Port
+from epg.models.assignments import Assignment, PortLine, number
+from epg.models.configuration import Configuration
+from epg.models.identifiers import to_identifier, unique_identifiers
+from epg.models.model import Parameter, Port
 from epg.source import Span
 
 

@@ -7,9 +7,9 @@ import re
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
 
-from epg.load.models.assignments import exact_number, finite
-from epg.load.models.c_code import Variable, integer_value
-from epg.load.models.details import GlobalVariable
+from epg.models.assignments import exact_number, finite
+from epg.models.c_code import Variable, integer_value
+from epg.models.details import GlobalVariable
 
 _BASE_TYPES = {"double", "float", "int", "char", "short", "long", "unsigned", "signed char", "unsigned char", "bool"}
 

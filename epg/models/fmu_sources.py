@@ -18,11 +18,11 @@ from epg.diagnostics import Diagnostics
 from epg.documents.source_file import SourceFile, decode
 from epg.documents.text_file import one_line
 from epg.documents.xml_file import Element, parse_xml
-from epg.load.models.c_code import Code, Include, parse_code
-from epg.load.models.fmu_description import Description
-from epg.load.models.fmu_files import SOURCES, FmuFiles
-from epg.load.models.identifiers import words
-from epg.load.models.link import Linked
+from epg.models.c_code import Code, Include, parse_code
+from epg.models.fmu_description import Description
+from epg.models.fmu_files import SOURCES, FmuFiles
+from epg.models.identifiers import words
+from epg.models.link import Linked
 from epg.source import Span
 
 BUILD = f"{SOURCES}/buildDescription.xml"

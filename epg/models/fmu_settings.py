@@ -13,11 +13,11 @@ from __future__ import annotations
 import re
 
 from epg.documents.text_file import is_file
-from epg.load.models.fmu import load_fmu
-from epg.load.models.fmu_files import SUFFIX, is_fmu_folder
-from epg.load.models.fmu_sources import is_definition, is_identifier
-from epg.load.models.model import Model
-from epg.load.models.model_yaml import ModelYaml
+from epg.models.fmu import load_fmu
+from epg.models.fmu_files import SUFFIX, is_fmu_folder
+from epg.models.fmu_sources import is_definition, is_identifier
+from epg.models.model import Model
+from epg.models.model_yaml import ModelYaml
 
 _KEYS = ("version", "description", "fmu", "step", "heap", "definitions")
 _SIZE = re.compile(r"\s*(\d{1,9})\s*(B|KiB|MiB)\s*", re.ASCII)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.documents.yaml_file import VERSION, newer_version
-from epg.load.models.assignments import is_step
+from epg.models.assignments import is_step
 from epg.quantity import QuantityError, parse_quantity
 from epg.source import Node, Span
 

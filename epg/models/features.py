@@ -9,13 +9,13 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics, Note
-from epg.load.models.c_code import KEYWORDS, Code, Function, function_head
-from epg.load.models.declarations import outside_bodies
-from epg.load.models.identifiers import words
-from epg.load.models.library_types import FILES as FILE_TYPES
-from epg.load.models.library_types import is_declaration, is_of_std, library_uses
-from epg.load.models.link import Linked
-from epg.load.models.tokens import Tokens
+from epg.models.c_code import KEYWORDS, Code, Function, function_head
+from epg.models.declarations import outside_bodies
+from epg.models.identifiers import words
+from epg.models.library_types import FILES as FILE_TYPES
+from epg.models.library_types import is_declaration, is_of_std, library_uses
+from epg.models.link import Linked
+from epg.models.tokens import Tokens
 from epg.source import Span
 
 FIXED_STEP_METHODS = ("Discrete", "Euler", "RungeKutta2", "RungeKutta4")

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from epg.diagnostics import Diagnostic
-from epg.load.models import neighbours
+from epg.models import neighbours
 from tests.models.exports import Export
 from tests.models.harness import HAVE_COMPILER, build, load, loaded, run_wrapper
 

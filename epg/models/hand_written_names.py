@@ -16,10 +16,10 @@ from pathlib import Path
 from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.documents.source_file import read_source
 from epg.documents.text_file import is_file
-from epg.load.models.c_code import Code, Include, parse_code
-from epg.load.models.declarations import declared_names
-from epg.load.models.fmu_sources import C_HEADERS
-from epg.load.models.folders import source_files
+from epg.models.c_code import Code, Include, parse_code
+from epg.models.declarations import declared_names
+from epg.models.fmu_sources import C_HEADERS
+from epg.models.folders import source_files
 from epg.source import Span
 
 MAX_FILES = 500

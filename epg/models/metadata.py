@@ -13,16 +13,16 @@ from fractions import Fraction
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics, Note
-from epg.load.models.assignments import PortLine, assignments, exact_number, input_lines, number, output_lines
-from epg.load.models.configuration import (
+from epg.models.assignments import PortLine, assignments, exact_number, input_lines, number, output_lines
+from epg.models.configuration import (
     Configuration,
     find_configuration,
     load_configuration,
     load_model_description,
 )
-from epg.load.models.model import Model, Port
-from epg.load.models.ports import make_parameters
-from epg.load.models.tokens import Tokens, is_tokens_file, load_tokens
+from epg.models.model import Model, Port
+from epg.models.ports import make_parameters
+from epg.models.tokens import Tokens, is_tokens_file, load_tokens
 from epg.source import Span
 
 _MOST_NOTES = 10  # parameters with another value that are named, of what may be hundreds

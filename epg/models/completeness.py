@@ -7,9 +7,9 @@ import re
 from collections.abc import Iterable
 
 from epg.diagnostics import Diagnostics
-from epg.load.models.c_code import KEYWORDS, Code
-from epg.load.models.declarations import end_of_block
-from epg.load.models.link import Linked
+from epg.models.c_code import KEYWORDS, Code
+from epg.models.declarations import end_of_block
+from epg.models.link import Linked
 from epg.source import Span
 
 _EXTERN = re.compile(r"\bextern\s[^;(){}]{0,300};")

@@ -12,8 +12,8 @@ from pathlib import Path
 from epg.diagnostics import Diagnostics, Note
 from epg.documents.source_file import SourceFile, read_source
 from epg.documents.text_file import is_file
-from epg.load.models.c_code import Code, Include, parse_code
-from epg.load.models.neighbours import Neighbours, all_alike
+from epg.models.c_code import Code, Include, parse_code
+from epg.models.neighbours import Neighbours, all_alike
 from epg.source import Span
 
 #: headers of an export that declare nothing a model needs unless it calls their functions

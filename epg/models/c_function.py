@@ -15,8 +15,8 @@ from pathlib import Path
 from epg.diagnostics import Diagnostics
 from epg.documents.source_file import SourceFile, read_source
 from epg.documents.text_file import one_line
-from epg.load.models import details
-from epg.load.models.assignments import (
+from epg.models import details
+from epg.models.assignments import (
     PortLine,
     assignments,
     exact_number,
@@ -26,15 +26,15 @@ from epg.load.models.assignments import (
     listed_names,
     output_lines,
 )
-from epg.load.models.c_code import Code, Function, integer_value, parse_code, typedefs
-from epg.load.models.completeness import check_variables
-from epg.load.models.features import check_features, check_method, check_tokens
-from epg.load.models.folders import source_files
-from epg.load.models.global_variables import base_type, global_variables
-from epg.load.models.link import Linked, link
-from epg.load.models.metadata import Metadata, cross_check, find_metadata
-from epg.load.models.model import Model
-from epg.load.models.ports import check_identifiers, make_parameters, make_ports
+from epg.models.c_code import Code, Function, integer_value, parse_code, typedefs
+from epg.models.completeness import check_variables
+from epg.models.features import check_features, check_method, check_tokens
+from epg.models.folders import source_files
+from epg.models.global_variables import base_type, global_variables
+from epg.models.link import Linked, link
+from epg.models.metadata import Metadata, cross_check, find_metadata
+from epg.models.model import Model
+from epg.models.ports import check_identifiers, make_parameters, make_ports
 from epg.source import Span
 
 SUFFIXES = (".c",)
