@@ -122,7 +122,7 @@ function(_epg_remedy result json)
   set(${result} "Get it:\n  ${command}" PARENT_SCOPE)
 endfunction()
 
-# What makes a command of <manager> the administrator's, as epg/load/remedy.py has it.
+# What makes a command of <manager> the administrator's, as epg/tools/remedy.py has it.
 function(_epg_privileged result manager)
   set(${result} "" PARENT_SCOPE)
   if(CMAKE_HOST_UNIX AND NOT manager MATCHES "^(brew|winget)$")

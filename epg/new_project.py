@@ -27,12 +27,12 @@ from epg.emit.folder import present_files, write_folder
 from epg.emit.project import ProjectPlan, StandIn, project_files, project_folder, project_names
 from epg.load.catalog import Catalog, Target, target_hint
 from epg.load.middleware import Middleware
-from epg.load.tools import load_tools
 from epg.models import Model, load_model
 from epg.new_simulation import model_axes, plant_files, robot_axes, robot_folder
 from epg.project import Request, check_name, check_sdk_headers, load_application, load_configuration, make_catalog
 from epg.resolve.matching import Match, match_ports
 from epg.source import Span
+from epg.tools.tools import load_tools
 
 MODEL = "model"
 """Where a model goes that lies outside of the project."""

@@ -22,9 +22,9 @@ from epg.cli.arguments import user_roots
 from epg.cli.report import to_json
 from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
-from epg.load.find_tool import Finding, Surroundings, find_tool, read_cmake_cache
-from epg.load.remedy import command_for, package_manager, privileged
-from epg.load.tools import Tool, load_tools
+from epg.tools.find_tool import Finding, Surroundings, find_tool, read_cmake_cache
+from epg.tools.remedy import command_for, package_manager, privileged
+from epg.tools.tools import Tool, load_tools
 
 HOST = "host"
 

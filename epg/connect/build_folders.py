@@ -13,7 +13,7 @@ from typing import Any
 
 from epg.diagnostics import Diagnostics
 from epg.documents.text_file import is_file
-from epg.load.find_tool import read_cmake_cache
+from epg.tools.find_tool import read_cmake_cache
 
 USUAL = "build"
 CACHE = "CMakeCache.txt"

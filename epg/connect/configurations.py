@@ -21,12 +21,12 @@ from epg.documents.tcf import load_tcf_chain, predefined_tcf_names
 from epg.emit.project import project_folder
 from epg.graph.wiring import draw_wiring
 from epg.load.catalog import Catalog, Target
-from epg.load.find_tool import Surroundings, find_tool
-from epg.load.tools import load_tools
 from epg.models.model import Model
 from epg.project import Request, load_configuration, make_catalog
 from epg.resolve.matching import match_ports
 from epg.resolve.resolve import allocate_hardware
+from epg.tools.find_tool import Surroundings, find_tool
+from epg.tools.tools import load_tools
 
 
 @dataclass(frozen=True)

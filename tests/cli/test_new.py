@@ -17,7 +17,7 @@ from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
 from epg.documents.yaml_file import load_yaml
 from epg.emit.folder import write_folder
-from epg.load.tools import load_tools
+from epg.tools.tools import load_tools
 from tests.cmake.project import snapshot
 
 ROOT = Path(__file__).resolve().parent.parent.parent

@@ -21,9 +21,9 @@ from epg.connect.build.run import Build
 from epg.connect.projects import Job
 from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
-from epg.load.tools import load_tools
 from epg.new_project import ProjectRequest, write_project
 from epg.project import make_catalog
+from epg.tools.tools import load_tools
 from tests.connect.builds import job_of, processes, run
 from tests.emulator.toolchain import arm_gcc, skip_if_missing
 

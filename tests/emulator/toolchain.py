@@ -24,8 +24,8 @@ import pytest
 
 from epg.bootstrap import cache_folder
 from epg.diagnostics import Diagnostics
-from epg.load.find_tool import Surroundings, find_tool
-from epg.load.tools import load_tools
+from epg.tools.find_tool import Surroundings, find_tool
+from epg.tools.tools import load_tools
 
 ROOT = Path(__file__).resolve().parents[2]
 HERE = Path(__file__).resolve().parent

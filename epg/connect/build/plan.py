@@ -19,8 +19,8 @@ from epg.connect.build_folders import CACHE, USUAL
 from epg.connect.projects import Job
 from epg.data import data_folder
 from epg.diagnostics import Diagnostics
-from epg.load.find_tool import read_cmake_cache
 from epg.load.hardware import Target
+from epg.tools.find_tool import read_cmake_cache
 
 NINJA = "Ninja"
 

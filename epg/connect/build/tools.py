@@ -13,11 +13,11 @@ from pathlib import Path
 from epg.bootstrap import cache_folder
 from epg.connect.projects import find_jobs
 from epg.diagnostics import Diagnostics
-from epg.load.find_tool import Finding, Surroundings, find_tool
 from epg.load.hardware import Platform
-from epg.load.remedy import command_for
-from epg.load.tools import load_tools
 from epg.project import load_configuration, make_catalog
+from epg.tools.find_tool import Finding, Surroundings, find_tool
+from epg.tools.remedy import command_for
+from epg.tools.tools import load_tools
 
 ALWAYS = ("cmake", "build_program")
 """What every build needs."""

@@ -14,9 +14,9 @@ import jsonschema
 import pytest
 
 from epg.diagnostics import Diagnostics
-from epg.load import find_tool as module
-from epg.load.find_tool import Surroundings, find_tool, read_cmake_cache
-from epg.load.tools import Tool, load_tools
+from epg.tools import find_tool as module
+from epg.tools.find_tool import Surroundings, find_tool, read_cmake_cache
+from epg.tools.tools import Tool, load_tools
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 TABLE = load_tools([ROOT / "targets"], Diagnostics())

@@ -19,7 +19,7 @@ from pathlib import Path
 
 from epg.diagnostics import Diagnostics
 from epg.documents.text_file import read_text
-from epg.load.tools import Tool
+from epg.tools.tools import Tool
 
 TIMEOUT = 5.0
 """Seconds that a program may take to say its version."""

@@ -8,8 +8,8 @@ import re
 import shutil
 from collections.abc import Mapping
 
-from epg.load.find_tool import Surroundings, find_tool
-from epg.load.tools import Tool
+from epg.tools.find_tool import Surroundings, find_tool
+from epg.tools.tools import Tool
 
 MANAGERS = {"apt": "apt-get", "dnf": "dnf", "pacman": "pacman", "brew": "brew", "winget": "winget"}
 """Package managers, and the program that shows that a computer has them."""
