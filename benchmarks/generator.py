@@ -102,7 +102,7 @@ def cost_table(times: Mapping[str, list[float]]) -> Table:
 GROUPS = (
     (r"frozen importlib|marshal|/importlib/|imp\.|io\.open_code|builtins\.exec", "finding and loading modules"),
     (r"/epg/models/", "epg: reading the models"),
-    (r"/epg/load/", "epg: reading .tcf, bindings and targets/"),
+    (r"/epg/(documents|catalog)/", "epg: reading .tcf, bindings and targets/"),
     (r"/epg/check/", "epg: checking"),
     (r"/epg/resolve/", "epg: wires and pins"),
     (r"/epg/emit/.*\.j2", "templates, running"),

@@ -16,6 +16,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import epg
+from epg.catalog.catalog import Catalog, Target, target_hint
+from epg.catalog.middleware import Middleware
 from epg.check.configuration import CONSOLE, Configuration
 from epg.check.editor import USER_FILES, editor_schema
 from epg.check.names import identifier_problem, project_folder_problem
@@ -25,8 +27,6 @@ from epg.documents.tcf import predefined_tcf_names
 from epg.emit.bindings import new_bindings
 from epg.emit.folder import present_files, write_folder
 from epg.emit.project import ProjectPlan, StandIn, project_files, project_folder, project_names
-from epg.load.catalog import Catalog, Target, target_hint
-from epg.load.middleware import Middleware
 from epg.models import Model, load_model
 from epg.new_simulation import model_axes, plant_files, robot_axes, robot_folder
 from epg.project import Request, check_name, check_sdk_headers, load_application, load_configuration, make_catalog

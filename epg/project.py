@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from epg.catalog.catalog import Catalog, Target, load_catalog
 from epg.check.bindings import Bindings, load_bindings
 from epg.check.catalog import check_catalog
 from epg.check.configuration import Configuration, check_configuration
@@ -26,7 +27,6 @@ from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
 from epg.documents.tcf import load_tcf_chain, settings_node
 from epg.documents.text_file import Drafts
-from epg.load.catalog import Catalog, Target, load_catalog
 from epg.models import load_model
 from epg.models.details import FmuExport
 from epg.models.model import Model

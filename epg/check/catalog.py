@@ -7,6 +7,8 @@ import re
 from collections.abc import Collection
 from pathlib import Path
 
+from epg.catalog.catalog import Catalog, CatalogCheck
+from epg.catalog.hardware import Target
 from epg.check.hardware import check_board, check_platform, check_soc, check_target
 from epg.check.kind import check_kind
 from epg.check.middleware import check_middleware, check_offers
@@ -14,8 +16,6 @@ from epg.diagnostics import Diagnostics, did_you_mean
 from epg.documents.schema import load_schema, validate
 from epg.documents.text_file import is_file
 from epg.documents.yaml_file import newer_version
-from epg.load.catalog import Catalog, CatalogCheck
-from epg.load.hardware import Target
 from epg.source import Node, Span
 
 

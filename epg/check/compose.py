@@ -9,11 +9,11 @@ from fractions import Fraction
 from types import MappingProxyType
 from typing import Any
 
+from epg.catalog.kind import Kind, KindParameter, make_parameter
+from epg.catalog.middleware import Middleware
 from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.documents.items import map_of, texts_of
 from epg.documents.schema import extended_from, load_schema, validate
-from epg.load.kind import Kind, KindParameter, make_parameter
-from epg.load.middleware import Middleware
 from epg.quantity import QuantityError, number_hint, parse_quantity, parse_ratio
 from epg.source import Node, Span
 

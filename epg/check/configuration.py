@@ -9,6 +9,8 @@ from fractions import Fraction
 from pathlib import Path
 from types import MappingProxyType
 
+from epg.catalog.catalog import Catalog, Kind, Target
+from epg.catalog.middleware import Middleware
 from epg.check.bindings import Conversion, conversion_of
 from epg.check.compose import (
     communication_schema,
@@ -28,8 +30,6 @@ from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.documents.schema import extended_from, load_schema, validate
 from epg.documents.tcf import TcfFile
 from epg.documents.yaml_file import newer_version
-from epg.load.catalog import Catalog, Kind, Target
-from epg.load.middleware import Middleware
 from epg.quantity import QuantityError, parse_quantity
 from epg.source import Node, Span
 

@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
+from epg.catalog.hardware import Target
+from epg.catalog.kind import Kind
 from epg.diagnostics import Diagnostics
 from epg.documents.schema import extended_from
-from epg.load.hardware import Target
-from epg.load.kind import Kind
 from epg.source import Node
 
 

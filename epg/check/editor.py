@@ -14,11 +14,11 @@ import itertools
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from epg.catalog.catalog import Catalog, Kind, Target
+from epg.catalog.middleware import Middleware
 from epg.check.compose import communication_schema, component_schema
 from epg.check.middleware import offered
 from epg.documents.schema import load_schema
-from epg.load.catalog import Catalog, Kind, Target
-from epg.load.middleware import Middleware
 from epg.quantity import SPELLINGS, units_of
 
 Schema = dict[str, Any]

@@ -6,9 +6,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Protocol
 
+from epg.catalog.kind import Kind
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.documents.schema import extended_from
-from epg.load.kind import Kind
 from epg.source import Node
 
 

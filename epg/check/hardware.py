@@ -6,9 +6,9 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Sequence
 
+from epg.catalog.hardware import Target
 from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.documents.items import integer_range, map_of, pin_list, pin_names
-from epg.load.hardware import Target
 from epg.quantity import QuantityError, parse_quantity
 from epg.source import Node, Span
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from epg.catalog.catalog import Catalog
+from epg.catalog.hardware import Target
+from epg.catalog.middleware import Middleware
 from epg.check.compose import parameter_problems
 from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.documents.items import map_of, texts_of
 from epg.documents.schema import extended_from
-from epg.load.catalog import Catalog
-from epg.load.hardware import Target
-from epg.load.middleware import Middleware
 from epg.source import Node
 
 COMMON_OPTIONS = ("middleware", "transport", "period", "domain", "diagnostics", "console", "usb")

@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
+from epg.catalog.kind import Kind, KindPort, KindUse
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.documents.schema import extended_from
-from epg.load.kind import Kind, KindPort, KindUse
 from epg.source import Node
 
 

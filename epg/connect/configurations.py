@@ -15,12 +15,12 @@ from pathlib import Path
 from typing import Any
 
 from epg.bootstrap import cache_folder
+from epg.catalog.catalog import Catalog, Target
 from epg.check.configuration import Configuration
 from epg.diagnostics import Diagnostics
 from epg.documents.tcf import load_tcf_chain, predefined_tcf_names
 from epg.emit.project import project_folder
 from epg.graph.wiring import draw_wiring
-from epg.load.catalog import Catalog, Target
 from epg.models.model import Model
 from epg.project import Request, load_configuration, make_catalog
 from epg.resolve.matching import match_ports

@@ -6,8 +6,8 @@ The wires themselves are judged by :mod:`epg.resolve.wires`; nothing is refused 
 
 from __future__ import annotations
 
+from epg.catalog.kind import KindPort
 from epg.check.configuration import Component
-from epg.load.kind import KindPort
 from epg.models.model import Port
 from epg.quantity import dimension_of, normal_unit
 from epg.resolve.wires import component_steps

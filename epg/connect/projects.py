@@ -13,10 +13,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from epg.connect.build_folders import BuildFolder, build_folders
+from epg.connect.cmake.calls import Call, Unknown, Walk
+from epg.connect.cmake.values import Word
 from epg.data import data_folder
 from epg.diagnostics import Diagnostics
-from epg.load.cmake.calls import Call, Unknown, Walk
-from epg.load.cmake.values import Word
 from epg.project import Request
 from epg.source import Span
 

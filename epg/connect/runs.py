@@ -6,10 +6,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from epg.catalog.hardware import Target
 from epg.connect.body import Refused
 from epg.connect.places import Places
 from epg.connect.projects import Job
-from epg.load.hardware import Target
 from epg.source import Span
 
 if TYPE_CHECKING:

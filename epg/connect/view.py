@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from epg.catalog.kind import KindPort
 from epg.check.configuration import Component, Configuration
 from epg.check.names import absolute_topic
 from epg.connect.fitting import fits
@@ -18,7 +19,6 @@ from epg.edit.bindings import End, ends_of
 from epg.emit.hardware import hardware_rows
 from epg.graph.application import conversion
 from epg.graph.wiring import wire_texts
-from epg.load.kind import KindPort
 from epg.models.model import Model, Port
 from epg.quantity import normal_unit
 from epg.resolve.application import Step

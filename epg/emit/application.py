@@ -16,6 +16,7 @@ from typing import Any
 from jinja2 import Environment
 
 from epg import __version__
+from epg.catalog.kind import OUTPUT_CLASSES
 from epg.diagnostics import Diagnostics, UserError
 from epg.emit.claims import board_nodes, claims_of, gpios_of, tick_of
 from epg.emit.cmake import platform_files
@@ -24,7 +25,6 @@ from epg.emit.service import MiddlewareView, service_of
 from epg.emit.template import CodeMacro, environment, macro_mistake
 from epg.emit.text import CMakeCode, Code, DevicetreeCode, Escaped, KconfigCode, double, identifier
 from epg.emit.topics import Topics, topics_of
-from epg.load.kind import OUTPUT_CLASSES
 from epg.models.details import HandWritten
 from epg.resolve.application import Application, ResolvedComponent, Step, Wire
 from epg.resolve.conversion import folded
@@ -46,7 +46,7 @@ class UseView:
 
 @dataclass(frozen=True)
 class ValueView:
-    """One number of a component's topic: the port, and its element and part as in :class:`~epg.load.kind.KindPort`."""
+    """One number of a component's topic: the port, with element and part as in :class:`~epg.catalog.kind.KindPort`."""
 
     port: str
     element: str

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
 
+from epg.catalog.hardware import Target
 from epg.emit.template import environment
 from epg.emit.text import ProjectText
 from epg.install import ACTIVATE, install_command
-from epg.load.hardware import Target
 
 NAME = "NAME"
 """What stands in names of files for the name of the project."""

@@ -11,10 +11,10 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
+from epg.catalog.middleware import Middleware
 from epg.check.names import absolute_topic
 from epg.emit.text import Code, identifier
 from epg.emit.topics import Macro
-from epg.load.middleware import Middleware
 from epg.resolve.application import Application, ResolvedComponent
 
 

@@ -10,11 +10,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from epg.catalog.hardware import Target
+from epg.catalog.kind import Kind
+from epg.catalog.layout import Contact, Layout
 from epg.check.configuration import Component
 from epg.graph.svg import WIRES, Picture, width
-from epg.load.hardware import Target
-from epg.load.headers import Contact, Layout
-from epg.load.kind import Kind
 from epg.resolve.allocation import Assignment
 from epg.resolve.claims import ClaimKey
 

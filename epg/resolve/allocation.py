@@ -13,8 +13,8 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from types import MappingProxyType
 
+from epg.catalog.hardware import Divider, Peripheral, ResourceClass, Target
 from epg.diagnostics import Diagnostics, Note, did_you_mean
-from epg.load.hardware import Divider, Peripheral, ResourceClass, Target
 from epg.resolve.claims import Claim, ClaimKey
 from epg.resolve.conflict import Candidate, report_conflicts
 from epg.resolve.divider import Division, clock_range, divide, neighbours, show

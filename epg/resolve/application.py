@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
 
+from epg.catalog.catalog import Kind, KindPort, Target
 from epg.check.configuration import Communication, Control
 from epg.check.uses import Used
-from epg.load.catalog import Kind, KindPort, Target
 from epg.models.model import Model, Port
 from epg.resolve.allocation import Assignment
 from epg.source import Span

@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from types import MappingProxyType
 
+from epg.catalog.hardware import Target
+from epg.catalog.kind import KindClaim
 from epg.check.configuration import Component, Configuration
 from epg.diagnostics import Note
-from epg.load.hardware import Target
-from epg.load.kind import KindClaim
 from epg.source import Span
 
 ClaimKey = tuple[str, str]

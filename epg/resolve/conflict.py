@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
+from epg.catalog.hardware import Peripheral, ResourceClass, Target
 from epg.diagnostics import Diagnostics, Note
 from epg.documents.items import pin_list
-from epg.load.hardware import Peripheral, ResourceClass, Target
 from epg.resolve.claims import Claim
 from epg.resolve.divider import show
 from epg.resolve.pins import Pins

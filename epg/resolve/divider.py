@@ -11,7 +11,7 @@ import math
 from dataclasses import dataclass
 from fractions import Fraction
 
-from epg.load.hardware import Divider
+from epg.catalog.hardware import Divider
 from epg.quantity import UNITS, units_of
 
 NEAR_ENOUGH = Fraction(1, 100)

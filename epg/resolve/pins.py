@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 from types import MappingProxyType
 
+from epg.catalog.hardware import Peripheral, ResourceClass, Target
 from epg.diagnostics import Diagnostics, Note
 from epg.documents.items import pin_list
-from epg.load.hardware import Peripheral, ResourceClass, Target
 from epg.resolve.claims import Claim, Stated
 from epg.resolve.search import WHOLE, Place
 from epg.source import Span

@@ -10,9 +10,9 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping
 from fractions import Fraction
 
+from epg.catalog.kind import Kind
 from epg.check.bindings import Binding, Bindings
 from epg.check.configuration import DIAGNOSTICS_TOPIC, Component, Configuration
-from epg.load.kind import Kind
 from epg.quantity import dimension_of
 from epg.resolve.application import ResolvedComponent, Setpoint, Topic, TopicValue, Wire
 

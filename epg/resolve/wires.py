@@ -6,10 +6,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 
+from epg.catalog.catalog import KindPort
 from epg.check.bindings import Binding, Bindings, Conversion
 from epg.check.configuration import Component
 from epg.diagnostics import Diagnostics, Note, did_you_mean
-from epg.load.catalog import KindPort
 from epg.models.model import Model, Port
 from epg.quantity import conversion_factor, dimension_of, normal_unit
 from epg.resolve.application import ResolvedComponent, Step, Wire

@@ -6,11 +6,11 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+from epg.catalog.catalog import Kind, load_catalog
 from epg.cli.main import main
 from epg.data import data_folder
 from epg.diagnostics import Diagnostics
 from epg.documents.schema import load_schema
-from epg.load.catalog import Kind, load_catalog
 
 FILES_PAGE = Path(__file__).resolve().parents[2] / "docs" / "files.md"
 

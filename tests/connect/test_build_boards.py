@@ -10,11 +10,11 @@ from pathlib import Path
 
 import pytest
 
+from epg.catalog.hardware import Target
 from epg.connect.build.plan import make_plan
 from epg.connect.projects import Job
 from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
-from epg.load.hardware import Target
 from epg.new_project import ProjectRequest, write_project
 from epg.project import load_configuration, make_catalog
 from tests.connect.builds import job_of, run

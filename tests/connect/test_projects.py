@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pytest
 
+from epg.connect.cmake.syntax import NotCMake, parse_cmake
 from epg.connect.projects import Job, find_jobs, jobs_of_model
 from epg.diagnostics import Diagnostics
-from epg.load.cmake.syntax import NotCMake, parse_cmake
 from epg.project import load_application
 
 ROOT = Path(__file__).resolve().parents[2]

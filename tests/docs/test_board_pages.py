@@ -16,10 +16,10 @@ from typing import Any
 
 import pytest
 
+from epg.catalog.catalog import Target
 from epg.cli.main import main
 from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
-from epg.load.catalog import Target
 from epg.project import make_catalog
 from epg.resolve.divider import clock_range, divide, show
 

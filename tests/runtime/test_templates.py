@@ -12,12 +12,12 @@ from typing import Any
 
 import pytest
 
+from epg.catalog.catalog import Catalog, load_catalog
 from epg.check.compose import typed_parameters
 from epg.diagnostics import Diagnostics
 from epg.documents.yaml_file import parse_yaml
 from epg.emit.template import environment
 from epg.emit.text import Code, identifier
-from epg.load.catalog import Catalog, load_catalog
 
 from .program import (
     COMPONENTS,

@@ -22,9 +22,9 @@ from pathlib import Path
 from typing import Any
 
 from epg.bootstrap import cache_folder
+from epg.catalog.hardware import Target
 from epg.connect.build.plan import make_plan
 from epg.connect.projects import Job
-from epg.load.hardware import Target
 
 FILE = "agreed-builds"
 """In EPG's cache: a line for each folder and its programs."""

@@ -14,12 +14,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from epg.catalog.hardware import Target
 from epg.connect.build.tools import ALWAYS, MissingTool, find_tools, missing
 from epg.connect.build_folders import CACHE, USUAL
 from epg.connect.projects import Job
 from epg.data import data_folder
 from epg.diagnostics import Diagnostics
-from epg.load.hardware import Target
 from epg.tools.find_tool import read_cmake_cache
 
 NINJA = "Ninja"

@@ -13,6 +13,7 @@ import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from epg.catalog.hardware import Target
 from epg.connect.build.messages import Message, Messages, plain
 from epg.connect.build.plan import Plan, make_plan
 from epg.connect.build.process import Process
@@ -20,7 +21,6 @@ from epg.connect.build.products import Made, ask, products
 from epg.connect.build.tools import MissingTool, missing_tools
 from epg.connect.projects import Job
 from epg.diagnostics import Diagnostics
-from epg.load.hardware import Target
 from epg.project import load_configuration, make_catalog
 
 KEPT = 20_000

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from epg.bootstrap import cache_folder
+from epg.catalog.hardware import Platform
 from epg.connect.projects import find_jobs
 from epg.diagnostics import Diagnostics
-from epg.load.hardware import Platform
 from epg.project import load_configuration, make_catalog
 from epg.tools.find_tool import Finding, Surroundings, find_tool
 from epg.tools.remedy import command_for

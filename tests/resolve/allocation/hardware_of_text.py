@@ -9,12 +9,12 @@ from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 
+from epg.catalog.catalog import load_catalog
 from epg.check.catalog import check_catalog
 from epg.check.configuration import check_configuration
 from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
 from epg.documents.tcf import load_tcf_chain
-from epg.load.catalog import load_catalog
 from epg.resolve.allocation import Assignment, allocate
 from epg.resolve.claims import ClaimKey, component_claims, tick_claims
 

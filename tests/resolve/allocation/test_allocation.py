@@ -15,7 +15,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from epg.load.hardware import Divider
+from epg.catalog.hardware import Divider
 from epg.resolve.divider import NEAR_ENOUGH, clock_range, divide, neighbours, show
 
 TARGETS = Path(__file__).with_name("targets")

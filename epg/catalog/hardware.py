@@ -16,8 +16,8 @@ from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
 
+from epg.catalog.layout import Layout, make_layout
 from epg.documents.items import flag_of, integer_range, map_of, pin_names, text_of, texts_of
-from epg.load.headers import Layout, make_layout
 from epg.quantity import parse_quantity
 from epg.source import Node, Span
 

@@ -16,7 +16,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from epg.load.cmake.syntax import Argument
+from epg.connect.cmake.syntax import Argument
 from epg.source import Span
 
 _REFERENCE = re.compile(r"\$(ENV|CACHE)?\{")

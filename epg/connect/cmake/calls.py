@@ -13,10 +13,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from epg.load.cmake.blocks import Block, Tree, commands_of, tree_of
-from epg.load.cmake.condition import condition
-from epg.load.cmake.syntax import Command, NotCMake, parse_cmake
-from epg.load.cmake.values import MAX_LENGTH, Variables, Word, expression
+from epg.connect.cmake.blocks import Block, Tree, commands_of, tree_of
+from epg.connect.cmake.condition import condition
+from epg.connect.cmake.syntax import Command, NotCMake, parse_cmake
+from epg.connect.cmake.values import MAX_LENGTH, Variables, Word, expression
 from epg.source import Span
 
 MAX_COMMANDS = 20_000

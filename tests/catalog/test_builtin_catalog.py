@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 from jsonschema import Draft202012Validator
 
+from epg.catalog.catalog import FOLDERS, Catalog, load_catalog
 from epg.check.catalog import check_all, check_catalog
 from epg.check.compose import component_schema, typed_parameters
 from epg.check.configuration import check_configuration
@@ -21,7 +22,6 @@ from epg.diagnostics import Diagnostics
 from epg.documents.schema import validate
 from epg.documents.tcf import load_tcf_chain, predefined_tcf_names, settings_node
 from epg.documents.yaml_file import parse_yaml
-from epg.load.catalog import FOLDERS, Catalog, load_catalog
 from epg.source import Span
 
 TARGETS = data_folder("targets")
@@ -250,7 +250,7 @@ def test_a_users_folder_comes_first_and_a_missing_one_is_said(tmp_path: Path) ->
 
 def test_only_what_is_asked_for_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
     """A target costs its three files, a kind its own."""
-    from epg.load import catalog as module
+    from epg.catalog import catalog as module
 
     read: list[str] = []
     load = module.load_yaml

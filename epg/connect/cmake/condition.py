@@ -10,9 +10,9 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
+from epg.connect.cmake.syntax import Argument
+from epg.connect.cmake.values import Variables, expression
 from epg.documents.text_file import is_file, is_folder
-from epg.load.cmake.syntax import Argument
-from epg.load.cmake.values import Variables, expression
 
 _TRUE = re.compile(r"(ON|YES|TRUE|Y|-?[0-9]*[1-9][0-9]*)$", re.IGNORECASE)
 _FALSE = re.compile(r"(0|OFF|NO|FALSE|N|IGNORE|NOTFOUND|.*-NOTFOUND|)$", re.IGNORECASE)

@@ -13,12 +13,12 @@ from typing import Any
 import pytest
 import yaml
 
+from epg.catalog.catalog import FOLDERS, load_catalog
 from epg.check.catalog import check_all, check_catalog
 from epg.check.configuration import check_configuration
 from epg.data import data_folder, targets_roots
 from epg.diagnostics import Diagnostics
 from epg.documents.tcf import load_tcf_chain
-from epg.load.catalog import FOLDERS, load_catalog
 from epg.resolve.allocation import allocate
 from epg.resolve.claims import component_claims, tick_claims
 

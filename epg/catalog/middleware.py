@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 
+from epg.catalog.kind import KindParameter, make_parameters
 from epg.documents.items import flag_of, map_of, text_of, texts_of
-from epg.load.kind import KindParameter, make_parameters
 from epg.source import Node, Span
 
 TEMPLATE = "code.c.j2"

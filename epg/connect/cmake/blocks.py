@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Union
 
-from epg.load.cmake.syntax import Command, NotCMake
+from epg.connect.cmake.syntax import Command, NotCMake
 
 _ENDS = {name: f"end{name}" for name in ("if", "foreach", "while", "function", "macro", "block")}
 

@@ -11,11 +11,11 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TypeVar
 
+from epg.catalog.hardware import Board, Platform, Soc, Target, make_board, make_platform, make_soc
+from epg.catalog.kind import Kind, KindPort, make_kind
+from epg.catalog.middleware import Middleware, make_middleware
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.documents.yaml_file import load_yaml
-from epg.load.hardware import Board, Platform, Soc, Target, make_board, make_platform, make_soc
-from epg.load.kind import Kind, KindPort, make_kind
-from epg.load.middleware import Middleware, make_middleware
 from epg.source import Node, Span
 
 __all__ = ["Catalog", "CatalogCheck", "Kind", "KindPort", "Target", "load_catalog"]
