@@ -13,8 +13,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from epg.catalog.catalog import Catalog, Target, load_catalog
+from epg.catalog.check_file import check_catalog
 from epg.check.bindings import Bindings, load_bindings
-from epg.check.catalog import check_catalog
 from epg.check.configuration import Configuration, check_configuration
 from epg.check.names import (
     STANDARD_HEADERS,

@@ -36,7 +36,7 @@ Item = TypeVar("Item", Soc, Board, Platform, Middleware, Kind)
 class CatalogCheck:
     """What a catalog asks about a file before it reads it, and about a target before it gives it out.
 
-    This one accepts everything; :func:`epg.check.catalog.check_catalog` brings the one that knows the schemas.
+    This one accepts everything; :func:`epg.catalog.check_file.check_catalog` brings the one that knows the schemas.
     """
 
     def file(self, sort: str, node: Node, name: str, diagnostics: Diagnostics) -> bool:

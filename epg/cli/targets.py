@@ -17,7 +17,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
-    from epg.check.middleware import offered
+    from epg.catalog.check_middleware import offered
     from epg.data import targets_roots
     from epg.documents.tcf import predefined_tcf_names
     from epg.project import make_catalog

@@ -13,7 +13,7 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from epg.catalog.catalog import FOLDERS, Catalog, load_catalog
-from epg.check.catalog import check_all, check_catalog
+from epg.catalog.check_file import check_all, check_catalog
 from epg.check.compose import component_schema, typed_parameters
 from epg.check.configuration import check_configuration
 from epg.check.merge import merge_chain

@@ -14,7 +14,7 @@ import pytest
 import yaml
 
 from epg.catalog.catalog import FOLDERS, load_catalog
-from epg.check.catalog import check_all, check_catalog
+from epg.catalog.check_file import check_all, check_catalog
 from epg.check.configuration import check_configuration
 from epg.data import data_folder, targets_roots
 from epg.diagnostics import Diagnostics

@@ -10,7 +10,7 @@ from fractions import Fraction
 from pathlib import Path
 
 from epg.catalog.catalog import load_catalog
-from epg.check.catalog import check_catalog
+from epg.catalog.check_file import check_catalog
 from epg.check.configuration import check_configuration
 from epg.data import targets_roots
 from epg.diagnostics import Diagnostics

@@ -8,10 +8,10 @@ from collections.abc import Collection
 from pathlib import Path
 
 from epg.catalog.catalog import Catalog, CatalogCheck
+from epg.catalog.check_hardware import check_board, check_platform, check_soc, check_target
+from epg.catalog.check_kind import check_kind
+from epg.catalog.check_middleware import check_middleware, check_offers
 from epg.catalog.hardware import Target
-from epg.check.hardware import check_board, check_platform, check_soc, check_target
-from epg.check.kind import check_kind
-from epg.check.middleware import check_middleware, check_offers
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.documents.schema import load_schema, validate
 from epg.documents.text_file import is_file
