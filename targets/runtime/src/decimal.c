@@ -1,24 +1,26 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Doubles to text and back, by exact arithmetic on large whole numbers.
+ * Doubles to text and back, by numbers with at least 161 bits.
  *
- * Writing is the free-format algorithm of G. Steele and J. White, "How to print floating-point numbers accurately",
- * PLDI 1990, with the scaling of R. Burger and R. Dybvig, "Printing floating-point numbers quickly and accurately",
- * PLDI 1996.  Reading divides two whole numbers until the quotient has the bits of a double and one more.
+ * A decimal number of 17 digits names one double (IEEE 754-2019, 5.12.2), and so do the 15 or 16 digits of most that
+ * people write: the fewest that read back as the same double are taken.  Scaling by a power of ten cuts off less than
+ * one part in 2^160 at each of at most 45 steps.  What is left of half the distance between two doubles, a tenth of
+ * one part in 2^54, is far more: what is written always reads back.
  */
 #include "epg/decimal.h"
 
 #include <string.h>
 
-#include "big.h"
-
 enum {
+    WORDS = 6,
     FRACTION = 52,       /* bits of the significand behind its leading 1 (IEEE 754-2019, table 3.5) */
     LEAST = -1074,       /* binary exponent of the smallest double above zero */
     INFINITE = 0x7FF,    /* biased exponent */
     LARGEST_POWER = 310, /* a decimal exponent above it makes any number too large for a double, */
-    LEAST_POWER = -365   /* and one below it less than half of the smallest, with EPG_DECIMAL_DIGITS digits */
+    LEAST_POWER = -365,  /* and one below it less than half of the smallest, with EPG_DECIMAL_DIGITS digits */
+    EXACT_DIGITS = 15,   /* of a decimal number, which a double and back leaves as they are */
+    MOST_DIGITS = 17     /* of a double, which a decimal number and back leaves as it is */
 };
 
 #define SIGN ((uint64_t)1 << 63)
@@ -51,83 +53,165 @@ static size_t put_whole(char *text, size_t length, uint64_t value)
     return length;
 }
 
+/** words * 2^exponent, the least significant word first. */
+typedef struct wide {
+    uint32_t words[WORDS];
+    int exponent;
+} wide_t;
+
+/** value = value * factor + summand, where a summand needs exponent 0 */
+static void multiply(wide_t *value, uint32_t factor, uint32_t summand)
+{
+    uint64_t carry = summand;
+    for (size_t i = 0; i < WORDS; i++) {
+        carry += (uint64_t)value->words[i] * factor;
+        value->words[i] = (uint32_t)(carry & 0xFFFFFFFFU);
+        carry >>= 32;
+    }
+    if (carry != 0) {
+        memmove(&value->words[0], &value->words[1], (WORDS - 1) * sizeof value->words[0]);
+        value->words[WORDS - 1] = (uint32_t)carry;
+        value->exponent += 32;
+    }
+}
+
+/** Makes the last word of a value above zero hold something, so that a division leaves at least 161 bits. */
+static void fill(wide_t *value)
+{
+    while (value->words[WORDS - 1] == 0) {
+        memmove(&value->words[1], &value->words[0], (WORDS - 1) * sizeof value->words[0]);
+        value->words[0] = 0;
+        value->exponent -= 32;
+    }
+}
+
+/** value = value / divisor */
+static void divide(wide_t *value, uint32_t divisor)
+{
+    fill(value);
+    uint64_t rest = value->words[WORDS - 1] % divisor;
+    uint32_t above = value->words[WORDS - 1] / divisor;
+    const bool shifted = above == 0; /* then there is room for one word more behind the others */
+    for (size_t i = WORDS - 1; i > 0; i--) {
+        rest = rest << 32 | value->words[i - 1];
+        const uint32_t digit = (uint32_t)(rest / divisor);
+        rest %= divisor;
+        value->words[i] = shifted ? digit : above;
+        above = digit;
+    }
+    value->words[0] = shifted ? (uint32_t)((rest << 32) / divisor) : above;
+    value->exponent -= shifted ? 32 : 0;
+}
+
+/** value = value * 10^power */
+static void scale(wide_t *value, int power)
+{
+    for (; power >= 9; power -= 9) {
+        multiply(value, 1000000000U, 0);
+    }
+    for (; power > 0; power--) {
+        multiply(value, 10, 0);
+    }
+    for (; power <= -9; power += 9) {
+        divide(value, 1000000000U);
+    }
+    for (; power < 0; power++) {
+        divide(value, 10);
+    }
+}
+
+static unsigned int bit(const wide_t *value, int place)
+{
+    return place >= 0 && place < 32 * WORDS ? value->words[place / 32] >> (place % 32) & 1U : 0U;
+}
+
+/** The whole number nearest to value / 2^exponent, which is below 2^64; of two the even one. */
+static uint64_t rounded(const wide_t *value, int exponent)
+{
+    const int one = exponent - value->exponent; /* the bit that counts 1 */
+    uint64_t result = 0;
+    for (int i = 63; i >= 0; i--) {
+        result = result << 1 | bit(value, one + i);
+    }
+    bool more = (result & 1U) != 0;
+    for (int i = 0; i < one - 1 && i < 32 * WORDS && !more; i++) {
+        more = bit(value, i) != 0;
+    }
+    return result + (more ? bit(value, one - 1) : 0U);
+}
+
+/** Bits of the double nearest to a value above zero; SIGN if it is too large for one. */
+static uint64_t nearest(wide_t *value)
+{
+    fill(value);
+    int top = 32 * WORDS - 1;
+    while (bit(value, top) == 0) {
+        top--;
+    }
+    /* The result has 53 bits, one for the leading 1; fewer below the smallest normal number. */
+    int binary = value->exponent + top - FRACTION;
+    if (binary < LEAST) {
+        binary = LEAST;
+    }
+    /* Added, not put together: the leading 1 makes the biased exponent one more, and so does a carry into bit 53. */
+    const uint64_t biased = (uint64_t)(binary - LEAST);
+    return biased >= INFINITE ? SIGN : (biased << FRACTION) + rounded(value, binary);
+}
+
+static wide_t wide(uint64_t value, int exponent)
+{
+    return (wide_t){{(uint32_t)(value & 0xFFFFFFFFU), (uint32_t)(value >> 32)}, exponent};
+}
+
 /** floor(log10(2^exponent)), or one less: log10(2) lies between 1233 / 4096 and 1234 / 4096. */
 static int power_of_ten(int exponent)
 {
     return exponent >= 0 ? exponent * 1233 / 4096 : -((-exponent * 1234 + 4095) / 4096);
 }
 
-/**
- * The shortest digits of significand * 2^exponent; `*point` is the decimal exponent of the first.  Returns how many.
- * value = r / s, and the doubles beside it are (r + plus) / s and (r - minus) / s, all times 2.
- */
-static size_t shortest(char digits[17], uint64_t significand, int exponent, bool narrow, int *point)
+/** `count` digits of significand * 2^exponent as a whole number, and the power of ten it is multiplied with. */
+static uint64_t decimal(uint64_t significand, int exponent, int count, int *power)
 {
-    epg_big_t r, s, plus, minus;
-    const bool even = (significand & 1U) == 0; /* then the limits themselves still read as this double */
-    epg_big_set(&r, significand);
-    epg_big_set(&s, 1);
-    epg_big_set(&plus, 1);
-    epg_big_set(&minus, 1);
-    epg_big_shift(&r, (narrow ? 2U : 1U) + (exponent > 0 ? (unsigned int)exponent : 0U));
-    epg_big_shift(&s, (narrow ? 2U : 1U) + (exponent < 0 ? (unsigned int)-exponent : 0U));
-    epg_big_shift(&plus, (narrow ? 1U : 0U) + (exponent > 0 ? (unsigned int)exponent : 0U));
-    epg_big_shift(&minus, exponent > 0 ? (unsigned int)exponent : 0U);
-
-    unsigned int bits = 0;
+    uint64_t limit = 1;
+    for (int i = 0; i < count; i++) {
+        limit *= 10U;
+    }
+    int bits = 0;
     for (uint64_t rest = significand; rest != 0; rest >>= 1) {
         bits++;
     }
-    int k = power_of_ten(exponent + (int)bits - 1);
-    if (k >= 0) {
-        epg_big_scale(&s, (unsigned int)k);
-    } else {
-        epg_big_scale(&r, (unsigned int)-k);
-        epg_big_scale(&plus, (unsigned int)-k);
-        epg_big_scale(&minus, (unsigned int)-k);
-    }
-    /* Is the value, or what rounds to it, at least 10^(k + 1)?  The estimate may be too small. */
-    for (;;) {
-        epg_big_t upper = r;
-        epg_big_t ten = s;
-        epg_big_add(&upper, &plus);
-        epg_big_multiply(&ten, 10, 0);
-        const int compared = epg_big_compare(&upper, &ten);
-        if (compared < 0 || (compared == 0 && !even)) {
-            break;
+    *power = power_of_ten(exponent + bits - 1) - count + 1;
+    for (;; ++*power) { /* the estimate may be too small */
+        wide_t value = wide(significand, exponent);
+        scale(&value, -*power);
+        const uint64_t result = rounded(&value, 0);
+        if (result < limit) {
+            return result;
         }
-        s = ten;
-        k++;
     }
+}
 
-    size_t count = 0;
-    for (;;) {
-        unsigned int digit = 0;
-        while (epg_big_compare(&r, &s) >= 0) {
-            epg_big_subtract(&r, &s);
-            digit++;
-        }
-        epg_big_t upper = r;
-        epg_big_add(&upper, &plus);
-        const int below = epg_big_compare(&r, &minus);
-        const int above = epg_big_compare(&upper, &s);
-        const bool low = below < 0 || (below == 0 && even);
-        const bool high = above > 0 || (above == 0 && even);
-        if (low || high) {
-            epg_big_t twice = r;
-            epg_big_multiply(&twice, 2, 0);
-            const int half = epg_big_compare(&twice, &s);
-            const bool up = high && (!low || half > 0 || (half == 0 && (digit & 1U) != 0));
-            digits[count++] = (char)('0' + (int)digit + (up ? 1 : 0));
+/** The fewest digits that read back as the double with `bits` (without sign, above zero), and their power of ten. */
+static uint64_t shortest(uint64_t bits, int *power)
+{
+    const uint64_t fraction = bits & (((uint64_t)1 << FRACTION) - 1U);
+    const int biased = (int)(bits >> FRACTION);
+    const uint64_t significand = biased == 0 ? fraction : fraction | (uint64_t)1 << FRACTION;
+    const int exponent = LEAST + (biased == 0 ? 0 : biased - 1);
+    uint64_t result = 0;
+    /* The smallest doubles have fewer bits than others, and may need one digit only. */
+    for (int count = biased == 0 ? 1 : EXACT_DIGITS; count <= MOST_DIGITS; count++) {
+        result = decimal(significand, exponent, count, power);
+        wide_t back = wide(result, 0);
+        scale(&back, *power);
+        if (nearest(&back) == bits) {
             break;
         }
-        digits[count++] = (char)('0' + (int)digit);
-        epg_big_multiply(&r, 10, 0);
-        epg_big_multiply(&plus, 10, 0);
-        epg_big_multiply(&minus, 10, 0);
     }
-    *point = k;
-    return count;
+    for (; result % 10U == 0; ++*power) {
+        result /= 10U;
+    }
+    return result;
 }
 
 /** `digits` with the point where it belongs; with an exponent below 1e-4 and from 1e17 on, as C's "%.17g". */
@@ -168,29 +252,26 @@ size_t epg_decimal_write(char *text, double value)
 {
     uint64_t bits;
     memcpy(&bits, &value, sizeof bits);
-    const uint64_t fraction = bits & (((uint64_t)1 << FRACTION) - 1U);
-    const unsigned int biased = (unsigned int)(bits >> FRACTION) & INFINITE;
+    const uint64_t size = bits & ~SIGN;
+    const uint64_t infinity = (uint64_t)INFINITE << FRACTION;
     size_t length = 0;
-    if (biased == INFINITE && fraction != 0) {
+    if (size > infinity) {
         return put(text, length, "nan");
     }
-    if (bits >> 63 != 0) {
+    if (size != bits) {
         text[length++] = '-';
     }
-    if (biased == INFINITE) {
+    if (size == infinity) {
         return put(text, length, "inf");
     }
-    if (biased == 0 && fraction == 0) {
+    if (size == 0) {
         return put(text, length, "0");
     }
-    const uint64_t significand = biased == 0 ? fraction : fraction | (uint64_t)1 << FRACTION;
-    const int exponent = LEAST + (biased == 0 ? 0 : (int)biased - 1);
-    /* The next double below a power of two is half as far away as the next above. */
-    const bool narrow = fraction == 0 && biased > 1;
-    char digits[17];
-    int point = 0;
-    const size_t count = shortest(digits, significand, exponent, narrow, &point);
-    return lay_out(text, length, digits, count, point);
+    char digits[20];
+    int power = 0;
+    const size_t begin = digits_of(digits, shortest(size, &power));
+    const size_t count = sizeof digits - begin;
+    return lay_out(text, length, digits + begin, count, power + (int)count - 1);
 }
 
 size_t epg_decimal_write_seconds(char *text, uint64_t time_ns)
@@ -223,7 +304,7 @@ size_t epg_decimal_write_integer(char *text, int64_t value)
 
 /** What a text says: digits without point, and the power of ten they are multiplied with. */
 typedef struct number {
-    epg_big_t digits;
+    wide_t digits;
     bool negative;
     int exponent;
 } number_t;
@@ -271,7 +352,7 @@ static bool read_number(const char *text, size_t length, number_t *number)
             if (significant > EPG_DECIMAL_DIGITS) {
                 return false;
             }
-            epg_big_multiply(&number->digits, 10, (uint32_t)(text[i] - '0'));
+            multiply(&number->digits, 10, (uint32_t)(text[i] - '0'));
             number->exponent -= point ? 1 : 0;
         } else {
             return any && (text[i] == 'e' || text[i] == 'E') &&
@@ -281,55 +362,6 @@ static bool read_number(const char *text, size_t length, number_t *number)
     return any;
 }
 
-/** round(a / b), half to even, where the result is below 2^54; changes both. */
-static uint64_t quotient(epg_big_t *a, epg_big_t *b)
-{
-    const unsigned int a_bits = epg_big_bits(a);
-    const unsigned int b_bits = epg_big_bits(b);
-    uint64_t result = 0;
-    for (unsigned int step = a_bits >= b_bits ? a_bits - b_bits + 1U : 0U; step > 0; step--) {
-        epg_big_t moved = *b;
-        epg_big_shift(&moved, step - 1U);
-        result <<= 1;
-        if (epg_big_compare(a, &moved) >= 0) {
-            epg_big_subtract(a, &moved);
-            result |= 1U;
-        }
-    }
-    epg_big_shift(a, 1);
-    const int half = epg_big_compare(a, b);
-    return half > 0 || (half == 0 && (result & 1U) != 0) ? result + 1U : result;
-}
-
-/** Bits of the double nearest to digits * 10^exponent, all above zero; SIGN or more if it is too large for one. */
-static uint64_t nearest(epg_big_t *digits, int exponent)
-{
-    epg_big_t divisor;
-    epg_big_set(&divisor, 1);
-    epg_big_scale(exponent < 0 ? &divisor : digits, (unsigned int)(exponent < 0 ? -exponent : exponent));
-
-    /* The quotient is to have 53 bits, one for the leading 1; fewer below the smallest normal number. */
-    int binary = (int)epg_big_bits(digits) - (int)epg_big_bits(&divisor) - (FRACTION + 1);
-    if (binary < LEAST) {
-        binary = LEAST;
-    }
-    if (binary < 0) {
-        epg_big_shift(digits, (unsigned int)-binary);
-    } else {
-        epg_big_shift(&divisor, (unsigned int)binary);
-    }
-    epg_big_t limit = divisor;
-    epg_big_shift(&limit, FRACTION + 1);
-    if (epg_big_compare(digits, &limit) >= 0) {
-        epg_big_shift(&divisor, 1);
-        binary++;
-    }
-    const uint64_t significand = quotient(digits, &divisor);
-    /* Added, not put together: the leading 1 makes the biased exponent one more, and so does a carry into bit 53. */
-    const uint64_t biased = (uint64_t)(binary - LEAST);
-    return biased >= INFINITE ? SIGN : (biased << FRACTION) + significand;
-}
-
 bool epg_decimal_read(const char *text, size_t length, double *value)
 {
     number_t number;
@@ -337,11 +369,16 @@ bool epg_decimal_read(const char *text, size_t length, double *value)
     if (!read_number(text, length, &number)) {
         return false;
     }
-    if (number.digits.used > 0 && number.exponent > LARGEST_POWER) {
+    bool zero = true;
+    for (size_t i = 0; i < WORDS; i++) {
+        zero = zero && number.digits.words[i] == 0;
+    }
+    if (!zero && number.exponent > LARGEST_POWER) {
         return false;
     }
-    if (number.digits.used > 0 && number.exponent >= LEAST_POWER) {
-        bits = nearest(&number.digits, number.exponent);
+    if (!zero && number.exponent >= LEAST_POWER) {
+        scale(&number.digits, number.exponent);
+        bits = nearest(&number.digits);
     }
     if (bits >= (uint64_t)INFINITE << FRACTION) {
         return false;

@@ -22,6 +22,7 @@ enum { EPG_DECIMAL_DIGITS = 40 };
 /**
  * Writes the shortest decimal number that is nearest to `value` of all doubles, or "nan", "inf", "-inf".  Returns its
  * length, at most EPG_DECIMAL_SIZE; no zero is appended.  "0.1", "-12", "1e+21", "2.5e-07": as C writes them.
+ * A few powers of two, such as 2^-24, have a digit more than they need.
  */
 size_t epg_decimal_write(char *text, double value);
 
