@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import epg
-from epg.catalog.catalog import Catalog, Target, target_hint
+from epg.catalog.catalog import Catalog, Target, load_catalog, target_hint
 from epg.catalog.middleware import Middleware
 from epg.check.configuration import CONSOLE, Configuration
 from epg.check.editor import USER_FILES, editor_schema
@@ -29,7 +29,7 @@ from epg.emit.folder import present_files, write_folder
 from epg.emit.project import ProjectPlan, StandIn, project_files, project_folder, project_names
 from epg.models import Model, load_model
 from epg.new_simulation import model_axes, plant_files, robot_axes, robot_folder
-from epg.project import Request, check_name, check_sdk_headers, load_application, load_configuration, make_catalog
+from epg.project import Request, check_name, check_sdk_headers, load_application, load_configuration
 from epg.resolve.matching import Match, match_ports
 from epg.source import Span
 from epg.tools.tools import load_tools
@@ -97,7 +97,7 @@ def new_project(request: ProjectRequest, diagnostics: Diagnostics) -> NewProject
     if problem:
         message = f"'{request.folder}' cannot be the folder of a project: {problem}"
         diagnostics.error("invalid-name", Span(str(request.folder)), message, hint="choose another folder")
-    catalog = make_catalog(request.roots, diagnostics)
+    catalog = load_catalog(request.roots, diagnostics)
     base = _find_base(request, catalog, diagnostics)
     model = load_model(request.model, diagnostics)
     if base is None or model is None:

@@ -13,7 +13,6 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from epg.catalog.catalog import Catalog, Target, load_catalog
-from epg.catalog.check_file import check_catalog
 from epg.check.bindings import Bindings, load_bindings
 from epg.check.configuration import Configuration, check_configuration
 from epg.check.names import (
@@ -93,13 +92,6 @@ def load_configuration(request: Request, catalog: Catalog, diagnostics: Diagnost
     return check_configuration(chain, settings, catalog, diagnostics)
 
 
-def make_catalog(request_roots: Sequence[Path], diagnostics: Diagnostics) -> Catalog:
-    """Boards, platforms and kinds below the given roots, checked."""
-    catalog = load_catalog(request_roots, diagnostics)
-    check_catalog(catalog, diagnostics)
-    return catalog
-
-
 def load_application(request: Request, diagnostics: Diagnostics) -> Application | None:
     """The application of ``request``, or None after reporting every problem of all its files."""
     return load_parts(request, diagnostics).application
@@ -108,7 +100,7 @@ def load_application(request: Request, diagnostics: Diagnostics) -> Application 
 def load_parts(request: Request, diagnostics: Diagnostics, read_model: ModelReader = load_model) -> Parts:
     """The application of ``request`` with what it is made of, after reporting every problem of all its files."""
     check_name(request.name, request.caller or Span("command line"), diagnostics)
-    catalog = make_catalog(request.roots, diagnostics)
+    catalog = load_catalog(request.roots, diagnostics)
     configuration = load_configuration(request, catalog, diagnostics)
     if configuration is not None:
         span = request.caller or Span("command line")

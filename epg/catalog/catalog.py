@@ -11,6 +11,9 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TypeVar
 
+from epg.catalog.check_file import check_file
+from epg.catalog.check_hardware import check_target
+from epg.catalog.check_middleware import check_offers
 from epg.catalog.hardware import Board, Platform, Soc, Target, make_board, make_platform, make_soc
 from epg.catalog.kind import Kind, KindPort, make_kind
 from epg.catalog.middleware import Middleware, make_middleware
@@ -18,7 +21,7 @@ from epg.diagnostics import Diagnostics, did_you_mean
 from epg.documents.yaml_file import load_yaml
 from epg.source import Node, Span
 
-__all__ = ["Catalog", "CatalogCheck", "Kind", "KindPort", "Target", "load_catalog"]
+__all__ = ["Catalog", "Kind", "KindPort", "Target", "load_catalog"]
 
 FOLDERS = {
     "soc": "socs",
@@ -33,27 +36,11 @@ FOLDERS = {
 Item = TypeVar("Item", Soc, Board, Platform, Middleware, Kind)
 
 
-class CatalogCheck:
-    """What a catalog asks about a file before it reads it, and about a target before it gives it out.
-
-    This one accepts everything; :func:`epg.catalog.check_file.check_catalog` brings the one that knows the schemas.
-    """
-
-    def file(self, sort: str, node: Node, name: str, diagnostics: Diagnostics) -> bool:
-        """Whether the file of the item ``name`` is right; reports what is not."""
-        return True
-
-    def target(self, target: Target, diagnostics: Diagnostics) -> bool:
-        """Whether board, chip and platform fit together; reports why not."""
-        return True
-
-
 class Catalog:
     """Everything in the ``targets`` folders ``roots``, of which the first wins where names meet."""
 
     def __init__(self, roots: Sequence[Path], diagnostics: Diagnostics) -> None:
         self.roots = tuple(roots)
-        self.check = CatalogCheck()
         self._diagnostics = diagnostics
         self._files: dict[str, dict[str, list[Path]]] = {}
         self._items: dict[tuple[str, str], Soc | Board | Platform | Middleware | Kind | None] = {}
@@ -125,8 +112,15 @@ class Catalog:
             if platform.board is None and soc.family not in platform.families:
                 continue
             target = Target(name, board, soc, platform)
-            return (target if self.check.target(target, self._diagnostics) else None), True
+            return (target if self._check_target(target) else None), True
         return None, False
+
+    def _check_target(self, target: Target) -> bool:
+        """Whether board, chip, platform and middlewares fit together; reports why not."""
+        errors = self._diagnostics.error_count
+        check_offers(target, self.names("middleware"), self._diagnostics)
+        check_target(target, self._diagnostics)
+        return self._diagnostics.error_count == errors
 
     def _splits(self, name: str) -> list[tuple[str, str]]:
         """The boards and platforms whose names could make ``name``."""
@@ -163,7 +157,7 @@ class Catalog:
         if not paths:
             return None
         node = load_yaml(paths[0], self._diagnostics)
-        if node is None or not self.check.file(sort, node, name, self._diagnostics):
+        if node is None or not check_file(sort, node, name, self._diagnostics):
             return None
         if len(paths) > 1:
             message = f"{sort} '{name}' stands in {len(paths)} targets folders, of which this one is used"

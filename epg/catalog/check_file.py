@@ -7,11 +7,9 @@ import re
 from collections.abc import Collection
 from pathlib import Path
 
-from epg.catalog.catalog import Catalog, CatalogCheck
-from epg.catalog.check_hardware import check_board, check_platform, check_soc, check_target
+from epg.catalog.check_hardware import check_board, check_platform, check_soc
 from epg.catalog.check_kind import check_kind
-from epg.catalog.check_middleware import check_middleware, check_offers
-from epg.catalog.hardware import Target
+from epg.catalog.check_middleware import check_middleware
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.documents.schema import load_schema, validate
 from epg.documents.text_file import is_file
@@ -19,64 +17,39 @@ from epg.documents.yaml_file import newer_version
 from epg.source import Node, Span
 
 
-def check_catalog(catalog: Catalog, diagnostics: Diagnostics) -> None:
-    """Makes ``catalog`` check every file it reads from now on.  Problems go to the catalog's own diagnostics."""
-    catalog.check = _Check(catalog)
-
-
-def check_all(catalog: Catalog) -> None:
-    """Reads everything in the catalog, so that all problems of all its files are reported."""
-    for name in catalog.kind_names():
-        catalog.find_kind(name)
-    for name in catalog.names("middleware"):
-        catalog.find_middleware(name)
-    for name in catalog.target_names():
-        catalog.find_target(name)
-
-
-class _Check(CatalogCheck):
-    def __init__(self, catalog: Catalog) -> None:
-        self._catalog = catalog
-
-    def file(self, sort: str, node: Node, name: str, diagnostics: Diagnostics) -> bool:
-        key = "kind" if sort == "component" else sort
-        if not node.is_mapping:
-            span = Span(node.span.file, 1, 1, 2)
-            diagnostics.error(
-                "wrong-type", span, f"a {sort}.yaml is a map (key: value)", hint="it begins with 'api: 1'"
-            )
-            return False
-        if newer_version(node, "api", diagnostics) or not validate(node, load_schema(sort), diagnostics):
-            return False
-        errors = diagnostics.error_count
-        if node[key].value != name:
-            message = f"{key} '{node[key].value}' stands in a folder called '{name}'"
-            hint = f"write '{key}: {name}', or rename the folder"
-            diagnostics.error("wrong-folder", node[key].span, message, hint=hint)
-        if sort == "soc":
-            check_soc(node, diagnostics)
-        elif sort == "board":
-            check_board(node, diagnostics)
-        elif sort == "platform":
-            check_platform(node, diagnostics)
-            _files_exist(node, ("templates",), _names_in(node, ("templates",)), diagnostics)
-            _check_templates(_names_in(node, ("templates",)), diagnostics)
-            if node["builds"].value is True:
-                _beside(node["builds"], "platform.cmake", "docs/adding-a-platform.md", diagnostics)
-        elif sort == "middleware":
-            check_middleware(node, diagnostics)
-        else:
-            check_kind(node, diagnostics)
-        for path in (("driver", "headers"), ("driver", "sources")):
-            _files_exist(node, path, _names_in(node, path), diagnostics)
-        if sort == "component":
-            _beside(node["kind"], "code.c.j2", "docs/adding-a-component-kind.md", diagnostics)
-        return diagnostics.error_count == errors
-
-    def target(self, target: Target, diagnostics: Diagnostics) -> bool:
-        errors = diagnostics.error_count
-        check_offers(target, self._catalog, diagnostics)
-        return check_target(target, diagnostics) and diagnostics.error_count == errors
+def check_file(sort: str, node: Node, name: str, diagnostics: Diagnostics) -> bool:
+    """Whether the file of the item ``name`` is right; reports its mistakes."""
+    key = "kind" if sort == "component" else sort
+    if not node.is_mapping:
+        span = Span(node.span.file, 1, 1, 2)
+        diagnostics.error("wrong-type", span, f"a {sort}.yaml is a map (key: value)", hint="it begins with 'api: 1'")
+        return False
+    if newer_version(node, "api", diagnostics) or not validate(node, load_schema(sort), diagnostics):
+        return False
+    errors = diagnostics.error_count
+    if node[key].value != name:
+        message = f"{key} '{node[key].value}' stands in a folder called '{name}'"
+        hint = f"write '{key}: {name}', or rename the folder"
+        diagnostics.error("wrong-folder", node[key].span, message, hint=hint)
+    if sort == "soc":
+        check_soc(node, diagnostics)
+    elif sort == "board":
+        check_board(node, diagnostics)
+    elif sort == "platform":
+        check_platform(node, diagnostics)
+        _files_exist(node, ("templates",), _names_in(node, ("templates",)), diagnostics)
+        _check_templates(_names_in(node, ("templates",)), diagnostics)
+        if node["builds"].value is True:
+            _beside(node["builds"], "platform.cmake", "docs/adding-a-platform.md", diagnostics)
+    elif sort == "middleware":
+        check_middleware(node, diagnostics)
+    else:
+        check_kind(node, diagnostics)
+    for path in (("driver", "headers"), ("driver", "sources")):
+        _files_exist(node, path, _names_in(node, path), diagnostics)
+    if sort == "component":
+        _beside(node["kind"], "code.c.j2", "docs/adding-a-component-kind.md", diagnostics)
+    return diagnostics.error_count == errors
 
 
 def _names_in(node: Node, path: tuple[str, ...]) -> list[Node]:

@@ -67,9 +67,8 @@ def check_platform(node: Node, diagnostics: Diagnostics) -> None:
         _unknown("class", tick, classes, diagnostics)
 
 
-def check_target(target: Target, diagnostics: Diagnostics) -> bool:
-    """Whether board, chip and platform go together: pins that the chip has, a tick that it can give."""
-    errors = diagnostics.error_count
+def check_target(target: Target, diagnostics: Diagnostics) -> None:
+    """Board, chip and platform go together: pins that the chip has, a tick that it can give."""
     board, soc = target.board, target.soc
     node = board.node
     for section in ("onboard", "reserved"):
@@ -104,7 +103,6 @@ def check_target(target: Target, diagnostics: Diagnostics) -> bool:
             diagnostics.error(
                 "wrong-value", tick.span, message, hint=hint, notes=[Note("this class", resource_class.span)]
             )
-    return diagnostics.error_count == errors
 
 
 def _peripheral(name: str, node: Node, pins: Sequence[str], diagnostics: Diagnostics) -> None:

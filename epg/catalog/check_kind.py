@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from epg.catalog.kind import OUTPUT_CLASSES
-from epg.check.compose import COMMON_PARAMETERS, parameter_problems
+from epg.catalog.parameter import COMMON_PARAMETERS, parameter_problems
 from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.documents.items import flag_of, map_of, texts_of
 from epg.source import Node, Span

@@ -10,7 +10,6 @@ from pathlib import Path
 from types import MappingProxyType
 
 from epg.catalog.catalog import Catalog, Kind, Target
-from epg.catalog.check_middleware import check_lack, check_offer, offered, unoffered_hint
 from epg.catalog.middleware import Middleware
 from epg.check.bindings import Conversion, conversion_of
 from epg.check.compose import (
@@ -23,6 +22,7 @@ from epg.check.compose import (
 from epg.check.devicetree import check_node
 from epg.check.fail_safe import check_fail_safe
 from epg.check.merge import apply_settings, merge_chain
+from epg.check.middleware import check_lack, check_offer, offered, unoffered_hint
 from epg.check.names import identifier_problem, normal_namespace
 from epg.check.topics import Use, check_names
 from epg.check.uses import Used, used_components

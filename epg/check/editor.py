@@ -15,9 +15,9 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from epg.catalog.catalog import Catalog, Kind, Target
-from epg.catalog.check_middleware import offered
 from epg.catalog.middleware import Middleware
 from epg.check.compose import communication_schema, component_schema
+from epg.check.middleware import offered
 from epg.documents.schema import load_schema
 from epg.quantity import SPELLINGS, units_of
 

@@ -24,15 +24,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
+    from epg.catalog.catalog import load_catalog
     from epg.documents.text_file import read_text
     from epg.edit.yaml_edit import CannotEdit
     from epg.emit.bindings import new_bindings, updated_bindings
     from epg.models import load_model
-    from epg.project import Request, load_configuration, make_catalog
+    from epg.project import Request, load_configuration
     from epg.resolve.matching import match_ports
 
     request = Request("bind", options.tcf, options.model, Path(), user_roots=user_roots())
-    catalog = make_catalog(request.roots, diagnostics)
+    catalog = load_catalog(request.roots, diagnostics)
     configuration = load_configuration(request, catalog, diagnostics)
     model = load_model(options.model, diagnostics)
     diagnostics.stop_if_errors()

@@ -29,9 +29,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from dataclasses import replace
 
+    from epg.catalog.catalog import load_catalog
     from epg.check.bindings import load_bindings
     from epg.models import load_model
-    from epg.project import check_target, hardware_of, load_application, make_catalog
+    from epg.project import check_target, hardware_of, load_application
 
     options.json = options.json or options.format == "json"
     request = request_of(options, "target")
@@ -40,7 +41,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         application = load_application(request, diagnostics)
         hardware = {options.tcf: hardware_of(application)} if application is not None else {}
     else:
-        catalog = make_catalog(request.roots, diagnostics)
+        catalog = load_catalog(request.roots, diagnostics)
         for name in [*options.files, *([options.tcf] if options.tcf else [])]:
             found = check_target(replace(request, tcf=name), catalog, diagnostics)
             hardware |= {name: found} if found is not None else {}

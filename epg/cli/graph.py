@@ -7,6 +7,7 @@ import argparse
 import sys
 from pathlib import Path
 
+from epg.catalog.catalog import load_catalog
 from epg.cli.arguments import request_of
 from epg.cli.report import to_json
 from epg.diagnostics import Diagnostics
@@ -56,10 +57,10 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
 def _wiring(request: Request, title: str, diagnostics: Diagnostics) -> str:
     """The wiring, which the ``.tcf`` alone decides."""
     from epg.graph.wiring import draw_wiring
-    from epg.project import load_configuration, make_catalog
+    from epg.project import load_configuration
     from epg.resolve.resolve import allocate_hardware
 
-    configuration = load_configuration(request, make_catalog(request.roots, diagnostics), diagnostics)
+    configuration = load_configuration(request, load_catalog(request.roots, diagnostics), diagnostics)
     diagnostics.stop_if_errors()
     assert configuration is not None
     assignments = allocate_hardware(configuration, configuration.control.period, diagnostics)

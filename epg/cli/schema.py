@@ -30,10 +30,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
+    from epg.catalog.catalog import load_catalog
     from epg.check.editor import TARGET_FILES, USER_FILES, editor_schema
     from epg.data import targets_roots
     from epg.emit.writer import write_outputs
-    from epg.project import make_catalog
 
     known = (*USER_FILES, *TARGET_FILES)
     names = options.names or (known if options.folder else ("tcf",))
@@ -43,7 +43,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         sys.stderr.write(f"epg schema: {problem}; names: {', '.join(known)}\n")
         return 2
     own = user_roots()
-    catalog = make_catalog(targets_roots(own), diagnostics)
+    catalog = load_catalog(targets_roots(own), diagnostics)
     schemas = {name: to_json(editor_schema(name, catalog, built_in=not own)) for name in names}
     diagnostics.stop_if_errors()
     if not options.folder and not options.output:

@@ -17,13 +17,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
-    from epg.catalog.check_middleware import offered
+    from epg.catalog.catalog import load_catalog
+    from epg.check.middleware import offered
     from epg.data import targets_roots
     from epg.documents.tcf import predefined_tcf_names
-    from epg.project import make_catalog
 
     roots = targets_roots(user_roots())
-    catalog = make_catalog(roots, diagnostics)
+    catalog = load_catalog(roots, diagnostics)
     targets = [target for name in catalog.target_names() if (target := catalog.find_target(name)) is not None]
     kinds = [kind for name in catalog.kind_names() if (kind := catalog.find_kind(name)) is not None]
     files = predefined_tcf_names(roots)

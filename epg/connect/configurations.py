@@ -15,14 +15,14 @@ from pathlib import Path
 from typing import Any
 
 from epg.bootstrap import cache_folder
-from epg.catalog.catalog import Catalog, Target
+from epg.catalog.catalog import Catalog, Target, load_catalog
 from epg.check.configuration import Configuration
 from epg.diagnostics import Diagnostics
 from epg.documents.tcf import load_tcf_chain, predefined_tcf_names
 from epg.emit.project import project_folder
 from epg.graph.wiring import draw_wiring
 from epg.models.model import Model
-from epg.project import Request, load_configuration, make_catalog
+from epg.project import Request, load_configuration
 from epg.resolve.matching import match_ports
 from epg.resolve.resolve import allocate_hardware
 from epg.tools.find_tool import Surroundings, find_tool
@@ -68,7 +68,7 @@ class Configurations:
     @cached_property
     def choices(self) -> tuple[Choice, ...]:
         """Predefined configurations first, then targets, each by name."""
-        catalog = make_catalog(self._roots, Diagnostics())
+        catalog = load_catalog(self._roots, Diagnostics())
         found = [self._predefined(name, catalog) for name in predefined_tcf_names(self._roots)]
         bare = [
             Choice(name, "", target, None, "")

@@ -13,7 +13,6 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from epg.catalog.catalog import FOLDERS, Catalog, load_catalog
-from epg.catalog.check_file import check_all, check_catalog
 from epg.check.compose import component_schema, typed_parameters
 from epg.check.configuration import check_configuration
 from epg.check.merge import merge_chain
@@ -23,6 +22,7 @@ from epg.documents.schema import validate
 from epg.documents.tcf import load_tcf_chain, predefined_tcf_names, settings_node
 from epg.documents.yaml_file import parse_yaml
 from epg.source import Span
+from tests.catalog.everything import read_everything
 
 TARGETS = data_folder("targets")
 BOARDS = ("rpi_pico", "rpi_pico2")
@@ -33,13 +33,12 @@ PLATFORMS = ("bare_metal", "freertos", "zephyr")
 def builtin() -> tuple[Catalog, Diagnostics]:
     problems = Diagnostics()
     catalog = load_catalog(targets_roots(), problems)
-    check_catalog(catalog, problems)
     return catalog, problems
 
 
 def test_everything_is_right() -> None:
     catalog, problems = builtin()
-    check_all(catalog)
+    read_everything(catalog)
     assert [(p.span, p.message) for p in problems] == []
     folders = {path.name for folder in FOLDERS.values() for path in (TARGETS / folder).iterdir() if path.is_dir()}
     assert {name for sort in FOLDERS for name in catalog.names(sort)} == folders - {"pico"}, "pico: shared by platforms"
@@ -243,7 +242,6 @@ def test_a_users_folder_comes_first_and_a_missing_one_is_said(tmp_path: Path) ->
     )
     problems = Diagnostics()
     catalog = load_catalog(targets_roots([tmp_path / "mine", tmp_path / "missing"]), problems)
-    check_catalog(catalog, problems)
     assert catalog.find_target("rpi_pico_freertos").board.summary == "mine"
     assert [p.id for p in problems] == ["targets-not-found", "shadowed-item"]
 
@@ -268,7 +266,6 @@ def test_what_is_wrong_is_reported_once(tmp_path: Path) -> None:
     (tmp_path / "components" / "broken" / "component.yaml").write_text("api: 1\nkind: [", encoding="utf-8")
     problems = Diagnostics()
     catalog = load_catalog(targets_roots([tmp_path]), problems)
-    check_catalog(catalog, problems)
     for line in (1, 2):
         assert catalog.kind("broken", Span("robot.tcf", line, 1, 2), problems) is None
     assert [p.id for p in problems] == ["yaml-syntax"]

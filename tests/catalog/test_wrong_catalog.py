@@ -14,13 +14,13 @@ import pytest
 import yaml
 
 from epg.catalog.catalog import FOLDERS, load_catalog
-from epg.catalog.check_file import check_all, check_catalog
 from epg.check.configuration import check_configuration
 from epg.data import data_folder, targets_roots
 from epg.diagnostics import Diagnostics
 from epg.documents.tcf import load_tcf_chain
 from epg.resolve.allocation import allocate
 from epg.resolve.claims import component_claims, tick_claims
+from tests.catalog.everything import read_everything
 
 FILES = sorted(
     path for sort, folder in FOLDERS.items() for path in (data_folder("targets") / folder).glob(f"*/{sort}.yaml")
@@ -73,8 +73,7 @@ def test_no_change_of_a_file_raises(path: Path, tmp_path: Path) -> None:
         problems = Diagnostics()
         roots = targets_roots([tmp_path])
         catalog = load_catalog(roots, problems)
-        check_catalog(catalog, problems)
-        check_all(catalog)
+        read_everything(catalog)
         for name in ("rpi_pico2_freertos_jiwy", "host_jiwy"):
             chain = load_tcf_chain(name, roots, problems)
             configuration = check_configuration(chain, [], catalog, problems)

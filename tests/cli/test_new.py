@@ -65,13 +65,14 @@ def test_a_project_is_complete_and_right(target: str, tmp_path: Path, capsys: py
 @pytest.mark.parametrize("target", TARGETS)
 def test_enabling_is_for_people(target: str, tmp_path: Path) -> None:
     """Whatever the robot's configuration says: a new project does not move anything by itself."""
+    from epg.catalog.catalog import load_catalog
     from epg.new_project import ProjectRequest
-    from epg.project import Request, load_configuration, make_catalog
+    from epg.project import Request, load_configuration
 
     folder = tmp_path / "robot"
     assert new(folder, target) == 0
     request = ProjectRequest(None, folder, target, JIWY)
-    catalog = make_catalog(request.roots, Diagnostics())
+    catalog = load_catalog(request.roots, Diagnostics())
     found = load_configuration(Request("robot", str(folder / "robot.tcf"), JIWY, JIWY), catalog, Diagnostics())
     assert found is not None
     assert found.control.enable_at_start is False

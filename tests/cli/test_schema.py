@@ -12,12 +12,12 @@ from typing import Any
 import jsonschema
 import pytest
 
+from epg.catalog.catalog import load_catalog
 from epg.check.editor import TARGET_FILES, USER_FILES, editor_schema
 from epg.cli.main import main
 from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
 from epg.documents.yaml_file import load_yaml
-from epg.project import make_catalog
 from epg.quantity import SPELLINGS, UNITS, QuantityError, parse_quantity, parse_ratio
 from tests.errors.test_errors import CASES, COMMAND, lay_out, read_case
 
@@ -34,7 +34,7 @@ KEYWORDS = set(
 
 
 def schema(name: str) -> dict[str, Any]:
-    return editor_schema(name, make_catalog(targets_roots(), Diagnostics()), built_in=True)
+    return editor_schema(name, load_catalog(targets_roots(), Diagnostics()), built_in=True)
 
 
 SCHEMAS = {name: schema(name) for name in NAMES}

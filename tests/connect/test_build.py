@@ -15,6 +15,7 @@ from typing import Any
 
 import pytest
 
+from epg.catalog.catalog import load_catalog
 from epg.connect.build import run as build_module
 from epg.connect.build.plan import make_plan
 from epg.connect.build.run import Build
@@ -22,7 +23,6 @@ from epg.connect.projects import Job
 from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
 from epg.new_project import ProjectRequest, write_project
-from epg.project import make_catalog
 from epg.tools.tools import load_tools
 from tests.connect.builds import job_of, processes, run
 from tests.emulator.toolchain import arm_gcc, skip_if_missing
@@ -289,7 +289,7 @@ def test_the_commands_are_those_a_person_types(robot: Path, tmp_path: Path, monk
 
 
 def test_every_platform_says_what_builds_need_and_make() -> None:
-    catalog = make_catalog(targets_roots(()), Diagnostics())
+    catalog = load_catalog(targets_roots(()), Diagnostics())
     tools = load_tools(targets_roots(()), Diagnostics())
     targets = [target for name in catalog.target_names() if (target := catalog.find_target(name)) is not None]
     assert len(targets) > 9

@@ -10,13 +10,14 @@ from pathlib import Path
 
 import pytest
 
+from epg.catalog.catalog import load_catalog
 from epg.catalog.hardware import Target
 from epg.connect.build.plan import make_plan
 from epg.connect.projects import Job
 from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
 from epg.new_project import ProjectRequest, write_project
-from epg.project import load_configuration, make_catalog
+from epg.project import load_configuration
 from tests.connect.builds import job_of, run
 from tests.emulator.toolchain import arm_gcc, pico_sdk, skip_if_missing
 from tests.zephyr.workspace import NATIVE, Missing, workspace
@@ -73,7 +74,7 @@ def test_a_program_of_zephyr_by_west(tmp_path: Path, monkeypatch: pytest.MonkeyP
 
 
 def load_target(job: Job) -> Target:
-    configuration = load_configuration(job.request, make_catalog(job.request.roots, Diagnostics()), Diagnostics())
+    configuration = load_configuration(job.request, load_catalog(job.request.roots, Diagnostics()), Diagnostics())
     assert configuration is not None
     return configuration.target
 

@@ -16,11 +16,10 @@ from typing import Any
 
 import pytest
 
-from epg.catalog.catalog import Target
+from epg.catalog.catalog import Target, load_catalog
 from epg.cli.main import main
 from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
-from epg.project import make_catalog
 from epg.resolve.divider import clock_range, divide, show
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -39,7 +38,7 @@ def page(board: str) -> Path:
 
 
 def target(board: str) -> Target:
-    found = make_catalog(targets_roots(), Diagnostics()).find_target(f"{board}_bare_metal")
+    found = load_catalog(targets_roots(), Diagnostics()).find_target(f"{board}_bare_metal")
     assert found is not None
     return found
 

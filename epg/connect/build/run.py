@@ -13,6 +13,7 @@ import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from epg.catalog.catalog import load_catalog
 from epg.catalog.hardware import Target
 from epg.connect.build.messages import Message, Messages, plain
 from epg.connect.build.plan import Plan, make_plan
@@ -21,7 +22,7 @@ from epg.connect.build.products import Made, ask, products
 from epg.connect.build.tools import MissingTool, missing_tools
 from epg.connect.projects import Job
 from epg.diagnostics import Diagnostics
-from epg.project import load_configuration, make_catalog
+from epg.project import load_configuration
 
 KEPT = 20_000
 """Lines of output that can be read again; of more, the first are forgotten."""
@@ -146,7 +147,7 @@ class Build:
     def _target(self) -> Target | None:
         """Board and platform, None where the configuration is wrong: the build says what is."""
         diagnostics = Diagnostics()
-        catalog = make_catalog(self._job.request.roots, diagnostics)
+        catalog = load_catalog(self._job.request.roots, diagnostics)
         configuration = load_configuration(self._job.request, catalog, diagnostics)
         return configuration.target if configuration is not None else None
 

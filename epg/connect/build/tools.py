@@ -11,10 +11,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from epg.bootstrap import cache_folder
+from epg.catalog.catalog import load_catalog
 from epg.catalog.hardware import Platform
 from epg.connect.projects import find_jobs
 from epg.diagnostics import Diagnostics
-from epg.project import load_configuration, make_catalog
+from epg.project import load_configuration
 from epg.tools.find_tool import Finding, Surroundings, find_tool
 from epg.tools.remedy import command_for
 from epg.tools.tools import load_tools
@@ -76,7 +77,7 @@ def tools_of_project(folder: Path) -> list[str]:
     """The names of the tools that the targets of the project in ``folder`` need, as far as its files say so."""
     names: set[str] = set()
     for job in find_jobs(folder, Diagnostics()):
-        catalog = make_catalog(job.request.roots, Diagnostics())
+        catalog = load_catalog(job.request.roots, Diagnostics())
         configuration = load_configuration(job.request, catalog, Diagnostics())
         if configuration is not None:
             names.update(configuration.target.platform.needs)

@@ -10,7 +10,6 @@ from fractions import Fraction
 from pathlib import Path
 
 from epg.catalog.catalog import load_catalog
-from epg.catalog.check_file import check_catalog
 from epg.check.configuration import check_configuration
 from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
@@ -41,7 +40,6 @@ def allocate_file(name: str, user_roots: Sequence[Path] = (), beside: Path | Non
     problems = Diagnostics()
     roots = targets_roots(user_roots)
     catalog = load_catalog(roots, problems)
-    check_catalog(catalog, problems)
     chain = load_tcf_chain(name, roots, problems, beside=beside)
     configuration = check_configuration(chain, [], catalog, problems) if chain else None
     if configuration is None:

@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The middleware and the transport that a target names, and those that it could name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from epg.catalog.catalog import Catalog, Target
+from epg.catalog.middleware import Middleware
+from epg.diagnostics import Diagnostics, Note, did_you_mean
+from epg.documents.schema import extended_from
+from epg.source import Node
+
+
+def offered(target: Target, catalog: Catalog) -> dict[str, tuple[str, ...]]:
+    """Middlewares of a target with their transports: those its platform names, then those that name the platform."""
+    result = dict(target.platform.middlewares)
+    for name in catalog.names("middleware"):
+        middleware = catalog.find_middleware(name) if name not in result else None
+        if middleware is not None and target.platform.name in middleware.platforms:
+            result[name] = middleware.platforms[target.platform.name]
+    return result
+
+
+def unoffered_hint(name: str, possible: Iterable[str], catalog: Catalog) -> str:
+    """What to write instead of a middleware that is not among the ``possible`` ones of a target."""
+    middleware = catalog.find_middleware(name) if name in catalog.names("middleware") else None
+    if middleware is None or not middleware.platforms:
+        return did_you_mean(name, possible, "it has")
+    return f"it has: {', '.join(sorted(possible))}; '{name}' runs on: {', '.join(sorted(middleware.platforms))}"
+
+
+def check_offer(target: Target, middleware: Middleware, diagnostics: Diagnostics) -> None:
+    """Transports are named for middlewares only that use one."""
+    transports = target.platform.node.get("middlewares", middleware.name)
+    if transports is None:
+        transports = middleware.node["platforms"][target.platform.name]
+    if middleware.connection != "stream" and transports.elements():
+        message = f"middleware '{middleware.name}' uses no transport"
+        notes = [Note("this middleware", middleware.span)]
+        hint = f"write '{middleware.name}: []'"
+        diagnostics.error("wrong-value", transports.span, message, hint=hint, notes=notes)
+
+
+def check_lack(target: Target | None, transport: str | None, where: Node, diagnostics: Diagnostics) -> None:
+    """Reports a transport that the target's platform has on other boards."""
+    if target is not None and transport is not None and transport in target.board.lacks:
+        message = f"{target.board.name} has no transport '{transport}': {target.board.lacks[transport]}"
+        hint = "name a component that carries bytes, such as a uart, in 'transport', or write 'middleware: none'"
+        diagnostics.error("unknown-transport", where.span, message, hint=hint, notes=extended_from(where))
