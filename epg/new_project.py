@@ -21,6 +21,7 @@ from epg.catalog.middleware import Middleware
 from epg.check.configuration import CONSOLE, Configuration
 from epg.check.editor import USER_FILES, editor_schema
 from epg.check.names import identifier_problem, project_folder_problem
+from epg.check.target_names import check_name, check_sdk_headers
 from epg.data import data_folder, targets_roots
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.documents.tcf import predefined_tcf_names
@@ -29,7 +30,7 @@ from epg.emit.folder import present_files, write_folder
 from epg.emit.project import ProjectPlan, StandIn, project_files, project_folder, project_names
 from epg.models import Model, load_model
 from epg.new_simulation import model_axes, plant_files, robot_axes, robot_folder
-from epg.project import Request, check_name, check_sdk_headers, load_application, load_configuration
+from epg.project import Request, load_application, load_configuration
 from epg.resolve.matching import Match, match_ports
 from epg.source import Span
 from epg.tools.tools import load_tools

@@ -8,31 +8,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from epg.catalog.catalog import Catalog, Target, load_catalog
+from epg.catalog.catalog import Catalog, load_catalog
 from epg.check.bindings import Bindings, load_bindings
 from epg.check.configuration import Configuration, check_configuration
-from epg.check.names import (
-    STANDARD_HEADERS,
-    STANDARD_TYPES,
-    SYSTEM_LIBRARIES,
-    cmake_path_problem,
-    identifier_problem,
-)
+from epg.check.model import check_model_names
+from epg.check.target_names import check_driver_headers, check_name, check_paths, check_sdk_headers
 from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
 from epg.documents.tcf import load_tcf_chain, settings_node
 from epg.documents.text_file import Drafts
 from epg.models import load_model
-from epg.models.details import FmuExport
 from epg.models.model import Model
 from epg.resolve.allocation import Assignment
 from epg.resolve.application import Application
 from epg.resolve.claims import TICK, ClaimKey
-from epg.resolve.resolve import STATIC_NAMES, PlantFiles, allocate_hardware, resolve
+from epg.resolve.resolve import PlantFiles, allocate_hardware, resolve
 from epg.source import Span
 
 Hardware = Mapping[ClaimKey, Assignment]
@@ -123,7 +117,7 @@ def load_parts(request: Request, diagnostics: Diagnostics, read_model: ModelRead
         check_model_names(plant.model, f"{request.name}_plant", diagnostics)
     application = resolve(request.name, configuration, model, bindings, plant, diagnostics)
     if application is not None:
-        check_driver_headers(application, diagnostics)
+        check_driver_headers(request.name, configuration, diagnostics)
         check_paths((*application.files, *request.user_roots), diagnostics)
     return parts if diagnostics.has_errors else replace(parts, application=application)
 
@@ -134,79 +128,8 @@ def hardware_of(application: Application) -> Hardware:
     return found | ({TICK: application.tick} if application.tick else {})
 
 
-def check_name(name: str, span: Span, diagnostics: Diagnostics) -> None:
-    """A target's name becomes the prefix of C symbols, the name of a header and a CMake target."""
-    problem = identifier_problem(name)
-    if problem is None and name in STANDARD_HEADERS:
-        problem = f"would make a header '{name}.h', which hides the C library's: choose another name"
-    elif problem is None and name in SYSTEM_LIBRARIES:
-        problem = (
-            "is the name of a system library: CMake would link this target wherever that is meant; choose another name"
-        )
-    elif problem is None and {f"{name}_inputs", f"{name}_outputs"} & STATIC_NAMES:
-        problem = f"would make a symbol '{name}_outputs', which generated code has inside: choose another name"
-    if problem:
-        diagnostics.error("invalid-name", span, f"target '{name}' {problem}")
-
-
-def check_library_name(name: str, span: Span, diagnostics: Diagnostics) -> None:
-    """The name of a model's library also becomes a type ``<name>_t``."""
-    check_name(name, span, diagnostics)
-    if f"{name}_t" in STANDARD_TYPES:
-        message = f"target '{name}' would make a type '{name}_t', which is one of the C library's"
-        diagnostics.error("invalid-name", span, message, hint=f"choose another name, such as {name}_model")
-
-
-def check_model_names(model: Model, library: str, diagnostics: Diagnostics) -> None:
-    """No port is called like a macro in the header of the model's ``library`` or of the target it belongs to."""
-    macros = {f"{library}_{word}".upper() for word in ("step_size", "instances", "parameters")}
-    macros |= {f"{library.rpartition('_')[0]}_{word}".upper() for word in ("epg_version", "hash")}
-    for port in (*model.inputs, *model.outputs):
-        if port.identifier in macros:
-            message = f"{port.direction} '{port.name}' is called like a macro of the generated header"
-            diagnostics.error("invalid-name", port.span, message, hint="rename the port or the target")
-
-
-def check_sdk_headers(name: str, target: Target, span: Span, diagnostics: Diagnostics) -> None:
-    """No generated header hides one of the SDK's."""
-    for header in sorted(_generated_headers(name).intersection(target.platform.headers)):
-        message = f"target '{name}' makes a header '{header}', which would hide one that {target.name} needs"
-        diagnostics.error("invalid-name", span, message, hint=f"choose another name, such as {name}_robot")
-
-
-def _generated_headers(name: str) -> set[str]:
-    ends = ("", "_version", "_model", "_model_export", "_model_names", "_plant", "_plant_export")
-    return {f"{name}{end}.h" for end in ends}
-
-
-def check_driver_headers(application: Application, diagnostics: Diagnostics) -> None:
-    """No generated header is called like one of a driver that it is compiled with."""
-    name = application.name
-    generated = _generated_headers(name)
-    for component in application.components:
-        for header in sorted(generated.intersection(component.kind.headers)):
-            message = f"component '{component.name}' needs a header '{header}', and target '{name}' makes one"
-            diagnostics.error("invalid-name", component.span, message, hint="choose another name for the target")
-    communication = application.communication
-    for middleware in communication.middlewares:
-        for header in sorted(generated.intersection(middleware.headers)):
-            message = f"middleware '{middleware.name}' needs a header '{header}', and target '{name}' makes one"
-            diagnostics.error("invalid-name", communication.span, message, hint="choose another name for the target")
-
-
-def check_paths(paths: Iterable[Path], diagnostics: Diagnostics) -> None:
-    """Paths that CMake is told can be named there, and in the files that it writes for Ninja and Make."""
-    for path in sorted(paths):
-        text = str(path.absolute())
-        problem = cmake_path_problem(text)
-        if problem:
-            message = f"'{text}' cannot be named in CMake: {problem}"
-            diagnostics.error("invalid-name", Span(str(path)), message, hint="rename the file or its folder")
-            return
-
-
-def check_target(request: Request, catalog: Catalog, diagnostics: Diagnostics) -> Hardware | None:
-    """Checks a ``.tcf`` by itself; the hardware of its components and of the control loop.
+def load_hardware(request: Request, catalog: Catalog, diagnostics: Diagnostics) -> Hardware | None:
+    """The hardware of components and control loop as a checked ``.tcf`` decides it by itself.
 
     Without a model the control period may be unknown, and the loop's timer then has no settings.
     """
@@ -214,19 +137,3 @@ def check_target(request: Request, catalog: Catalog, diagnostics: Diagnostics) -
     if configuration is None:
         return None
     return allocate_hardware(configuration, configuration.control.period, diagnostics)
-
-
-def check_instances(model: Model, instances: int, span: Span, diagnostics: Diagnostics) -> None:
-    """Several instances need a model that keeps no state in globals."""
-    if instances < 1 or instances > 255:
-        diagnostics.error("out-of-range", span, f"{instances} instances: must be from 1 to 255")
-    elif instances > 1 and not model.instantiable:
-        is_fmu = isinstance(model.details, FmuExport)
-        why = "can be instantiated once only" if is_fmu else "keeps its state in global variables"
-        other = ": each has its own copy of its code" if is_fmu else ", or export it as a C++ class"
-        diagnostics.error(
-            "single-instance",
-            model.span,
-            f"{model.name} ({model.origin}) {why}: there can be one instance",
-            hint="call epg_add_model once for each, with different names" + other,
-        )

@@ -32,7 +32,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from epg.catalog.catalog import load_catalog
     from epg.check.bindings import load_bindings
     from epg.models import load_model
-    from epg.project import check_target, hardware_of, load_application
+    from epg.project import hardware_of, load_application, load_hardware
 
     options.json = options.json or options.format == "json"
     request = request_of(options, "target")
@@ -43,7 +43,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     else:
         catalog = load_catalog(request.roots, diagnostics)
         for name in [*options.files, *([options.tcf] if options.tcf else [])]:
-            found = check_target(replace(request, tcf=name), catalog, diagnostics)
+            found = load_hardware(replace(request, tcf=name), catalog, diagnostics)
             hardware |= {name: found} if found is not None else {}
         if options.model:
             load_model(options.model, diagnostics)

@@ -21,10 +21,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
+    from epg.check.model import check_instances, check_model_names
+    from epg.check.target_names import check_library_name, check_paths
     from epg.emit.cmake import PathNames
     from epg.emit.outputs import model_outputs
     from epg.models import load_model
-    from epg.project import check_instances, check_library_name, check_model_names, check_paths
 
     caller = Span(options.caller or "command line")
     check_library_name(options.name, caller, diagnostics)

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from epg.check.bindings import Bindings
 from epg.check.configuration import Component, Configuration
+from epg.check.names import STATIC_NAMES
 from epg.diagnostics import Diagnostics, Note
 from epg.documents.schema import extended_from
 from epg.models.model import Model
@@ -25,17 +26,6 @@ _PUBLIC = frozenset(
     "start stop enable status statistics target inputs outputs control host model plant hash epg_version".split()
 )
 """What follows ``<name>_`` in names that every application has."""
-
-STATIC_NAMES = frozenset(
-    """read_inputs inputs_finite model_init model_step model_finite model_stopped prepare_outputs write_outputs
-    safe_outputs fail_safe setpoint_states setpoint_slots setpoint_exchange monitor_values monitor_slots
-    monitor_exchange plant_init plant_step set_parameter parameter_table parameter_values parameter_applied
-    parameter_changed store_bytes capture_memory jog_actuators jog_encoders jog_first jog_last middleware_options
-    middleware_output middleware_values middleware_received middleware_input middleware_best_effort console_options
-    console_output console_values node_values node_sent_values node_received node_publications node_buffer""".split()
-)
-"""Names of two words in generated files: a target and a component's name could make one of them."""
-
 
 _SHORTEST, _LONGEST = Fraction(1, 1_000_000), Fraction(3600)
 """Control periods in seconds; targets have narrower limits of their own."""

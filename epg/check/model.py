@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A model as a part of a target or a library: the names of its ports, and how many instances it allows."""
+
+from __future__ import annotations
+
+from epg.diagnostics import Diagnostics
+from epg.models.details import FmuExport
+from epg.models.model import Model
+from epg.source import Span
+
+
+def check_model_names(model: Model, library: str, diagnostics: Diagnostics) -> None:
+    """No port is called like a macro in the header of the model's ``library`` or of the target it belongs to."""
+    macros = {f"{library}_{word}".upper() for word in ("step_size", "instances", "parameters")}
+    macros |= {f"{library.rpartition('_')[0]}_{word}".upper() for word in ("epg_version", "hash")}
+    for port in (*model.inputs, *model.outputs):
+        if port.identifier in macros:
+            message = f"{port.direction} '{port.name}' is called like a macro of the generated header"
+            diagnostics.error("invalid-name", port.span, message, hint="rename the port or the target")
+
+
+def check_instances(model: Model, instances: int, span: Span, diagnostics: Diagnostics) -> None:
+    """Several instances need a model that keeps no state in globals."""
+    if instances < 1 or instances > 255:
+        diagnostics.error("out-of-range", span, f"{instances} instances: must be from 1 to 255")
+    elif instances > 1 and not model.instantiable:
+        is_fmu = isinstance(model.details, FmuExport)
+        why = "can be instantiated once only" if is_fmu else "keeps its state in global variables"
+        other = ": each has its own copy of its code" if is_fmu else ", or export it as a C++ class"
+        diagnostics.error(
+            "single-instance",
+            model.span,
+            f"{model.name} ({model.origin}) {why}: there can be one instance",
+            hint="call epg_add_model once for each, with different names" + other,
+        )
