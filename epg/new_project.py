@@ -137,9 +137,14 @@ def write_project(request: ProjectRequest, diagnostics: Diagnostics) -> NewProje
 
 
 def check_project(project: NewProject, request: ProjectRequest, diagnostics: Diagnostics) -> None:
-    """What ``epg check`` says about a project that was written, but for the ports that nobody has bound."""
+    """What ``epg check`` says about a project that was written, but for the ports that nobody has bound.
+
+    What ``diagnostics`` says about the original of a copied model is left out where it is true of the copy too.
+    """
     problems = Diagnostics()
     load_application(_application_request(project.plan, request.folder, request), problems)
+    repeated = {(problem.id, problem.message) for problem in problems}
+    diagnostics.items[:] = [item for item in diagnostics if (item.id, item.message) not in repeated]
     diagnostics.items.extend(problem for problem in problems if not project.open or problem.id not in UNBOUND)
 
 

@@ -13,6 +13,7 @@ from epg.diagnostics import Diagnostics
 from epg.documents.yaml_file import load_yaml
 from epg.emit.project import Axis
 from epg.models import Model
+from epg.quantity import dimension_of, normal_unit
 
 PLANT, BINDINGS = "plant", "plant.bindings.yaml"
 _SIGNAL_PART = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
@@ -70,8 +71,18 @@ def model_axes(model: Model, topics: Mapping[str, str]) -> list[Axis]:
     """An axis for each real input that ``topics`` (port: topic) sets: what arrives, and the model's first output."""
     outputs = [port.name for port in model.outputs if _SIGNAL_PART.fullmatch(port.name)]
     duty = f"outputs.{outputs[0]}" if outputs else ""
-    real = [port.name for port in model.inputs if port.type == "real" and port.name in topics]
-    return [Axis(topics[name], topics[name], f"inputs.{name}", duty) for name in real if _SIGNAL_PART.fullmatch(name)]
+    real = [port for port in model.inputs if port.type == "real" and port.name in topics]
+    return [
+        Axis(topics[port.name], topics[port.name], f"inputs.{port.name}", duty, _unit(port.unit))
+        for port in real
+        if _SIGNAL_PART.fullmatch(port.name)
+    ]
+
+
+def _unit(unit: str) -> str:
+    """How a scenario spells a port's unit; one that EPG does not know could be anything, so it is left out."""
+    known = dimension_of(unit) is not None and re.fullmatch(r"[A-Za-z][A-Za-z/.]*", normal_unit(unit))
+    return normal_unit(unit) if known else "none"
 
 
 def _nearest(name: str, ports: Mapping[str, str]) -> str:

@@ -33,12 +33,16 @@ class StandIn:
 
 @dataclass(frozen=True)
 class Axis:
-    """What a scenario moves: the topic that is set, the signal that should follow, the one that drives (or empty)."""
+    """What a scenario moves: the topic that is set, the signal that should follow, the one that drives (or empty).
+
+    ``unit`` is that of the topic and the signal, ``none`` for plain numbers, empty for a scenario's default.
+    """
 
     name: str
     setpoint: str
     position: str
     duty: str
+    unit: str = ""
 
 
 @dataclass(frozen=True)

@@ -45,7 +45,7 @@ def _draw(tracking: Tracking, upper, lower) -> None:  # type: ignore[no-untyped-
         upper.plot(tracking.time, tracking.reference, color=ORANGE, linewidth=2.4, label="reference (ideal loop)")
     upper.plot(tracking.time, tracking.position, color=BLUE, linewidth=1.4, label="position")
     upper.plot(tracking.time, tracking.setpoint, color=BLACK, linestyle=(0, (4, 4)), linewidth=0.9, label="setpoint")
-    upper.set_ylabel(f"{axis.name} ({axis.unit})")
+    upper.set_ylabel(f"{axis.name} ({axis.unit})" if axis.unit else axis.name)
     times = [tracking.time[i] for i in shown]
     milli = 1000.0 if axis.unit in ("rad", "m") else 1.0
     if tracking.reference is not None:
@@ -53,7 +53,7 @@ def _draw(tracking: Tracking, upper, lower) -> None:  # type: ignore[no-untyped-
         lower.plot(times, ideal, color=ORANGE, linewidth=1.8)
     errors = [milli * (tracking.position[i] - tracking.setpoint[i]) for i in shown]
     lower.plot(times, errors, color=BLUE, linewidth=0.9)
-    lower.set_ylabel(f"error ({'m' if milli > 1 else ''}{axis.unit})")
+    lower.set_ylabel(f"error ({'m' if milli > 1 else ''}{axis.unit})" if axis.unit else "error")
     for panel in (upper, lower):
         panel.grid(True, color=GREY, alpha=0.3, linewidth=0.6)
         if begin > 0.0:

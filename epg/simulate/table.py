@@ -13,8 +13,9 @@ def format_table(result: Result) -> str:
     rows = _run(result.statistics)
     lines = [f"{name:<22}{value}" for name, value in rows]
     if result.windows:
-        lines += ["", f"{'axis':<8}{'window':<16}{'RMS error':>14}{'largest error':>16}{'RMS to ideal':>16}"]
-        lines += [_window(window) for window in result.windows]
+        width = max(8, *(len(window.axis) + 2 for window in result.windows))
+        lines += ["", f"{'axis':<{width}}{'window':<16}{'RMS error':>14}{'largest error':>16}{'RMS to ideal':>16}"]
+        lines += [_window(window, width) for window in result.windows]
     if result.ending.problem:
         lines += ["", f"FAILED: {result.ending.problem}", f"hint: {result.ending.hint}"][
             : 3 if result.ending.hint else 2
@@ -59,12 +60,13 @@ def _run(statistics: Statistics) -> list[tuple[str, str]]:
     return rows
 
 
-def _window(result: WindowResult) -> str:
+def _window(result: WindowResult, width: int) -> str:
     between = f"{result.window.start:g} ... {result.window.end:g} s"
-    deviation = "-" if result.deviation is None else f"{result.deviation:.4f} {result.unit}"
+    rms, largest = (f"{value:.4f} {result.unit}".rstrip() for value in (result.rms, result.largest))
+    deviation = "-" if result.deviation is None else f"{result.deviation:.4f} {result.unit}".rstrip()
     return (
-        f"{result.axis:<8}{between:<16}{f'{result.rms:.4f} {result.unit}':>14}"
-        f"{f'{result.largest:.4f} {result.unit}':>16}{deviation:>16}"
+        f"{result.axis:<{width}}{between:<16}{rms:>14}"
+        f"{largest:>16}{deviation:>16}"
     )
 
 

@@ -174,6 +174,16 @@ def test_a_model_elsewhere_is_copied_with_all_that_it_needs(tmp_path: Path) -> N
     assert check(tmp_path / "robot", "robot") == 0
 
 
+def test_a_note_about_a_model_that_is_copied_comes_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    export = tmp_path / "export"
+    shutil.copytree(JIWY, export / "src")
+    (export / "common").mkdir()
+    (export / "src/xxtypes.h").rename(export / "common/xxtypes.h")
+    assert new(tmp_path / "robot", "host", export) == 0
+    said = capsys.readouterr().err
+    assert said.count("[model-neighbour]") == 1, said
+
+
 def test_a_model_in_the_project_stays_where_it_is(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = tmp_path / "robot"
     shutil.copytree(JIWY, folder / "my model; $x")
@@ -186,6 +196,17 @@ def test_a_model_in_the_project_stays_where_it_is(tmp_path: Path, capsys: pytest
     assert '  MODEL "../my model\\; \\$x"\n' in after["simulation/CMakeLists.txt"].decode()
     capsys.readouterr()
     assert check(folder, "robot", "my model; $x") == 0
+
+
+def test_a_scenario_has_the_units_of_the_ports(tmp_path: Path) -> None:
+    export = shutil.copytree(ROOT / "tests/models/pid_c", tmp_path / "pid")
+    text = (export / "model.yaml").read_text()
+    units = {"rad": "rad", "m/s": "m/s", "''": "none", "'\"}: %'": "none"}
+    for index, (unit, expected) in enumerate(units.items()):
+        (export / "model.yaml").write_text(re.sub(r"(setpoint: \{)[^}]*", rf"\1unit: {unit}", text))
+        assert new(tmp_path / f"robot{index}", "host", export) == 0
+        scenario = load_yaml(tmp_path / f"robot{index}/scenario.yaml", Diagnostics())
+        assert scenario is not None and scenario["axes"]["setpoint"]["unit"].value == expected
 
 
 def test_a_file_can_name_the_model(tmp_path: Path) -> None:

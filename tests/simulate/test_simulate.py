@@ -82,6 +82,15 @@ def test_a_run_leaves_its_numbers(motor: Path, tmp_path: Path) -> None:
     assert "all 3 limits of the scenario hold" in text
 
 
+def test_an_axis_with_a_long_name_and_without_a_unit(motor: Path, tmp_path: Path) -> None:
+    path = scenario(tmp_path)
+    path.write_text(path.read_text().replace("{motor: {", "{motor_of_the_turret: {unit: none, "))
+    result = simulate(motor, path, tmp_path / "out")
+    lines = [line.split() for line in format_table(result).splitlines()]
+    assert [word for line in lines for word in line].count("rad") == 0
+    assert ["motor_of_the_turret", "0.5", "...", "1.5", "s", f"{result.windows[0].rms:.4f}"] in [x[:6] for x in lines]
+
+
 def test_two_runs_are_equal(motor: Path, tmp_path: Path) -> None:
     path = scenario(tmp_path)
     for name in ("one", "two"):
