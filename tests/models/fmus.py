@@ -272,7 +272,8 @@ def _sources(folder: Path, root: ElementTree.Element, standard: int) -> tuple[li
         return files, folders, [f"-D{item.attrib['name']}={item.attrib.get('value', '')}" for item in given]
     listed = root.find("CoSimulation/SourceFiles")
     files = [inside / file.attrib["name"] for file in listed] if listed is not None else sorted(inside.glob("*.c"))
-    return files, [inside], []
+    below = [path for path in sorted(inside.rglob("*")) if path.is_dir()]  # some tools name these folders nowhere
+    return files, [inside, *below], []
 
 
 def _run(text: str, standard: int, sources: list[Path], folders: list[Path], work: Path, options: list[str]) -> str:

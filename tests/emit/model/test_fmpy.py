@@ -194,4 +194,4 @@ def test_real_fmus(fmpy: Any, path: Path, tmp_path: Path) -> None:
     if "outputTime" in (path / "sources" / "xxinteg.c").read_text("latin-1"):
         for row, other in zip(found, by_simulation(fmpy, library, step, inputs), strict=True):
             pairs = zip(row, other, strict=True)
-            assert all(math.isclose(a, b, rel_tol=1e-6, abs_tol=1e-9) or not math.isfinite(a) for a, b in pairs)
+            assert all(math.isclose(a, b, rel_tol=1e-6, abs_tol=1e-9) or not abs(a) < 1e12 for a, b in pairs)

@@ -32,6 +32,8 @@ REFUSED = {
     "model-file-use",
     "model-heap",
     "fmu-variable",
+    "fmu-guid",
+    "model-stub",
 }
 
 
