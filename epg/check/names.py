@@ -63,7 +63,7 @@ _NOT_IN_PROJECTS = re.compile("[#<>?]" if os.name == "nt" else r'[#<>?:;"\\]')
 def identifier_problem(name: str) -> str | None:
     """Why ``name`` cannot be a C identifier of a user, or None."""
     if not _IDENTIFIER.fullmatch(name):
-        return "is no C identifier: use letters, digits and '_', at most 63, no digit first"
+        return "is not a C identifier: use letters, digits and '_', at most 63, no digit first"
     if name in RESERVED:
         return "is a reserved word of C or C++"
     if name.startswith("__") or re.match("_[A-Z]", name):

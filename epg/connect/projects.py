@@ -88,7 +88,7 @@ def report_no_target(folder: Path, diagnostics: Diagnostics) -> None:
     below = [path.parent for path in sorted(folder.glob(f"*/{FILE}")) if find_jobs(path.parent, Diagnostics())]
     if not here.is_file() and not below:
         return
-    message = f"there is no epg_add_target() here, and '{folder.name}' is no model"
+    message = f"there is no epg_add_target() here, and '{folder.name}' is not a model"
     hint = f"start it for one of the folders below: {', '.join(path.name for path in below)}"
     if not below:
         hint = "add the call that docs/cmake.md shows, or start it for the folder of a model"

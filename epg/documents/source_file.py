@@ -86,7 +86,7 @@ def read_any_text(path: Path, diagnostics: Diagnostics, wanted_by: Span | None =
         diagnostics.error("model-unreadable", whole, message, hint="is this the right file?")
         return None
     if b"\0" in data and not data.startswith((b"\xff\xfe", b"\xfe\xff")):
-        message = f"'{path.name}' is no text"
+        message = f"'{path.name}' is not a text file"
         diagnostics.error("model-unreadable", whole, message, hint="export the model again")
         return None
     return decode(data)

@@ -353,7 +353,7 @@ class _Importer:
             span = place[0] if place else self.whole
             message = "the model has no step size"
             if place:
-                message = f"the step size '{place[1][:80]}' is no positive number"
+                message = f"the step size '{place[1][:80]}' is not a positive number"
             self.diagnostics.error(
                 "model-step", span, message, hint=f"the sources set it as '{self._step_name()} = 0.001;'"
             )

@@ -157,7 +157,7 @@ class _Importer:
             span = place[0] if place else self.whole
             message = "the model has no step size"
             if place:
-                message = f"the step size '{place[1][:80]}' is no positive number"
+                message = f"the step size '{place[1][:80]}' is not a positive number"
             hint = f"{self.class_name}::Reset() sets it as 'm_step_size = 0.001;'"
             self.diagnostics.error("model-step", span, message, hint=hint)
             return None

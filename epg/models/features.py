@@ -297,7 +297,7 @@ def _check_call(
             notes = [Note("it is defined here, in the folder of another model", other)] if other else []
             diagnostics.error("model-incomplete", span, message, hint=hint, notes=notes)
         else:
-            message = f"'{name}' is called, but it is no part of the export: dll() functions run inside 20-sim only"
+            message = f"'{name}' is called, but it is not part of the export: dll() functions run inside 20-sim only"
             diagnostics.error(
                 "model-dll", span, message, hint="put a source file that defines it into the model's folder"
             )

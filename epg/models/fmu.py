@@ -161,7 +161,7 @@ def _step(
         return None
     base = description.internal_step or own_step
     if base is not None and (step / base).denominator != 1:
-        message = f"the step {float(step):g} s is no multiple of the FMU's internal step, {float(base):g} s"
+        message = f"the step {float(step):g} s is not a multiple of the FMU's internal step, {float(base):g} s"
         span = wanted_span or description.step_span
         diagnostics.error("fmu-step", span, message, hint="export it with the step that the target has")
         return None

@@ -46,7 +46,7 @@ def read_description(root: Element, diagnostics: Diagnostics) -> Description | N
     version = root.attributes.get("fmiVersion", "")
     match = re.match(r"([23])\.", version)
     if root.name != "fmiModelDescription" or match is None:
-        message = "this is no description of an FMU"
+        message = "this is not a description of an FMU"
         if root.name == "fmiModelDescription":
             message = f"this FMU is of FMI {one_line(version)[:20] or 'unknown'}: EPG reads FMI 2.0 and 3.0"
         diagnostics.error("fmu-version", root.span, message, hint="export it as FMI 2.0 or 3.0 for co-simulation")
@@ -95,7 +95,7 @@ def _time(element: Element | None, name: str, diagnostics: Diagnostics) -> Fract
         return None
     value = exact_number(text.strip())
     if value is None or not is_step(value):
-        message = f"{name} is '{one_line(text)[:40]}', which is no step in seconds"
+        message = f"{name} is '{one_line(text)[:40]}', which is not a step in seconds"
         diagnostics.error("fmu-step", element.span, message, hint="steps are from 1 ns to 1000000 s")
         return None
     return value

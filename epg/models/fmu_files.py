@@ -172,7 +172,7 @@ def _check_directory(path: Path) -> None:
     if at < 0 or tail[at : at + 4] != b"PK\5\6" or tail[-2:] != b"\0\0":
         at = tail.rfind(b"PK\5\6")
     if at < 0 or len(tail) - at < _END.size:
-        raise _Refused(f"'{path.name}' is no zip archive", "an FMU is a zip file with 'modelDescription.xml' in it")
+        raise _Refused(f"'{path.name}' is not a zip archive", "an FMU is a zip file with 'modelDescription.xml' in it")
     _, _, _, _, count, directory, _, _ = _END.unpack_from(tail, at)
     if tail[max(0, at - 20) : at][:4] == _END64_LOCATOR or count > MAX_ENTRIES or directory > MAX_DIRECTORY:
         raise _Refused(f"'{path.name}' holds more than {MAX_ENTRIES} files", "is this the right file?")

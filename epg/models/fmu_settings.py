@@ -70,7 +70,7 @@ class FmuSettings(ModelYaml):
         for name, value in node.items():
             text = "" if value.value is None else str(value.value)
             if not is_identifier(name):
-                self._error("invalid-name", node.key_span(name), f"'{name}' is no C identifier", "it names a macro")
+                self._error("invalid-name", node.key_span(name), f"'{name}' is not a C identifier", "it names a macro")
             elif not isinstance(value.value, (str, int, float, type(None))) or isinstance(value.value, bool):
                 self._error("wrong-type", value.span, f"'{name}' must be a number or text", "put it into quotes")
             elif not is_definition(text):

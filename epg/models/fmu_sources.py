@@ -84,17 +84,23 @@ def find_sources(files: FmuFiles, description: Description, diagnostics: Diagnos
         return None
     include_dirs = tuple(dict.fromkeys((SOURCES, *listed.include_dirs)))
     reader = _Reader(files, include_dirs, diagnostics)
-    units = []
+    units, foreign = [], []
     for name, span in listed.files:
         place = _inside(name)
         if place not in files.contents:
             message = f"'{one_line(name)[:80]}' is named as a source, but the FMU does not hold it"
             diagnostics.error("fmu-file-missing", span, message, hint="export the FMU again, with its sources")
+        elif place.lower().endswith(".h"):
+            continue  # some tools list the headers too: what includes them finds them
         elif not place.lower().endswith(".c"):
-            message = f"'{one_line(name)[:80]}' is no file of C: EPG compiles FMUs in C"
-            diagnostics.error("fmu-language", span, message, hint="export the FMU as C code")
+            foreign.append((name, span))
         elif reader.read(place):
             units.append(place)
+    if foreign:
+        names = ", ".join(f"'{one_line(name)[:80]}'" for name, _ in foreign[:4])
+        more = f" and {len(foreign) - 4} more" if foreign[4:] else ""
+        message = f"{names}{more} {'are not C files' if foreign[1:] else 'is not a C file'}: EPG compiles FMUs in C"
+        diagnostics.error("fmu-language", foreign[0][1], message, hint="export the FMU as C code")
     if diagnostics.error_count > before:
         return None
     own = reader.own(FMI_HEADERS[description.standard])
@@ -179,7 +185,7 @@ def _define(name: str, item: Element, definitions: dict[str, str], diagnostics: 
     """Adds a definition.  All files of the FMU get all of them: two values of one name are an error."""
     value = item.attributes.get("value", "")
     if not is_identifier(name) or not is_definition(value):
-        message = f"'{one_line(name)[:40]}={one_line(value)[:40]}' is no definition of C"
+        message = f"'{one_line(name)[:40]}={one_line(value)[:40]}' is not a definition of C"
         diagnostics.error("fmu-definition", item.span, message, hint="export the FMU again")
     elif definitions.setdefault(name, value) != value:
         message = f"'{name}' has two values, '{definitions[name][:40]}' and '{value[:40]}'"
@@ -235,7 +241,7 @@ class _Reader:
         data = self.files.contents[name]
         if b"\0" in data and not data.startswith((b"\xff\xfe", b"\xfe\xff")):
             place = Span(str(self.files.path(name)))
-            message = f"'{posixpath.basename(name)}' is no text"
+            message = f"'{posixpath.basename(name)}' is not a text file"
             self.diagnostics.error("model-unreadable", place, message, hint="export the FMU again")
             return False
         self.codes[name] = parse_code(SourceFile(self.files.path(name), decode(data), self.files.archive))

@@ -189,7 +189,7 @@ def _variable(
     reference = attributes.get("valueReference", "")
     if typed is not None and is_port and (typed.name in _TEXT or (typed.name, causality) == ("Clock", "output")):
         what = "keeps its start value" if causality == "input" else "goes nowhere"
-        message = f"{causality} '{name}' is of type {typed.name}: it is no port, and {what}"
+        message = f"{causality} '{name}' is of type {typed.name}: it is not a port, and {what}"
         diagnostics.warning("fmu-no-port", element.span, message, hint="ports are numbers: make it one if it is needed")
         return None
     if typed is None or typed.name in _NO_NUMBERS:

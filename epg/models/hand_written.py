@@ -209,7 +209,7 @@ class _Reader(ModelYaml):
         for index, (name, value) in enumerate(node.items()):
             span = node.key_span(name)
             if not _IDENTIFIER.fullmatch(name) or is_reserved(name):
-                self._error("invalid-name", span, f"'{name}' is no C identifier", "it names a member of the struct")
+                self._error("invalid-name", span, f"'{name}' is not a C identifier", "it names a member of the struct")
             if value.value is not None and not value.is_mapping:
                 self._error("wrong-type", value.span, f"port '{name}' is a map", "write {} or {unit: rad}")
                 continue
@@ -217,7 +217,7 @@ class _Reader(ModelYaml):
             kind = value.get("type")
             if kind is not None and kind.value not in ("real", "integer", "boolean"):
                 hint = did_you_mean(str(kind.value), ("real", "integer", "boolean"))
-                self._error("wrong-value", kind.span, f"'{kind.value}' is no type of a port", hint)
+                self._error("wrong-value", kind.span, f"'{kind.value}' is not a type of a port", hint)
                 kind = None
             ports.append(
                 Port(
@@ -259,7 +259,7 @@ class _Reader(ModelYaml):
             member = self._word(value, "member") or name
             if not _MEMBER.fullmatch(member):
                 what = "member of the instance" if instance else "variable of the header"
-                self._error("invalid-name", span, f"'{member}' is no {what}", "set 'member'")
+                self._error("invalid-name", span, f"'{member}' is not a {what}", "set 'member'")
                 continue
             identifier = to_identifier(name)
             if identifier in taken:

@@ -24,6 +24,12 @@ LOOKED_FOR = (
     "a model is a folder with an export of 20-sim (xxsubmod.c and the files beside it, <Submodel>.cpp with common/, "
     "or tokens.xml), with an FMU, or with a model.yaml"
 )
+SUBMODEL = "functions ...InitializeSubmodel() and ...CalculateSubmodel()"
+EQUATIONS = "CalculateDynamic"  # part of the name of a function that every C export has
+EXPORT_AGAIN = (
+    "generate the code of the submodel in 20-sim again (Tools > Real Time Toolbox > C-Code Generation, 'C function') "
+    "into a folder of its own, and name that"
+)
 _MAX_FILES = 400
 _Loader = Callable[[Diagnostics], "Model | None"]
 
@@ -71,7 +77,10 @@ def load_model(path: Path, diagnostics: Diagnostics, wanted_by: Span | None = No
             diagnostics.error("model-ambiguous", whole, message, hint=f"name one of them: {names}")
             return None
     message = f"no model was recognised in the folder '{path.name}'"
-    diagnostics.error("model-not-recognised", whole, message, hint=LOOKED_FOR + _found(path))
+    part = _part_of_export(source_files(path, c_function.SUFFIXES, 1))
+    if part:
+        message += f": '{part}' has equations of a 20-sim export, but no file has its {SUBMODEL}"
+    diagnostics.error("model-not-recognised", whole, message, hint=EXPORT_AGAIN if part else LOOKED_FOR + _found(path))
     return None
 
 
@@ -171,7 +180,11 @@ def _load_file(path: Path, whole: Span, diagnostics: Diagnostics) -> Model | Non
             return None
     elif suffix not in (".h", ".hpp") and read_any_text(path, diagnostics, whole) is None:
         return None
-    message = f"'{path.name}' is no model"
+    message = f"'{path.name}' is not a model"
+    if _part_of_export([path]):
+        message += f": it has equations of a 20-sim export, but not its {SUBMODEL}"
+        diagnostics.error("model-not-recognised", whole, message, hint=EXPORT_AGAIN)
+        return None
     hint = "name the folder, or the submodel's file (xxsubmod.c, <Submodel>.cpp, tokens.xml, model.yaml, <name>.fmu)"
     diagnostics.error("model-not-recognised", whole, message, hint=hint)
     return None
@@ -183,6 +196,15 @@ def _near(path: Path) -> str:
     except (OSError, ValueError):
         return "the folder above it does not exist either"
     return f"folders beside it: {', '.join(folders[:12])}" if folders else ""
+
+
+def _part_of_export(files: list[Path]) -> str:
+    """The first of ``files`` with the equations of a C export, which people take out of its frame; empty if none."""
+    for path in files[:_MAX_FILES]:
+        file = read_source(path, Diagnostics()) if path.suffix.lower() in c_function.SUFFIXES else None
+        if file and EQUATIONS in file.text and any(EQUATIONS in code.name for code in parse_code(file).functions):
+            return path.name
+    return ""
 
 
 def _found(path: Path) -> str:

@@ -94,7 +94,7 @@ def load_tokens(path: Path, diagnostics: Diagnostics, *, required: bool) -> Toke
         return None
     if root.name != "tokens":
         report = diagnostics.error if required else diagnostics.warning
-        message = f"this is no tokens file of 20-sim: its root is <{root.name}>"
+        message = f"this is not a tokens file of 20-sim: its root is <{root.name}>"
         report("model-xml", root.span, message, hint="the root of a tokens file is <tokens>")
         return None
     values: dict[str, Token] = {}

@@ -98,7 +98,7 @@ def load_tokens_model(tokens: Tokens, diagnostics: Diagnostics) -> Model | None:
         diagnostics.warning("model-single-precision", tokens.span("FLOATPOSTFIX"), message, hint=_EXPORT_HINT)
     step = exact_number(tokens.trimmed("TIME_STEP_SIZE"))
     if not is_step(step):
-        message = f"the step size '{tokens.trimmed('TIME_STEP_SIZE')[:80]}' is no positive number"
+        message = f"the step size '{tokens.trimmed('TIME_STEP_SIZE')[:80]}' is not a positive number"
         diagnostics.error("model-step", tokens.span("TIME_STEP_SIZE"), message, hint="export the model again")
     ports = []
     for kind, token, vector in (
@@ -223,10 +223,10 @@ def _check_calls(tokens: Tokens, diagnostics: Diagnostics) -> tuple[str, ...]:
             elif bare == "String2Double":
                 continue
             elif bare != name:
-                message = f"'{name}' is no function that EPG knows for tokens"
+                message = f"'{name}' is not a function that EPG knows for tokens"
                 diagnostics.error("model-tokens", span, message, hint=did_you_mean(bare, HELPERS) or _EXPORT_HINT)
             else:
-                message = f"'{name}' is called, but it is no part of the export: dll() functions run inside 20-sim only"
+                message = f"'{name}' is called, but is not part of the export: dll() functions run inside 20-sim only"
                 diagnostics.error("model-dll", span, message, hint="avoid dll() in the model")
     if "Random" in helpers:
         message = "the model uses random numbers: they repeat from start to start, and differ from 20-sim's"

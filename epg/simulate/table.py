@@ -64,10 +64,7 @@ def _window(result: WindowResult, width: int) -> str:
     between = f"{result.window.start:g} ... {result.window.end:g} s"
     rms, largest = (f"{value:.4f} {result.unit}".rstrip() for value in (result.rms, result.largest))
     deviation = "-" if result.deviation is None else f"{result.deviation:.4f} {result.unit}".rstrip()
-    return (
-        f"{result.axis:<{width}}{between:<16}{rms:>14}"
-        f"{largest:>16}{deviation:>16}"
-    )
+    return f"{result.axis:<{width}}{between:<16}{rms:>14}{largest:>16}{deviation:>16}"
 
 
 def _time(seconds: float) -> str:
