@@ -19,7 +19,7 @@ enum { LARGEST = 1024 };
 
 typedef void operation_t(epg_exchange_t *exchange, void *value);
 
-static unsigned char slots[4 * LARGEST];
+static unsigned char buffers[4 * LARGEST];
 static epg_exchange_t exchange;
 static atomic_bool running;
 
@@ -91,7 +91,7 @@ int main(int argc, char **argv)
         return 2;
     }
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
-        exchange = (epg_exchange_t){.slots = slots, .size = sizes[i]};
+        exchange = (epg_exchange_t){.buffers = buffers, .size = sizes[i]};
         const double write = measure(write_value, count);
         const double read = measure(read_value, count);
         (void)measure(take_value, 1);

@@ -2,7 +2,7 @@
 """Positions in user files, and values that know theirs.
 
 >>> span = Span("jiwy.tcf", 3, 8, 12)
->>> Node("JIWY_node", span).plain()
+>>> YamlNode("JIWY_node", span).plain()
 'JIWY_node'
 """
 
@@ -34,7 +34,7 @@ class Span:
 
 
 @dataclass(frozen=True)
-class Node:
+class YamlNode:
     """One value of a YAML document with its position.
 
     ``value`` is a scalar, a tuple of nodes or a mapping of names to nodes; ``keys`` says, for a mapping, where each
@@ -42,7 +42,7 @@ class Node:
     in, so that a message about an inherited value can say who inherits it.
     """
 
-    value: Scalar | tuple[Node, ...] | Mapping[str, Node]
+    value: Scalar | tuple[YamlNode, ...] | Mapping[str, YamlNode]
     span: Span
     keys: Mapping[str, Span] = field(default_factory=lambda: MappingProxyType({}))
     origins: tuple[Span, ...] = ()
@@ -58,16 +58,16 @@ class Node:
     def __contains__(self, key: object) -> bool:
         return isinstance(self.value, Mapping) and key in self.value
 
-    def __getitem__(self, key: str | int) -> Node:
+    def __getitem__(self, key: str | int) -> YamlNode:
         if isinstance(self.value, Mapping) and isinstance(key, str):
             return self.value[key]
         if isinstance(self.value, tuple) and isinstance(key, int):
             return self.value[key]
         raise KeyError(key)
 
-    def get(self, *path: str | int) -> Node | None:
+    def get(self, *path: str | int) -> YamlNode | None:
         """The value below this one at ``path``, or None when a step of it does not exist."""
-        node: Node = self
+        node: YamlNode = self
         for key in path:
             try:
                 node = node[key]
@@ -75,12 +75,12 @@ class Node:
                 return None
         return node
 
-    def items(self) -> Iterator[tuple[str, Node]]:
+    def items(self) -> Iterator[tuple[str, YamlNode]]:
         """Keys and values of a mapping in the order they are written; nothing for any other value."""
         if isinstance(self.value, Mapping):
             yield from self.value.items()
 
-    def elements(self) -> tuple[Node, ...]:
+    def elements(self) -> tuple[YamlNode, ...]:
         """The elements of a sequence; nothing for any other value."""
         return self.value if isinstance(self.value, tuple) else ()
 

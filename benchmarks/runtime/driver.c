@@ -40,12 +40,12 @@ void epg_port_wait_until(uint64_t time_ns)
 
 void epg_port_quadrature_start(const epg_port_quadrature_t *decoder)
 {
-    counts[decoder->unit] = 0;
+    counts[decoder->slot] = 0;
 }
 
 uint32_t epg_port_quadrature_count(const epg_port_quadrature_t *decoder)
 {
-    return counts[decoder->unit];
+    return counts[decoder->slot];
 }
 
 bool epg_port_quadrature_healthy(const epg_port_quadrature_t *decoder)
@@ -56,12 +56,12 @@ bool epg_port_quadrature_healthy(const epg_port_quadrature_t *decoder)
 
 void epg_port_pwm_start(const epg_port_pwm_t *pwm)
 {
-    levels[pwm->unit] = 0;
+    levels[pwm->slot] = 0;
 }
 
 void epg_port_pwm_write(const epg_port_pwm_t *pwm, uint32_t level)
 {
-    levels[pwm->unit] = level;
+    levels[pwm->slot] = level;
     port_writes++;
 }
 

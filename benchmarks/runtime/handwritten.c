@@ -46,18 +46,18 @@ typedef struct bridge {
     int8_t direction;
 } bridge_t;
 
-/* The control words of a four-slot exchange (Simpson). */
+/* The control words of a four-buffer exchange (Simpson). */
 typedef struct exchange {
     atomic_uint latest;
     atomic_uint reading;
-    atomic_uint slot[2];
+    atomic_uint newest[2];
     atomic_bool written;
 } exchange_t;
 
-static const epg_port_quadrature_t decoder_pan = {.pin_a = 0, .pin_b = 1, .unit = 0};
-static const epg_port_quadrature_t decoder_tilt = {.pin_a = 2, .pin_b = 3, .unit = 1};
-static const epg_port_pwm_t pwm_pan = {.pin = 4, .unit = 0, .prescaler = 1, .top = PWM_TOP};
-static const epg_port_pwm_t pwm_tilt = {.pin = 7, .unit = 1, .prescaler = 1, .top = PWM_TOP};
+static const epg_port_quadrature_t decoder_pan = {.pin_a = 0, .pin_b = 1, .slot = 0};
+static const epg_port_quadrature_t decoder_tilt = {.pin_a = 2, .pin_b = 3, .slot = 1};
+static const epg_port_pwm_t pwm_pan = {.pin = 4, .slot = 0, .prescaler = 1, .top = PWM_TOP};
+static const epg_port_pwm_t pwm_tilt = {.pin = 7, .slot = 1, .prescaler = 1, .top = PWM_TOP};
 enum { PAN_A = 5, PAN_B = 6, TILT_A = 8, TILT_B = 9 };
 
 /* Control side. */
@@ -74,9 +74,9 @@ static uint32_t silence;
 /* Between the sides. */
 static atomic_uint request, dropped, reconnects, alive;
 static exchange_t setpoint_exchange, monitor_exchange, status_exchange;
-static double setpoint_slots[4][GLUE_SETPOINTS];
-static double monitor_slots[4][GLUE_MONITORED];
-static epg_status_t status_slots[4];
+static double setpoint_buffers[4][GLUE_SETPOINTS];
+static double monitor_buffers[4][GLUE_MONITORED];
+static epg_status_t status_buffers[4];
 
 /* Communication side. */
 static double received[GLUE_SETPOINTS];
@@ -88,18 +88,18 @@ static bool is_finite(double value)
     return (bits >> 52 & 0x7FFu) != 0x7FFu;
 }
 
-/* Exchange: the slot to write to, then the announcement; the slot to read from, or -1. */
+/* Exchange: the buffer to write to, then the announcement; the buffer to read from, or -1. */
 
 static unsigned int write_begin(exchange_t *exchange)
 {
     const unsigned int pair = 1u - atomic_load(&exchange->reading);
-    return 2u * pair + 1u - atomic_load(&exchange->slot[pair]);
+    return 2u * pair + 1u - atomic_load(&exchange->newest[pair]);
 }
 
-static void write_end(exchange_t *exchange, unsigned int slot)
+static void write_end(exchange_t *exchange, unsigned int buffer)
 {
-    atomic_store(&exchange->slot[slot / 2u], slot % 2u);
-    atomic_store(&exchange->latest, slot / 2u);
+    atomic_store(&exchange->newest[buffer / 2u], buffer % 2u);
+    atomic_store(&exchange->latest, buffer / 2u);
     atomic_store(&exchange->written, true);
 }
 
@@ -110,7 +110,7 @@ static int read_begin(exchange_t *exchange)
     }
     const unsigned int pair = atomic_load(&exchange->latest);
     atomic_store(&exchange->reading, pair);
-    return (int)(2u * pair + atomic_load(&exchange->slot[pair]));
+    return (int)(2u * pair + atomic_load(&exchange->newest[pair]));
 }
 
 /* Encoders */
@@ -326,7 +326,7 @@ void glue_cycle(uint64_t tick_ns, uint32_t missed)
 
     const int newest = read_begin(&setpoint_exchange);
     if (newest >= 0) {
-        memcpy(setpoints, setpoint_slots[newest], sizeof setpoints);
+        memcpy(setpoints, setpoint_buffers[newest], sizeof setpoints);
     }
     handle_request();
 
@@ -348,20 +348,20 @@ void glue_cycle(uint64_t tick_ns, uint32_t missed)
         bridge_write(&bridge_tilt, &pwm_tilt, TILT_A, TILT_B, y[DUTY_TILT]);
     }
     if (stepped) {
-        const unsigned int slot = write_begin(&monitor_exchange);
-        monitor_slots[slot][0] = y[LOGGING_PAN];
-        monitor_slots[slot][1] = y[LOGGING_TILT];
-        write_end(&monitor_exchange, slot);
+        const unsigned int buffer = write_begin(&monitor_exchange);
+        monitor_buffers[buffer][0] = y[LOGGING_PAN];
+        monitor_buffers[buffer][1] = y[LOGGING_TILT];
+        write_end(&monitor_exchange, buffer);
     }
 
     count_cycle(tick_ns, begin_ns, epg_port_time_ns(), missed);
     count_silence();
     statistics.setpoints_dropped = atomic_load(&dropped);
     statistics.reconnects = atomic_load(&reconnects);
-    const unsigned int slot = write_begin(&status_exchange);
-    status_slots[slot] =
+    const unsigned int buffer = write_begin(&status_exchange);
+    status_buffers[buffer] =
         (epg_status_t){.enabled = enabled, .fault = fault, .time_ns = tick_ns, .statistics = statistics};
-    write_end(&status_exchange, slot);
+    write_end(&status_exchange, buffer);
 }
 
 void glue_start(void)
@@ -396,29 +396,29 @@ bool glue_receive(size_t index, double value, uint64_t received_ns, bool publish
         atomic_store(&dropped, atomic_load(&dropped) + 1u);
     }
     if (publish) {
-        const unsigned int slot = write_begin(&setpoint_exchange);
-        memcpy(setpoint_slots[slot], received, sizeof received);
-        write_end(&setpoint_exchange, slot);
+        const unsigned int buffer = write_begin(&setpoint_exchange);
+        memcpy(setpoint_buffers[buffer], received, sizeof received);
+        write_end(&setpoint_exchange, buffer);
     }
     return finite;
 }
 
 bool glue_monitor(double values[GLUE_MONITORED])
 {
-    const int slot = read_begin(&monitor_exchange);
-    if (slot >= 0) {
-        memcpy(values, monitor_slots[slot], sizeof monitor_slots[slot]);
+    const int buffer = read_begin(&monitor_exchange);
+    if (buffer >= 0) {
+        memcpy(values, monitor_buffers[buffer], sizeof monitor_buffers[buffer]);
     }
-    return slot >= 0;
+    return buffer >= 0;
 }
 
 bool glue_status(epg_status_t *status)
 {
-    const int slot = read_begin(&status_exchange);
-    if (slot >= 0) {
-        *status = status_slots[slot];
+    const int buffer = read_begin(&status_exchange);
+    if (buffer >= 0) {
+        *status = status_buffers[buffer];
     }
-    return slot >= 0;
+    return buffer >= 0;
 }
 
 void glue_request(bool enable)

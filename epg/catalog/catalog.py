@@ -19,7 +19,7 @@ from epg.catalog.kind import Kind, KindPort, make_kind
 from epg.catalog.middleware import Middleware, make_middleware
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.documents.yaml_file import load_yaml
-from epg.source import Node, Span
+from epg.source import Span, YamlNode
 
 __all__ = ["Catalog", "Kind", "KindPort", "Target", "load_catalog"]
 
@@ -30,7 +30,7 @@ FOLDERS = {
     "middleware": "middlewares",
     "component": "components",
 }
-"""What a folder of ``targets`` holds: each item is a folder with a file of the item's sort, ``boards/x/board.yaml``."""
+"""The folder of each category of items: an item is a folder with one file, such as ``boards/x/board.yaml``."""
 
 
 Item = TypeVar("Item", Soc, Board, Platform, Middleware, Kind)
@@ -45,9 +45,9 @@ class Catalog:
         self._files: dict[str, dict[str, list[Path]]] = {}
         self._items: dict[tuple[str, str], Soc | Board | Platform | Middleware | Kind | None] = {}
 
-    def names(self, sort: str) -> list[str]:
-        """Names of all items of a sort: "soc", "board", "platform", "middleware" or "component"."""
-        return sorted(self._paths(sort))
+    def names(self, category: str) -> list[str]:
+        """Names of all items of a category: "soc", "board", "platform", "middleware" or "component"."""
+        return sorted(self._paths(category))
 
     def kind_names(self) -> list[str]:
         return self.names("component")
@@ -132,37 +132,39 @@ class Catalog:
 
     def _report_missing(self, platform: Platform, board: Board | None) -> None:
         """Reports a board that a platform names, or a chip that a board names, when there is no such folder."""
-        sort, node = ("soc", board.node["soc"]) if board else ("board", platform.node.get("board"))
-        if node is not None and str(node.value) not in self._paths(sort):
-            hint = not_found_hint(str(node.value), self.names(sort), f"in {FOLDERS[sort]}/")
-            self._diagnostics.error(f"unknown-{sort}", node.span, f"there is no {sort} '{node.value}'", hint=hint)
+        category, node = ("soc", board.node["soc"]) if board else ("board", platform.node.get("board"))
+        if node is not None and str(node.value) not in self._paths(category):
+            hint = not_found_hint(str(node.value), self.names(category), f"in {FOLDERS[category]}/")
+            self._diagnostics.error(
+                f"unknown-{category}", node.span, f"there is no {category} '{node.value}'", hint=hint
+            )
 
-    def _paths(self, sort: str) -> dict[str, list[Path]]:
-        """The files of all items of a sort, by name; several where roots have the same name."""
-        if sort not in self._files:
+    def _paths(self, category: str) -> dict[str, list[Path]]:
+        """The files of all items of a category, by name; several where roots have the same name."""
+        if category not in self._files:
             files: dict[str, list[Path]] = {}
             for root in self.roots:
-                for path in sorted((root / FOLDERS[sort]).glob(f"*/{sort}.yaml")):
+                for path in sorted((root / FOLDERS[category]).glob(f"*/{category}.yaml")):
                     files.setdefault(path.parent.name, []).append(path)
-            self._files[sort] = files
-        return self._files[sort]
+            self._files[category] = files
+        return self._files[category]
 
-    def _item(self, sort: str, name: str, make: Callable[[Node, Path], Item]) -> Item | None:
-        if (sort, name) not in self._items:
-            self._items[sort, name] = self._load(sort, name, make)
-        return self._items[sort, name]  # type: ignore[return-value]
+    def _item(self, category: str, name: str, make: Callable[[YamlNode, Path], Item]) -> Item | None:
+        if (category, name) not in self._items:
+            self._items[category, name] = self._load(category, name, make)
+        return self._items[category, name]  # type: ignore[return-value]
 
-    def _load(self, sort: str, name: str, make: Callable[[Node, Path], Item]) -> Item | None:
-        paths = self._paths(sort).get(name, [])
+    def _load(self, category: str, name: str, make: Callable[[YamlNode, Path], Item]) -> Item | None:
+        paths = self._paths(category).get(name, [])
         if not paths:
             return None
         node = load_yaml(paths[0], self._diagnostics)
-        if node is None or not check_file(sort, node, name, self._diagnostics):
+        if node is None or not check_file(category, node, name, self._diagnostics):
             return None
         if len(paths) > 1:
-            message = f"{sort} '{name}' stands in {len(paths)} targets folders, of which this one is used"
+            message = f"{category} '{name}' stands in {len(paths)} targets folders, of which this one is used"
             hint = "rename its folder to have both"
-            self._diagnostics.warning("shadowed-item", node[_NAME_KEYS[sort]].span, message, hint=hint)
+            self._diagnostics.warning("shadowed-item", node[_NAME_KEYS[category]].span, message, hint=hint)
         return make(node, paths[0].parent)
 
 

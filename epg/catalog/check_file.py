@@ -14,45 +14,47 @@ from epg.diagnostics import Diagnostics, did_you_mean
 from epg.documents.schema import load_schema, validate
 from epg.documents.text_file import is_file
 from epg.documents.yaml_file import newer_version
-from epg.source import Node, Span
+from epg.source import Span, YamlNode
 
 
-def check_file(sort: str, node: Node, name: str, diagnostics: Diagnostics) -> bool:
+def check_file(category: str, node: YamlNode, name: str, diagnostics: Diagnostics) -> bool:
     """Whether the file of the item ``name`` is right; reports its mistakes."""
-    key = "kind" if sort == "component" else sort
+    key = "kind" if category == "component" else category
     if not node.is_mapping:
         span = Span(node.span.file, 1, 1, 2)
-        diagnostics.error("wrong-type", span, f"a {sort}.yaml is a map (key: value)", hint="it begins with 'api: 1'")
+        diagnostics.error(
+            "wrong-type", span, f"a {category}.yaml is a map (key: value)", hint="it begins with 'api: 1'"
+        )
         return False
-    if newer_version(node, "api", diagnostics) or not validate(node, load_schema(sort), diagnostics):
+    if newer_version(node, "api", diagnostics) or not validate(node, load_schema(category), diagnostics):
         return False
     errors = diagnostics.error_count
     if node[key].value != name:
         message = f"{key} '{node[key].value}' stands in a folder called '{name}'"
         hint = f"write '{key}: {name}', or rename the folder"
         diagnostics.error("wrong-folder", node[key].span, message, hint=hint)
-    if sort == "soc":
+    if category == "soc":
         check_soc(node, diagnostics)
-    elif sort == "board":
+    elif category == "board":
         check_board(node, diagnostics)
-    elif sort == "platform":
+    elif category == "platform":
         check_platform(node, diagnostics)
         _files_exist(node, ("templates",), _names_in(node, ("templates",)), diagnostics)
         _check_templates(_names_in(node, ("templates",)), diagnostics)
         if node["builds"].value is True:
             _beside(node["builds"], "platform.cmake", "docs/adding-a-platform.md", diagnostics)
-    elif sort == "middleware":
+    elif category == "middleware":
         check_middleware(node, diagnostics)
     else:
         check_kind(node, diagnostics)
     for path in (("driver", "headers"), ("driver", "sources")):
         _files_exist(node, path, _names_in(node, path), diagnostics)
-    if sort == "component":
+    if category == "component":
         _beside(node["kind"], "code.c.j2", "docs/adding-a-component-kind.md", diagnostics)
     return diagnostics.error_count == errors
 
 
-def _names_in(node: Node, path: tuple[str, ...]) -> list[Node]:
+def _names_in(node: YamlNode, path: tuple[str, ...]) -> list[YamlNode]:
     found = node.get(*path)
     return list(found.elements()) if found is not None else []
 
@@ -61,7 +63,7 @@ _FILE = re.compile(r"(?:[A-Za-z0-9_+-][A-Za-z0-9_+.-]*/)*[A-Za-z0-9_+-][A-Za-z0-
 """Names that can stand in ``#include`` and in CMake, and that lead nowhere else."""
 
 
-def _files_exist(node: Node, path: tuple[str, ...], names: Collection[Node], diagnostics: Diagnostics) -> None:
+def _files_exist(node: YamlNode, path: tuple[str, ...], names: Collection[YamlNode], diagnostics: Diagnostics) -> None:
     """Reports names in ``node`` that are no files in its folder."""
     folder = Path(node.span.file).parent
     for name in names:
@@ -76,7 +78,7 @@ def _files_exist(node: Node, path: tuple[str, ...], names: Collection[Node], dia
             diagnostics.error("file-not-found", name.span, message, hint=hint)
 
 
-def _check_templates(names: Collection[Node], diagnostics: Diagnostics) -> None:
+def _check_templates(names: Collection[YamlNode], diagnostics: Diagnostics) -> None:
     """Templates of a platform make files of their own."""
     for name in names:
         if not _TEMPLATE.fullmatch(str(name.value)) or str(name.value) in _TAKEN:
@@ -94,7 +96,7 @@ _TAKEN = {
 """Names of files that every target has."""
 
 
-def _beside(node: Node, name: str, page: str, diagnostics: Diagnostics) -> None:
+def _beside(node: YamlNode, name: str, page: str, diagnostics: Diagnostics) -> None:
     """Reports that the file ``name`` is not in the folder in which ``node`` makes it necessary."""
     folder = Path(node.span.file).parent
     if not (folder / name).is_file():

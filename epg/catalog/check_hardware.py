@@ -10,10 +10,10 @@ from epg.catalog.hardware import Target
 from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.documents.items import integer_range, map_of, pin_list, pin_names
 from epg.quantity import QuantityError, parse_quantity
-from epg.source import Node, Span
+from epg.source import Span, YamlNode
 
 
-def check_soc(node: Node, diagnostics: Diagnostics) -> None:
+def check_soc(node: YamlNode, diagnostics: Diagnostics) -> None:
     """A chip in itself: pins, slots, instances and dividers that exist."""
     _clock(node["clock"], diagnostics)
     pins = _pins(node.get("pins"), diagnostics)
@@ -24,7 +24,7 @@ def check_soc(node: Node, diagnostics: Diagnostics) -> None:
         _resource_class(name, resource_class, peripherals, diagnostics)
 
 
-def check_board(node: Node, diagnostics: Diagnostics) -> None:
+def check_board(node: YamlNode, diagnostics: Diagnostics) -> None:
     """A board in itself: each pin has one meaning."""
     seen: dict[str, tuple[str, Span]] = {}
     listed = node.get("pins")
@@ -41,7 +41,7 @@ def check_board(node: Node, diagnostics: Diagnostics) -> None:
         _layout(node["layout"], {name for section, name, _ in groups if section == "pins"}, diagnostics)
 
 
-def _layout(layout: Node, pins: set[str], diagnostics: Diagnostics) -> None:
+def _layout(layout: YamlNode, pins: set[str], diagnostics: Diagnostics) -> None:
     """Each contact is a pin of the board, once, or a supply."""
     supplies = map_of(layout, "supplies")
     seen: dict[str, Span] = {}
@@ -55,7 +55,7 @@ def _layout(layout: Node, pins: set[str], diagnostics: Diagnostics) -> None:
         seen.setdefault(name, contact.span)
 
 
-def check_platform(node: Node, diagnostics: Diagnostics) -> None:
+def check_platform(node: YamlNode, diagnostics: Diagnostics) -> None:
     """A platform serves families of chips or one board; its tick is one of its classes."""
     if ("board" in node) == ("families" in node):
         message = "a platform states either 'families' or 'board'"
@@ -105,7 +105,7 @@ def check_target(target: Target, diagnostics: Diagnostics) -> None:
             )
 
 
-def _peripheral(name: str, node: Node, pins: Sequence[str], diagnostics: Diagnostics) -> None:
+def _peripheral(name: str, node: YamlNode, pins: Sequence[str], diagnostics: Diagnostics) -> None:
     instances = _listed(node["instances"])
     slots = [""]
     if "slots" in node:
@@ -137,7 +137,7 @@ def _peripheral(name: str, node: Node, pins: Sequence[str], diagnostics: Diagnos
         diagnostics.error("unknown-name", node.key_span("agree"), f"'{name}' has no divider that sets a frequency")
 
 
-def _resource_class(name: str, node: Node, peripherals: dict[str, Node], diagnostics: Diagnostics) -> None:
+def _resource_class(name: str, node: YamlNode, peripherals: dict[str, YamlNode], diagnostics: Diagnostics) -> None:
     stated = node.get("peripheral")
     if stated is not None and stated.value not in peripherals:
         _unknown("peripheral", stated, peripherals, diagnostics)
@@ -165,7 +165,7 @@ def _resource_class(name: str, node: Node, peripherals: dict[str, Node], diagnos
             diagnostics.error("wrong-value", node.key_span("divider"), f"the peripheral of '{name}' has no divider")
 
 
-def _clock(node: Node, diagnostics: Diagnostics) -> None:
+def _clock(node: YamlNode, diagnostics: Diagnostics) -> None:
     try:
         if parse_quantity(node.value, "frequency") <= 0:
             diagnostics.error("out-of-range", node.span, "a clock must be more than 0 Hz")
@@ -173,7 +173,7 @@ def _clock(node: Node, diagnostics: Diagnostics) -> None:
         diagnostics.error("wrong-unit", node.span, str(problem), hint=problem.hint)
 
 
-def _pins(node: Node | None, diagnostics: Diagnostics) -> tuple[str, ...]:
+def _pins(node: YamlNode | None, diagnostics: Diagnostics) -> tuple[str, ...]:
     """The pins of a list, empty after reporting a range that is none or a pin that is there twice."""
     try:
         names = pin_names(node)
@@ -188,7 +188,7 @@ def _pins(node: Node | None, diagnostics: Diagnostics) -> tuple[str, ...]:
     return names
 
 
-def _listed(node: Node | None) -> list[str]:
+def _listed(node: YamlNode | None) -> list[str]:
     if node is None:
         return []
     if isinstance(node.value, int):
@@ -196,7 +196,7 @@ def _listed(node: Node | None) -> list[str]:
     return [str(element.value) for element in node.elements()]
 
 
-def _range(node: Node | None, diagnostics: Diagnostics) -> None:
+def _range(node: YamlNode | None, diagnostics: Diagnostics) -> None:
     if node is None:
         return
     first, last = integer_range(node)
@@ -211,6 +211,6 @@ def _no_pin(name: str, span: Span, target: Target, diagnostics: Diagnostics) -> 
     diagnostics.error("unknown-name", span, f"{target.soc.title} has no pin '{name}'", hint=hint, notes=notes)
 
 
-def _unknown(what: str, node: Node, known: Iterable[str], diagnostics: Diagnostics) -> None:
+def _unknown(what: str, node: YamlNode, known: Iterable[str], diagnostics: Diagnostics) -> None:
     hint = did_you_mean(str(node.value), known, "known")
     diagnostics.error("unknown-name", node.span, f"unknown {what} '{node.value}'", hint=hint)

@@ -9,7 +9,7 @@ from epg.catalog.kind import OUTPUT_CLASSES
 from epg.catalog.parameter import COMMON_PARAMETERS, parameter_problems
 from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.documents.items import flag_of, map_of, texts_of
-from epg.source import Node, Span
+from epg.source import Span, YamlNode
 
 _SETPOINT_PARAMETERS = {
     "initial": "type: number",
@@ -23,7 +23,7 @@ _OUTPUTS = 8
 _DIMENSIONS = {"frequency": "frequency", "period": "time"}
 
 
-def check_kind(node: Node, diagnostics: Diagnostics) -> None:
+def check_kind(node: YamlNode, diagnostics: Diagnostics) -> None:
     """A kind in itself."""
     parameters = map_of(node, "parameters")
     for name, parameter in parameters.items():
@@ -50,7 +50,7 @@ def check_kind(node: Node, diagnostics: Diagnostics) -> None:
         _communication(node, parameters, diagnostics)
 
 
-def _communication(node: Node, parameters: Mapping[str, Node], diagnostics: Diagnostics) -> None:
+def _communication(node: YamlNode, parameters: Mapping[str, YamlNode], diagnostics: Diagnostics) -> None:
     """What EPG itself reads of a topic's parameters has the types it expects."""
     direction = str(node["communication"].value)
     topics = {"from": "type: string", "to": "type: string"} if direction == "echo" else {"topic": "type: string"}
@@ -82,7 +82,7 @@ def _communication(node: Node, parameters: Mapping[str, Node], diagnostics: Diag
             diagnostics.error("wrong-value", span, message, hint=f"write 'enum: [{', '.join(known)}]'")
 
 
-def _relations(node: Node, parameters: Iterable[str], uses: Iterable[str], diagnostics: Diagnostics) -> None:
+def _relations(node: YamlNode, parameters: Iterable[str], uses: Iterable[str], diagnostics: Diagnostics) -> None:
     relations = node.get("relations")
     for relation in relations.elements() if relations else ():
         names = [
@@ -100,7 +100,7 @@ def _relations(node: Node, parameters: Iterable[str], uses: Iterable[str], diagn
             _known("parameter", name, parameters, diagnostics)
 
 
-def _ports(node: Node, parameters: Mapping[str, Node], diagnostics: Diagnostics) -> None:
+def _ports(node: YamlNode, parameters: Mapping[str, YamlNode], diagnostics: Diagnostics) -> None:
     """At most one port of a direction is meant by the component's name alone, and none of several."""
     defaults: dict[str, tuple[str, Span]] = {}
     for name, port in map_of(node, "ports").items():
@@ -127,7 +127,7 @@ def _ports(node: Node, parameters: Mapping[str, Node], diagnostics: Diagnostics)
                 diagnostics.error("wrong-value", span, message, notes=[Note("the other one", other_span)])
 
 
-def _each(port: Node, parameters: Mapping[str, Node], diagnostics: Diagnostics) -> None:
+def _each(port: YamlNode, parameters: Mapping[str, YamlNode], diagnostics: Diagnostics) -> None:
     """A port for each of a list of names, which every component has."""
     named = port["each"]
     _known("parameter", named, parameters, diagnostics)
@@ -142,7 +142,7 @@ def _each(port: Node, parameters: Mapping[str, Node], diagnostics: Diagnostics) 
         diagnostics.error("wrong-value", port["default"].span, "one of several ports is not meant by a name alone")
 
 
-def _claims(node: Node, parameters: Mapping[str, Node], diagnostics: Diagnostics) -> None:
+def _claims(node: YamlNode, parameters: Mapping[str, YamlNode], diagnostics: Diagnostics) -> None:
     pins = texts_of(node, "pins")
     used: dict[str, Span] = {}
     for claim in map_of(node, "claims").values():
@@ -161,7 +161,7 @@ def _claims(node: Node, parameters: Mapping[str, Node], diagnostics: Diagnostics
             diagnostics.error("wrong-value", pin.span, f"pin '{pin.value}' is in no claim", hint=hint)
 
 
-def _safe_states(node: Node, diagnostics: Diagnostics) -> None:
+def _safe_states(node: YamlNode, diagnostics: Diagnostics) -> None:
     """States are levels of outputs, of which targets/runtime/include/epg/outputs.h has 8 for a component."""
     outputs = [name for name, claim in map_of(node, "claims").items() if claim["class"].value in OUTPUT_CLASSES]
     if len(outputs) > _OUTPUTS:
@@ -175,7 +175,7 @@ def _safe_states(node: Node, diagnostics: Diagnostics) -> None:
                 diagnostics.error("unknown-name", state.key_span(name), message, hint=hint)
 
 
-def _attribute(attribute: str, named: Node, parameter: Node | None, diagnostics: Diagnostics) -> None:
+def _attribute(attribute: str, named: YamlNode, parameter: YamlNode | None, diagnostics: Diagnostics) -> None:
     """Dividers are set from numbers with a unit, or from rates per second, such as a baud rate, that are whole
     numbers; other attributes are compared, so they are single values."""
     if parameter is None:
@@ -190,7 +190,7 @@ def _attribute(attribute: str, named: Node, parameter: Node | None, diagnostics:
         diagnostics.error("wrong-value", named.span, f"attribute '{attribute}' cannot come from an object")
 
 
-def _known(what: str, node: Node, known: Iterable[str], diagnostics: Diagnostics) -> None:
+def _known(what: str, node: YamlNode, known: Iterable[str], diagnostics: Diagnostics) -> None:
     names = list(known)
     if node.value not in names:
         hint = did_you_mean(str(node.value), names, f"{what}s")

@@ -9,13 +9,13 @@ from epg.catalog.hardware import Target
 from epg.catalog.parameter import parameter_problems
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.documents.items import map_of, texts_of
-from epg.source import Node
+from epg.source import YamlNode
 
 COMMON_OPTIONS = ("middleware", "transport", "period", "domain", "diagnostics", "console", "usb")
 """Keys of ``communication`` that do not depend on the middleware."""
 
 
-def check_middleware(node: Node, diagnostics: Diagnostics) -> None:
+def check_middleware(node: YamlNode, diagnostics: Diagnostics) -> None:
     """A middleware in itself."""
     options = map_of(node, "options")
     for name, option in options.items():
@@ -46,5 +46,5 @@ def check_offers(target: Target, known: Sequence[str], diagnostics: Diagnostics)
             diagnostics.error("unknown-middleware", offered.key_span(name), message, hint=hint)
 
 
-def _unfinished(node: Node) -> bool:
+def _unfinished(node: YamlNode) -> bool:
     return "builds" in node and node["builds"].value is False

@@ -19,7 +19,7 @@ from types import MappingProxyType
 from epg.catalog.layout import Layout, make_layout
 from epg.documents.items import flag_of, integer_range, map_of, pin_names, text_of, texts_of
 from epg.quantity import parse_quantity
-from epg.source import Node, Span
+from epg.source import Span, YamlNode
 
 
 @dataclass(frozen=True)
@@ -150,7 +150,7 @@ class Board:
     devicetree: Mapping[str, tuple[str, ...]]
     console: str
     layout: Layout | None
-    node: Node
+    node: YamlNode
     folder: Path
     span: Span
 
@@ -213,7 +213,7 @@ class Platform:
     program: str
     needs: tuple[str, ...]
     products: tuple[Product, ...]
-    node: Node
+    node: YamlNode
     folder: Path
     span: Span
 
@@ -252,7 +252,7 @@ class Target:
         return self.soc.classes.get(name) if name in self.platform.classes else None
 
 
-def make_soc(node: Node, folder: Path) -> Soc:
+def make_soc(node: YamlNode, folder: Path) -> Soc:
     """The chip that a checked ``soc.yaml`` describes."""
     automatic = node.get("pins", "automatic")
     peripherals = {name: _peripheral(name, child, node) for name, child in map_of(node, "peripherals").items()}
@@ -272,7 +272,7 @@ def make_soc(node: Node, folder: Path) -> Soc:
     )
 
 
-def make_board(node: Node, folder: Path) -> Board:
+def make_board(node: YamlNode, folder: Path) -> Board:
     """The board that a checked ``board.yaml`` describes."""
     onboard = {
         pin: OnboardPin(text_of(child, "title"), texts_of(child, "classes"))
@@ -302,7 +302,7 @@ def make_board(node: Node, folder: Path) -> Board:
     )
 
 
-def make_platform(node: Node, folder: Path) -> Platform:
+def make_platform(node: YamlNode, folder: Path) -> Platform:
     """The platform that a checked ``platform.yaml`` describes."""
     tick, products = node.get("tick", "class"), node.get("products")
     middlewares = {
@@ -339,7 +339,7 @@ def make_platform(node: Node, folder: Path) -> Platform:
     )
 
 
-def _peripheral(name: str, node: Node, soc: Node) -> Peripheral:
+def _peripheral(name: str, node: YamlNode, soc: YamlNode) -> Peripheral:
     instances = _names(node["instances"])
     slots: tuple[str, ...] = ("",)
     if "slots" in node:
@@ -365,7 +365,7 @@ def _peripheral(name: str, node: Node, soc: Node) -> Peripheral:
     )
 
 
-def _resource_class(name: str, node: Node, soc: Node) -> ResourceClass:
+def _resource_class(name: str, node: YamlNode, soc: YamlNode) -> ResourceClass:
     peripheral, counter = node.get("peripheral"), node.get("divider", "counter")
     divider = node.get("divider")
     return ResourceClass(
@@ -391,11 +391,11 @@ def _resource_class(name: str, node: Node, soc: Node) -> ResourceClass:
     )
 
 
-def _clock(node: Node) -> Fraction:
+def _clock(node: YamlNode) -> Fraction:
     return Fraction(parse_quantity(node.value, "frequency"))
 
 
-def _names(node: Node | None) -> tuple[str, ...]:
+def _names(node: YamlNode | None) -> tuple[str, ...]:
     """``[TIM1, TIM2]`` as it is, ``8`` as 0 ... 7, nothing as one nameless."""
     if node is None:
         return ("",)

@@ -10,7 +10,7 @@ from types import MappingProxyType
 from typing import Any
 
 from epg.documents.items import flag_of, map_of, text_of, texts_of
-from epg.source import Node, Span
+from epg.source import Span, YamlNode
 
 OUTPUT_CLASSES = ("digital_output", "pwm")
 """Classes of peripherals whose pins a component drives."""
@@ -30,8 +30,8 @@ class KindParameter:
     dimension: str
     description: str
     required: bool
-    default: Node | None
-    bounds: Mapping[str, Node]
+    default: YamlNode | None
+    bounds: Mapping[str, YamlNode]
     keywords: Mapping[str, Any]  # enum, pattern, minLength, examples: as in JSON Schema
     aliases: Mapping[str, str]  # other ways to write values of enum, and those values
     properties: tuple[KindParameter, ...]
@@ -121,7 +121,7 @@ class Kind:
     safe_states: tuple[Mapping[str, str], ...]  # claim -> "low" or "high": safe whatever the other claims' pins do
     headers: tuple[str, ...]
     sources: tuple[str, ...]
-    node: Node
+    node: YamlNode
     folder: Path
     span: Span
 
@@ -179,7 +179,7 @@ class Kind:
         return tuple(self.folder / name for name in names)
 
 
-def make_kind(node: Node, folder: Path) -> Kind:
+def make_kind(node: YamlNode, folder: Path) -> Kind:
     """The kind that a checked ``component.yaml`` describes."""
     relations = node.get("relations")
     exactly_one: list[tuple[str, ...]] = []
@@ -225,7 +225,7 @@ def make_kind(node: Node, folder: Path) -> Kind:
     )
 
 
-def make_parameters(section: Node | None) -> tuple[KindParameter, ...]:
+def make_parameters(section: YamlNode | None) -> tuple[KindParameter, ...]:
     """The parameters of a checked map of them, or none."""
     return (
         ()
@@ -234,7 +234,7 @@ def make_parameters(section: Node | None) -> tuple[KindParameter, ...]:
     )
 
 
-def make_parameter(name: str, node: Node, span: Span) -> KindParameter:
+def make_parameter(name: str, node: YamlNode, span: Span) -> KindParameter:
     """The parameter that a checked part of a ``component.yaml`` describes."""
     keywords = {key: node[key].plain() for key in ("enum", "pattern", "minLength", "examples") if key in node}
     return KindParameter(
@@ -252,7 +252,7 @@ def make_parameter(name: str, node: Node, span: Span) -> KindParameter:
     )
 
 
-def _port(name: str, node: Node) -> KindPort:
+def _port(name: str, node: YamlNode) -> KindPort:
     return KindPort(
         name=name,
         direction=text_of(node, "direction"),
@@ -268,7 +268,7 @@ def _port(name: str, node: Node) -> KindPort:
     )
 
 
-def _use(name: str, node: Node) -> KindUse:
+def _use(name: str, node: YamlNode) -> KindUse:
     return KindUse(
         name=name,
         direction=text_of(node, "direction"),
@@ -281,7 +281,7 @@ def _use(name: str, node: Node) -> KindUse:
     )
 
 
-def _claim(name: str, node: Node, kind: Node) -> KindClaim:
+def _claim(name: str, node: YamlNode, kind: YamlNode) -> KindClaim:
     def names(key: str) -> Mapping[str, str]:
         return MappingProxyType({entry: str(child.value) for entry, child in map_of(node, key).items()})
 

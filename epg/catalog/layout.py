@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from epg.documents.items import map_of, text_of, texts_of
-from epg.source import Node
+from epg.source import YamlNode
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class Layout:
         return "pin" if contact.pin else self.supplies[contact.name].role
 
 
-def make_layout(node: Node, pins: tuple[str, ...]) -> Layout | None:
+def make_layout(node: YamlNode, pins: tuple[str, ...]) -> Layout | None:
     """The layout in a checked ``board.yaml``; None when it tells none."""
     layout = node.get("layout")
     if layout is None:
@@ -64,7 +64,7 @@ def make_layout(node: Node, pins: tuple[str, ...]) -> Layout | None:
     return Layout(text_of(layout, "top"), rows, MappingProxyType(supplies), texts_of(layout, "notes"))
 
 
-def _row(node: Node, pins: tuple[str, ...]) -> Row:
+def _row(node: YamlNode, pins: tuple[str, ...]) -> Row:
     first, step = _whole(node["first"]), _whole(node["step"]) if "step" in node else 1
     names = [str(child.value) for child in node["contacts"].elements()]
     contacts = tuple(
@@ -73,5 +73,5 @@ def _row(node: Node, pins: tuple[str, ...]) -> Row:
     return Row(text_of(node, "side"), text_of(node, "title"), contacts)
 
 
-def _whole(node: Node) -> int:
+def _whole(node: YamlNode) -> int:
     return node.value if isinstance(node.value, int) else 0

@@ -10,7 +10,7 @@ from types import MappingProxyType
 
 from epg.catalog.kind import KindParameter, make_parameters
 from epg.documents.items import flag_of, map_of, text_of, texts_of
-from epg.source import Node, Span
+from epg.source import Span, YamlNode
 
 TEMPLATE = "code.c.j2"
 """What generated code holds of a middleware, if it has this file."""
@@ -41,7 +41,7 @@ class Middleware:
     sources: tuple[str, ...]
     stack: int
     builds: bool
-    node: Node
+    node: YamlNode
     folder: Path
     span: Span
 
@@ -61,7 +61,7 @@ class Middleware:
         return tuple(self.folder / name for name in ("middleware.yaml", *found, *self.headers, *self.sources))
 
 
-def make_middleware(node: Node, folder: Path) -> Middleware:
+def make_middleware(node: YamlNode, folder: Path) -> Middleware:
     """The middleware that a checked ``middleware.yaml`` describes."""
     return Middleware(
         name=text_of(node, "middleware"),

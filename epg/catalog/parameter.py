@@ -13,7 +13,7 @@ from epg.diagnostics import Diagnostics, did_you_mean
 from epg.documents.items import map_of, texts_of
 from epg.documents.schema import extended_from, validate
 from epg.quantity import QuantityError, number_hint, parse_quantity, parse_ratio
-from epg.source import Node, Span
+from epg.source import Span, YamlNode
 
 COMMON_PARAMETERS = ("kind", "node", "scale", "offset", "unit", "limits")
 """Keys that every component has besides ``pins`` and the parameters of its kind."""
@@ -34,7 +34,7 @@ MOST_NAMES = 32
 """Most names of a list; epg/message.h has room for as many joints."""
 
 
-def parameter_problems(name: str, node: Node, span: Span, diagnostics: Diagnostics) -> None:
+def parameter_problems(name: str, node: YamlNode, span: Span, diagnostics: Diagnostics) -> None:
     """Reports what is wrong with the description of a parameter in a kind: its type, bounds and default."""
     if ("type" in node) == ("quantity" in node):
         hint = "'quantity' is for numbers with a unit"
@@ -67,7 +67,7 @@ def parameter_problems(name: str, node: Node, span: Span, diagnostics: Diagnosti
             typed_value(parameter, parameter.default, diagnostics)
 
 
-def _alias_problems(node: Node, diagnostics: Diagnostics) -> None:
+def _alias_problems(node: YamlNode, diagnostics: Diagnostics) -> None:
     """Each alias is another way to write one value of the parameter's enum, which has texts."""
     values = texts_of(node, "enum") if "type" in node and node["type"].value == "string" else ()
     for alias, meant in map_of(node, "aliases").items():
@@ -116,7 +116,7 @@ def _description(parameter: KindParameter) -> str:
     return f"{parameter.description} ({', '.join(bounds)})" if bounds else parameter.description
 
 
-def typed_value(parameter: KindParameter, node: Node | None, diagnostics: Diagnostics) -> object:
+def typed_value(parameter: KindParameter, node: YamlNode | None, diagnostics: Diagnostics) -> object:
     """The value of ``node`` as :func:`epg.check.compose.typed_parameters` describes it; the default if it is None."""
     stated = node if node is not None else parameter.default
     if stated is None:
@@ -160,7 +160,7 @@ def _value(parameter: KindParameter, written: object) -> Fraction | float | int 
     return parameter.aliases.get(written, written) if isinstance(written, str) else written
 
 
-def _check_bounds(parameter: KindParameter, value: object, node: Node, diagnostics: Diagnostics) -> None:
+def _check_bounds(parameter: KindParameter, value: object, node: YamlNode, diagnostics: Diagnostics) -> None:
     assert isinstance(value, (int, float, Fraction))
     for key, bound in parameter.bounds.items():
         limit = _value(parameter, bound.value)

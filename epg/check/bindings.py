@@ -15,7 +15,7 @@ from epg.documents.schema import load_schema, validate
 from epg.documents.text_file import NO_DRAFTS, Drafts
 from epg.documents.yaml_file import load_yaml
 from epg.quantity import QuantityError, parse_ratio
-from epg.source import Node, Span
+from epg.source import Span, YamlNode
 
 UNCONNECTED = "unconnected"
 
@@ -51,7 +51,7 @@ class Bindings:
     inputs: Mapping[str, tuple[Span, Binding]]
     outputs: Mapping[str, tuple[Span, tuple[Binding, ...]]]  # empty tuple: unconnected on purpose
     parameters: Mapping[str, tuple[Span, float, Span]]  # name -> (its span, value, value's span)
-    root: Node
+    root: YamlNode
 
 
 def load_bindings(
@@ -81,7 +81,7 @@ def load_bindings(
     return bindings if diagnostics.error_count == before else None
 
 
-def conversion_of(node: Node, diagnostics: Diagnostics) -> Conversion:
+def conversion_of(node: YamlNode, diagnostics: Diagnostics) -> Conversion:
     """The conversion keys (``scale``, ``offset``, ``limits``, ``unit``) of a map; problems are reported."""
     scale, offset, limits, unit = (node.get(key) for key in ("scale", "offset", "limits", "unit"))
     factor: Fraction | None = None
@@ -113,14 +113,14 @@ def conversion_of(node: Node, diagnostics: Diagnostics) -> Conversion:
     )
 
 
-def _inputs(node: Node, diagnostics: Diagnostics) -> list[tuple[str, tuple[Span, Binding]]]:
+def _inputs(node: YamlNode, diagnostics: Diagnostics) -> list[tuple[str, tuple[Span, Binding]]]:
     section = node.get("inputs")
     if section is None:
         return []
     return [(name, (section.key_span(name), _binding(value, "from", diagnostics))) for name, value in section.items()]
 
 
-def _outputs(node: Node, diagnostics: Diagnostics) -> list[tuple[str, tuple[Span, tuple[Binding, ...]]]]:
+def _outputs(node: YamlNode, diagnostics: Diagnostics) -> list[tuple[str, tuple[Span, tuple[Binding, ...]]]]:
     section = node.get("outputs")
     if section is None:
         return []
@@ -132,14 +132,14 @@ def _outputs(node: Node, diagnostics: Diagnostics) -> list[tuple[str, tuple[Span
     return result
 
 
-def _binding(node: Node, key: str, diagnostics: Diagnostics) -> Binding:
+def _binding(node: YamlNode, key: str, diagnostics: Diagnostics) -> Binding:
     reference = node[key] if node.is_mapping else node
     component, _, port = str(reference.value).partition(".")
     conversion = conversion_of(node, diagnostics) if node.is_mapping else Conversion()
     return Binding(component, port or None, conversion, reference.span)
 
 
-def _parameters(node: Node, diagnostics: Diagnostics) -> list[tuple[str, tuple[Span, float, Span]]]:
+def _parameters(node: YamlNode, diagnostics: Diagnostics) -> list[tuple[str, tuple[Span, float, Span]]]:
     section = node.get("parameters")
     if section is None:
         return []
@@ -149,7 +149,7 @@ def _parameters(node: Node, diagnostics: Diagnostics) -> list[tuple[str, tuple[S
     return [(name, (section.key_span(name), _float(value), value.span)) for name, value in section.items()]
 
 
-def _float(node: Node) -> float:
+def _float(node: YamlNode) -> float:
     value = node.value
     assert isinstance(value, (int, float))
     try:

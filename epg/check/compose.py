@@ -12,7 +12,7 @@ from epg.catalog.middleware import Middleware
 from epg.catalog.parameter import parameter_schema, typed_value
 from epg.diagnostics import Diagnostics, Note
 from epg.documents.schema import extended_from, load_schema
-from epg.source import Node
+from epg.source import YamlNode
 
 _NODE = {
     "type": "string",
@@ -81,7 +81,7 @@ def options_schema(middleware: Middleware) -> dict[str, Any]:
     }
 
 
-def typed_options(middleware: Middleware, node: Node | None, diagnostics: Diagnostics) -> Mapping[str, object]:
+def typed_options(middleware: Middleware, node: YamlNode | None, diagnostics: Diagnostics) -> Mapping[str, object]:
     """The options in a map that has passed one of the schemas above, typed as :func:`typed_parameters` does."""
     values = {
         option.name: typed_value(option, node.get(option.name) if node is not None else None, diagnostics)
@@ -90,7 +90,7 @@ def typed_options(middleware: Middleware, node: Node | None, diagnostics: Diagno
     return MappingProxyType(values)
 
 
-def typed_parameters(kind: Kind, node: Node, diagnostics: Diagnostics) -> Mapping[str, object]:
+def typed_parameters(kind: Kind, node: YamlNode, diagnostics: Diagnostics) -> Mapping[str, object]:
     """The parameters of a component that has passed :func:`component_schema`; problems with values are reported.
 
     Quantities are in base units (s, Hz, rad, ...) and, like ratios, exact fractions unless their unit is not; other
@@ -106,7 +106,7 @@ def typed_parameters(kind: Kind, node: Node, diagnostics: Diagnostics) -> Mappin
     return MappingProxyType(values)
 
 
-def _relations(kind: Kind, node: Node, diagnostics: Diagnostics) -> None:
+def _relations(kind: Kind, node: YamlNode, diagnostics: Diagnostics) -> None:
     span = node["kind"].span
     for names in kind.exactly_one:
         stated = [name for name in names if name in node]

@@ -31,7 +31,7 @@ from epg.documents.schema import extended_from, load_schema, validate
 from epg.documents.tcf import TcfFile
 from epg.documents.yaml_file import newer_version
 from epg.quantity import QuantityError, parse_quantity
-from epg.source import Node, Span
+from epg.source import Span, YamlNode
 
 CONSOLE = "console"
 """The middleware that can run beside another one."""
@@ -89,7 +89,7 @@ class Component:
     parameters: Mapping[str, object]
     uses: Mapping[str, Used]
     conversion: Conversion
-    node: Node
+    node: YamlNode
     span: Span  # of its name
 
 
@@ -106,12 +106,12 @@ class Configuration:
     components: Mapping[str, Component]
     files: tuple[Path, ...]
     absent: tuple[Path, ...]
-    root: Node
+    root: YamlNode
 
 
 def check_configuration(
     chain: Sequence[TcfFile],
-    settings: Sequence[tuple[tuple[str, ...], Node]],
+    settings: Sequence[tuple[tuple[str, ...], YamlNode]],
     catalog: Catalog,
     diagnostics: Diagnostics,
 ) -> Configuration | None:
@@ -153,7 +153,9 @@ def check_configuration(
     )
 
 
-def _components(root: Node, target: Target | None, catalog: Catalog, diagnostics: Diagnostics) -> dict[str, Component]:
+def _components(
+    root: YamlNode, target: Target | None, catalog: Catalog, diagnostics: Diagnostics
+) -> dict[str, Component]:
     section = root["components"]
     result: dict[str, Component] = {}
     folded: dict[str, str] = {}
@@ -193,10 +195,10 @@ def _components(root: Node, target: Target | None, catalog: Catalog, diagnostics
 
 
 def _control(
-    root: Node, components: Mapping[str, Component], communication: Communication | None, diagnostics: Diagnostics
+    root: YamlNode, components: Mapping[str, Component], communication: Communication | None, diagnostics: Diagnostics
 ) -> Control:
     """The control loop; all of it may be left out, and then the target starts disabled."""
-    node = root.get("control") or Node(MappingProxyType({}), root.span)
+    node = root.get("control") or YamlNode(MappingProxyType({}), root.span)
     period, at_start = node.get("period"), node.get("enable_at_start")
     seconds = _time(period, diagnostics)
     if period is not None and seconds is not None and seconds <= 0:
@@ -221,7 +223,7 @@ def _control(
 
 
 def _communication(
-    root: Node,
+    root: YamlNode,
     target: Target | None,
     components: Mapping[str, Component],
     catalog: Catalog,
@@ -281,7 +283,7 @@ def _communication(
     )
 
 
-def _usb(node: Node | None, target: Target | None, diagnostics: Diagnostics) -> Mapping[str, object]:
+def _usb(node: YamlNode | None, target: Target | None, diagnostics: Diagnostics) -> Mapping[str, object]:
     """What the target is called as a USB device; platforms without USB leave it to others of the same robot."""
     if node is None or target is None:
         return {}
@@ -293,7 +295,7 @@ def _usb(node: Node | None, target: Target | None, diagnostics: Diagnostics) -> 
     return {key: node[key].value for key in sorted(node.keys)}
 
 
-def _diagnostics(node: Node | None, middleware: Middleware, diagnostics: Diagnostics) -> Fraction:
+def _diagnostics(node: YamlNode | None, middleware: Middleware, diagnostics: Diagnostics) -> Fraction:
     """Seconds between two messages of state and statistics; 0 for none, as with middlewares that are no ROS 2 node."""
     written = node.get("diagnostics") if node is not None else None
     seconds = _time(written, diagnostics) if written is not None else Fraction(1)
@@ -303,7 +305,7 @@ def _diagnostics(node: Node | None, middleware: Middleware, diagnostics: Diagnos
 
 
 def _console(
-    node: Node | None,
+    node: YamlNode | None,
     middleware: Middleware,
     possible: Mapping[str, tuple[str, ...]],
     target: Target | None,
@@ -330,7 +332,7 @@ def _transports(
     return (*own, *(c.name for c in components.values() if c.kind.transport)) if own else ()
 
 
-def _is_reported(name: str, root: Node, components: Mapping[str, Component]) -> bool:
+def _is_reported(name: str, root: YamlNode, components: Mapping[str, Component]) -> bool:
     """Whether ``name`` is that of a component with which something else is wrong."""
     return name in root["components"] and name not in components
 
@@ -349,7 +351,7 @@ def _topics(components: Mapping[str, Component], control: Control, communication
     return topics
 
 
-def _time(node: Node | None, diagnostics: Diagnostics) -> Fraction | None:
+def _time(node: YamlNode | None, diagnostics: Diagnostics) -> Fraction | None:
     if node is None:
         return None
     try:

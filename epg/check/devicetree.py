@@ -7,10 +7,12 @@ from epg.catalog.hardware import Target
 from epg.catalog.kind import Kind
 from epg.diagnostics import Diagnostics
 from epg.documents.schema import extended_from
-from epg.source import Node
+from epg.source import YamlNode
 
 
-def check_node(kind: Kind, component: Node, node: Node, target: Target | None, diagnostics: Diagnostics) -> None:
+def check_node(
+    kind: Kind, component: YamlNode, node: YamlNode, target: Target | None, diagnostics: Diagnostics
+) -> None:
     """Reports a ``node`` of a component that cannot have one.
 
     A node stands for the pins and the peripheral of one claim, on platforms that read a devicetree.  Targets without

@@ -9,7 +9,7 @@ from typing import Protocol
 from epg.catalog.kind import Kind
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.documents.schema import extended_from
-from epg.source import Node
+from epg.source import YamlNode
 
 
 class Input(Protocol):
@@ -20,10 +20,12 @@ class Input(Protocol):
     @property
     def parameters(self) -> Mapping[str, object]: ...
     @property
-    def node(self) -> Node: ...
+    def node(self) -> YamlNode: ...
 
 
-def check_fail_safe(node: Node, section: Node, components: Mapping[str, Input], diagnostics: Diagnostics) -> None:
+def check_fail_safe(
+    node: YamlNode, section: YamlNode, components: Mapping[str, Input], diagnostics: Diagnostics
+) -> None:
     """``node`` must name a boolean source that is not a topic; ``components`` are the faultless ones of ``section``."""
     name = str(node.value)
     able = [

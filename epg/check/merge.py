@@ -12,12 +12,12 @@ from dataclasses import replace
 from types import MappingProxyType
 
 from epg.documents.tcf import TcfFile
-from epg.source import Node, Span
+from epg.source import Span, YamlNode
 
 
-def merge_chain(chain: Sequence[TcfFile]) -> Node:
+def merge_chain(chain: Sequence[TcfFile]) -> YamlNode:
     """The configuration a chain (innermost first) means; ``extends`` itself is gone."""
-    merged: Node | None = None
+    merged: YamlNode | None = None
     origins: list[Span] = [file.extended_by for file in chain if file.extended_by is not None]
     for index in range(len(chain) - 1, -1, -1):
         node = _with_origins(chain[index].node, tuple(reversed(origins[:index])))
@@ -27,7 +27,7 @@ def merge_chain(chain: Sequence[TcfFile]) -> Node:
     return without_nulls(merged)
 
 
-def merge(base: Node, overlay: Node) -> Node:
+def merge(base: YamlNode, overlay: YamlNode) -> YamlNode:
     """``base`` with what ``overlay`` says instead; ``null`` values stay, see :func:`without_nulls`."""
     if not (base.is_mapping and overlay.is_mapping):
         return overlay
@@ -39,16 +39,16 @@ def merge(base: Node, overlay: Node) -> Node:
     return replace(base, value=MappingProxyType(values), keys=MappingProxyType(keys), span=overlay.span)
 
 
-def apply_settings(root: Node, settings: Iterable[tuple[tuple[str, ...], Node]]) -> Node:
+def apply_settings(root: YamlNode, settings: Iterable[tuple[tuple[str, ...], YamlNode]]) -> YamlNode:
     """``root`` with values set from outside; maps on the way are created."""
     for path, node in settings:
         for key in reversed(path):
-            node = Node(MappingProxyType({key: node}), node.span, MappingProxyType({key: node.span}))
+            node = YamlNode(MappingProxyType({key: node}), node.span, MappingProxyType({key: node.span}))
         root = replace(merge(root, node), span=root.span)
     return without_nulls(root)
 
 
-def without_nulls(node: Node) -> Node:
+def without_nulls(node: YamlNode) -> YamlNode:
     """The tree without the keys whose value is ``null``."""
     if not node.is_mapping:
         return node
@@ -57,12 +57,12 @@ def without_nulls(node: Node) -> Node:
     return replace(node, value=MappingProxyType(values), keys=MappingProxyType(keys))
 
 
-def _without(node: Node, key: str) -> Node:
+def _without(node: YamlNode, key: str) -> YamlNode:
     values = {k: child for k, child in node.items() if k != key}
     return replace(node, value=MappingProxyType(values))
 
 
-def _with_origins(node: Node, origins: tuple[Span, ...]) -> Node:
+def _with_origins(node: YamlNode, origins: tuple[Span, ...]) -> YamlNode:
     if not origins:
         return node
     if node.is_mapping:

@@ -9,7 +9,7 @@ from epg.catalog.catalog import Catalog, Target
 from epg.catalog.middleware import Middleware
 from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.documents.schema import extended_from
-from epg.source import Node
+from epg.source import YamlNode
 
 
 def offered(target: Target, catalog: Catalog) -> dict[str, tuple[str, ...]]:
@@ -42,7 +42,7 @@ def check_offer(target: Target, middleware: Middleware, diagnostics: Diagnostics
         diagnostics.error("wrong-value", transports.span, message, hint=hint, notes=notes)
 
 
-def check_lack(target: Target | None, transport: str | None, where: Node, diagnostics: Diagnostics) -> None:
+def check_lack(target: Target | None, transport: str | None, where: YamlNode, diagnostics: Diagnostics) -> None:
     """Reports a transport that the target's platform has on other boards."""
     if target is not None and transport is not None and transport in target.board.lacks:
         message = f"{target.board.name} has no transport '{transport}': {target.board.lacks[transport]}"

@@ -46,7 +46,7 @@ STANDARD_TYPES = frozenset(
 
 STATIC_NAMES = frozenset(
     """read_inputs inputs_finite model_init model_step model_finite model_stopped prepare_outputs write_outputs
-    safe_outputs fail_safe setpoint_states setpoint_slots setpoint_exchange monitor_values monitor_slots
+    safe_outputs fail_safe setpoint_states setpoint_buffers setpoint_exchange monitor_values monitor_buffers
     monitor_exchange plant_init plant_step set_parameter parameter_table parameter_values parameter_applied
     parameter_changed store_bytes capture_memory jog_actuators jog_encoders jog_first jog_last middleware_options
     middleware_output middleware_values middleware_received middleware_input middleware_best_effort console_options

@@ -8,13 +8,13 @@ from collections.abc import Iterable
 from epg.check.names import absolute_topic, namespace_problem, node_name_problem, topic_problem
 from epg.diagnostics import Diagnostics, Note
 from epg.documents.schema import extended_from
-from epg.source import Node, Span
+from epg.source import Span, YamlNode
 
-Use = tuple[str, str, Span, Node | None]
+Use = tuple[str, str, Span, YamlNode | None]
 """Who uses a topic, its name, where that is written, and what is written there (None: EPG's own choice)."""
 
 
-def check_names(node: Node, namespace: Node | None, topics: Iterable[Use], diagnostics: Diagnostics) -> None:
+def check_names(node: YamlNode, namespace: YamlNode | None, topics: Iterable[Use], diagnostics: Diagnostics) -> None:
     """Reports names that are none, and topics that have two users."""
     _report(node, node_name_problem(str(node.value)), diagnostics)
     if namespace is not None:
@@ -36,6 +36,6 @@ def check_names(node: Node, namespace: Node | None, topics: Iterable[Use], diagn
             diagnostics.error("duplicate-topic", span, message, hint=hint, notes=notes)
 
 
-def _report(node: Node, problem: str | None, diagnostics: Diagnostics) -> None:
+def _report(node: YamlNode, problem: str | None, diagnostics: Diagnostics) -> None:
     if problem:
         diagnostics.error("invalid-name", node.span, f"'{node.value}' {problem}", notes=extended_from(node))

@@ -10,7 +10,7 @@ from types import MappingProxyType
 from epg.catalog.kind import Kind, KindPort, KindUse
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.documents.schema import extended_from
-from epg.source import Node
+from epg.source import YamlNode
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class Used:
 
 
 def used_components(
-    kind: Kind, node: Node, kinds: Mapping[str, Kind | None], diagnostics: Diagnostics
+    kind: Kind, node: YamlNode, kinds: Mapping[str, Kind | None], diagnostics: Diagnostics
 ) -> Mapping[str, Used]:
     """What a component of ``kind`` uses, by the names in its kind.
 
@@ -39,7 +39,7 @@ def used_components(
 
 
 def _used(
-    use: KindUse, node: Node, kind: Kind, kinds: Mapping[str, Kind | None], diagnostics: Diagnostics
+    use: KindUse, node: YamlNode, kind: Kind, kinds: Mapping[str, Kind | None], diagnostics: Diagnostics
 ) -> Used | None:
     text = str(node.value)
     possible = [reference for name, other in kinds.items() if other for reference in _references(use, name, other)]

@@ -21,7 +21,7 @@ from epg.models.neighbours import Neighbours
 from epg.project import Hardware, Parts, Request, hardware_of, load_parts
 from epg.resolve.matching import Match, match_ports
 from epg.resolve.resolve import allocate_hardware
-from epg.source import Node
+from epg.source import YamlNode
 
 _MOST_WATCHED = 2000
 """Files and folders of a model that cannot be read: which of them will mend it nobody knows."""
@@ -36,7 +36,7 @@ class Loaded:
     request: Request
     parts: Parts
     diagnostics: tuple[Diagnostic, ...]
-    root: Node | None
+    root: YamlNode | None
     chain: Sequence[TcfFile]
 
     @cached_property
@@ -113,7 +113,7 @@ def load(request: Request, models: Models) -> Loaded:
     diagnostics = Diagnostics()
     parts = load_parts(request, diagnostics, models.read)
     if parts.bindings is not None:
-        root: Node | None = parts.bindings.root
+        root: YamlNode | None = parts.bindings.root
     else:
         text = read_text(request.bindings, Diagnostics(), None, request.drafts)
         root = parse_yaml(text, str(request.bindings), Diagnostics()) if text is not None else None

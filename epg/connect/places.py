@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from epg.diagnostics import Diagnostic
 from epg.documents.tcf import TcfFile
 from epg.models.model import Model
-from epg.source import Node, Span
+from epg.source import Span, YamlNode
 
 _SECTIONS = ("inputs", "outputs")
 
@@ -30,7 +30,7 @@ class _Stretch:
 class Places:
     """The lines of bindings that belong to ports, those of a ``.tcf`` and what it extends that belong to components."""
 
-    def __init__(self, bindings: str, root: Node | None, model: Model | None, chain: Sequence[TcfFile]) -> None:
+    def __init__(self, bindings: str, root: YamlNode | None, model: Model | None, chain: Sequence[TcfFile]) -> None:
         self._bindings = bindings
         self._ports: list[_Stretch] = []
         for section in _SECTIONS:
@@ -63,7 +63,7 @@ def _name(stretches: Sequence[_Stretch], span: Span) -> str | None:
     return next((stretch.name for stretch in stretches if stretch.holds(span)), None)
 
 
-def _stretches(section: Node) -> list[_Stretch]:
+def _stretches(section: YamlNode) -> list[_Stretch]:
     found = []
     for name, value in section.items():
         key = section.key_span(name)
@@ -72,7 +72,7 @@ def _stretches(section: Node) -> list[_Stretch]:
     return found
 
 
-def _spans(node: Node) -> Iterator[Span]:
+def _spans(node: YamlNode) -> Iterator[Span]:
     """Where the value and all it holds stand."""
     yield node.span
     yield from node.keys.values()

@@ -6,36 +6,36 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-from epg.source import Node
+from epg.source import YamlNode
 
 _RANGE = re.compile(r"([A-Za-z_]*)([0-9]+)-([A-Za-z_]*)([0-9]+)")
 
 
-def text_of(node: Node, key: str, otherwise: str = "") -> str:
+def text_of(node: YamlNode, key: str, otherwise: str = "") -> str:
     """The text at ``key``."""
     found = node.get(key)
     return otherwise if found is None else str(found.value)
 
 
-def flag_of(node: Node, key: str) -> bool:
+def flag_of(node: YamlNode, key: str) -> bool:
     """The boolean at ``key``; false when there is none."""
     found = node.get(key)
     return found is not None and found.value is True
 
 
-def texts_of(node: Node, *path: str) -> tuple[str, ...]:
+def texts_of(node: YamlNode, *path: str) -> tuple[str, ...]:
     """The elements of the list at ``path`` as text."""
     found = node.get(*path)
     return () if found is None else tuple(str(element.value) for element in found.elements())
 
 
-def map_of(node: Node, *path: str) -> dict[str, Node]:
+def map_of(node: YamlNode, *path: str) -> dict[str, YamlNode]:
     """The entries of the map at ``path``."""
     found = node.get(*path)
     return {} if found is None else dict(found.items())
 
 
-def pin_names(node: Node | None) -> tuple[str, ...]:
+def pin_names(node: YamlNode | None) -> tuple[str, ...]:
     """All pins of a list of pins and ranges: ``[0-2, 7]`` gives 0, 1, 2 and 7, ``[PA0-PA15]`` sixteen.
 
     Raises ValueError for a range that is none: backwards, between different ports, or absurdly long.
@@ -70,7 +70,7 @@ def _follows(one: str, other: str) -> bool:
     return bool(first and second and first[1] == second[1] and int(second[2]) == int(first[2]) + 1)
 
 
-def integer_range(node: Node) -> tuple[int, int]:
+def integer_range(node: YamlNode) -> tuple[int, int]:
     """First and last of ``1-255``."""
     first, _, last = str(node.value).partition("-")
     return int(first), int(last)

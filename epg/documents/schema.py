@@ -23,7 +23,7 @@ from epg.data import data_folder
 from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.documents.accept import accepts
 from epg.quantity import QuantityError, number_hint, parse_quantity, parse_ratio
-from epg.source import Node, Path, Span
+from epg.source import Path, Span, YamlNode
 
 _TYPE_NAMES = {
     "object": "a map (key: value)",
@@ -44,7 +44,7 @@ def load_schema(name: str) -> dict[str, Any]:
     return schema
 
 
-def validate(node: Node, schema: Mapping[str, Any], diagnostics: Diagnostics, *, partial: bool = False) -> bool:
+def validate(node: YamlNode, schema: Mapping[str, Any], diagnostics: Diagnostics, *, partial: bool = False) -> bool:
     """Reports everything in ``node`` that ``schema`` does not allow; True when there is nothing.
 
     ``partial``: the file extends another one, so missing keys are not reported, and ``null`` deletes any key.
@@ -64,12 +64,12 @@ def validate(node: Node, schema: Mapping[str, Any], diagnostics: Diagnostics, *,
     return good
 
 
-def extended_from(node: Node) -> list[Note]:
+def extended_from(node: YamlNode) -> list[Note]:
     """A note for each file whose ``extends`` leads to the file that ``node`` stands in."""
     return [Note("extended from here", span) for span in node.origins]
 
 
-def _report(error: Any, root: Node, diagnostics: Diagnostics) -> None:
+def _report(error: Any, root: YamlNode, diagnostics: Diagnostics) -> None:
     path: Path = tuple(error.absolute_path)
     node = root.get(*path) or root
     schema = error.schema if isinstance(error.schema, dict) else {}
@@ -108,7 +108,7 @@ def _report(error: Any, root: Node, diagnostics: Diagnostics) -> None:
     diagnostics.error(id, node.span, message, hint=hint, notes=notes)
 
 
-def _explain(keyword: str, error: Any, node: Node, schema: Mapping[str, Any]) -> tuple[str, str, str]:
+def _explain(keyword: str, error: Any, node: YamlNode, schema: Mapping[str, Any]) -> tuple[str, str, str]:
     """Id, message and hint for a value that is wrong in itself."""
     value, limit = error.instance, error.validator_value
     if "x-quantity" in schema and keyword in ("type", "pattern", "anyOf", "oneOf"):
@@ -226,7 +226,7 @@ def _where(path: Path) -> str:
     return f" in '{'.'.join(map(str, path))}'" if path else ""
 
 
-def _owner_span(root: Node, path: Path) -> Span:
+def _owner_span(root: YamlNode, path: Path) -> Span:
     """Where the map at ``path`` is named: its key in the map above it."""
     if not path:
         return root.span

@@ -15,7 +15,7 @@ from pathlib import Path
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.documents.text_file import NO_DRAFTS, Drafts, is_file, read_text
 from epg.documents.yaml_file import MAX_DEPTH, parse_yaml
-from epg.source import Node, Span
+from epg.source import Span, YamlNode
 
 _20SIM_4C = re.compile(r"\s*(<\?xml|<!DOCTYPE|<[A-Za-z])")
 _MAX_CHAIN = 16
@@ -29,7 +29,7 @@ class TcfFile:
     """
 
     path: Path
-    node: Node
+    node: YamlNode
     extended_by: Span | None = None
     absent: tuple[Path, ...] = ()
 
@@ -109,7 +109,7 @@ def load_tcf_chain(
         name, beside, wanted_by = extends.value, path.parent, extends.span
 
 
-def _load(path: Path, diagnostics: Diagnostics, wanted_by: Span | None, drafts: Drafts) -> Node | None:
+def _load(path: Path, diagnostics: Diagnostics, wanted_by: Span | None, drafts: Drafts) -> YamlNode | None:
     text = read_text(path, diagnostics, wanted_by, drafts)
     if text is None:
         return None
@@ -131,9 +131,11 @@ def _load(path: Path, diagnostics: Diagnostics, wanted_by: Span | None, drafts: 
     return node
 
 
-def settings_node(settings: Iterable[tuple[str, Span]], diagnostics: Diagnostics) -> list[tuple[tuple[str, ...], Node]]:
+def settings_node(
+    settings: Iterable[tuple[str, Span]], diagnostics: Diagnostics
+) -> list[tuple[tuple[str, ...], YamlNode]]:
     """Settings ``a.b=value`` from a command line or CMake, each with the place to name in messages."""
-    result: list[tuple[tuple[str, ...], Node]] = []
+    result: list[tuple[tuple[str, ...], YamlNode]] = []
     for text, span in settings:
         key, equals, value = text.partition("=")
         path = tuple(key.strip().split("."))
@@ -154,11 +156,11 @@ def settings_node(settings: Iterable[tuple[str, Span]], diagnostics: Diagnostics
     return result
 
 
-def _moved(node: Node, span: Span) -> Node:
+def _moved(node: YamlNode, span: Span) -> YamlNode:
     """The same value standing at ``span``."""
     if node.is_mapping:
         value = {key: _moved(child, span) for key, child in node.items()}
-        return Node(value, span, dict.fromkeys(value, span))
+        return YamlNode(value, span, dict.fromkeys(value, span))
     if node.is_sequence:
-        return Node(tuple(_moved(child, span) for child in node.elements()), span)
-    return Node(node.value, span)
+        return YamlNode(tuple(_moved(child, span) for child in node.elements()), span)
+    return YamlNode(node.value, span)

@@ -20,7 +20,7 @@ from epg.diagnostics import Diagnostics, Note
 from epg.documents.text_file import NO_DRAFTS, Drafts, read_text
 from epg.documents.yaml_mistakes import LINE_END, find_mistake, foreign_comment, missing_colon
 from epg.quantity import decimal_comma
-from epg.source import Node, Scalar, Span
+from epg.source import Scalar, Span, YamlNode
 
 VERSION = 1
 """Of all formats: each file states it as ``version``, those in folders of ``targets`` as ``api``."""
@@ -41,13 +41,13 @@ _MAX_DIGITS = 64
 
 def load_yaml(
     path: Path, diagnostics: Diagnostics, wanted_by: Span | None = None, drafts: Drafts = NO_DRAFTS
-) -> Node | None:
+) -> YamlNode | None:
     """The document in ``path``, or None after reporting what is wrong with the file."""
     text = read_text(path, diagnostics, wanted_by, drafts)
     return None if text is None else parse_yaml(text, str(path), diagnostics)
 
 
-def newer_version(node: Node, key: str, diagnostics: Diagnostics) -> bool:
+def newer_version(node: YamlNode, key: str, diagnostics: Diagnostics) -> bool:
     """Whether a file states, at ``key``, a format that is newer than this EPG; reports it."""
     stated = node.get(key)
     if stated is None or type(stated.value) is not int or stated.value <= VERSION:
@@ -57,7 +57,7 @@ def newer_version(node: Node, key: str, diagnostics: Diagnostics) -> bool:
     return True
 
 
-def parse_yaml(text: str, file: str, diagnostics: Diagnostics) -> Node | None:
+def parse_yaml(text: str, file: str, diagnostics: Diagnostics) -> YamlNode | None:
     """The one document in ``text``; ``file`` is the name its positions carry."""
     builder = _Builder(file, text, diagnostics)
     try:
@@ -86,7 +86,7 @@ def parse_yaml(text: str, file: str, diagnostics: Diagnostics) -> Node | None:
         return None
     if builder.failed:
         return None
-    return builder.root or Node(None, Span(file, 1, 1))
+    return builder.root or YamlNode(None, Span(file, 1, 1))
 
 
 @dataclass
@@ -96,8 +96,8 @@ class _Collection:
     span: Span
     mapping: bool
     flow: bool
-    children: list[Node] = field(default_factory=list)
-    entries: dict[str, Node] = field(default_factory=dict)
+    children: list[YamlNode] = field(default_factory=list)
+    entries: dict[str, YamlNode] = field(default_factory=dict)
     keys: dict[str, Span] = field(default_factory=dict)
     key: str | None = None
     key_mark: yaml.Mark | None = None  # where the key ends
@@ -110,7 +110,7 @@ class _Builder:
         self.text = text
         self.diagnostics = diagnostics
         self.stack: list[_Collection] = []
-        self.root: Node | None = None
+        self.root: YamlNode | None = None
         self.documents = 0
         self.failed = False
         self.mistaken = False  # an error was reported that may be why the parser cannot go on
@@ -145,9 +145,9 @@ class _Builder:
         elif isinstance(event, (yaml.MappingEndEvent, yaml.SequenceEndEvent)):
             done = self.stack.pop()
             if done.mapping:
-                self._add(Node(MappingProxyType(done.entries), done.span, MappingProxyType(done.keys)))
+                self._add(YamlNode(MappingProxyType(done.entries), done.span, MappingProxyType(done.keys)))
             else:
-                self._add(Node(tuple(done.children), done.span))
+                self._add(YamlNode(tuple(done.children), done.span))
         elif isinstance(event, yaml.ScalarEvent):
             self._scalar(event)
         return True
@@ -170,7 +170,7 @@ class _Builder:
         value: Scalar = event.value
         if event.implicit[0] and not event.style:
             value = self._plain_value(event.value, span)
-        self._add(Node(value, span))
+        self._add(YamlNode(value, span))
 
     def _foreign_comment(self, event: yaml.ScalarEvent) -> bool:
         """Reports ``//`` in plain text, which a person meant as a comment; True if there is one."""
@@ -235,7 +235,7 @@ class _Builder:
         self.failed = True
         self.diagnostics.error("yaml-1.1-trap", span, message, hint=hint)
 
-    def _add(self, node: Node) -> None:
+    def _add(self, node: YamlNode) -> None:
         if not self.stack:
             self.root = node
             return

@@ -32,7 +32,7 @@ from epg.edit.section import add_port, remove_port
 from epg.edit.value import change_value, value_text
 from epg.edit.yaml_edit import CannotEdit, parse_map
 from epg.models.model import Model
-from epg.source import Node
+from epg.source import YamlNode
 
 __all__ = ["CannotEdit", "End", "ends_of", "set_ends"]
 
@@ -68,7 +68,7 @@ def set_ends(text: str, file: str, model: Model, port: str, ends: Sequence[End] 
     return text[: len(text) - len(body)] + changed
 
 
-def _section_of(root: Node, file: str, model: Model, port: str, ends: Sequence[End] | None) -> str:
+def _section_of(root: YamlNode, file: str, model: Model, port: str, ends: Sequence[End] | None) -> str:
     """Where ``port`` belongs; to be taken out also where it should not be."""
     own = [
         section
@@ -99,7 +99,7 @@ def _refuse(ends: Sequence[End], file: str, section: str, port: str) -> None:
         raise CannotEdit(f"{file}: '{UNCONNECTED}' is no component that output '{port}' could go to")
 
 
-def _where(root: Node, file: str, section: str, port: str) -> str:
+def _where(root: YamlNode, file: str, section: str, port: str) -> str:
     section_node = root.get(section)
     if section_node is None:
         return f"{file}: '{port}' cannot be changed here: "
@@ -107,7 +107,7 @@ def _where(root: Node, file: str, section: str, port: str) -> str:
     return f"{file}:{span.line}: '{port}' cannot be changed here: "
 
 
-def _verify(root: Node, changed: str, file: str, section: str, port: str, said: object) -> None:
+def _verify(root: YamlNode, changed: str, file: str, section: str, port: str, said: object) -> None:
     """Whether ``changed`` says what is wanted, and of everything else the same as before."""
     problems = Diagnostics()
     after = parse_yaml(changed, file, problems)
@@ -121,7 +121,7 @@ def _verify(root: Node, changed: str, file: str, section: str, port: str, said: 
         )
 
 
-def _others(root: Node, section: str, port: str) -> list[Any]:
+def _others(root: YamlNode, section: str, port: str) -> list[Any]:
     ports = [(key, node.plain()) for key, node in (root[section].items() if section in root else ()) if key != port]
     return [ports, *((key, node.plain()) for key, node in root.items() if key != section)]
 

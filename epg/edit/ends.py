@@ -10,7 +10,7 @@ from epg.check.bindings import UNCONNECTED
 from epg.diagnostics import Diagnostics
 from epg.documents.yaml_file import parse_yaml
 from epg.edit.scalars import scalar_text
-from epg.source import Node
+from epg.source import YamlNode
 
 REFERENCE = {"inputs": "from", "outputs": "to"}
 """The key of a map that names the component, by section."""
@@ -29,7 +29,7 @@ class End:
     unit: str = ""
 
 
-def ends_of(root: Node, section: str, port: str) -> tuple[End, ...] | None:
+def ends_of(root: YamlNode, section: str, port: str) -> tuple[End, ...] | None:
     """What a file says about a port: None if nothing, an empty tuple for ``unconnected``.
 
     ``section`` is "inputs" or "outputs".  A value the schema does not allow gives ends, too, as well as that goes.
@@ -41,7 +41,7 @@ def ends_of(root: Node, section: str, port: str) -> tuple[End, ...] | None:
     return tuple(_end(end, REFERENCE[section]) for end in ends if section == "inputs" or end.value != UNCONNECTED)
 
 
-def said_ends(node: Node | None, section: str) -> list[Any] | None:
+def said_ends(node: YamlNode | None, section: str) -> list[Any] | None:
     """The value of a port as data: for each end a list of keys and values, whatever way it is written."""
     if node is None:
         return None
@@ -76,7 +76,7 @@ def typed_value(key: str, text: str) -> object:
     return value if isinstance(value, (int, float)) and not isinstance(value, bool) else text
 
 
-def _end(node: Node, key: str) -> End:
+def _end(node: YamlNode, key: str) -> End:
     def text(*path: str) -> str:
         child = node.get(*path)
         return "" if child is None or child.value is None else _text(child)
@@ -91,6 +91,6 @@ def _end(node: Node, key: str) -> End:
     return End(text(key), text("scale"), text("offset"), pair, text("unit"))
 
 
-def _text(node: Node) -> str:
+def _text(node: YamlNode) -> str:
     value = node.value
     return value if isinstance(value, str) else scalar_text(value) if not isinstance(value, tuple) else ""

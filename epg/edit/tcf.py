@@ -18,7 +18,7 @@ from epg.documents.yaml_file import parse_yaml
 from epg.edit import yaml_edit
 from epg.edit.scalars import scalar_text
 from epg.edit.yaml_edit import CannotEdit, parse_map
-from epg.source import Node
+from epg.source import YamlNode
 
 KEY = "extends"
 
@@ -62,7 +62,7 @@ def _name(value: str, style: str = "") -> str:
     return value if plain and not value.startswith("-") else scalar_text(value, style)
 
 
-def _verify(root: Node, changed: str, file: str, value: str) -> None:
+def _verify(root: YamlNode, changed: str, file: str, value: str) -> None:
     after = parse_yaml(changed, file, Diagnostics())
     others = [(key, node.plain()) for key, node in root.items() if key != KEY]
     if (

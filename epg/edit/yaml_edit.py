@@ -16,7 +16,7 @@ import yaml
 
 from epg.diagnostics import Diagnostics
 from epg.documents import yaml_file
-from epg.source import Node
+from epg.source import YamlNode
 
 _BREAK = re.compile("\r\n|[\r\n\x85\u2028\u2029]")
 _REST = re.compile(r"[ \t]*(#.*)?")
@@ -30,7 +30,7 @@ class CannotEdit(Exception):
     """Only an editor can make this change; the message says where and why."""
 
 
-def parse_map(text: str, file: str) -> Node:
+def parse_map(text: str, file: str) -> YamlNode:
     """The map that ``text`` is.  Raises :class:`CannotEdit` with the first mistake in it; ``file`` names it there."""
     problems = Diagnostics()
     root = yaml_file.parse_yaml(text, file, problems)

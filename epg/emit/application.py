@@ -51,7 +51,7 @@ class ValueView:
     port: str
     element: str
     part: str
-    slot: int
+    index: int
 
 
 @dataclass(frozen=True)
@@ -59,19 +59,19 @@ class ComponentView:
     """A component as templates of its kind see it; names that are printed are code already.
 
     ``period`` is that of the control cycle, ``write_period`` the one at which actuators are written, both in seconds.
-    ``values`` are the numbers of its topic in the order of the message, ``slots`` their slots by port, ``slot`` the
-    first one.
+    ``values`` are the numbers of its topic in the order of the message, ``value_index`` their indices by port,
+    ``first_index`` the first one.
     """
 
     name: str
     symbol: Code
     parameters: Mapping[str, object]
     claims: Mapping[str, Any]
-    slot: int | None
+    first_index: int | None
     application: Code
     period: Fraction
     write_period: Fraction
-    slots: Mapping[str, int] = field(default_factory=dict)
+    value_index: Mapping[str, int] = field(default_factory=dict)
     values: Sequence[ValueView] = ()
     uses: Mapping[str, UseView] = field(default_factory=dict)
 
@@ -259,12 +259,12 @@ class Emitter:
             symbol=identifier(component.symbol),
             parameters=component.parameters,
             claims=component.claims,
-            slot=component.slot,
-            slots=component.slots,
+            first_index=component.first_index,
+            value_index=component.value_index,
             values=[
-                ValueView(port.name, port.element, port.part, component.slots[port.name])
+                ValueView(port.name, port.element, port.part, component.value_index[port.name])
                 for port in component.kind.ports
-                if port.name in component.slots
+                if port.name in component.value_index
             ],
             application=self.prefix,
             period=self.app.period,
@@ -399,8 +399,8 @@ class Emitter:
             for used in component.uses.values():
                 topic = self.components[used.component]
                 statement = _indented(self.macro(component, "probe", "topic"), " " * 8)
-                if topic.kind.communication == direction and topic.slot is not None and statement:
-                    index = topic.slot if direction == "subscribe" else publications.index(topic.name)
+                if topic.kind.communication == direction and topic.first_index is not None and statement:
+                    index = topic.first_index if direction == "subscribe" else publications.index(topic.name)
                     result.append(Arrival(component.name, index, statement))
         return sorted(result, key=lambda arrival: arrival.index)
 

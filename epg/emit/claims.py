@@ -35,10 +35,10 @@ class ClaimView:
     name: str
     resource_class: str
     label: str
-    block: int
-    unit: int
-    instance: str
-    slot: str
+    instance: int
+    slot: int
+    instance_name: str
+    slot_name: str
     pins: Mapping[str, PinView]
     roles: Mapping[str, str]
     settings: Mapping[str, int]
@@ -108,10 +108,10 @@ def _view(app: Application, component: str, name: str, resource_class: str, labe
         name=name,
         resource_class=resource_class,
         label=label,
-        block=found.block,
-        unit=found.unit,
         instance=found.instance,
         slot=found.slot,
+        instance_name=found.instance_name,
+        slot_name=found.slot_name,
         pins={signal: PinView(names[pin] if names else str(pin), pin) for signal, pin in found.pins.items()},
         roles={},
         settings=found.settings,

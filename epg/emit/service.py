@@ -20,13 +20,13 @@ from epg.resolve.application import Application, ResolvedComponent
 
 @dataclass(frozen=True)
 class SignalView:
-    """A port of the model; ``slot`` is its place among the monitoring values."""
+    """A port of the model; ``index`` is its place among the monitoring values."""
 
     name: str
     unit: str
     struct: Code
     member: Code
-    slot: int
+    index: int
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ class Service:
     middleware: MiddlewareView | None  # None when nothing runs
     console: MiddlewareView | None  # beside it
     signals: tuple[SignalView, ...]
-    time_slot: int | None
+    time_index: int | None
     monitor_count: int
     node: bool
     store: bool
@@ -106,8 +106,8 @@ def service_of(app: Application, macro: Macro) -> Service:
     published = sum(len(topic.values) for topic in app.publications)
     signals = tuple(_signals(app, published)) if "signals" in uses else ()
     node = "node" in uses
-    time_slot = published + len(signals) if "signals" in uses or node else None
-    monitor_count = published if time_slot is None else time_slot + 1
+    time_index = published + len(signals) if "signals" in uses or node else None
+    monitor_count = published if time_index is None else time_index + 1
     jog = "jog" in uses
     captures = [options.get("capture")] if "capture" in middleware.uses else []
     captures += [communication.console_options.get("capture")] if console and "capture" in console.uses else []
@@ -115,7 +115,7 @@ def service_of(app: Application, macro: Macro) -> Service:
         middleware=_view(app, middleware, "middleware", options, monitor_count),
         console=_view(app, console, "console", communication.console_options, monitor_count) if console else None,
         signals=signals,
-        time_slot=time_slot,
+        time_index=time_index,
         monitor_count=monitor_count,
         node=node,
         store=node or "parameters" in uses,
@@ -150,14 +150,14 @@ def _full(app: Application, topic: str) -> str:
     return absolute_topic(topic, app.namespace, app.node)
 
 
-def _signals(app: Application, first_slot: int) -> Iterable[SignalView]:
-    slot = first_slot
+def _signals(app: Application, first: int) -> Iterable[SignalView]:
+    index = first
     names: set[str] = set()
     for struct, ports in (("inputs", app.model.inputs), ("outputs", app.model.outputs)):
         for port in ports:
             name = _word(f"{struct}.{port.name}", names)
-            yield SignalView(name, _word(port.unit), Code(struct), identifier(port.identifier), slot)
-            slot += 1
+            yield SignalView(name, _word(port.unit), Code(struct), identifier(port.identifier), index)
+            index += 1
 
 
 def _parameters(app: Application) -> Iterable[ParameterView]:

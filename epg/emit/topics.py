@@ -93,7 +93,7 @@ def message_of(component: ResolvedComponent, macro: Macro) -> tuple[Code, str, C
     """Message, type, size and layout of a component's topic."""
     message = macro(component, "message").strip()
     if not message:
-        if len(component.slots) > 1:
+        if len(component.value_index) > 1:
             raise LookupError(f"kind '{component.kind.name}' has several values and no macro 'message'")
         return Code("epg_message_float64"), "std_msgs/msg/Float64", Code("8"), Code("")
     size = macro(component, "message_size").strip()

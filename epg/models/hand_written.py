@@ -23,7 +23,7 @@ from epg.models.identifiers import is_reserved, to_identifier
 from epg.models.model import Model, Parameter, Port
 from epg.models.model_yaml import ModelYaml
 from epg.models.ports import check_identifiers
-from epg.source import Node, Span
+from epg.source import Span, YamlNode
 
 _KEYS = {
     "version": "number",
@@ -62,7 +62,7 @@ def load_hand_written(path: Path, diagnostics: Diagnostics) -> Model | None:
     return model if diagnostics.error_count == before else None
 
 
-def _load(path: Path, node: Node, diagnostics: Diagnostics) -> Model | None:
+def _load(path: Path, node: YamlNode, diagnostics: Diagnostics) -> Model | None:
     if "fmu" in node:
         from epg.models.fmu_settings import FmuSettings  # as rare as it is large
 
@@ -138,7 +138,7 @@ class _Reader(ModelYaml):
             return ""
         return str(node.value)
 
-    def _type(self, node: Node | None, key: str) -> str:
+    def _type(self, node: YamlNode | None, key: str) -> str:
         if node is None:
             return ""
         if not isinstance(node.value, str) or not _TYPE.fullmatch(node.value):
@@ -271,7 +271,7 @@ class _Reader(ModelYaml):
             members.append(member)
         return tuple(parameters), tuple(members)
 
-    def _word(self, node: Node, key: str) -> str:
+    def _word(self, node: YamlNode, key: str) -> str:
         found = node.get(key)
         if found is None or found.value is None:
             return ""

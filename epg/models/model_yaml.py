@@ -10,7 +10,7 @@ from epg.diagnostics import Diagnostics, did_you_mean
 from epg.documents.yaml_file import VERSION, newer_version
 from epg.models.assignments import is_step
 from epg.quantity import QuantityError, parse_quantity
-from epg.source import Node, Span
+from epg.source import Span, YamlNode
 
 FILE_NAME = "model.yaml"
 
@@ -18,7 +18,7 @@ FILE_NAME = "model.yaml"
 class ModelYaml:
     """Reads one ``model.yaml``."""
 
-    def __init__(self, path: Path, node: Node, diagnostics: Diagnostics) -> None:
+    def __init__(self, path: Path, node: YamlNode, diagnostics: Diagnostics) -> None:
         self.path = path
         self.node = node
         self.diagnostics = diagnostics
@@ -72,7 +72,7 @@ class ModelYaml:
             return ""
         return node.value
 
-    def _known_keys(self, node: Node, keys: tuple[str, ...], where: str) -> None:
+    def _known_keys(self, node: YamlNode, keys: tuple[str, ...], where: str) -> None:
         for key, _ in node.items():
             if key not in keys:
                 hint = did_you_mean(key, keys, "known keys")

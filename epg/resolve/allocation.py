@@ -2,7 +2,7 @@
 """Allocation: which pins, which peripheral and which settings each claim gets.
 
 Claims say a class of peripheral, pins and attributes; the chip's data say what implements the class and what it
-reaches.  What is wrong with one claim is reported first, then a search places all claims on each sort of peripheral,
+reaches.  What is wrong with one claim is reported first, then a search places all claims on each peripheral,
 and if that is impossible, :mod:`epg.resolve.conflict` says which claims are in each other's way.
 """
 
@@ -24,7 +24,7 @@ from epg.resolve.search import WHOLE, Demand, Place, find_places
 __all__ = ["Assignment", "allocate"]
 
 NODES = 255
-"""``block`` of the first that a devicetree node describes, and those before it; chips have fewer instances."""
+"""The ``instance`` of the first peripheral that a devicetree node describes; the others count down from it."""
 
 NODE_STEPS = 0xFFFF
 """Steps of a duty cycle where a devicetree node makes the PWM: its clock is not known here."""
@@ -36,24 +36,24 @@ _MANY = 12  # digits, to tell apart values that are close to each other
 class Assignment:
     """The hardware of one claim.
 
-    ``pins`` maps signals to the chip's numbers of pins, ``block`` and ``unit`` are the numbers of instance and slot
-    (unit 0 where all of the instance is taken), ``settings`` holds ``prescaler`` and ``top`` where there is a divider.
-    ``resource`` is what people call it: "PWM slice 1, channel A", ``instance`` and ``slot`` what the chip's data call
-    its parts.  ``frequency`` is what the divider makes, in Hz, and ``asked`` what was asked of it; None without one.
+    ``pins`` maps signals to the chip's numbers of pins, ``instance`` and ``slot`` are the numbers in C
+    (slot 0 where all of the instance is taken), ``settings`` holds ``prescaler`` and ``top`` where there is a divider.
+    ``resource`` is its name for people: "PWM slice 1, channel A"; ``instance_name`` and ``slot_name`` are the words of
+    the chip's data.  ``frequency`` is the divider's, in Hz, and ``asked`` the one that was asked for; None without one.
     ``attributes`` are those of the claim, in base units.
     """
 
     pins: Mapping[str, int]
-    block: int
-    unit: int
+    instance: int
+    slot: int
     settings: Mapping[str, int]
     resource: str
     frequency: Fraction | None = None
     asked: Fraction | None = None
     pins_are_real: bool = True
     """False where EPG numbered the pins, as the target has none."""
-    instance: str = ""
-    slot: str = ""
+    instance_name: str = ""
+    slot_name: str = ""
     attributes: Mapping[str, object] = field(default_factory=dict)
     pin_names: Mapping[str, int | str] = field(default_factory=dict)
     """Signals, and what the chip calls their pins: a number (GPIO 10) or a name (PD12); empty without real pins."""
@@ -111,8 +111,8 @@ def _nodes(claims: Sequence[Claim], target: Target, diagnostics: Diagnostics) ->
         divided = found.divider_from is not None
         result[claim.key] = Assignment(
             pins=MappingProxyType({signal: number - index for index, signal in enumerate(signals)}),
-            block=NODES - place,
-            unit=0,
+            instance=NODES - place,
+            slot=0,
             settings=MappingProxyType({"prescaler": 1, "top": NODE_STEPS - 1} if divided else {}),
             resource=f"devicetree node {claim.node}",
             pins_are_real=False,
@@ -278,16 +278,16 @@ def _assignment(placed: _Placed, peripheral: Peripheral, place: Place, target: T
     whole = slot == WHOLE
     return Assignment(
         pins=placed.pins,
-        block=instance,
-        unit=0 if whole else slot,
+        instance=instance,
+        slot=0 if whole else slot,
         settings=MappingProxyType(settings),
         resource=peripheral.instance_title(instance) if whole else peripheral.slot_name(instance, slot),
         frequency=frequency,
         asked=asked,
         pins_are_real=target.has_pins,
         pin_names=_pin_names(placed, target),
-        instance=peripheral.instances[instance],
-        slot="" if whole else peripheral.slots[slot],
+        instance_name=peripheral.instances[instance],
+        slot_name="" if whole else peripheral.slots[slot],
         attributes=_attributes(placed.claim),
     )
 
@@ -317,8 +317,8 @@ def _pins_only(placed: _Placed, target: Target) -> Assignment:
     names = ", ".join(target.soc.pins[number] if target.has_pins else str(number) for number in numbers)
     return Assignment(
         pins=placed.pins,
-        block=0,
-        unit=numbers[0],
+        instance=0,
+        slot=numbers[0],
         settings=MappingProxyType({}),
         resource=f"{'pin' if target.has_pins else 'simulated pin'} {names}",
         pins_are_real=target.has_pins,

@@ -33,8 +33,8 @@ class Step:
 class ResolvedComponent:
     """A component with its hardware.
 
-    ``slots`` are the places of its ports' values in the exchange (topics only), counted per direction, ``slot`` is the
-    first of them.
+    ``value_index`` are the indices of its ports' values in the exchange (topics only), counted per direction;
+    ``first_index`` is the first of them.
     """
 
     name: str
@@ -43,13 +43,13 @@ class ResolvedComponent:
     parameters: Mapping[str, object]
     claims: Mapping[str, Assignment]
     uses: Mapping[str, Used]
-    slots: Mapping[str, int]
+    value_index: Mapping[str, int]
     application: str
     span: Span
 
     @property
-    def slot(self) -> int | None:
-        return min(self.slots.values(), default=None)
+    def first_index(self) -> int | None:
+        return min(self.value_index.values(), default=None)
 
 
 @dataclass(frozen=True)
@@ -75,11 +75,11 @@ class Setpoint:
 
 @dataclass(frozen=True)
 class TopicValue:
-    """One number of a message: what people call it, the component's port, its slot; setpoints have fault handling."""
+    """One number of a message: its name for people, the component's port, its value index, and a setpoint's faults."""
 
     name: str
     port: str
-    slot: int
+    index: int
     setpoint: Setpoint | None = None
 
 
@@ -87,7 +87,7 @@ class TopicValue:
 class Topic:
     """One topic.  ``key`` is what makes it: ``components.pan_publisher``, ``control.enable_topic``.
 
-    ``role`` is "values", "enable", "diagnostics" or "echo"; ``index`` is the slot of the first value, of an echo's
+    ``role`` is "values", "enable", "diagnostics" or "echo"; ``index`` is the index of the first value, of an echo's
     subscription the number of the publication that answers.  ``trigger`` is "period" (``period`` in seconds), "cycles"
     (every ``cycles`` control cycles) or "change".
     """

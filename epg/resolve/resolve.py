@@ -19,7 +19,7 @@ from epg.quantity import parse_quantity
 from epg.resolve.allocation import Assignment, allocate
 from epg.resolve.application import Application, Plant, ResolvedComponent, Wire
 from epg.resolve.claims import TICK, component_claims, tick_claims
-from epg.resolve.topics import publications_of, slots_of, subscriptions_of
+from epg.resolve.topics import publications_of, subscriptions_of, value_indices_of
 from epg.resolve.wires import input_wires, output_wires, parameter_overrides
 
 _PUBLIC = frozenset(
@@ -52,8 +52,8 @@ def resolve(
     _same_model(bindings, model, diagnostics)
     period, divider = _period(configuration, model, diagnostics)
     assignments = allocate_hardware(configuration, period, diagnostics)
-    slots = slots_of(configuration.components, bindings)
-    components = _components(name, configuration, assignments or {}, slots)
+    indices = value_indices_of(configuration.components, bindings)
+    components = _components(name, configuration, assignments or {}, indices)
     inputs = input_wires(bindings, model, configuration.components, components, diagnostics)
     outputs = output_wires(bindings, model, configuration.components, components, diagnostics)
     parameters = parameter_overrides(bindings, model, diagnostics)
@@ -172,7 +172,7 @@ def _components(
     name: str,
     configuration: Configuration,
     assignments: Mapping[tuple[str, str], Assignment],
-    slots: Mapping[str, Mapping[str, int]],
+    indices: Mapping[str, Mapping[str, int]],
 ) -> dict[str, ResolvedComponent]:
     result: dict[str, ResolvedComponent] = {}
     claims: dict[str, dict[str, Assignment]] = {}
@@ -187,7 +187,7 @@ def _components(
             parameters=component.parameters,
             claims=claims.get(component.name, {}),
             uses=component.uses,
-            slots=slots.get(component.name, {}),
+            value_index=indices.get(component.name, {}),
             application=name,
             span=component.span,
         )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Search for a place for every demand on one sort of peripheral.
+"""Search for a place for every demand on one peripheral.
 
 A peripheral has instances with slots.  A demand takes one of the places it can use: a slot of an instance, or the
 whole instance.  All users of an instance must agree on their attributes.  Taking the first place that is free would
@@ -11,7 +11,7 @@ with checks of what remains after each step.
 
 Refusing must be fast too.  Demands that are equal form a group, instances and slots that the groups see alike are
 interchangeable, and a state of the search is what is left once names are taken away: how many of each group remain,
-how many slots of each sort are used.  States that were refused once are remembered, so nothing is refused twice under
+how many slots of each bank are used.  States that were refused once are remembered, so nothing is refused twice under
 another name.
 """
 
@@ -45,7 +45,7 @@ class _Group:
 
 
 @dataclass(frozen=True)
-class _Sort:
+class _Bank:
     """Slots of an instance that all groups see alike."""
 
     groups: frozenset[int]
@@ -58,7 +58,7 @@ class _Instance:
 
     index: int
     profile: int
-    sorts: tuple[_Sort, ...]
+    banks: tuple[_Bank, ...]
     whole: frozenset[int]
     users: frozenset[int]  # groups that could use it
     pressure: int  # how many demands could use it
@@ -67,13 +67,13 @@ class _Instance:
 
 @dataclass(frozen=True)
 class _Use:
-    """How an instance is used: slots per sort, and the agreement of its users (-1: there are none)."""
+    """How an instance is used: slots per bank, and the agreement of its users (-1: there are none)."""
 
     used: tuple[int, ...]
     agree: int
 
 
-_Move = tuple[int, int, int]  # group, instance (as a position in the list), sort or WHOLE
+_Move = tuple[int, int, int]  # group, instance (as a position in the list), bank or WHOLE
 _State = tuple[tuple[int, ...], tuple[_Use, ...]]  # how many of each group remain; the use of each instance
 
 
@@ -92,7 +92,7 @@ class _Problem:
         self.count = len(demands)
         self.groups = _groups(demands)
         self.instances = _instances(demands, self.groups, costs)
-        self.slots = max((sum(len(sort.slots) for sort in i.sorts) for i in self.instances), default=0)
+        self.slots = max((sum(len(bank.slots) for bank in i.banks) for i in self.instances), default=0)
         self.reached: list[list[int]] = [[] for _ in self.groups]  # positions of the instances a group can use
         for position, instance in enumerate(self.instances):
             for number in instance.users:
@@ -101,7 +101,7 @@ class _Problem:
     def solve(self) -> list[_Move] | None:
         """The moves that give each demand a place, or None."""
         remaining = tuple(len(group.members) for group in self.groups)
-        state: _State = remaining, tuple(_Use((0,) * len(i.sorts), -1) for i in self.instances)
+        state: _State = remaining, tuple(_Use((0,) * len(i.banks), -1) for i in self.instances)
         if not self._hopeful(state):
             return None
         return self._dive(state) or self._search(state)
@@ -154,12 +154,12 @@ class _Problem:
         return None
 
     def places(self, moves: Sequence[_Move]) -> tuple[Place, ...]:
-        """Concrete places: members of a group, slots of a sort and equal instances in rising order."""
+        """Concrete places: members of a group, slots of a bank and equal instances in rising order."""
         waiting = [list(group.members) for group in self.groups]
-        free = {(n, s): list(sort.slots) for n, i in enumerate(self.instances) for s, sort in enumerate(i.sorts)}
+        free = {(n, s): list(bank.slots) for n, i in enumerate(self.instances) for s, bank in enumerate(i.banks)}
         result: list[Place] = [(0, 0)] * self.count
-        for group, position, sort in sorted(moves, key=lambda move: (self.instances[move[1]].index, move[2], move[0])):
-            slot = WHOLE if sort == WHOLE else free[position, sort].pop(0)
+        for group, position, bank in sorted(moves, key=lambda move: (self.instances[move[1]].index, move[2], move[0])):
+            slot = WHOLE if bank == WHOLE else free[position, bank].pop(0)
             result[waiting[group].pop(0)] = (self.instances[position].index, slot)
         return tuple(result)
 
@@ -192,9 +192,9 @@ class _Problem:
             seen.add((instance.profile, use))
             if number in instance.whole and use.agree < 0:
                 yield number, position, WHOLE
-            for sort, (slots, used) in enumerate(zip(instance.sorts, use.used)):
+            for bank, (slots, used) in enumerate(zip(instance.banks, use.used)):
                 if number in slots.groups and used < len(slots.slots):
-                    yield number, position, sort
+                    yield number, position, bank
 
     def _after(self, state: _State, move: _Move) -> _State:
         remaining, uses = state
@@ -204,11 +204,11 @@ class _Problem:
 
     def _used(self, use: _Use, move: _Move) -> _Use:
         """The use of an instance after a move to it."""
-        number, position, sort = move
-        if sort == WHOLE:
-            used = tuple(len(slots.slots) for slots in self.instances[position].sorts)
+        number, position, bank = move
+        if bank == WHOLE:
+            used = tuple(len(slots.slots) for slots in self.instances[position].banks)
         else:
-            used = (*use.used[:sort], use.used[sort] + 1, *use.used[sort + 1 :])
+            used = (*use.used[:bank], use.used[bank] + 1, *use.used[bank + 1 :])
         return _Use(used, self.groups[number].agree)
 
     def _key(self, state: _State) -> Hashable:
@@ -235,7 +235,7 @@ class _Problem:
         for agree, count in slots_needed.items():
             for instance, use in zip(self.instances, uses):
                 if use.agree == agree:
-                    count -= sum(len(sort.slots) for sort in instance.sorts) - sum(use.used)
+                    count -= sum(len(bank.slots) for bank in instance.banks) - sum(use.used)
             needed += -(-max(0, count) // self.slots) if self.slots else 0
         return needed <= empty
 
@@ -245,12 +245,12 @@ class _Problem:
         capacity: dict[tuple[int, int], int] = {}
         reach: list[list[tuple[int, int]]] = [[] for _ in self.groups]
         for position, (instance, use) in enumerate(zip(self.instances, uses)):
-            for sort, (slots, used) in enumerate(zip(instance.sorts, use.used)):
+            for bank, (slots, used) in enumerate(zip(instance.banks, use.used)):
                 if used < len(slots.slots):
-                    capacity[position, sort] = len(slots.slots) - used
+                    capacity[position, bank] = len(slots.slots) - used
                     for number in slots.groups:
                         if remaining[number] and use.agree in (-1, self.groups[number].agree):
-                            reach[number].append((position, sort))
+                            reach[number].append((position, bank))
             if use.agree < 0 and instance.whole:
                 capacity[position, WHOLE] = 1
                 for number in instance.whole:
@@ -322,12 +322,12 @@ def _instances(demands: Sequence[Demand], groups: Sequence[_Group], costs: Seque
         for slot in sorted(slot for slot in seen[index] if slot != WHOLE):
             by_groups.setdefault(frozenset(seen[index][slot]), []).append(slot)
         ordered = sorted(by_groups.items(), key=lambda item: sorted(item[0]))
-        sorts = tuple(_Sort(numbers, tuple(slots)) for numbers, slots in ordered)
+        banks = tuple(_Bank(numbers, tuple(slots)) for numbers, slots in ordered)
         whole = frozenset(seen[index].get(WHOLE, ()))
-        alike = (tuple((sort.groups, len(sort.slots)) for sort in sorts), whole)
+        alike = (tuple((bank.groups, len(bank.slots)) for bank in banks), whole)
         users = frozenset(number for numbers in seen[index].values() for number in numbers)
         pressure = sum(len(groups[number].members) for number in users)
         cost = costs[index] if index < len(costs) else 0
         profile = profiles.setdefault(alike, len(profiles))
-        result.append(_Instance(index, profile, sorts, whole, users, pressure, cost))
+        result.append(_Instance(index, profile, banks, whole, users, pressure, cost))
     return tuple(sorted(result, key=lambda instance: (instance.cost, instance.index)))

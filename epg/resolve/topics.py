@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Topics of an application: those of its components, and those that every ROS 2 node of EPG has.
 
-Values travel between the two sides of a target in *slots*: setpoints in the order of the subscriptions, monitoring
-values in that of the publications.  A message of several values has consecutive ones.
+A value has an index in the exchange between the two sides of a target: setpoints in the order of the subscriptions,
+monitoring values in the order of the publications.  A message of several values has consecutive ones.
 """
 
 from __future__ import annotations
@@ -20,22 +20,22 @@ HISTORY = 10
 """Messages that a publication keeps unless told otherwise: what rclcpp and rclpy call the depth, and their default."""
 
 
-def slots_of(components: Mapping[str, Component], bindings: Bindings) -> dict[str, dict[str, int]]:
-    """The slots of each component, by its ports: counted per direction, in the order in which components are written.
+def value_indices_of(components: Mapping[str, Component], bindings: Bindings) -> dict[str, dict[str, int]]:
+    """The value indices of each component, by its ports, counted per direction in the order of the components.
 
     Of several ports those have one that are bound, in the order of the message; if none is, all of them.
     """
     bound = _bound_ports(components, bindings)
     result: dict[str, dict[str, int]] = {}
-    next_slot = {"subscribe": 0, "publish": 0, "echo": 0}
+    next_index = {"subscribe": 0, "publish": 0, "echo": 0}
     for name, component in components.items():
         direction, ports = component.kind.communication, component.kind.topic_ports
         if direction is None:
             continue
         used = [port for port in ports if port.name in bound.get(name, ())] if len(ports) > 1 else ports
-        first = next_slot[direction]
+        first = next_index[direction]
         result[name] = {port.name: first + number for number, port in enumerate(used or ports)}
-        next_slot[direction] += len(result[name])
+        next_index[direction] += len(result[name])
     return result
 
 
@@ -68,10 +68,12 @@ def subscriptions_of(
         if component.kind.communication == "subscribe":
             topic, written = _topic_name(component, "topic"), configuration.components[component.name]
             values = tuple(
-                TopicValue(_value_name(topic, port, component), port, slot, _setpoint(written, port, units))
-                for port, slot in component.slots.items()
+                TopicValue(_value_name(topic, port, component), port, index, _setpoint(written, port, units))
+                for port, index in component.value_index.items()
             )
-            result.append(_topic(component, topic, "values", values, index=min(component.slots.values()), depth=1))
+            result.append(
+                _topic(component, topic, "values", values, index=min(component.value_index.values()), depth=1)
+            )
     echoes = [c for c in components.values() if c.kind.communication == "echo"]
     first = sum(c.kind.communication == "publish" for c in components.values())
     for number, component in enumerate(echoes, first):
@@ -90,7 +92,8 @@ def publications_of(components: Mapping[str, ResolvedComponent], configuration: 
         if component.kind.communication == "publish":
             topic = _topic_name(component, "topic")
             values = tuple(
-                TopicValue(_value_name(topic, port, component), port, slot) for port, slot in component.slots.items()
+                TopicValue(_value_name(topic, port, component), port, index)
+                for port, index in component.value_index.items()
             )
             cycles = component.parameters.get("every")
             result.append(
@@ -99,7 +102,7 @@ def publications_of(components: Mapping[str, ResolvedComponent], configuration: 
                     topic,
                     "values",
                     values,
-                    index=min(component.slots.values()),
+                    index=min(component.value_index.values()),
                     trigger=_trigger(component.parameters),
                     cycles=cycles if isinstance(cycles, int) else 0,
                     period=communication.period,

@@ -13,7 +13,7 @@ from epg.documents.text_file import is_file
 from epg.documents.yaml_file import load_yaml
 from epg.quantity import QuantityError, dimension_of, normal_unit, parse_quantity
 from epg.simulate.scenario import Axis, Event, Homing, Part, Profile, Scenario, Window
-from epg.source import Node, Span
+from epg.source import Span, YamlNode
 
 #: shape -> keys it needs beside shape and start
 _SHAPES = {
@@ -44,7 +44,7 @@ class _Reader:
         self.diagnostics = diagnostics
         self.names: list[tuple[str, str, Span]] = []
 
-    def scenario(self, path: Path, root: Node) -> Scenario:
+    def scenario(self, path: Path, root: YamlNode) -> Scenario:
         duration = self.time(root["duration"], positive=True)
         interval = self.time(root["interval"], positive=True) if "interval" in root else Fraction(33, 1000)
         setpoints = root["setpoints"]
@@ -71,7 +71,7 @@ class _Reader:
             names=tuple(self.names),
         )
 
-    def profile(self, node: Node, duration: Fraction) -> Profile:
+    def profile(self, node: YamlNode, duration: Fraction) -> Profile:
         initial = self.value(node["initial"]) if "initial" in node else 0.0
         listed = node.get("profile")
         parts: list[Part] = []
@@ -85,7 +85,7 @@ class _Reader:
             parts.append(part)
         return Profile(initial, tuple(parts))
 
-    def part(self, node: Node) -> Part:
+    def part(self, node: YamlNode) -> Part:
         shape = str(node["shape"].value)
         needed = _SHAPES[shape]
         for key in needed:
@@ -105,7 +105,7 @@ class _Reader:
             float(self.quantity(node["frequency"], "frequency")) if "frequency" in node else 0.0,
         )
 
-    def event(self, node: Node, duration: Fraction, profiles: Mapping[str, Profile]) -> Event:
+    def event(self, node: YamlNode, duration: Fraction, profiles: Mapping[str, Profile]) -> Event:
         at = self.time(node["at"])
         actions = [key for key, _ in node.items() if key in _ACTIONS]
         if len(actions) != 1:
@@ -134,7 +134,7 @@ class _Reader:
             return Event(at, action, component=name, level=str(int(level)) if isinstance(level, bool) else str(level))
         return Event(at, action, topic, duration=self.time(node[action], positive=True))
 
-    def axis(self, name: str, node: Node, duration: Fraction, profiles: Mapping[str, Profile]) -> Axis:
+    def axis(self, name: str, node: YamlNode, duration: Fraction, profiles: Mapping[str, Profile]) -> Axis:
         topic = self.topic(node["setpoint"], profiles)
         listed = node.get("windows")
         windows = tuple(self.window(element, duration) for element in (listed.elements() if listed else ()))
@@ -156,12 +156,12 @@ class _Reader:
             signals=self.signals(node["position"], duty),
         )
 
-    def signals(self, *nodes: Node | None) -> tuple[str, ...]:
+    def signals(self, *nodes: YamlNode | None) -> tuple[str, ...]:
         named = tuple((str(node.value), node.span) for node in nodes if node is not None)
         self.names += [("signal", name, span) for name, span in named]
         return tuple(name for name, _ in named)
 
-    def homing(self, node: Node, duration: Fraction) -> Homing:
+    def homing(self, node: YamlNode, duration: Fraction) -> Homing:
         duty = node.get("duty")
         return Homing(
             self.within(node["until"], duration),
@@ -169,27 +169,27 @@ class _Reader:
             self.value(node["position"]) if "position" in node else None,
         )
 
-    def window(self, node: Node, duration: Fraction) -> Window:
+    def window(self, node: YamlNode, duration: Fraction) -> Window:
         start, end = self.within(node["from"], duration), self.within(node["until"], duration)
         if end <= start:
             self.error("wrong-value", node["until"], "the window ends before it begins")
         limits = (self.value(node[key]) if key in node else None for key in ("rms", "largest"))
         return Window(start, end, *limits)
 
-    def topic(self, node: Node, profiles: Mapping[str, Profile]) -> str:
+    def topic(self, node: YamlNode, profiles: Mapping[str, Profile]) -> str:
         topic = str(node.value)
         if topic not in profiles:
             hint = did_you_mean(topic, profiles, "topics")
             self.error("unknown-topic", node, f"no setpoints are sent on '{topic}'", hint)
         return topic
 
-    def within(self, node: Node, duration: Fraction) -> float:
+    def within(self, node: YamlNode, duration: Fraction) -> float:
         time = self.time(node)
         if time > duration:
             self.error("beyond-duration", node, f"the run ends at {float(duration):g} s")
         return float(time)
 
-    def time(self, node: Node, *, positive: bool = False) -> Fraction:
+    def time(self, node: YamlNode, *, positive: bool = False) -> Fraction:
         time = self.quantity(node, "time")
         if time < 0 or (positive and time == 0):
             least = "more than" if positive else "at least"
@@ -197,14 +197,14 @@ class _Reader:
             return Fraction(1)
         return Fraction(time)
 
-    def quantity(self, node: Node, dimension: str) -> Fraction | float:
+    def quantity(self, node: YamlNode, dimension: str) -> Fraction | float:
         try:
             return parse_quantity(node.value, dimension)
         except QuantityError as problem:
             self.error("wrong-quantity", node, str(problem), problem.hint)
             return Fraction(1)
 
-    def value(self, node: Node, *, finite: bool = True) -> float:
+    def value(self, node: YamlNode, *, finite: bool = True) -> float:
         """A number as it is, or a quantity of any dimension in its base unit (rad for deg)."""
         if isinstance(node.value, (int, float)) and not isinstance(node.value, bool):
             value = float(node.value)
@@ -216,5 +216,5 @@ class _Reader:
         dimension = dimension_of(text[1]) if len(text) == 2 else None
         return float(self.quantity(node, dimension or "angle"))
 
-    def error(self, id: str, node: Node, message: str, hint: str = "") -> None:
+    def error(self, id: str, node: YamlNode, message: str, hint: str = "") -> None:
         self.diagnostics.error(id, node.span, message, hint=hint)

@@ -41,7 +41,9 @@ def test_everything_is_right() -> None:
     read_everything(catalog)
     assert [(p.span, p.message) for p in problems] == []
     folders = {path.name for folder in FOLDERS.values() for path in (TARGETS / folder).iterdir() if path.is_dir()}
-    assert {name for sort in FOLDERS for name in catalog.names(sort)} == folders - {"pico"}, "pico: shared by platforms"
+    assert {name for category in FOLDERS for name in catalog.names(category)} == folders - {"pico"}, (
+        "pico: shared by platforms"
+    )
 
 
 def test_the_targets_of_the_thesis_and_those_without_a_board() -> None:
@@ -89,11 +91,11 @@ def test_drivers_name_all_their_files() -> None:
 
 
 def test_schemas_are_schemas_that_editors_understand() -> None:
-    for sort in FOLDERS:
-        text = (data_folder("schemas") / f"{sort}.schema.json").read_text(encoding="utf-8")
+    for category in FOLDERS:
+        text = (data_folder("schemas") / f"{category}.schema.json").read_text(encoding="utf-8")
         schema = json.loads(text)
         Draft202012Validator.check_schema(schema)
-        assert schema["$id"] == f"https://epg.dev/schemas/v1/{sort}.schema.json"
+        assert schema["$id"] == f"https://epg.dev/schemas/v1/{category}.schema.json"
         assert "unevaluated" not in text and "prefixItems" not in text
 
 

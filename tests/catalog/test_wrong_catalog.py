@@ -23,7 +23,9 @@ from epg.resolve.claims import component_claims, tick_claims
 from tests.catalog.everything import read_everything
 
 FILES = sorted(
-    path for sort, folder in FOLDERS.items() for path in (data_folder("targets") / folder).glob(f"*/{sort}.yaml")
+    path
+    for category, folder in FOLDERS.items()
+    for path in (data_folder("targets") / folder).glob(f"*/{category}.yaml")
 )
 ODD = [None, True, 0, -1, 1.5, "", "x", "0-3", "3-0", "1-99999", "any", "slot", "A", [], ["x"], {}, {"x": 1}, 1 << 70]
 

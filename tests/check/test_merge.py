@@ -10,10 +10,10 @@ import pytest
 from epg.check.merge import apply_settings, merge_chain
 from epg.diagnostics import Diagnostics
 from epg.documents.tcf import load_tcf_chain, settings_node
-from epg.source import Node, Span
+from epg.source import Span, YamlNode
 
 
-def merged(folder: Path, name: str, *settings: str) -> Node:
+def merged(folder: Path, name: str, *settings: str) -> YamlNode:
     problems = Diagnostics()
     chain = load_tcf_chain(name, [], problems, beside=folder)
     root = apply_settings(merge_chain(chain), settings_node([(s, Span("CMakeLists.txt")) for s in settings], problems))

@@ -10,10 +10,10 @@ import pytest
 
 from epg.diagnostics import Diagnostics
 from epg.documents.yaml_file import load_yaml, parse_yaml
-from epg.source import Node, Span
+from epg.source import Span, YamlNode
 
 
-def parse(text: str) -> Node:
+def parse(text: str) -> YamlNode:
     problems = Diagnostics()
     node = parse_yaml(text, "x.yaml", problems)
     assert not list(problems)

@@ -14,7 +14,7 @@ from epg.documents.yaml_file import parse_yaml
 from epg.edit.bindings import CannotEdit, End, ends_of, set_ends
 from epg.edit.ends import data_of
 from epg.edit.scalars import scalar_text
-from epg.source import Node
+from epg.source import YamlNode
 from tests.edit.bindings_texts import PORTS, Text, bindings_texts, ends
 from tests.edit.servo import model_of
 from tests.fuzz.long_run import PROFILE, examples
@@ -32,7 +32,7 @@ def _edits() -> st.SearchStrategy[tuple[str, str, tuple[End, ...] | None]]:
 edits = _edits()
 
 
-def _root(text: str) -> Node:
+def _root(text: str) -> YamlNode:
     problems = Diagnostics()
     root = parse_yaml(text.removeprefix("\ufeff"), "servo.bindings.yaml", problems)
     assert root is not None, (list(problems), text)

@@ -19,7 +19,7 @@ from epg.documents import yaml_file
 from epg.documents.yaml_file import parse_yaml
 from epg.edit.bindings import CannotEdit, End, ends_of, set_ends
 from epg.models.model import Model
-from epg.source import Node
+from epg.source import YamlNode
 from tests.edit.servo import model_of
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -27,7 +27,7 @@ SERVO = model_of(("angle", "go", "setpoint"), ("duty", "log", "reset"))
 HEAD = "# servo\nversion: 1\nmodel: Servo\n"
 
 
-def tree(text: str) -> Node:
+def tree(text: str) -> YamlNode:
     problems = Diagnostics()
     root = parse_yaml(text, "servo.bindings.yaml", problems)
     assert root is not None, list(problems)

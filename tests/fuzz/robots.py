@@ -183,7 +183,7 @@ def ros_components(draw: st.DrawFn, name: str, kind: str, topic: str) -> Compone
         parts = [(f"{joint}.{part}", unit) for joint in text["joints"] for part, unit in JOINT.items()]
     elif "twist" in kind:
         maybe("stamped", flags)
-        parts = [(f"{sort}_{axis}", unit) for sort, unit in (("linear", "m/s"), ("angular", "rad/s")) for axis in "xyz"]
+        parts = [(f"{way}_{axis}", unit) for way, unit in (("linear", "m/s"), ("angular", "rad/s")) for axis in "xyz"]
     if kind == "ros_joint_state_publisher" or (kind == "ros_twist_publisher" and "stamped" in text):
         maybe("frame", st.sampled_from(("base_link", "", '"', "\\", "%s */ ~")))
     ends = [(f"{name}.{part}" if part else name, direction, unit) for part, unit in parts]

@@ -57,8 +57,8 @@ def test_it_needs_no_heap_and_no_printf(tmp_path: Path) -> None:
         command = ["gcc", "-std=c11", "-Os", "-fno-stack-protector", "-fno-builtin", f"-I{program.RUNTIME / 'include'}"]
         subprocess.run([*command, "-c", str(source), "-o", str(output)], check=True)
         for line in subprocess.run(["nm", str(output)], capture_output=True, text=True, check=True).stdout.splitlines():
-            sort, name = line.split()[-2:]
-            (undefined if sort == "U" else defined).add(name)
+            letter, name = line.split()[-2:]
+            (undefined if letter == "U" else defined).add(name)
     port = {f"epg_port_{name}" for name in ("time_ns", "wait_until", "serial", "store_read", "store_write")}
     text = {
         "memcpy",

@@ -31,7 +31,7 @@ byte first[4];
 byte second[4];
 bit latest;
 bit reading;
-bit slot[2];
+bit newest[2];
 byte writes;            /* writes that have finished */
 
 byte finished;          /* newest value whose write has returned */
@@ -50,13 +50,13 @@ active proctype writer()
 #else
         pair = 1 - reading;
 #endif
-#ifdef BROKEN_ONE_SLOT_PER_PAIR
+#ifdef BROKEN_ONE_BUFFER_PER_PAIR
         index = 0;
 #else
-        index = 1 - slot[pair];
+        index = 1 - newest[pair];
 #endif
-#ifdef BROKEN_SLOT_BEFORE_DATA
-        slot[pair] = index;
+#ifdef BROKEN_NEWEST_BEFORE_DATA
+        newest[pair] = index;
 #endif
         d_step { being_written = 2 * pair + index; first[2 * pair + index] = value; }
         d_step {
@@ -67,11 +67,11 @@ active proctype writer()
 #ifdef BROKEN_COUNT_BEFORE_PAIR
         writes = value;
 #endif
-#ifdef BROKEN_PAIR_BEFORE_SLOT
+#ifdef BROKEN_PAIR_BEFORE_NEWEST
         latest = pair;
-        slot[pair] = index;
+        newest[pair] = index;
 #else
-        slot[pair] = index;
+        newest[pair] = index;
         latest = pair;
 #endif
         d_step { writes = value; finished = value; }
@@ -112,11 +112,11 @@ active proctype reader()
             fi;
             pair = latest;
 #ifdef BROKEN_ANNOUNCES_LATE
-            index = slot[pair];
+            index = newest[pair];
             reading = pair;
 #else
             reading = pair;
-            index = slot[pair];
+            index = newest[pair];
 #endif
             d_step { being_read = 2 * pair + index; one = first[2 * pair + index]; }
             d_step {

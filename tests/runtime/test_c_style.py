@@ -55,8 +55,8 @@ def test_runtime_needs_no_heap_and_no_library_but_string_h(tmp_path: Path) -> No
         output = tmp_path / f"{source.stem}.o"
         compile_only("gcc", source, output, "-std=c11", "-Os", "-fno-stack-protector")
         for line in subprocess.run(["nm", str(output)], capture_output=True, text=True, check=True).stdout.splitlines():
-            sort, name = line.split()[-2:]
-            (undefined if sort == "U" else defined).add(name)
+            letter, name = line.split()[-2:]
+            (undefined if letter == "U" else defined).add(name)
     port = {f"epg_port_{name}" for name in ("time_ns", "wait_until", "serial", "store_read", "store_write")}
     text = {"memcmp", "memcpy", "memmove", "memset", "strcmp", "strlen", "strncmp", "strstr"}
     assert undefined - defined <= {*text, *port, "_GLOBAL_OFFSET_TABLE_"}

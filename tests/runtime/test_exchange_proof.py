@@ -24,9 +24,9 @@ PATIENCE = "60"
 
 BROKEN_MODELS = {
     "BROKEN_IGNORES_THE_READER",
-    "BROKEN_ONE_SLOT_PER_PAIR",
-    "BROKEN_SLOT_BEFORE_DATA",
-    "BROKEN_PAIR_BEFORE_SLOT",
+    "BROKEN_ONE_BUFFER_PER_PAIR",
+    "BROKEN_NEWEST_BEFORE_DATA",
+    "BROKEN_PAIR_BEFORE_NEWEST",
     "BROKEN_ANNOUNCES_LATE",
     "BROKEN_COUNT_BEFORE_PAIR",
 }
@@ -68,10 +68,10 @@ def test_spin_refuses_a_broken_model(tmp_path: Path, broken: str) -> None:
     ("broken", "assertion"),
     [
         ("BROKEN_IGNORES_THE_READER", "one==two"),
-        ("BROKEN_ONE_SLOT_PER_PAIR", "one==two"),
-        ("BROKEN_SLOT_BEFORE_DATA", "one==two"),
+        ("BROKEN_ONE_BUFFER_PER_PAIR", "one==two"),
+        ("BROKEN_NEWEST_BEFORE_DATA", "one==two"),
         ("BROKEN_ANNOUNCES_LATE", "one==two"),
-        ("BROKEN_PAIR_BEFORE_SLOT", "one>="),
+        ("BROKEN_PAIR_BEFORE_NEWEST", "one>="),
         ("BROKEN_COUNT_BEFORE_PAIR", "before>=expected"),
     ],
 )
@@ -93,25 +93,31 @@ def test_model_and_code_have_the_same_statements() -> None:
     in_code = r"&exchange->(\w+)|(memcpy)"
     assert ["".join(match) for match in re.findall(in_code, write)] == [
         "reading",
-        "slot",
+        "newest",
         "memcpy",
-        "slot",
+        "newest",
         "latest",
         "writes",  # stored; loaded is its own count, which nobody else changes
         "writes",
     ]
-    assert ["".join(match) for match in re.findall(in_code, read)] == ["writes", "latest", "reading", "slot", "memcpy"]
+    assert ["".join(match) for match in re.findall(in_code, read)] == [
+        "writes",
+        "latest",
+        "reading",
+        "newest",
+        "memcpy",
+    ]
     assert ["".join(match) for match in re.findall(in_code, take)] == ["writes"]
 
     model = _without_broken(MODEL.read_text())
-    shared = r"\b(reading|latest|writes|slot)\b(?=[ ;\[])|(second)\["
+    shared = r"\b(reading|latest|writes|newest)\b(?=[ ;\[])|(second)\["
     writer = model[model.index("proctype writer") : model.index("proctype reader")]
     reader = model[model.index("proctype reader") :]
     assert ["".join(match) for match in re.findall(shared, writer)] == [
         "reading",
-        "slot",
+        "newest",
         "second",
-        "slot",
+        "newest",
         "latest",
         "writes",
     ]
@@ -119,7 +125,7 @@ def test_model_and_code_have_the_same_statements() -> None:
         "writes",
         "latest",
         "reading",
-        "slot",
+        "newest",
         "second",
     ]
 
@@ -143,18 +149,18 @@ IGNORES_THE_READER = (
     "pair = 1U - atomic_load(&exchange->reading)",
     "pair = 1U - atomic_load(&exchange->latest)",
 )
-ONE_SLOT_PER_PAIR = ("index = 1U - atomic_load(&exchange->slot[pair])", "index = 0U")
-_COPY = "    memcpy(slot(exchange, pair, index), value, exchange->size);\n"
-_SLOT = "    atomic_store(&exchange->slot[pair], index);\n"
-SLOT_BEFORE_DATA = (_COPY + _SLOT, _SLOT + _COPY)
+ONE_BUFFER_PER_PAIR = ("index = 1U - atomic_load(&exchange->newest[pair])", "index = 0U")
+_COPY = "    memcpy(buffer(exchange, pair, index), value, exchange->size);\n"
+_NEWEST = "    atomic_store(&exchange->newest[pair], index);\n"
+NEWEST_BEFORE_DATA = (_COPY + _NEWEST, _NEWEST + _COPY)
 RELAXED = (
-    "atomic_store(&exchange->slot[pair], index)",
-    "atomic_store_explicit(&exchange->slot[pair], index, memory_order_relaxed)",
+    "atomic_store(&exchange->newest[pair], index)",
+    "atomic_store_explicit(&exchange->newest[pair], index, memory_order_relaxed)",
 )
 MUTATIONS = {
     "ignores_the_reader": IGNORES_THE_READER,
-    "one_slot_per_pair": ONE_SLOT_PER_PAIR,
-    "slot_before_data": SLOT_BEFORE_DATA,
+    "one_buffer_per_pair": ONE_BUFFER_PER_PAIR,
+    "newest_before_data": NEWEST_BEFORE_DATA,
 }
 
 

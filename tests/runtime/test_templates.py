@@ -36,23 +36,23 @@ HARNESS = SOURCES / "templates.c"
 PWM = {"prescaler": 1, "top": 6249}
 
 
-def claim(pins: Mapping[str, int], block: int = 0, unit: int = 0, **settings: int) -> SimpleNamespace:
+def claim(pins: Mapping[str, int], instance: int = 0, slot: int = 0, **settings: int) -> SimpleNamespace:
     clocks = settings.get("prescaler", 1) * (settings.get("top", 0) + 1)
     return SimpleNamespace(
-        pins=dict(pins), block=block, unit=unit, settings=settings, frequency=Fraction(125_000_000, clocks)
+        pins=dict(pins), instance=instance, slot=slot, settings=settings, frequency=Fraction(125_000_000, clocks)
     )
 
 
-def dual_claims(forwards: int, backwards: int, units: tuple[int, int]) -> dict[str, Any]:
+def dual_claims(forwards: int, backwards: int, slots: tuple[int, int]) -> dict[str, Any]:
     return {
-        "forwards": claim({"value": forwards}, 0, units[0], **PWM),
-        "backwards": claim({"value": backwards}, 0, units[1], **PWM),
+        "forwards": claim({"value": forwards}, 0, slots[0], **PWM),
+        "backwards": claim({"value": backwards}, 0, slots[1], **PWM),
     }
 
 
-def bridge_claims(value: int, a: int, b: int, unit: int) -> dict[str, Any]:
+def bridge_claims(value: int, a: int, b: int, slot: int) -> dict[str, Any]:
     return {
-        "pwm": claim({"value": value}, 0, unit, **PWM),
+        "pwm": claim({"value": value}, 0, slot, **PWM),
         "direction_a": claim({"value": a}),
         "direction_b": claim({"value": b}),
     }
@@ -65,7 +65,7 @@ class Component:
     name: str
     text: str
     claims: Mapping[str, Any] = field(default_factory=dict)
-    slot: int | None = None
+    first_index: int | None = None
     uses: Mapping[str, Any] = field(default_factory=dict)
 
 
@@ -142,15 +142,17 @@ COMPONENTS_TRIED = [
     Component("gate", "{kind: digital_input, invert: true}", {"level": claim({"value": 22})}),
     Component("valve", "{kind: digital_output}", {"level": claim({"value": 17})}),
     Component("brake", "{kind: digital_output, invert: true, safe: true}", {"level": claim({"value": 18})}),
-    Component("subscriber", "{kind: ros_subscriber, topic: a}", slot=3),
-    Component("publisher", "{kind: ros_publisher, topic: b}", slot=2),
-    Component("flag", "{kind: ros_publisher, topic: b2, type: bool, on_change: true}", slot=3),
-    Component("array_in", "{kind: ros_array_subscriber, topic: c, values: [first, second]}", slot=4),
-    Component("array_out", "{kind: ros_array_publisher, topic: d, values: [first, second], every: 4}", slot=4),
-    Component("joints_in", "{kind: ros_joint_state_subscriber, topic: e, joints: [pan, tilt]}", slot=6),
-    Component("joints_out", "{kind: ros_joint_state_publisher, topic: f, joints: [pan, tilt], frame: base}", slot=6),
-    Component("twist_in", "{kind: ros_twist_subscriber, topic: g}", slot=12),
-    Component("twist_out", "{kind: ros_twist_publisher, topic: h, stamped: true, frame: base}", slot=12),
+    Component("subscriber", "{kind: ros_subscriber, topic: a}", first_index=3),
+    Component("publisher", "{kind: ros_publisher, topic: b}", first_index=2),
+    Component("flag", "{kind: ros_publisher, topic: b2, type: bool, on_change: true}", first_index=3),
+    Component("array_in", "{kind: ros_array_subscriber, topic: c, values: [first, second]}", first_index=4),
+    Component("array_out", "{kind: ros_array_publisher, topic: d, values: [first, second], every: 4}", first_index=4),
+    Component("joints_in", "{kind: ros_joint_state_subscriber, topic: e, joints: [pan, tilt]}", first_index=6),
+    Component(
+        "joints_out", "{kind: ros_joint_state_publisher, topic: f, joints: [pan, tilt], frame: base}", first_index=6
+    ),
+    Component("twist_in", "{kind: ros_twist_subscriber, topic: g}", first_index=12),
+    Component("twist_out", "{kind: ros_twist_publisher, topic: h, stamped: true, frame: base}", first_index=12),
     Component("answer", "{kind: ros_echo, from: ping, to: pong, type: int32}"),
     Component(
         "number",
@@ -179,15 +181,15 @@ class Renderer:
         parameters = typed_parameters(kind, node, diagnostics)
         assert diagnostics.error_count == 0
         self.kind = kind = kind.of_component(parameters)
-        slots = {port.name: number for number, port in enumerate(kind.topic_ports, component.slot or 0)}
-        values = [SimpleNamespace(element=p.element, part=p.part, slot=slots[p.name]) for p in kind.topic_ports]
+        value_index = {port.name: number for number, port in enumerate(kind.topic_ports, component.first_index or 0)}
+        values = [SimpleNamespace(element=p.element, part=p.part, index=value_index[p.name]) for p in kind.topic_ports]
         self.view = SimpleNamespace(
             name=component.name,
             symbol=identifier(component.name),
             parameters=parameters,
             claims=component.claims,
-            slot=component.slot,
-            slots=slots,
+            first_index=component.first_index,
+            value_index=value_index,
             values=values,
             application=Code("app"),
             period=Fraction(1, 1000),
@@ -291,8 +293,8 @@ def test_generated_code_reads_well(catalog: Catalog) -> None:
         "static const epg_quadrature_encoder_config_t encoder_gear_config = {\n"
         "    .decoder = {.pin_a = 14,\n"
         "                .pin_b = 15,\n"
-        "                .block = 1,\n"
-        "                .unit = 2,\n"
+        "                .instance = 1,\n"
+        "                .slot = 2,\n"
         "                .pull_up = true},\n"
         "    .rad_per_count = 9.844747812030515e-05,"
         " /* one revolution: 4096.0 counts of the motor, gear 5625/361 */\n"

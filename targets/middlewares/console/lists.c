@@ -155,10 +155,10 @@ void epg_console_stats(epg_console_session_t *session, const epg_console_command
     epg_console_answer(session, "stats", stats_line);
 }
 
-static void port(epg_console_session_t *session, const char *sort, const char *name, const char *unit)
+static void port(epg_console_session_t *session, const char *category, const char *name, const char *unit)
 {
     epg_console_begin(&session->output, "port ");
-    epg_console_text(&session->output, sort);
+    epg_console_text(&session->output, category);
     epg_console_text(&session->output, " ");
     epg_console_text(&session->output, name);
     if (unit[0] != '\0') {
@@ -168,13 +168,13 @@ static void port(epg_console_session_t *session, const char *sort, const char *n
 }
 
 /** Line `*index` of the values of topics; without so many, `*index` is less by their number. */
-static bool value_line(epg_console_session_t *session, const char *sort, const epg_topic_t *topics, size_t count,
+static bool value_line(epg_console_session_t *session, const char *category, const epg_topic_t *topics, size_t count,
                        size_t *index)
 {
     for (size_t i = 0; i < count; i++) {
         const size_t values = topics[i].role == EPG_TOPIC_VALUES ? topics[i].count : 0;
         if (*index < values) {
-            port(session, sort, epg_topic_value_name(&topics[i], *index), "");
+            port(session, category, epg_topic_value_name(&topics[i], *index), "");
             return true;
         }
         *index -= values;

@@ -15,8 +15,8 @@ void epg_control_start(epg_control_t *control, const epg_application_t *applicat
         .enabled = application->enable_at_start,
         .fault_component = EPG_NO_COMPONENT,
         .initialise = true,
-        .status_exchange = {.slots = control->status_slots, .size = sizeof control->status_slots[0]},
-        .observer_exchange = {.slots = control->observer_slots, .size = sizeof control->observer_slots[0]},
+        .status_exchange = {.buffers = control->status_buffers, .size = sizeof control->status_buffers[0]},
+        .observer_exchange = {.buffers = control->observer_buffers, .size = sizeof control->observer_buffers[0]},
     };
     control->setpoints_move = epg_setpoints_start(application);
     for (size_t i = 0; i < application->monitor_count; i++) {

@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Simpson's four-slot mechanism.
+ * Simpson's four-slot mechanism; his slots are called buffers here.
  *
- * Slots form two pairs of two.  The writer avoids the pair the reader works on, and within a pair the slot written
- * last; the reader announces the pair before it asks which of its slots is the newest.  tests/runtime/exchange.pml
+ * Four buffers form two pairs.  The writer avoids the pair that the reader works on, and within a pair the buffer that was
+ * written last.  The reader announces the pair before it asks which of its buffers is the newest.  tests/runtime/exchange.pml
  * is the same algorithm, statement by statement, for the model checker.
  */
 #include "epg/exchange.h"
 
 #include <string.h>
 
-static void *slot(const epg_exchange_t *exchange, unsigned int pair, unsigned int index)
+static void *buffer(const epg_exchange_t *exchange, unsigned int pair, unsigned int index)
 {
-    return (unsigned char *)exchange->slots + (size_t)(2U * pair + index) * exchange->size;
+    return (unsigned char *)exchange->buffers + (size_t)(2U * pair + index) * exchange->size;
 }
 
 void epg_exchange_clear(epg_exchange_t *exchange)
@@ -22,16 +22,16 @@ void epg_exchange_clear(epg_exchange_t *exchange)
     atomic_store(&exchange->writes, 0U);
     atomic_store(&exchange->latest, 0U);
     atomic_store(&exchange->reading, 0U);
-    atomic_store(&exchange->slot[0], 0U);
-    atomic_store(&exchange->slot[1], 0U);
+    atomic_store(&exchange->newest[0], 0U);
+    atomic_store(&exchange->newest[1], 0U);
 }
 
 void epg_exchange_write(epg_exchange_t *exchange, const void *value)
 {
     const unsigned int pair = 1U - atomic_load(&exchange->reading);
-    const unsigned int index = 1U - atomic_load(&exchange->slot[pair]);
-    memcpy(slot(exchange, pair, index), value, exchange->size);
-    atomic_store(&exchange->slot[pair], index);
+    const unsigned int index = 1U - atomic_load(&exchange->newest[pair]);
+    memcpy(buffer(exchange, pair, index), value, exchange->size);
+    atomic_store(&exchange->newest[pair], index);
     atomic_store(&exchange->latest, pair);
     atomic_store(&exchange->writes, (atomic_load(&exchange->writes) + 2U) | 1U);
 }
@@ -43,8 +43,8 @@ bool epg_exchange_read(epg_exchange_t *exchange, void *value)
     }
     const unsigned int pair = atomic_load(&exchange->latest);
     atomic_store(&exchange->reading, pair);
-    const unsigned int index = atomic_load(&exchange->slot[pair]);
-    memcpy(value, slot(exchange, pair, index), exchange->size);
+    const unsigned int index = atomic_load(&exchange->newest[pair]);
+    memcpy(value, buffer(exchange, pair, index), exchange->size);
     return true;
 }
 

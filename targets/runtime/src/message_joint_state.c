@@ -10,27 +10,27 @@
 
 #include "message_layout.h"
 
-enum { SORTS = 3 }; /* positions, velocities, efforts */
+enum { QUANTITIES = 3 }; /* positions, velocities, efforts */
 
-/** Whether any value of `topic` is of a sort. */
-static bool has(const epg_topic_t *topic, size_t sort)
+/** Whether any value of `topic` is of a quantity. */
+static bool has(const epg_topic_t *topic, size_t quantity)
 {
     const epg_message_layout_t *layout = topic->layout;
     for (size_t i = 0; i < topic->count; i++) {
-        if (layout->fields[i] % SORTS == sort) {
+        if (layout->fields[i] % QUANTITIES == quantity) {
             return true;
         }
     }
     return false;
 }
 
-static void write_sort(epg_cdr_writer_t *writer, const epg_topic_t *topic, const double *values, size_t sort)
+static void write_sort(epg_cdr_writer_t *writer, const epg_topic_t *topic, const double *values, size_t quantity)
 {
     epg_layout_walk_t walk = epg_layout_walk(topic, values);
-    const size_t joints = has(topic, sort) ? walk.layout->count : 0;
+    const size_t joints = has(topic, quantity) ? walk.layout->count : 0;
     epg_cdr_write_u32(writer, (uint32_t)joints);
     for (size_t i = 0; i < joints; i++) {
-        epg_cdr_write_f64(writer, epg_layout_value(&walk, i * SORTS + sort, (double)NAN));
+        epg_cdr_write_f64(writer, epg_layout_value(&walk, i * QUANTITIES + quantity, (double)NAN));
     }
 }
 
@@ -44,8 +44,8 @@ static size_t write_joint_state(const epg_topic_t *topic, const double *values, 
     for (size_t i = 0; i < layout->count; i++) {
         epg_cdr_write_string(&writer, layout->names[i]);
     }
-    for (size_t sort = 0; sort < SORTS; sort++) {
-        write_sort(&writer, topic, values, sort);
+    for (size_t quantity = 0; quantity < QUANTITIES; quantity++) {
+        write_sort(&writer, topic, values, quantity);
     }
     return writer.failed ? 0 : writer.length;
 }
@@ -67,8 +67,8 @@ static void read_names(epg_cdr_reader_t *reader, const epg_message_layout_t *lay
     }
 }
 
-/** Reads the values of a sort; false if one is not there. */
-static bool read_sort(epg_cdr_reader_t *reader, const epg_topic_t *topic, size_t sort, const size_t *places,
+/** Reads the values of a quantity; false if one is not there. */
+static bool read_sort(epg_cdr_reader_t *reader, const epg_topic_t *topic, size_t quantity, const size_t *places,
                       double *values)
 {
     const epg_message_layout_t *layout = topic->layout;
@@ -76,8 +76,8 @@ static bool read_sort(epg_cdr_reader_t *reader, const epg_topic_t *topic, size_t
     const size_t count = epg_cdr_read_sequence(reader, sizeof(double), &first);
     epg_cdr_reader_t number = *reader;
     for (size_t i = 0; i < topic->count; i++) {
-        const size_t place = places[layout->fields[i] / SORTS];
-        if (layout->fields[i] % SORTS != sort) {
+        const size_t place = places[layout->fields[i] / QUANTITIES];
+        if (layout->fields[i] % QUANTITIES != quantity) {
             continue;
         }
         if (place >= count) {
@@ -99,8 +99,8 @@ static bool read_joint_state(const epg_topic_t *topic, const void *data, size_t 
     }
     epg_skip_header(&reader);
     read_names(&reader, layout, places);
-    for (size_t sort = 0; sort < SORTS; sort++) {
-        if (!read_sort(&reader, topic, sort, places, values)) {
+    for (size_t quantity = 0; quantity < QUANTITIES; quantity++) {
+        if (!read_sort(&reader, topic, quantity, places, values)) {
             return false;
         }
     }

@@ -249,8 +249,8 @@ static double values[MONITORED], sent_values[MONITORED], received_values[2];
 static epg_node_publication_t states[PUBLICATIONS];
 static unsigned char buffer[BUFFER];
 static epg_node_t node;
-static double monitor_values[MONITORED], monitor_slots[4][MONITORED];
-static epg_exchange_t monitor_exchange = EPG_EXCHANGE(monitor_slots);
+static double monitor_values[MONITORED], monitor_buffers[4][MONITORED];
+static epg_exchange_t monitor_exchange = EPG_EXCHANGE(monitor_buffers);
 static uint8_t frame_in[MTU], history_in[EPG_XRCE_HISTORY_SIZE(HISTORY, MTU)];
 static uint8_t frame_out[OUTPUT], history_out[EPG_XRCE_HISTORY_SIZE(HISTORY, OUTPUT)];
 static const epg_xrce_options_t options = {

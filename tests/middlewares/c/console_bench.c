@@ -101,8 +101,8 @@ static const char *const components[2] = {"encoder", "motor"};
 enum { MONITORED = 6 };
 
 static double monitor_values[MONITORED];
-static double monitor_slots[4][MONITORED];
-static epg_exchange_t monitor_exchange = EPG_EXCHANGE(monitor_slots);
+static double monitor_buffers[4][MONITORED];
+static epg_exchange_t monitor_exchange = EPG_EXCHANGE(monitor_buffers);
 static char output[BENCH_OUTPUT];
 static double read_values[MONITORED];
 static double memory[BENCH_CAPTURE];

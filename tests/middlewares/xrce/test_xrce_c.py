@@ -112,8 +112,8 @@ def test_it_needs_no_heap(client: tuple[Path, list[str]], tmp_path: Path) -> Non
         command = ["gcc", "-Os", "-w", "-fno-stack-protector", "-fno-builtin", f"-I{program.RUNTIME / 'include'}"]
         subprocess.run([*command, *options, "-c", str(source), "-o", str(output)], check=True)
         for line in subprocess.run(["nm", str(output)], capture_output=True, text=True, check=True).stdout.splitlines():
-            sort, name = line.split()[-2:]
-            (undefined if sort == "U" else defined).add(name)
+            letter, name = line.split()[-2:]
+            (undefined if letter == "U" else defined).add(name)
     text = {"memcpy", "memmove", "memset", "memchr", "memcmp", "strchr", "strcmp", "strcspn", "strlen", "strncmp"}
     text |= {"strspn", "strstr"}
     needed = {name for name in undefined - defined if not name.startswith("epg_port_")}

@@ -53,7 +53,7 @@ def test_jiwy_on_its_boards(target: str) -> None:
         ("", "tick"): clock // 1000,
     }
     pan = outcome.assignments["pwm_pan", "pwm"]
-    assert (pan.pins, pan.block, pan.unit) == ({"value": 2}, 1, 0)
+    assert (pan.pins, pan.instance, pan.slot) == ({"value": 2}, 1, 0)
 
 
 @pytest.mark.parametrize("name", ["host_jiwy.tcf", "host_relbot.tcf"])
@@ -64,8 +64,8 @@ def test_the_host_numbers_everything_itself(name: str) -> None:
     assert pins == list(range(10))
     assert not any(found.pins_are_real for found in outcome.assignments.values())
     for claim in ("encoder", "pwm"):
-        units = [found.unit for (_, name), found in outcome.assignments.items() if name == claim]
-        assert units == [0, 1]
+        slots = [found.slot for (_, name), found in outcome.assignments.items() if name == claim]
+        assert slots == [0, 1]
     top = {found.settings["top"] for found in outcome.assignments.values() if found.settings}
     assert top == {6249}  # the steps a Pico has
 
@@ -74,7 +74,7 @@ def test_the_host_ignores_pins(tmp_path: Path) -> None:
     """The same file as on a board, and more encoders than any board has."""
     outcome = hardware.allocate_components(tmp_path, "host", [*encoders(40), f"p: {PWM % ('20 kHz', 0)}"])
     assert outcome.ids == []
-    assert sorted(found.unit for (_, c), found in outcome.assignments.items() if c == "encoder") == list(range(40))
+    assert sorted(found.slot for (_, c), found in outcome.assignments.items() if c == "encoder") == list(range(40))
 
 
 def test_the_host_ends_where_the_port_layer_cannot_count(tmp_path: Path) -> None:
@@ -113,7 +113,7 @@ def test_every_pin_that_a_pico_has_out_makes_pwm(tmp_path: Path) -> None:
         for pin in [*range(23), 25, *range(26, 29)]:
             outcome = hardware.allocate_components(tmp_path, target, [f"p: {PWM % ('20 kHz', pin)}"])
             found = outcome.assignments["p", "pwm"]
-            assert (found.block, found.unit) == (pin // 2 % 8, pin % 2)
+            assert (found.instance, found.slot) == (pin // 2 % 8, pin % 2)
 
 
 def test_pins_by_other_names(tmp_path: Path) -> None:
@@ -146,7 +146,7 @@ def test_named_instances_and_pins(tmp_path: Path) -> None:
     outcome = hardware.allocate_components(tmp_path, "timer_board_loop", lines, user_roots=[TARGETS])
     assert outcome.resources() == {"e.encoder": "timer TIM2", "p.pwm": "timer TIM1, channel CH1"}
     assert outcome.assignments["e", "encoder"].pins == {"a": 0, "b": 1}
-    assert outcome.assignments["e", "encoder"].block == 1
+    assert outcome.assignments["e", "encoder"].instance == 1
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,7 @@
 /* Quadrature encoder -------------------------------------------------------------------------------------------- */
 
 static const epg_quadrature_encoder_config_t encoder_config = {
-    .decoder = {.pin_a = 10, .pin_b = 11, .unit = 1},
+    .decoder = {.pin_a = 10, .pin_b = 11, .slot = 1},
     .rad_per_count = 0.5,
     .preset = 100.0,
 };
@@ -172,7 +172,7 @@ TEST(encoder_of_simulated_edges)
 enum { BRIDGE_A = 7, BRIDGE_B = 8 };
 
 static epg_pwm_h_bridge_config_t bridge_config = {
-    .pwm = {.pin = 2, .unit = 3, .prescaler = 1, .top = 6249},
+    .pwm = {.pin = 2, .slot = 3, .prescaler = 1, .top = 6249},
     .pin_a = BRIDGE_A,
     .pin_b = BRIDGE_B,
     .bridge = {.max_duty = 0.9},
@@ -334,9 +334,9 @@ TEST(bridge_safe_writes_every_signal)
 
 /* PWM ----------------------------------------------------------------------------------------------------------- */
 
-static const epg_pwm_config_t pwm = {.pwm = {.unit = 2, .top = 999}, .max_duty = 0.8, .safe_duty = 0.075};
+static const epg_pwm_config_t pwm = {.pwm = {.slot = 2, .top = 999}, .max_duty = 0.8, .safe_duty = 0.075};
 static const epg_pwm_config_t pwm_inverted = {
-    .pwm = {.unit = 2, .top = 999}, .invert = true, .max_duty = 1.0, .safe_duty = 0.0};
+    .pwm = {.slot = 2, .top = 999}, .invert = true, .max_duty = 1.0, .safe_duty = 0.0};
 
 static bool set_duty(const epg_pwm_config_t *config, double duty)
 {
@@ -401,7 +401,7 @@ TEST(pwm_inverted_is_the_complement)
 TEST(pwm_of_the_longest_period)
 {
     fake_port_reset();
-    const epg_pwm_config_t longest = {.pwm = {.unit = 2, .top = 65535}, .max_duty = 1.0};
+    const epg_pwm_config_t longest = {.pwm = {.slot = 2, .top = 65535}, .max_duty = 1.0};
     epg_pwm_start(&longest);
     CHECK(!set_duty(&longest, 1.0));
     CHECK_EQUAL(fake_port.levels[2], 65536);

@@ -134,11 +134,11 @@ static epg_setpoint_t setpoints[1];
 static epg_setpoint_sample_t samples[1];
 static epg_setpoint_sample_t received[1];
 static epg_setpoint_state_t states[1];
-static epg_setpoint_sample_t setpoint_slots[4][1];
-static epg_exchange_t setpoint_exchange = EPG_EXCHANGE(setpoint_slots);
+static epg_setpoint_sample_t setpoint_buffers[4][1];
+static epg_exchange_t setpoint_exchange = EPG_EXCHANGE(setpoint_buffers);
 static double monitor_values[1];
-static double monitor_slots[4][1];
-static epg_exchange_t monitor_exchange = EPG_EXCHANGE(monitor_slots);
+static double monitor_buffers[4][1];
+static epg_exchange_t monitor_exchange = EPG_EXCHANGE(monitor_buffers);
 
 static const epg_application_t application = {
     .name = "motor",

@@ -12,8 +12,8 @@ typedef struct value {
     char text[11]; /* an odd size on purpose */
 } value_t;
 
-static value_t slots[4];
-static epg_exchange_t exchange = EPG_EXCHANGE(slots);
+static value_t buffers[4];
+static epg_exchange_t exchange = EPG_EXCHANGE(buffers);
 
 static void write_number(uint32_t number)
 {

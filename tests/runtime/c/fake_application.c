@@ -13,11 +13,11 @@ fake_application_t fake;
 static epg_setpoint_sample_t samples[FAKE_SETPOINTS];
 static epg_setpoint_sample_t received[FAKE_SETPOINTS];
 static epg_setpoint_state_t states[FAKE_SETPOINTS];
-static epg_setpoint_sample_t setpoint_slots[4][FAKE_SETPOINTS];
-static epg_exchange_t setpoint_exchange = EPG_EXCHANGE(setpoint_slots);
+static epg_setpoint_sample_t setpoint_buffers[4][FAKE_SETPOINTS];
+static epg_exchange_t setpoint_exchange = EPG_EXCHANGE(setpoint_buffers);
 static double monitor_values[1];
-static double monitor_slots[4][1];
-static epg_exchange_t monitor_exchange = EPG_EXCHANGE(monitor_slots);
+static double monitor_buffers[4][1];
+static epg_exchange_t monitor_exchange = EPG_EXCHANGE(monitor_buffers);
 
 static void called(char letter)
 {

@@ -51,37 +51,37 @@ uint64_t epg_port_time_ns(void)
 
 void epg_port_quadrature_start(const epg_port_quadrature_t *decoder)
 {
-    fake_port.decoders_started[decoder->unit] = true;
+    fake_port.decoders_started[decoder->slot] = true;
 }
 
 uint32_t epg_port_quadrature_count(const epg_port_quadrature_t *decoder)
 {
-    CHECK(fake_port.decoders_started[decoder->unit]);
-    return fake_port.counts[decoder->unit];
+    CHECK(fake_port.decoders_started[decoder->slot]);
+    return fake_port.counts[decoder->slot];
 }
 
 bool epg_port_quadrature_healthy(const epg_port_quadrature_t *decoder)
 {
-    CHECK(fake_port.decoders_started[decoder->unit]);
-    return !fake_port.decoders_failed[decoder->unit];
+    CHECK(fake_port.decoders_started[decoder->slot]);
+    return !fake_port.decoders_failed[decoder->slot];
 }
 
 void epg_port_pwm_start(const epg_port_pwm_t *pwm)
 {
-    fake_port.pwms_started[pwm->unit] = true;
-    fake_port.tops[pwm->unit] = pwm->top;
-    fake_port.levels[pwm->unit] = 0;
+    fake_port.pwms_started[pwm->slot] = true;
+    fake_port.tops[pwm->slot] = pwm->top;
+    fake_port.levels[pwm->slot] = 0;
     written();
 }
 
 void epg_port_pwm_write(const epg_port_pwm_t *pwm, uint32_t level)
 {
-    CHECK(fake_port.pwms_started[pwm->unit]);
-    CHECK(level <= fake_port.tops[pwm->unit] + 1U);
+    CHECK(fake_port.pwms_started[pwm->slot]);
+    CHECK(level <= fake_port.tops[pwm->slot] + 1U);
     if (!may_write(pwm->pin, level > 0U && level <= pwm->top ? EPG_LEVEL_SWITCHING : level_of(level > 0U))) {
         return;
     }
-    fake_port.levels[pwm->unit] = level;
+    fake_port.levels[pwm->slot] = level;
     written();
 }
 

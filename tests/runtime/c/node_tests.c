@@ -56,8 +56,8 @@ static size_t last_size;
 static bool room;
 
 static double monitor_values[VALUES];
-static double monitor_slots[4][VALUES];
-static epg_exchange_t monitor_exchange = EPG_EXCHANGE(monitor_slots);
+static double monitor_buffers[4][VALUES];
+static epg_exchange_t monitor_exchange = EPG_EXCHANGE(monitor_buffers);
 
 static void monitor(double *values)
 {

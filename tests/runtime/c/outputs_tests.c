@@ -115,9 +115,9 @@ static void begin(bool is_dual, epg_bridge_config_t config, bool slow_decay)
     watching = false;
     motor.is_dual = is_dual;
     motor.single_config = (epg_pwm_h_bridge_config_t){
-        .pwm = {.pin = FIRST, .unit = 0, .top = TOP}, .pin_a = FIRST + 1, .pin_b = FIRST + 2, .bridge = config};
-    motor.dual_config = (epg_dual_pwm_h_bridge_config_t){.forwards = {.pin = FIRST, .unit = 0, .top = TOP},
-                                                         .backwards = {.pin = FIRST + 1, .unit = 1, .top = TOP},
+        .pwm = {.pin = FIRST, .slot = 0, .top = TOP}, .pin_a = FIRST + 1, .pin_b = FIRST + 2, .bridge = config};
+    motor.dual_config = (epg_dual_pwm_h_bridge_config_t){.forwards = {.pin = FIRST, .slot = 0, .top = TOP},
+                                                         .backwards = {.pin = FIRST + 1, .slot = 1, .top = TOP},
                                                          .slow_decay = slow_decay,
                                                          .bridge = config};
     epg_outputs_start(&outputs, is_dual ? &dual_group : &single_group, 1);

@@ -22,8 +22,8 @@ typedef struct value {
     uint64_t words[WORDS];
 } value_t;
 
-static value_t slots[4];
-static epg_exchange_t exchange = EPG_EXCHANGE(slots);
+static value_t buffers[4];
+static epg_exchange_t exchange = EPG_EXCHANGE(buffers);
 static uint64_t end_ns;
 
 #ifdef RACES_ONLY

@@ -62,8 +62,8 @@ TEST(pins_and_pull_up_are_handed_on)
 {
     CHECK_EQUAL(encoder_gear_config.decoder.pin_a, 14);
     CHECK_EQUAL(encoder_gear_config.decoder.pin_b, 15);
-    CHECK_EQUAL(encoder_gear_config.decoder.block, 1);
-    CHECK_EQUAL(encoder_gear_config.decoder.unit, 2);
+    CHECK_EQUAL(encoder_gear_config.decoder.instance, 1);
+    CHECK_EQUAL(encoder_gear_config.decoder.slot, 2);
     CHECK(encoder_gear_config.decoder.pull_up);
     CHECK(!encoder_span_config.decoder.pull_up);
 }

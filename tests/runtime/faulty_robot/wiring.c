@@ -16,10 +16,10 @@
 
 #include "epg/port.h"
 
-void __real_epg_plant_quadrature_set(uint8_t unit, int64_t count);
-double __real_epg_plant_pwm_duty(uint8_t unit);
-void __wrap_epg_plant_quadrature_set(uint8_t unit, int64_t count);
-double __wrap_epg_plant_pwm_duty(uint8_t unit);
+void __real_epg_plant_quadrature_set(uint8_t slot, int64_t count);
+double __real_epg_plant_pwm_duty(uint8_t slot);
+void __wrap_epg_plant_quadrature_set(uint8_t slot, int64_t count);
+double __wrap_epg_plant_pwm_duty(uint8_t slot);
 bool __real_epg_port_quadrature_healthy(const epg_port_quadrature_t *decoder);
 bool __wrap_epg_port_quadrature_healthy(const epg_port_quadrature_t *decoder);
 uint32_t __real_epg_port_quadrature_count(const epg_port_quadrature_t *decoder);
@@ -40,7 +40,7 @@ static bool wired(const char *what)
            (double)epg_port_time_ns() * 1e-9 >= atof(at + 1);
 }
 
-void __wrap_epg_plant_quadrature_set(uint8_t unit, int64_t count)
+void __wrap_epg_plant_quadrature_set(uint8_t slot, int64_t count)
 {
     static int64_t last; /* of the pan axis, while everything was right */
     int64_t seen = count;
@@ -60,7 +60,7 @@ void __wrap_epg_plant_quadrature_set(uint8_t unit, int64_t count)
     __real_epg_plant_quadrature_set(unit, seen);
 }
 
-double __wrap_epg_plant_pwm_duty(uint8_t unit)
+double __wrap_epg_plant_pwm_duty(uint8_t slot)
 {
     const double duty = __real_epg_plant_pwm_duty(unit);
     if (unit == PAN && wired("motor-swapped")) {
@@ -71,7 +71,7 @@ double __wrap_epg_plant_pwm_duty(uint8_t unit)
 
 bool __wrap_epg_port_quadrature_healthy(const epg_port_quadrature_t *decoder)
 {
-    const bool halted = decoder->unit == PAN && wired("decoder-halted") && epg_port_time_ns() < 12000000000U;
+    const bool halted = decoder->slot == PAN && wired("decoder-halted") && epg_port_time_ns() < 12000000000U;
     return !halted && __real_epg_port_quadrature_healthy(decoder);
 }
 
@@ -90,13 +90,13 @@ static void record(const char *what, unsigned int number, uint32_t value)
 
 uint32_t __wrap_epg_port_quadrature_count(const epg_port_quadrature_t *decoder)
 {
-    record("encoder", decoder->unit, 0);
+    record("encoder", decoder->slot, 0);
     return __real_epg_port_quadrature_count(decoder);
 }
 
 void __wrap_epg_port_pwm_write(const epg_port_pwm_t *pwm, uint32_t level)
 {
-    record("pwm", pwm->unit, level);
+    record("pwm", pwm->slot, level);
     __real_epg_port_pwm_write(pwm, level);
 }
 

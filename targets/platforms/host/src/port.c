@@ -3,7 +3,7 @@
  * @file
  * The port layer against simulated peripherals: decoder counts, PWM levels and pin levels.
  *
- * The generator numbers the host's peripherals from 0 in each class, all in block 0; `unit` or `pin` is therefore
+ * The generator numbers the host's peripherals from 0 in each class, all in instance 0; `slot` or `pin` is therefore
  * enough to name one.  Every word is a relaxed atomic, because in real time a second thread may set an input or look
  * at an output while the control thread runs; no order between two signals is promised, as on real pins.
  */
@@ -42,48 +42,48 @@ static atomic_bool outputs[PINS];
 /** A decoder counts from 0 wherever the shaft stands: an incremental encoder does not know where that is. */
 void epg_port_quadrature_start(const epg_port_quadrature_t *decoder)
 {
-    SET(decoders[decoder->unit].origin, GET(decoders[decoder->unit].signal));
+    SET(decoders[decoder->slot].origin, GET(decoders[decoder->slot].signal));
 }
 
 uint32_t epg_port_quadrature_count(const epg_port_quadrature_t *decoder)
 {
-    const uint64_t signal = (uint64_t)GET(decoders[decoder->unit].signal);
-    const uint64_t origin = (uint64_t)GET(decoders[decoder->unit].origin);
+    const uint64_t signal = (uint64_t)GET(decoders[decoder->slot].signal);
+    const uint64_t origin = (uint64_t)GET(decoders[decoder->slot].origin);
     return (uint32_t)((signal - origin) & UINT32_MAX);
 }
 
 bool epg_port_quadrature_healthy(const epg_port_quadrature_t *decoder)
 {
-    return !GET(decoders[decoder->unit].failed);
+    return !GET(decoders[decoder->slot].failed);
 }
 
-void epg_plant_quadrature_fail(uint8_t unit, bool failed)
+void epg_plant_quadrature_fail(uint8_t slot, bool failed)
 {
-    SET(decoders[unit].failed, failed);
+    SET(decoders[slot].failed, failed);
 }
 
-void epg_plant_quadrature_set(uint8_t unit, int64_t count)
+void epg_plant_quadrature_set(uint8_t slot, int64_t count)
 {
-    SET(decoders[unit].signal, count);
+    SET(decoders[slot].signal, count);
 }
 
 /* PWM ---------------------------------------------------------------------------------------------------------- */
 
 void epg_port_pwm_start(const epg_port_pwm_t *pwm)
 {
-    SET(pwms[pwm->unit].level, 0);
-    SET(pwms[pwm->unit].top, pwm->top);
+    SET(pwms[pwm->slot].level, 0);
+    SET(pwms[pwm->slot].top, pwm->top);
 }
 
 void epg_port_pwm_write(const epg_port_pwm_t *pwm, uint32_t level)
 {
-    SET(pwms[pwm->unit].level, level);
+    SET(pwms[pwm->slot].level, level);
 }
 
-double epg_plant_pwm_duty(uint8_t unit)
+double epg_plant_pwm_duty(uint8_t slot)
 {
-    const uint32_t level = GET(pwms[unit].level);
-    const uint32_t clocks = GET(pwms[unit].top) + 1U;
+    const uint32_t level = GET(pwms[slot].level);
+    const uint32_t clocks = GET(pwms[slot].top) + 1U;
     return level >= clocks ? 1.0 : (double)level / (double)clocks;
 }
 

@@ -3,7 +3,7 @@
  * @file
  * What the plant moves and sees: the devices that Zephyr emulates.
  *
- * The generator numbers the peripherals of native_sim from 0 in each class; `unit` or `pin` is enough to name one.
+ * The generator numbers the peripherals of native_sim from 0 in each class; `slot` or `pin` is enough to name one.
  */
 #include <stdio.h>
 
@@ -77,11 +77,11 @@ bool epg_native_sim_all_emulated(void)
     return good;
 }
 
-static const struct device *decoder_of(uint8_t unit)
+static const struct device *decoder_of(uint8_t slot)
 {
     const epg_zephyr_hardware_t *hardware = &epg_zephyr_hardware;
     for (size_t i = 0; i < hardware->decoder_count; i++) {
-        if (hardware->decoders[i].unit == unit) {
+        if (hardware->decoders[i].slot == slot) {
             return hardware->decoders[i].device;
         }
     }
@@ -107,20 +107,20 @@ void epg_native_sim_shafts_turn(void)
 }
 
 /** Before the decoders run, a shaft is where it is: an incremental encoder does not know where that is. */
-void epg_plant_quadrature_set(uint8_t unit, int64_t count)
+void epg_plant_quadrature_set(uint8_t slot, int64_t count)
 {
-    const struct device *device = decoder_of(unit);
+    const struct device *device = decoder_of(slot);
     /* Modulo 2^32, as the target sees counts; so a plant that has gone astray turns no shaft for ever either. */
-    const int32_t edges = (int32_t)(uint32_t)((uint64_t)count - (uint64_t)counts[unit]);
-    counts[unit] = count;
+    const int32_t edges = (int32_t)(uint32_t)((uint64_t)count - (uint64_t)counts[slot]);
+    counts[slot] = count;
     if (turning && device != NULL && edges != 0) {
         epg_qdec_emul_move(device, edges);
     }
 }
 
-void epg_plant_quadrature_fail(uint8_t unit, bool failed)
+void epg_plant_quadrature_fail(uint8_t slot, bool failed)
 {
-    const struct device *device = decoder_of(unit);
+    const struct device *device = decoder_of(slot);
     if (device != NULL) {
         epg_qdec_emul_set_error(device, failed ? -EIO : 0);
     }
@@ -128,14 +128,14 @@ void epg_plant_quadrature_fail(uint8_t unit, bool failed)
 
 /* PWM ---------------------------------------------------------------------------------------------------------------- */
 
-double epg_plant_pwm_duty(uint8_t unit)
+double epg_plant_pwm_duty(uint8_t slot)
 {
     const epg_zephyr_hardware_t *hardware = &epg_zephyr_hardware;
     for (size_t i = 0; i < hardware->pwm_count; i++) {
         const epg_zephyr_pwm_t *pwm = &hardware->pwms[i];
         uint32_t period = 0;
         uint32_t high = 0;
-        if (pwm->unit == unit && epg_pwm_emul_get(pwm->device, pwm->channel, &period, &high) == 0 && period > 0) {
+        if (pwm->slot == slot && epg_pwm_emul_get(pwm->device, pwm->channel, &period, &high) == 0 && period > 0) {
             return (double)high / (double)period;
         }
     }

@@ -15,21 +15,21 @@ bool epg_pico_resource_taken;
 void epg_port_pwm_start(const epg_port_pwm_t *pwm)
 {
     /* All slices run from one write to EN, in phase with the tick: see control_core.c. */
-    pwm_slice_hw_t *slice = &pwm_hw->slice[pwm->block];
+    pwm_slice_hw_t *slice = &pwm_hw->slice[pwm->instance];
     slice->csr = 0;
     slice->div = (uint32_t)pwm->prescaler << PWM_CH0_DIV_INT_LSB;
     slice->top = pwm->top;
     slice->ctr = 0;
     epg_port_pwm_write(pwm, 0);
     gpio_set_function(pwm->pin, GPIO_FUNC_PWM);
-    epg_pico_output_slices |= 1U << pwm->block;
+    epg_pico_output_slices |= 1U << pwm->instance;
 }
 
 void __not_in_flash_func(epg_port_pwm_write)(const epg_port_pwm_t *pwm, uint32_t level)
 {
     /* Both channels share a register, which only this core writes: reading it first is safe. */
-    io_rw_32 *cc = &pwm_hw->slice[pwm->block].cc;
-    *cc = pwm->unit == PWM_CHAN_A ? (*cc & PWM_CH0_CC_B_BITS) | level
+    io_rw_32 *cc = &pwm_hw->slice[pwm->instance].cc;
+    *cc = pwm->slot == PWM_CHAN_A ? (*cc & PWM_CH0_CC_B_BITS) | level
                                   : (*cc & PWM_CH0_CC_A_BITS) | level << PWM_CH0_CC_B_LSB;
 }
 

@@ -20,12 +20,12 @@ static decoder_t decoders[NUM_PIOS][STATE_MACHINES];
 
 void epg_port_quadrature_start(const epg_port_quadrature_t *decoder)
 {
-    decoder_t *state = &decoders[decoder->block][decoder->unit];
+    decoder_t *state = &decoders[decoder->instance][decoder->slot];
     const epg_pico_quadrature_config_t config = {
         .pin_a = decoder->pin_a,
         .pin_b = decoder->pin_b,
-        .block = decoder->block,
-        .state_machine = decoder->unit,
+        .block = decoder->instance,
+        .state_machine = decoder->slot,
         .variant = EPG_PICO_QUADRATURE_COUNT,
         .pull = decoder->pull_up ? EPG_PICO_QUADRATURE_PULL_UP : EPG_PICO_QUADRATURE_PULL_NONE,
     };
@@ -39,7 +39,7 @@ void epg_port_quadrature_start(const epg_port_quadrature_t *decoder)
 
 uint32_t __not_in_flash_func(epg_port_quadrature_count)(const epg_port_quadrature_t *decoder)
 {
-    decoder_t *state = &decoders[decoder->block][decoder->unit];
+    decoder_t *state = &decoders[decoder->instance][decoder->slot];
     uint32_t word = 0;
     state->healthy = state->started && epg_pico_quadrature_newest(&state->encoder, &word);
     if (state->healthy) {
@@ -50,7 +50,7 @@ uint32_t __not_in_flash_func(epg_port_quadrature_count)(const epg_port_quadratur
 
 bool __not_in_flash_func(epg_port_quadrature_healthy)(const epg_port_quadrature_t *decoder)
 {
-    return decoders[decoder->block][decoder->unit].healthy;
+    return decoders[decoder->instance][decoder->slot].healthy;
 }
 
 void epg_pico_quadrature_stop_all(void)

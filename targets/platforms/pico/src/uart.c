@@ -83,9 +83,9 @@ static void empty(epg_ring_t *ring)
 
 bool epg_port_uart_start(const epg_port_uart_t *port)
 {
-    uart_inst_t *uart = UART_INSTANCE(port->block);
+    uart_inst_t *uart = UART_INSTANCE(port->instance);
     const uint irq = UART_IRQ_NUM(uart);
-    const bool mine = users[port->block] == port;
+    const bool mine = users[port->instance] == port;
     if (!mine && (uart_is_enabled(uart) || irq_get_exclusive_handler(irq) != NULL || irq_has_shared_handler(irq))) {
         return false;
     }
@@ -105,8 +105,8 @@ bool epg_port_uart_start(const epg_port_uart_t *port)
     hw->cr = control;
     hw->imsc = RECEIVE_INTERRUPTS;
     if (!mine) {
-        irq_set_exclusive_handler(irq, port->block == 0U ? on_uart0 : on_uart1);
-        users[port->block] = port;
+        irq_set_exclusive_handler(irq, port->instance == 0U ? on_uart0 : on_uart1);
+        users[port->instance] = port;
     }
     /* RX first high: a pin that nothing drives must not look like a break. */
     gpio_pull_up(port->pin_rx);
@@ -118,5 +118,5 @@ bool epg_port_uart_start(const epg_port_uart_t *port)
 
 void epg_port_uart_send(const epg_port_uart_t *port)
 {
-    irq_set_pending(UART_IRQ_NUM(UART_INSTANCE(port->block)));
+    irq_set_pending(UART_IRQ_NUM(UART_INSTANCE(port->instance)));
 }

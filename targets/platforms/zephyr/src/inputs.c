@@ -83,7 +83,7 @@ static bool find_decoder(const epg_port_quadrature_t *decoder, size_t *row)
 {
     for (*row = 0; *row < decoder_rows(); (*row)++) {
         const epg_zephyr_decoder_t *candidate = &epg_zephyr_hardware.decoders[*row];
-        if (candidate->block == decoder->block && candidate->unit == decoder->unit) {
+        if (candidate->instance == decoder->instance && candidate->slot == decoder->slot) {
             return true;
         }
     }

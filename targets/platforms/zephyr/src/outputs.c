@@ -48,11 +48,11 @@ static uint32_t periods[PWMS];
 /* By row of the table: its row in the table of outputs. */
 static uint8_t pwm_outputs[PWMS];
 
-static const epg_zephyr_pwm_t *find_pwm(uint8_t block, uint8_t unit, size_t *row)
+static const epg_zephyr_pwm_t *find_pwm(uint8_t instance, uint8_t slot, size_t *row)
 {
     for (size_t i = 0; i < epg_zephyr_hardware.pwm_count && i < PWMS; i++) {
         const epg_zephyr_pwm_t *pwm = &epg_zephyr_hardware.pwms[i];
-        if (pwm->block == block && pwm->unit == unit) {
+        if (pwm->instance == instance && pwm->slot == slot) {
             *row = i;
             return pwm;
         }
@@ -64,7 +64,7 @@ static int find_period(const epg_port_pwm_t *config)
 {
     size_t row = 0;
     uint64_t rate = 0;
-    const epg_zephyr_pwm_t *pwm = find_pwm(config->block, config->unit, &row);
+    const epg_zephyr_pwm_t *pwm = find_pwm(config->instance, config->slot, &row);
     if (pwm == NULL) {
         return -ENODEV;
     }
@@ -119,7 +119,7 @@ static int set_pulse(size_t i, uint32_t pulse)
 void epg_port_pwm_start(const epg_port_pwm_t *config)
 {
     size_t i = 0;
-    const epg_zephyr_pwm_t *pwm = find_pwm(config->block, config->unit, &i);
+    const epg_zephyr_pwm_t *pwm = find_pwm(config->instance, config->slot, &i);
     if (pwm == NULL) {
         epg_zephyr_device_refused = true;
         return;
@@ -133,7 +133,7 @@ void epg_port_pwm_start(const epg_port_pwm_t *config)
 void epg_port_pwm_write(const epg_port_pwm_t *config, uint32_t level)
 {
     size_t i = 0;
-    if (find_pwm(config->block, config->unit, &i) == NULL || !epg_outputs_may_write(&outputs, pwm_outputs[i])) {
+    if (find_pwm(config->instance, config->slot, &i) == NULL || !epg_outputs_may_write(&outputs, pwm_outputs[i])) {
         return;
     }
     const uint32_t pulse = pulse_of(level, config->top + 1U, periods[i]);

@@ -78,15 +78,15 @@ epg_zephyr_error_t epg_zephyr_tick_start(const epg_zephyr_tick_t *tick, uint64_t
     if (clock_rate() != tick->clock) {
         return EPG_ZEPHYR_ERROR_TICK;
     }
-    const uint32_t bit = 1U << tick->block;
-    state.slice = tick->block;
+    const uint32_t bit = 1U << tick->instance;
+    state.slice = tick->instance;
     state.ns_per_count = (((uint64_t)tick->prescaler * NS_PER_S) << 24) / tick->clock;
 
     const uint32_t outputs = output_slices();
     if ((outputs & bit) != 0U) {
         return EPG_ZEPHYR_ERROR_DEVICE; /* an overlay has moved an output to the tick's slice */
     }
-    pwm_slice_hw_t *slice = &pwm_hw->slice[tick->block];
+    pwm_slice_hw_t *slice = &pwm_hw->slice[tick->instance];
     slice->csr = 0;
     slice->div = tick->prescaler << PWM_CH0_DIV_INT_LSB;
     slice->top = tick->top;

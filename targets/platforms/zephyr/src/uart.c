@@ -18,7 +18,7 @@ static epg_zephyr_lines_t lines[UARTS];
 static size_t find(const epg_port_uart_t *port)
 {
     for (size_t i = 0; i < epg_zephyr_hardware.uart_count && i < UARTS; i++) {
-        if (epg_zephyr_hardware.uarts[i].block == port->block) {
+        if (epg_zephyr_hardware.uarts[i].instance == port->instance) {
             return i;
         }
     }

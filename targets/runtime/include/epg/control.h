@@ -143,9 +143,9 @@ typedef struct epg_control {
         atomic_uint size;
     } stacks[EPG_STACKS];           /**< written by the communication side */
     epg_exchange_t status_exchange; /**< for epg_control_status() */
-    epg_status_t status_slots[4];
+    epg_status_t status_buffers[4];
     epg_exchange_t observer_exchange; /**< for epg_control_observe() */
-    epg_status_t observer_slots[4];
+    epg_status_t observer_buffers[4];
     atomic_bool observed; /**< somebody calls epg_control_observe() */
 } epg_control_t;
 

@@ -19,14 +19,14 @@ extern "C" {
 
 /* Signals ------------------------------------------------------------------------------------------------------ */
 
-/** Count of decoder `unit`, as the edges of its A and B signals would have given. */
-void epg_plant_quadrature_set(uint8_t unit, int64_t count);
+/** Count of decoder `slot`, as the edges of its A and B signals would have given. */
+void epg_plant_quadrature_set(uint8_t slot, int64_t count);
 
-/** Whether decoder `unit` says that it has stopped (epg_port_quadrature_healthy()); they do not by themselves. */
-void epg_plant_quadrature_fail(uint8_t unit, bool failed);
+/** Whether decoder `slot` says that it has stopped (epg_port_quadrature_healthy()); they do not by themselves. */
+void epg_plant_quadrature_fail(uint8_t slot, bool failed);
 
-/** Share of the period that PWM output `unit` is high, 0 ... 1, in steps of its timer. */
-double epg_plant_pwm_duty(uint8_t unit);
+/** Share of the period that PWM output `slot` is high, 0 ... 1, in steps of its timer. */
+double epg_plant_pwm_duty(uint8_t slot);
 
 /** Level that the target gives to output `pin`. */
 bool epg_plant_output(uint8_t pin);

@@ -28,12 +28,12 @@ uint64_t epg_port_time_ns(void);
  */
 void epg_port_wait_until(uint64_t time_ns);
 
-/** A quadrature decoder.  `block` and `unit` name the peripheral (PIO block and state machine, timer, ...). */
+/** A quadrature decoder.  `instance` and `slot` name the peripheral (PIO block and state machine, timer, ...). */
 typedef struct epg_port_quadrature {
     uint8_t pin_a;
     uint8_t pin_b;
-    uint8_t block;
-    uint8_t unit;
+    uint8_t instance;
+    uint8_t slot;
     bool pull_up; /**< enable the pins' pull-up resistors */
 } epg_port_quadrature_t;
 
@@ -51,11 +51,11 @@ uint32_t epg_port_quadrature_count(const epg_port_quadrature_t *decoder);
  */
 bool epg_port_quadrature_healthy(const epg_port_quadrature_t *decoder);
 
-/** One PWM output.  The period is `prescaler * (top + 1)` clocks; `block` and `unit` name slice and channel. */
+/** One PWM output.  The period is `prescaler * (top + 1)` clocks; `instance` and `slot` name slice and channel. */
 typedef struct epg_port_pwm {
     uint8_t pin;
-    uint8_t block;
-    uint8_t unit;
+    uint8_t instance;
+    uint8_t slot;
     uint16_t prescaler;
     uint16_t top;
 } epg_port_pwm_t;

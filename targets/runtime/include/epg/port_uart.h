@@ -18,11 +18,11 @@ typedef struct epg_port_uart_lines {
     atomic_uint damaged; /**< bytes received with a framing, parity or break error, or lost within the UART */
 } epg_port_uart_lines_t;
 
-/** A UART: 8 data bits, no parity, 1 stop bit.  `block` names the peripheral. */
+/** A UART: 8 data bits, no parity, 1 stop bit.  `instance` names the peripheral. */
 typedef struct epg_port_uart {
     uint8_t pin_tx;
     uint8_t pin_rx;
-    uint8_t block;
+    uint8_t instance;
     uint32_t divider; /**< the clock that the chip's description states for UARTs, divided by this, is the baud rate */
     epg_port_uart_lines_t *lines;
 } epg_port_uart_t;

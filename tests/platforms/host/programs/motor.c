@@ -32,8 +32,8 @@
 
 enum { DIRECTION = 3, FAIL_SAFE = 5 };
 
-static const epg_port_quadrature_t encoder = {.pin_a = 0, .pin_b = 1, .block = 0, .unit = 0, .pull_up = false};
-static const epg_port_pwm_t pwm = {.pin = 2, .block = 0, .unit = 1, .prescaler = 1, .top = 6249};
+static const epg_port_quadrature_t encoder = {.pin_a = 0, .pin_b = 1, .instance = 0, .slot = 0, .pull_up = false};
+static const epg_port_pwm_t pwm = {.pin = 2, .instance = 0, .slot = 1, .prescaler = 1, .top = 6249};
 
 static epg_control_t control;
 
@@ -115,11 +115,11 @@ static const epg_setpoint_t setpoints[1] = {
 static epg_setpoint_sample_t samples[1];
 static epg_setpoint_sample_t received[1];
 static epg_setpoint_state_t setpoint_states[1];
-static epg_setpoint_sample_t setpoint_slots[4][1];
-static epg_exchange_t setpoint_exchange = EPG_EXCHANGE(setpoint_slots);
+static epg_setpoint_sample_t setpoint_buffers[4][1];
+static epg_exchange_t setpoint_exchange = EPG_EXCHANGE(setpoint_buffers);
 static double monitor_values[2];
-static double monitor_slots[4][2];
-static epg_exchange_t monitor_exchange = EPG_EXCHANGE(monitor_slots);
+static double monitor_buffers[4][2];
+static epg_exchange_t monitor_exchange = EPG_EXCHANGE(monitor_buffers);
 
 static const epg_application_t application = {
     .name = "motor",

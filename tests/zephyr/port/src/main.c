@@ -58,11 +58,11 @@ volatile uint32_t spare_enabled;
 static volatile bool disable_spare;
 
 static const epg_zephyr_decoder_t decoders[] = {
-	{.block = 0, .unit = 0, .device = DEVICE_DT_GET(DT_PHANDLE_BY_IDX(NODE, decoders, 0))},
+	{.instance = 0, .slot = 0, .device = DEVICE_DT_GET(DT_PHANDLE_BY_IDX(NODE, decoders, 0))},
 };
 static const epg_zephyr_pwm_t pwms[] = {
-	{.block = 1,
-	 .unit = 0,
+	{.instance = 1,
+	 .slot = 0,
 	 .device = DEVICE_DT_GET(DT_PWMS_CTLR_BY_IDX(NODE, 0)),
 	 .channel = DT_PWMS_CHANNEL_BY_IDX(NODE, 0)},
 };
@@ -75,7 +75,7 @@ static const epg_zephyr_output_t outputs[] = {
 	{.pin = FORWARD_PIN, .high = false},
 };
 static const epg_zephyr_uart_t uarts[] = {
-	{.block = 1, .device = DEVICE_DT_GET(DT_PHANDLE_BY_IDX(NODE, uarts, 0))},
+	{.instance = 1, .device = DEVICE_DT_GET(DT_PHANDLE_BY_IDX(NODE, uarts, 0))},
 };
 const epg_zephyr_hardware_t epg_zephyr_hardware = {
 	.decoder_count = ARRAY_SIZE(decoders),
@@ -90,9 +90,9 @@ const epg_zephyr_hardware_t epg_zephyr_hardware = {
 	.uarts = uarts,
 };
 
-static const epg_port_quadrature_t encoder = {.pin_a = 10, .pin_b = 11, .block = 0, .unit = 0};
+static const epg_port_quadrature_t encoder = {.pin_a = 10, .pin_b = 11, .instance = 0, .slot = 0};
 static const epg_port_pwm_t motor = {
-	.pin = MOTOR_PIN, .block = 1, .unit = 0, .prescaler = 1, .top = MOTOR_TOP};
+	.pin = MOTOR_PIN, .instance = 1, .slot = 0, .prescaler = 1, .top = MOTOR_TOP};
 static epg_control_t control;
 volatile uint32_t count;
 
@@ -156,7 +156,7 @@ static epg_port_uart_lines_t lines = {
 	.received = {.bytes = line_received, .size = sizeof(line_received)},
 	.sent = {.bytes = line_sent, .size = sizeof(line_sent)},
 };
-static const epg_port_uart_t line = {.pin_tx = 8, .pin_rx = 9, .block = 1, .lines = &lines};
+static const epg_port_uart_t line = {.pin_tx = 8, .pin_rx = 9, .instance = 1, .lines = &lines};
 static const epg_stream_t *usb;
 
 static void echo_start(const epg_target_t *target, const epg_stream_t *stream)

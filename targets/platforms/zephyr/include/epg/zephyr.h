@@ -26,21 +26,21 @@
 extern "C" {
 #endif
 
-/** A decoder of the sensor API with epg/zephyr/qdec.h; `block` and `unit` are those of its epg_port_quadrature_t. */
+/** A decoder of the sensor API with epg/zephyr/qdec.h; `instance` and `slot` are those of its epg_port_quadrature_t. */
 typedef struct epg_zephyr_decoder {
-    uint8_t block;
-    uint8_t unit;
+    uint8_t instance;
+    uint8_t slot;
     const struct device *device;
 } epg_zephyr_decoder_t;
 
 /**
- * A channel of a PWM device; `block` and `unit` are those of its epg_port_pwm_t.  Where `period_ns` is 0 the devicetree
+ * A channel of a PWM device; `instance` and `slot` are those of its epg_port_pwm_t.  Where `period_ns` is 0 the devicetree
  * divides the clock so that levels are clocks of the device; else the device is the application's own, and levels are
  * shares of that period.
  */
 typedef struct epg_zephyr_pwm {
-    uint8_t block;
-    uint8_t unit;
+    uint8_t instance;
+    uint8_t slot;
     const struct device *device;
     uint32_t channel;
     uint32_t period_ns;
@@ -62,9 +62,9 @@ typedef struct epg_zephyr_output {
     bool high;
 } epg_zephyr_output_t;
 
-/** A UART with interrupts; `block` is that of its epg_port_uart_t.  Its baud rate is set by the devicetree. */
+/** A UART with interrupts; `instance` is that of its epg_port_uart_t.  Its baud rate is set by the devicetree. */
 typedef struct epg_zephyr_uart {
-    uint8_t block;
+    uint8_t instance;
     const struct device *device;
 } epg_zephyr_uart_t;
 
@@ -87,7 +87,7 @@ typedef struct epg_zephyr_hardware {
 extern const epg_zephyr_hardware_t epg_zephyr_hardware;
 
 /**
- * The tick.  On RP2040 and RP2350 the wrap of PWM slice `block`; elsewhere the top of the counter `device`; neither is
+ * The tick.  On RP2040 and RP2350 the wrap of PWM slice `instance`; elsewhere the top of the counter `device`; neither is
  * used by a k_timer.  `prescaler * (top + 1)` clocks of `clock` Hz are one control period.
  */
 typedef struct epg_zephyr_tick {
@@ -95,7 +95,7 @@ typedef struct epg_zephyr_tick {
     uint32_t clock;
     uint32_t prescaler;
     uint32_t top;
-    uint8_t block;
+    uint8_t instance;
 } epg_zephyr_tick_t;
 
 /** A target as its port layer runs it. */

@@ -19,23 +19,23 @@ BUILD_ASSERT(DT_PROP_LEN(TARGET, decoders) == 2, "decoders of epg_jiwy: one per 
 
 static const epg_zephyr_decoder_t decoders[] = {
     /* components.encoder_pan */
-    {.block = 0, .unit = 0, .device = DEVICE_DT_GET(DT_PHANDLE_BY_IDX(TARGET, decoders, 0))},
+    {.instance = 0, .slot = 0, .device = DEVICE_DT_GET(DT_PHANDLE_BY_IDX(TARGET, decoders, 0))},
     /* components.encoder_tilt */
-    {.block = 0, .unit = 1, .device = DEVICE_DT_GET(DT_PHANDLE_BY_IDX(TARGET, decoders, 1))},
+    {.instance = 0, .slot = 1, .device = DEVICE_DT_GET(DT_PHANDLE_BY_IDX(TARGET, decoders, 1))},
 };
 
 BUILD_ASSERT(DT_PROP_LEN(TARGET, pwms) == 2, "pwms of epg_jiwy: one per component with a PWM output");
 
 static const epg_zephyr_pwm_t pwms[] = {
     /* components.pwm_pan */
-    {.block = 0,
-     .unit = 0,
+    {.instance = 0,
+     .slot = 0,
      .device = DEVICE_DT_GET(DT_PWMS_CTLR_BY_IDX(TARGET, 0)),
      .channel = DT_PWMS_CHANNEL_BY_IDX(TARGET, 0),
      .flags = DT_PWMS_FLAGS_BY_IDX(TARGET, 0)},
     /* components.pwm_tilt */
-    {.block = 0,
-     .unit = 1,
+    {.instance = 0,
+     .slot = 1,
      .device = DEVICE_DT_GET(DT_PWMS_CTLR_BY_IDX(TARGET, 1)),
      .channel = DT_PWMS_CHANNEL_BY_IDX(TARGET, 1),
      .flags = DT_PWMS_FLAGS_BY_IDX(TARGET, 1)},
