@@ -92,7 +92,7 @@ def test_a_dive_that_gets_through_finds_what_the_search_finds(demands: list[Dema
     problem = _Problem(demands, ())
     begin = (
         tuple(len(group.members) for group in problem.groups),
-        tuple(_Use((0,) * len(instance.sorts), -1) for instance in problem.instances),
+        tuple(_Use((0,) * len(instance.banks), -1) for instance in problem.instances),
     )
     dive = problem._dive(begin)
     assert dive is None or dive == problem._search(begin)
