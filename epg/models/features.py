@@ -6,6 +6,7 @@ from __future__ import annotations
 import bisect
 import re
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics, Note
@@ -290,17 +291,28 @@ def _check_call(
     elif name not in _LIBRARY_ALL and not (name in _CPP_LIBRARY and code.file.path.suffix != ".c"):
         told.add(name)
         if re.match(r"XX|YY", name) or name.endswith("Submodel") or name in declared:
-            message = f"'{name}' is called, but no file of the export defines it"
-            hint = "are all files there, and renamed in the same way? else export again"
-            hint = f"{linked.looked}; {hint}" if linked.looked else hint
-            other = linked.elsewhere.get(name)
-            notes = [Note("it is defined here, in the folder of another model", other)] if other else []
-            diagnostics.error("model-incomplete", span, message, hint=hint, notes=notes)
+            _undefined(name, span, linked, diagnostics)
         else:
             message = f"'{name}' is called, but it is not part of the export: dll() functions run inside 20-sim only"
             diagnostics.error(
                 "model-dll", span, message, hint="put a source file that defines it into the model's folder"
             )
+
+
+def _undefined(name: str, span: Span, linked: Linked, diagnostics: Diagnostics) -> None:
+    """One error for all functions that a file calls and that no file defines: they are missing for one reason."""
+    message = "is called, but no file of the export defines it"
+    hint = "are all files there, and renamed in the same way? else export again"
+    hint = f"{linked.looked}; {hint}" if linked.looked else hint
+    other = linked.elsewhere.get(name)
+    notes = [Note("it is defined here, in the folder of another model", other)] if other else []
+    for index, item in enumerate(diagnostics.items):
+        told, found, others = item.message.partition(message)
+        if found and (item.hint, item.notes, item.span.file) == (hint, tuple(notes), span.file):
+            others = f"{others.removesuffix(')') or ' (nor '}{', ' if others else ''}'{name}')"
+            diagnostics.items[index] = replace(item, message=f"{told}{message}{others}")
+            return
+    diagnostics.error("model-incomplete", span, f"'{name}' {message}", hint=hint, notes=notes)
 
 
 def _known_names(linked: Linked) -> set[str]:

@@ -155,6 +155,8 @@ def _step(
     """The time between two steps of the model, after checking that the FMU can keep to it."""
     step = wanted or description.step
     if step is None:
+        if any(item.id == "fmu-step" for item in diagnostics):
+            return None  # it says one that is not a number
         message = "the FMU does not say its step: there is no stepSize in its DefaultExperiment"
         hint = "write a model.yaml with 'version: 1', 'fmu: <its file or folder>' and 'step: 1 ms', and name that"
         diagnostics.error("fmu-step", description.step_span, message, hint=hint)

@@ -96,7 +96,9 @@ def _time(element: Element | None, name: str, diagnostics: Diagnostics) -> Fract
     value = exact_number(text.strip())
     if value is None or not is_step(value):
         message = f"{name} is '{one_line(text)[:40]}', which is not a step in seconds"
-        diagnostics.error("fmu-step", element.span, message, hint="steps are from 1 ns to 1000000 s")
+        comma = re.fullmatch(r"\s*\d+,\d+\s*", text)
+        hint = "write it with a decimal point" if comma else "steps are from 1 ns to 1000000 s"
+        diagnostics.error("fmu-step", element.span, message, hint=hint)
         return None
     return value
 

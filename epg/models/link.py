@@ -21,6 +21,7 @@ from epg.models.declarations import declared_names, open_classes
 from epg.models.folders import searched_folders, source_files
 from epg.models.headers import Headers, Shim
 from epg.models.neighbours import SOURCE_FOLDERS, Neighbours, all_alike, report_taken
+from epg.models.whole import is_whole
 from epg.source import Span
 
 _FMI_FILE = re.compile(r"fmi\w*functions?\w*\.c$", re.IGNORECASE)
@@ -119,7 +120,8 @@ class _Linker:
             position += 1
             if position == len(self.units) and self.good and self.headers.good:
                 self._take_sources()
-        if not self.good or not self.headers.good or not self._all_classes():
+        whole = [is_whole(unit.file, self.diagnostics) for unit in self.units]
+        if not self.good or not self.headers.good or not all(whole) or not self._all_classes():
             return None
         rest = sorted(self.units[1:], key=lambda code: str(code.file.path))
         places = [self.directory, *self.headers.folders(), *(code.file.path.parent for code in rest)]

@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics
-from epg.documents.source_file import read_any_text, read_source
+from epg.documents.source_file import SourceFile, read_any_text, read_source
 from epg.models import c_function, cpp_class, hand_written
 from epg.models.c_code import Code, parse_code
 from epg.models.fmu_files import DESCRIPTION, SUFFIX, is_fmu_folder
@@ -18,6 +19,7 @@ from epg.models.model import Model
 from epg.models.model_yaml import FILE_NAME
 from epg.models.tokens import is_tokens_file, load_tokens
 from epg.models.tokens_model import load_tokens_model
+from epg.models.whole import is_whole
 from epg.source import Span
 
 LOOKED_FOR = (
@@ -30,6 +32,7 @@ EXPORT_AGAIN = (
     "generate the code of the submodel in 20-sim again (Tools > Real Time Toolbox > C-Code Generation, 'C function') "
     "into a folder of its own, and name that"
 )
+_SUBMODEL = re.compile(r"\bvoid\s+\w*(?:Initialize|Calculate)Submodel\w*\s*\(", re.ASCII)
 _MAX_FILES = 400
 _Loader = Callable[[Diagnostics], "Model | None"]
 
@@ -142,10 +145,19 @@ def _source_candidate(path: Path, diagnostics: Diagnostics) -> Candidate | None:
     if path.suffix.lower() in c_function.SUFFIXES:
         if c_function.is_c_function(code):
             return Candidate(path, lambda report: c_function.load_c_function(code, report))
-        return None
+        return _broken(file) if _SUBMODEL.search(file.code) else None
     if cpp_class.submodel_classes(code):
         return Candidate(path, lambda report: cpp_class.load_cpp_class(code, report))
-    return None
+    return _broken(file) if "::CopyInputsToVariables" in file.code else None
+
+
+def _broken(file: SourceFile) -> Candidate | None:
+    """The submodel's file if it is not whole: else a ``tokens.xml`` beside it would be taken in its place."""
+
+    def load(diagnostics: Diagnostics) -> None:
+        is_whole(file, diagnostics)
+
+    return None if is_whole(file, Diagnostics()) else Candidate(file.path, load)
 
 
 def _tokens(folder: Path) -> list[Candidate]:
