@@ -5,11 +5,10 @@ from __future__ import annotations
 
 import argparse
 import os
-import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from epg.source import Span
+from epg.documents.cmake_call import caller_span, setting_span
 
 if TYPE_CHECKING:
     from epg.project import Request
@@ -54,7 +53,7 @@ def request_of(arguments: argparse.Namespace, name: str) -> Request:
         settings.append(f"node={arguments.node}")
     if arguments.namespace is not None:
         settings.append(f"namespace={arguments.namespace}")
-    caller = _caller_span(arguments.caller, name) if arguments.caller else None
+    caller = caller_span(arguments.caller, name) if arguments.caller else None
     return Request(
         name=name,
         tcf=arguments.tcf or "",
@@ -62,40 +61,8 @@ def request_of(arguments: argparse.Namespace, name: str) -> Request:
         bindings=arguments.bindings or Path(),
         plant=arguments.plant,
         plant_bindings=arguments.plant_bindings,
-        settings=[(text, _setting_span(arguments.caller, name, text)) for text in settings],
+        settings=[(text, setting_span(arguments.caller, name, text)) for text in settings],
         user_roots=user_roots(),
         caller=caller,
         beside=arguments.beside,
     )
-
-
-def _caller_span(file: str, name: str) -> Span:
-    """Where a CMakeLists.txt asks for the target ``name``."""
-    return _find(file, rf"epg_add_(?:target|model)\s*\(\s*({re.escape(name)})\b") or Span(file)
-
-
-def _setting_span(file: str | None, name: str, setting: str) -> Span:
-    """Where a setting is written: its argument in the CMakeLists.txt, or the command line itself."""
-    if file is None:
-        return Span("command line", 1, 1, len(setting) + 1, text=setting)
-    key, _, value = setting.partition("=")
-    pattern = re.escape(setting)
-    if key in ("node", "namespace"):
-        pattern = rf'{key.upper()}\s+"?({re.escape(value)})'
-    call = rf"epg_add_target\s*\(\s*{re.escape(name)}\b[^)]*?"
-    return _find(file, rf"{call}({pattern})") or _find(file, rf"{call}\b()") or Span(file, text=setting)
-
-
-def _find(file: str, pattern: str) -> Span | None:
-    try:
-        text = Path(file).read_text(encoding="utf-8", errors="replace")
-    except OSError:
-        return None
-    match = re.search(pattern, text)
-    if not match:
-        return None
-    group = match.lastindex or 0
-    start = match.start(group)
-    line = text.count("\n", 0, start) + 1
-    column = start - (text.rfind("\n", 0, start) + 1) + 1
-    return Span(file, line, column, column + max(1, match.end(group) - start))

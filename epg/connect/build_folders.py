@@ -29,6 +29,7 @@ class BuildFolder:
     path: Path
     variables: Mapping[str, str] = field(default_factory=dict)
     preset: str = ""
+    image: Path | None = None  # where CMake has configured the project: ``path`` or, with sysbuild, below it
 
 
 def build_folders(source: Path) -> list[BuildFolder]:
@@ -42,7 +43,7 @@ def build_folders(source: Path) -> list[BuildFolder]:
         if place not in found and (variables := _variables(place, source)) is not None:
             above = place.parent
             of_sysbuild = "APP_DIR" in _cache(above / CACHE)
-            found[place] = BuildFolder(above if of_sysbuild else place, variables, names.get(place, ""))
+            found[place] = BuildFolder(above if of_sysbuild else place, variables, names.get(place, ""), place)
     return [*found.values(), *(preset for preset in presets if preset.path not in found), BuildFolder(source / USUAL)]
 
 

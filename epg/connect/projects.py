@@ -9,18 +9,16 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
-from epg.connect.build_folders import BuildFolder, build_folders
-from epg.connect.cmake.calls import Call, Unknown, Walk
-from epg.connect.cmake.values import Word
-from epg.data import data_folder
+from epg.connect.build_folders import build_folders
+from epg.connect.literal_calls import FILE, Call, LiteralCalls, Unknown, Word, not_literal
+from epg.connect.recorded_calls import recorded_calls
 from epg.diagnostics import Diagnostics
 from epg.project import Request
 from epg.source import Span
 
-FILE = "CMakeLists.txt"
 _ONE = ("TCF", "MODEL", "BINDINGS", "PLANT", "PLANT_BINDINGS", "NODE", "NAMESPACE")
 _NEEDED = ("TCF", "MODEL", "BINDINGS")
 _LEVELS = 8
@@ -54,22 +52,35 @@ def find_jobs(folder: Path, diagnostics: Diagnostics) -> list[Job]:
     if not (folder / FILE).is_file():
         return []
     top = _top(folder)
-    best: _Found | None = None
-    for build in build_folders(top):
-        found = _jobs(top, folder, build)
-        if best is None or (not best.jobs and (found.jobs or (found.unknown and not best.unknown))):
-            best = found
-        if best.jobs:
-            break
-    assert best is not None, "the usual build folder is always there"
-    hint = "CMake knows: configure, then start "
-    hint += "'west build -t NAME_connect'" if best.zephyr else "'cmake --build BUILD_FOLDER --target NAME_connect'"
-    for unknown in best.unknown:
-        if best.jobs:
-            diagnostics.warning("cmake-not-understood", unknown.span, unknown.message, hint=hint)
-        else:
-            diagnostics.error("cmake-not-understood", unknown.span, unknown.message, hint=hint)
-    return best.jobs
+    read = LiteralCalls(top)
+    builds = build_folders(top)
+    records = {build.path: recorded_calls(build) for build in reversed(builds)}
+    requests, unknown = _requests(read, folder)
+    build = next((build for build in builds if requests.keys() & records[build.path].requests.keys()), builds[0])
+    executables = _executables(read)
+    if unknown or not requests:  # only CMake knows all targets, and has written them down if it has configured
+        build = next((build for build in builds if records[build.path].below(folder)), build)
+        known = records[build.path].below(folder)
+        requests, unknown = ({**requests, **known}, []) if known else (requests, unknown)
+    executables = {**executables, **records[build.path].executables}
+    by_west = read.uses_zephyr
+    configure = "west build --cmake-only" if by_west else "cmake -S . -B build"
+    hint = f"configure with '{configure}', which runs the project's CMake files, then start 'epg connect' again"
+    for place in unknown:
+        report = diagnostics.warning if requests else diagnostics.error
+        report("cmake-not-understood", place.span, place.message, hint=hint)
+    return [
+        Job(
+            request,
+            source_dir=top,
+            build_dir=build.path,
+            built_by="west" if by_west else "cmake",
+            preset=build.preset,
+            executables=tuple(executables.get(name, ())),
+            board=build.variables.get("BOARD", "") if by_west else "",
+        )
+        for name, request in requests.items()
+    ]
 
 
 def jobs_of_model(model: Path) -> list[Job]:
@@ -95,13 +106,6 @@ def report_no_target(folder: Path, diagnostics: Diagnostics) -> None:
     diagnostics.error("no-target", Span(str(here if here.is_file() else folder)), message, hint=hint)
 
 
-@dataclass
-class _Found:
-    jobs: list[Job] = field(default_factory=list)
-    unknown: list[Unknown] = field(default_factory=list)
-    zephyr: bool = False
-
-
 def _top(folder: Path) -> Path:
     """The folder of the project that ``folder`` belongs to: the nearest one whose CMakeLists.txt has project()."""
     for above in [folder, *folder.parents][:_LEVELS]:
@@ -114,50 +118,42 @@ def _top(folder: Path) -> Path:
     return folder
 
 
-def _jobs(top: Path, folder: Path, build: BuildFolder) -> _Found:
-    """The targets below ``folder``, as they would be in this build folder."""
-    # epg_import.cmake sets EPG_DIR: to this EPG, as far as anyone can tell before.
-    walk = Walk(top, {"EPG_DIR": data_folder("cmake").as_posix(), **build.variables})
-    found = _Found(zephyr=walk.uses_zephyr)
-    found.unknown = [unknown for unknown in walk.unknown if Path(unknown.span.file).is_relative_to(folder)]
-    calls = [call for call in walk.calls if call.folder.is_relative_to(folder)]
-    executables: dict[str, list[str]] = {}
-    for call in calls:
-        texts = [word.text for word in call.words]
-        if call.command.name == "epg_add_executable" and len(texts) == 2 and texts[0] and texts[1]:
-            executables.setdefault(texts[1].removeprefix("EPG::"), []).append(texts[0])
+def _requests(read: LiteralCalls, folder: Path) -> tuple[dict[str, Request], list[Unknown]]:
+    """The targets that literal calls below ``folder`` ask for, and the calls that only CMake understands."""
     requests: dict[str, Request] = {}
-    for call in sorted(calls, key=lambda call: not call.certain):
-        if call.command.name == "epg_add_target":
-            request = _request(call, found.unknown)
-            if request is not None:
-                requests.setdefault(request.name, request)
-    for name, request in requests.items():
-        found.jobs.append(
-            Job(
-                request,
-                source_dir=top,
-                build_dir=build.path,
-                built_by="west" if walk.uses_zephyr else "cmake",
-                preset=build.preset,
-                executables=tuple(executables.get(name, ())),
-                board=build.variables.get("BOARD", "") if walk.uses_zephyr else "",
-            )
-        )
-    return found
+    unknown = [unknown for unknown in read.unknown if Path(unknown.span.file).is_relative_to(folder)]
+    for call in read.calls:
+        if call.name == "epg_add_target" and call.folder.is_relative_to(folder):
+            request = _request(call, unknown)
+            if request is not None and request.name in requests:
+                message = f"'{request.name}' is added twice: only CMake knows which of the calls is made"
+                unknown.append(Unknown(call.span, message))
+            elif request is not None:
+                requests[request.name] = request
+    return requests, unknown
+
+
+def _executables(read: LiteralCalls) -> dict[str, list[str]]:
+    """The executables that literal calls make, by target."""
+    executables: dict[str, list[str]] = {}
+    for call in read.calls:
+        texts = [word.text for word in call.words]
+        if call.name == "epg_add_executable" and len(texts) == 2 and texts[0] and texts[1]:
+            executables.setdefault(texts[1].removeprefix("EPG::"), []).append(texts[0])
+    return executables
 
 
 def _request(call: Call, unknown: list[Unknown]) -> Request | None:
     """What one epg_add_target() asks for, or None after noting why that cannot be told."""
     for word in call.words:
         if word.text is None:
-            unknown.append(Unknown(word.span, f"what '{word.written}' stands for is known to CMake only"))
+            unknown.append(not_literal(word))
             return None
     values, settings = _keywords(call.words[1:])
     missing = [keyword for keyword in _NEEDED if keyword not in values]
     if not call.words or missing:
         lacking = f"{missing[0]} is missing" if call.words else "its name is missing"
-        unknown.append(Unknown(call.command.span, f"this epg_add_target() is not complete: {lacking}"))
+        unknown.append(Unknown(call.span, f"this epg_add_target() is not complete: {lacking}"))
         return None
     name = call.words[0]
     here = call.folder
@@ -201,6 +197,5 @@ def _path(folder: Path, word: Word) -> Path:
 
 def _user_roots(call: Call) -> tuple[Path, ...]:
     """The user's folders as CMake takes them: of its variable, else of the environment."""
-    value = call.variables.get("EPG_TARGETS_PATH")
-    roots = value.split(";") if value else os.environ.get("EPG_TARGETS_PATH", "").split(os.pathsep)
+    roots = call.roots or os.environ.get("EPG_TARGETS_PATH", "").split(os.pathsep)
     return tuple(call.folder / root for root in roots if root)

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from epg.connect.files import Watch
-from epg.connect.projects import FILE, Job, find_jobs
+from epg.connect.literal_calls import FILE
+from epg.connect.projects import Job, find_jobs
 from epg.diagnostics import Diagnostics
 
 

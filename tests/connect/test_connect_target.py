@@ -103,7 +103,9 @@ def test_where_configuring_fails_a_script_does_the_same(robot: Project) -> None:
 
 def test_what_is_not_understood_is_said_at_once(tmp_path: Path) -> None:
     """Before the page opens: it is about another target than the one that is shown."""
-    app = shutil.copytree(ROOT / "examples" / "zephyr_jiwy" / "app", tmp_path / "app")
+    app = shutil.copytree(ROOT / "examples" / "jiwy", tmp_path / "app", ignore=shutil.ignore_patterns("build*"))
+    with (app / "CMakeLists.txt").open("a", encoding="utf-8") as file:
+        file.write("epg_add_target(${other} TCF other.tcf MODEL model BINDINGS other.bindings.yaml)\n")
     command = [sys.executable, str(ROOT / "epg"), "connect", str(app)]
     with started(command) as (page, process):
         assert page.state()["project"]["name"] == "jiwy"

@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Calls of EPG's functions that a CMakeLists.txt makes with literal arguments, read without running CMake.
+
+Literal arguments may hold CMake's names of the source folders.  A call that needs more is :class:`Unknown`: one with
+another variable, in a loop or in a function.  A call under a condition is taken as one that is made.
+
+Grammar: cmake-language(7), "Syntax".
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from epg.source import Span
+
+FILE = "CMakeLists.txt"
+MAX_FOLDERS = 200
+CALLS = ("epg_add_target", "epg_add_executable")
+
+_TOKEN = re.compile(
+    r"""(?P<space>[ \t\n;]+|\#\[(?P<c>=*)\[.*?\](?P=c)\]|\#(?!\[=*\[)[^\n]*)
+    |(?P<paren>[()])
+    |\[(?P<b>=*)\[\n?(?P<bracket>.*?)\](?P=b)\]
+    |"(?P<quoted>(?:[^"\\]|\\.)*)"
+    |(?P<plain>(?:[^\s()\#"\\;]|\\.)+)""",
+    re.DOTALL | re.VERBOSE,
+)
+_REPEATING = re.compile(r"(end)?(?:foreach|while|function|macro)")
+
+
+@dataclass(frozen=True)
+class Word:
+    """One argument; ``text`` is None if it is not literal."""
+
+    text: str | None
+    written: str
+    span: Span
+
+
+@dataclass(frozen=True)
+class Call:
+    """One call in ``folder``, whose targets folders ``roots`` are those of ``set(EPG_TARGETS_PATH ...)``."""
+
+    name: str
+    words: tuple[Word, ...]
+    folder: Path
+    roots: tuple[str, ...]
+    span: Span
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """A place that only CMake can understand, and why."""
+
+    span: Span
+    message: str
+
+
+def not_literal(word: Word) -> Unknown:
+    return Unknown(word.span, f"what '{word.written}' stands for is known to CMake only")
+
+
+@dataclass
+class LiteralCalls:
+    """What the project whose top folder is ``top`` calls, in it and in the folders that add_subdirectory() names."""
+
+    top: Path
+    calls: list[Call] = field(default_factory=list)
+    unknown: list[Unknown] = field(default_factory=list)
+    uses_zephyr: bool = False
+    _read: set[Path] = field(default_factory=set)
+
+    def __post_init__(self) -> None:
+        self._folder(self.top, ())
+
+    def _folder(self, folder: Path, roots: tuple[str, ...]) -> None:
+        path = folder / FILE
+        try:
+            text = path.read_bytes().decode("utf-8-sig", "replace").replace("\r\n", "\n")
+        except (OSError, ValueError):
+            return  # CMake says so when it configures
+        if folder in self._read or len(self._read) >= MAX_FOLDERS:
+            return
+        self._read.add(folder)
+        blocks: list[str] = []
+        for name, span, words in self._commands(text, path):
+            block = _REPEATING.fullmatch(name)
+            if block and not block[1]:
+                blocks.append(name)
+            elif block and blocks:
+                blocks.pop()
+            elif name in CALLS:
+                if not blocks:
+                    self.calls.append(Call(name, words, folder, roots, span))
+                elif name == CALLS[0]:
+                    message = f"this call is inside of {blocks[-1]}(): only CMake knows what it makes"
+                    self.unknown.append(Unknown(span, message))
+            elif name == "find_package" and words and words[0].text == "Zephyr":
+                self.uses_zephyr = True
+            elif name == "add_subdirectory" and words and not blocks:
+                if words[0].text is None:
+                    self.unknown.append(not_literal(words[0]))
+                else:
+                    self._folder(Path(os.path.normpath(folder / words[0].text)), roots)
+            elif name == "set" and words and words[0].text == "EPG_TARGETS_PATH" and not blocks:
+                roots = tuple(root for word in words[1:] for root in (word.text or "").split(";"))
+
+    def _commands(self, text: str, path: Path) -> Iterator[tuple[str, Span, tuple[Word, ...]]]:
+        """The commands of ``text`` with names in lower case; a mistake in the syntax ends them and is reported."""
+        name, opening, words, depth, at, line, before = "", Span(str(path)), list[Word](), 0, 0, 1, 0
+        while at < len(text):
+            match = _TOKEN.match(text, at)
+            start = at if match is None else match.start(match.lastgroup or 0)
+            line, before = line + text.count("\n", before, start), start
+            column = start - text.rfind("\n", 0, start)
+            written = match[match.lastgroup or 0] if match else text[at]
+            span = Span(str(path), line, column, column + len(written.split("\n")[0] or " "))
+            if match is None:
+                self.unknown.append(Unknown(span, "this is not understood: CMake expects a closing quote or bracket"))
+                return
+            at = match.end()
+            if match["paren"] == "(":
+                depth += 1
+            elif match["paren"] == ")" and depth:
+                depth -= 1
+                if not depth:
+                    yield name, opening, tuple(words)
+                    words = []
+            elif not match["space"] and depth:
+                words.append(Word(self._text(match, path.parent), written, span))
+            elif not match["space"]:
+                name, opening = written.lower(), span
+        if depth:
+            self.unknown.append(Unknown(opening, "this is not understood: its parenthesis is not closed"))
+
+    def _text(self, match: re.Match[str], folder: Path) -> str | None:
+        """The value of an argument, or None if it is not literal."""
+        if match["bracket"] is not None:
+            return match["bracket"]
+        text = match["quoted"] if match["quoted"] is not None else match["plain"]
+        text = re.sub(r"\$\{CMAKE_CURRENT_(?:SOURCE|LIST)_DIR\}", lambda _: folder.as_posix(), text)
+        text = re.sub(r"\$\{(?:CMAKE|PROJECT)_SOURCE_DIR\}", lambda _: self.top.as_posix(), text)
+        return None if re.search(r"\$(?:ENV|CACHE)?\{|\\[A-Za-z]", text) else re.sub(r"\\(.)", r"\1", text)

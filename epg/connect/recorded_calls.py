@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The targets that CMake has made in a build folder, as cmake/EPGConnect.cmake has written them down.
+
+A line is the name of a function, or a tab and one of its arguments.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from epg.connect.build_folders import BuildFolder
+from epg.diagnostics import Diagnostics
+from epg.documents.cmake_call import caller_span, setting_span
+from epg.documents.text_file import is_file, read_text
+from epg.project import Request
+
+RECORD = "CMakeFiles/epg/calls.txt"
+
+
+@dataclass(frozen=True)
+class RecordedCalls:
+    """Targets by name, and the names of the executables of each."""
+
+    requests: Mapping[str, Request] = field(default_factory=dict)
+    executables: Mapping[str, list[str]] = field(default_factory=dict)
+
+    def below(self, folder: Path) -> dict[str, Request]:
+        """The targets that CMakeLists.txt files in ``folder`` and below it make."""
+        return {name: request for name, request in self.requests.items() if request.beside.is_relative_to(folder)}
+
+
+def recorded_calls(build: BuildFolder) -> RecordedCalls:
+    """The calls of the last configure run in a build folder; none where CMake has not run."""
+    path = (build.image or build.path) / RECORD
+    text = (read_text(path, Diagnostics()) if is_file(path) else None) or ""
+    requests: dict[str, Request] = {}
+    executables: dict[str, list[str]] = {}
+    for call in text.split("\nepg_"):
+        function, *words = call.strip("\n").split("\n\t")
+        if function.endswith("add_executable") and len(words) == 2:
+            executables.setdefault(words[1].removeprefix("EPG::"), []).append(words[0])
+        elif function.endswith("add_target") and len(words) % 2:
+            request = _request(words[0], list(zip(words[1::2], words[2::2])))
+            if request is not None:
+                requests[request.name] = request
+    return RecordedCalls(requests, executables)
+
+
+def _request(name: str, options: list[tuple[str, str]]) -> Request | None:
+    """The target of one call; ``options`` are those of ``epg generate``, and ``--targets-path``."""
+    values = dict(options)
+    if not {"--tcf", "--model", "--bindings", "--beside", "--caller"} <= values.keys():
+        return None
+    caller = values["--caller"]
+    settings = [value for option, value in options if option == "--set"]
+    settings += [f"{key}={values[f'--{key}']}" for key in ("node", "namespace") if f"--{key}" in values]
+    return Request(
+        name=name,
+        tcf=values["--tcf"],
+        model=Path(values["--model"]),
+        bindings=Path(values["--bindings"]),
+        plant=Path(values["--plant"]) if "--plant" in values else None,
+        plant_bindings=Path(values["--plant-bindings"]) if "--plant-bindings" in values else None,
+        settings=[(setting, setting_span(caller, name, setting)) for setting in settings],
+        user_roots=tuple(Path(value) for option, value in options if option == "--targets-path"),
+        caller=caller_span(caller, name),
+        beside=Path(values["--beside"]),
+    )

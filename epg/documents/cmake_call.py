@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Positions of EPG's calls in a CMakeLists.txt, for what CMake has passed on from there."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from epg.source import Span
+
+
+def caller_span(file: str, name: str) -> Span:
+    """Where a CMakeLists.txt asks for the target ``name``."""
+    return _find(file, rf"epg_add_(?:target|model)\s*\(\s*({re.escape(name)})\b") or Span(file)
+
+
+def setting_span(file: str | None, name: str, setting: str) -> Span:
+    """Where a setting is written: its argument in the CMakeLists.txt, or the command line itself."""
+    if file is None:
+        return Span("command line", 1, 1, len(setting) + 1, text=setting)
+    key, _, value = setting.partition("=")
+    pattern = re.escape(setting)
+    if key in ("node", "namespace"):
+        pattern = rf'{key.upper()}\s+"?({re.escape(value)})'
+    call = rf"epg_add_target\s*\(\s*{re.escape(name)}\b[^)]*?"
+    return _find(file, rf"{call}({pattern})") or _find(file, rf"{call}\b()") or Span(file, text=setting)
+
+
+def _find(file: str, pattern: str) -> Span | None:
+    try:
+        text = Path(file).read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return None
+    match = re.search(pattern, text)
+    if not match:
+        return None
+    group = match.lastindex or 0
+    start = match.start(group)
+    line = text.count("\n", 0, start) + 1
+    column = start - (text.rfind("\n", 0, start) + 1) + 1
+    return Span(file, line, column, column + max(1, match.end(group) - start))
