@@ -11,7 +11,7 @@ from typing import Any
 from epg.connect.body import Refused
 from epg.connect.configurations import Project
 from epg.connect.draft import Draft, Operation
-from epg.connect.files import Snapshot, Watch, read_snapshot, remove_leftovers, save
+from epg.connect.files import Snapshot, Watch, read_snapshot, save
 from epg.connect.loaded import Models, load, tcf_path
 from epg.connect.projects import Job
 from epg.connect.view import view_of
@@ -19,6 +19,7 @@ from epg.diagnostics import Diagnostics
 from epg.documents.yaml_file import parse_yaml
 from epg.edit.bindings import CannotEdit
 from epg.edit.scalars import scalar_text
+from epg.emit.leftovers import remove_leftovers
 from epg.models import load_model
 
 _CONFLICT_HINT = "reload: your changes go; or save anyway: the others' changes go"
@@ -34,7 +35,7 @@ class Editor:
         self._tcf_path = tcf_path(job.request) or Path(os.path.abspath(job.request.tcf))
         self._models = Models()
         for path in (job.request.bindings, self._tcf_path):
-            remove_leftovers(path)
+            remove_leftovers(Path(os.path.realpath(path)))
         self.draft = self._new_draft()
         self._load()
 

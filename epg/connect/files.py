@@ -9,14 +9,13 @@ from __future__ import annotations
 
 import hashlib
 import os
-import re
-import secrets
 from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 from epg.documents.text_file import MAX_BYTES
+from epg.emit.leftovers import lock, temporary_beside
 
 BOM = b"\xef\xbb\xbf"
 
@@ -69,13 +68,13 @@ def save(before: Snapshot, after: Snapshot, *, project: Path | None = None, anyw
     if not anyway and read_snapshot(target).data != before.data:
         raise Unsavable(f"'{before.path.name}' was changed by somebody else since it was read")
     assert after.data is not None
-    temporary = target.with_name(f".{target.name}.{secrets.token_hex(6)}")
+    temporary = temporary_beside(target)
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
         if target.exists() and not os.access(target, os.W_OK):
             raise Unsavable(f"'{before.path.name}' is write-protected")
         with temporary.open("xb") as file:
-            _lock(file.fileno())
+            lock(file.fileno())
             file.write(after.data)
             file.flush()
             os.fsync(file.fileno())
@@ -90,23 +89,6 @@ def save(before: Snapshot, after: Snapshot, *, project: Path | None = None, anyw
         raise
 
 
-def remove_leftovers(path: Path) -> None:
-    """Removes what :func:`save` has left of ``path`` where its process was killed; never what is being written."""
-    target = Path(os.path.realpath(path))
-    pattern = re.compile(rf"\.{re.escape(target.name)}\.[0-9a-f]{{12}}")
-    with suppress(OSError, ValueError):
-        for entry in os.scandir(target.parent):
-            if pattern.fullmatch(entry.name) and entry.is_file(follow_symlinks=False):
-                _remove_unless_held(entry.path)
-
-
-def _remove_unless_held(name: str) -> None:
-    with suppress(OSError):  # Windows refuses to remove a file that is open, the lock says it elsewhere
-        with open(name, "rb") as file:
-            _lock(file.fileno())
-        os.unlink(name)
-
-
 def _check_links(path: Path, target: Path, project: Path | None) -> None:
     """Refuses a link that would have a file changed that nobody named."""
     path = Path(os.path.abspath(path))
@@ -116,14 +98,6 @@ def _check_links(path: Path, target: Path, project: Path | None) -> None:
             f"'{path.name}' is a link to '{target}', outside of '{inside}': EPG does not write there; "
             "replace the link by a copy, or name that file itself in CMakeLists.txt"
         )
-
-
-def _lock(file: int) -> None:
-    """Holds a file until it is closed or the process ends; raises OSError where somebody else holds it."""
-    if os.name != "nt":
-        import fcntl
-
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
 def _discard(temporary: Path) -> None:

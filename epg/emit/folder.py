@@ -5,9 +5,10 @@ from __future__ import annotations
 
 import os
 import shutil
-import tempfile
 from collections.abc import Iterable, Mapping
 from pathlib import Path
+
+from epg.emit.leftovers import held_folder, remove_leftovers, temporary_beside
 
 
 def present_files(folder: Path, names: Iterable[str]) -> list[Path]:
@@ -24,26 +25,26 @@ def present_files(folder: Path, names: Iterable[str]) -> list[Path]:
 def write_folder(folder: Path, files: Mapping[str, bytes]) -> None:
     """Makes ``folder`` hold ``files`` (relative name -> contents) besides what it holds already.
 
-    Everything is written under a temporary name first.  A folder that is new or empty then gets its name at once; in
-    one that holds something, files are moved to their places, and taken away again if one of them cannot be.  Replaces
+    Everything is written under a temporary name first.  A folder that is new then gets its name at once; in one that
+    is there, files are moved to their places, and taken away again if one of them cannot be.  Replaces
     nothing: raises FileExistsError.  Raises OSError, with ``folder`` as it was.
     """
-    is_new = not folder.is_dir() or not any(folder.iterdir())
+    folder = folder.absolute()
+    is_new = not folder.is_dir()  # one that is there stays, empty or not: somebody may work in it
     around = folder.parent if is_new else folder
     made = _make_folders(around)
-    staging = Path(tempfile.mkdtemp(dir=around, prefix=f".{folder.name}."))
+    remove_leftovers(around / folder.name)
+    staging = temporary_beside(around / folder.name)
     try:
-        staging.chmod(0o777 & ~_umask())
-        for name, data in files.items():
-            path = staging / name
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_bytes(data)
-        if is_new:
-            if folder.is_dir():
-                folder.rmdir()
-            os.rename(staging, folder)
-        else:
-            _move(staging, folder, list(files))
+        with held_folder(staging):
+            for name, data in files.items():
+                path = staging / name
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_bytes(data)
+            if is_new:
+                os.rename(staging, folder)
+            else:
+                _move(staging, folder, list(files))
     except BaseException:
         shutil.rmtree(staging, ignore_errors=True)
         _remove_folders(made)
@@ -82,9 +83,3 @@ def _remove_folders(folders: list[Path]) -> None:
             folder.rmdir()
         except OSError:
             return
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask

@@ -5,9 +5,10 @@ from __future__ import annotations
 
 import errno
 import os
-import tempfile
 from collections.abc import Mapping
 from pathlib import Path
+
+from epg.emit.leftovers import lock, remove_leftovers, temporary_beside
 
 
 def write_outputs(folder: Path, files: Mapping[str, str]) -> list[str]:
@@ -30,14 +31,16 @@ def write_outputs(folder: Path, files: Mapping[str, str]) -> list[str]:
         except OSError:
             pass
         path.parent.mkdir(parents=True, exist_ok=True)
-        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+        remove_leftovers(path)
+        temporary = temporary_beside(path)
         try:
-            with os.fdopen(handle, "wb") as file:
+            with temporary.open("xb") as file:
+                lock(file.fileno())
                 file.write(data)
             os.chmod(temporary, 0o644)
             os.replace(temporary, path)
         except BaseException:
-            os.unlink(temporary)
+            temporary.unlink(missing_ok=True)
             raise
         written.append(name)
     return written

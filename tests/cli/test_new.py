@@ -7,6 +7,9 @@ import json
 import os
 import re
 import shutil
+import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -337,6 +340,32 @@ def test_a_file_in_the_place_of_a_folder(tmp_path: Path, capsys: pytest.CaptureF
     assert new(tmp_path / "other", "host") == 1
     assert ".vscode: error: this file exists" in capsys.readouterr().err
     assert [entry.name for entry in (tmp_path / "other").iterdir()] == [".vscode"]
+
+
+def test_in_the_folder_where_one_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    before = os.stat(".").st_ino
+    assert main(["new", ".", "--name", "robot", "--target", "host", "--model", str(JIWY)]) == 0
+    assert os.stat(tmp_path).st_ino == before and Path("CMakeLists.txt").is_file()
+
+
+@pytest.mark.parametrize("present", [False, True])
+def test_the_next_run_removes_what_a_killed_one_has_left(present: bool, tmp_path: Path) -> None:
+    folder = tmp_path / "robot"
+    if present:
+        folder.mkdir()
+        (folder / "notes.txt").write_text("mine")
+    before = snapshot(tmp_path)
+    killed = (
+        "import os, signal\nfrom pathlib import Path\nfrom epg.emit import folder\n"
+        "folder._move = os.rename = lambda *_: os.kill(os.getpid(), signal.SIGKILL)\n"
+        f"folder.write_folder(Path({str(folder)!r}), {{'a': b'1'}})\n"
+    )
+    result = subprocess.run([sys.executable, "-c", killed], env=os.environ | {"PYTHONPATH": str(ROOT)})
+    assert result.returncode == -signal.SIGKILL and snapshot(tmp_path) != before
+    write_folder(folder, {"a": b"1"})
+    assert set(snapshot(tmp_path)) == {*before, "robot/a"}
+    assert not any(name.startswith(".") for name in [*os.listdir(tmp_path), *os.listdir(folder)])
 
 
 @pytest.mark.parametrize("present", [False, True])

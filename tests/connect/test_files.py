@@ -13,7 +13,8 @@ from pathlib import Path
 
 import pytest
 
-from epg.connect.files import BOM, Snapshot, Unsavable, Watch, read_snapshot, remove_leftovers, save
+from epg.connect.files import BOM, Snapshot, Unsavable, Watch, read_snapshot, save
+from epg.emit.leftovers import remove_leftovers
 from tests.connect.page import Denied, Page, serving, session_of
 
 ROOT = Path(__file__).resolve().parent.parent.parent

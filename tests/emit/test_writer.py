@@ -4,12 +4,17 @@
 from __future__ import annotations
 
 import os
+import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
 from epg.cli.output import update_folder
 from epg.emit.writer import write_outputs
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def test_only_what_changed_is_written(tmp_path: Path) -> None:
@@ -42,6 +47,18 @@ def test_a_failure_leaves_the_old_file_and_no_other(tmp_path: Path, monkeypatch:
         write_outputs(tmp_path, {"a": "new"})
     assert [path.name for path in tmp_path.iterdir()] == ["a"]
     assert (tmp_path / "a").read_text() == "old"
+
+
+def test_the_next_run_removes_what_a_killed_one_has_left(tmp_path: Path) -> None:
+    killed = (
+        "import os, signal\nfrom pathlib import Path\nfrom epg.emit.writer import write_outputs\n"
+        "os.replace = lambda *_: os.kill(os.getpid(), signal.SIGKILL)\n"
+        f"write_outputs(Path({str(tmp_path)!r}), {{'a': '1'}})\n"
+    )
+    result = subprocess.run([sys.executable, "-c", killed], env=os.environ | {"PYTHONPATH": str(ROOT)})
+    assert result.returncode == -signal.SIGKILL and len(os.listdir(tmp_path)) == 1
+    write_outputs(tmp_path, {"a": "1"})
+    assert os.listdir(tmp_path) == ["a"]
 
 
 def test_what_is_no_longer_generated_is_deleted_and_nothing_else(tmp_path: Path) -> None:
