@@ -231,3 +231,23 @@ def test_paths_that_cmake_or_make_would_read_otherwise(robot: Project, name: str
     robot.edit("CMakeLists.txt", "BINDINGS bindings.yaml", f"BINDINGS [=[{name}]=]")
     output = robot.fails_to_configure()
     assert f"{name}' cannot be named in CMake: " in output and "[invalid-name]" in output
+
+
+@pytest.mark.parametrize("system", ["Generic", "PICO"])
+def test_a_host_target_in_a_project_for_a_microcontroller(robot: Project, system: str) -> None:
+    (robot.source / "cmake/Platform").mkdir(parents=True)
+    (robot.source / "cmake/Platform/PICO.cmake").write_text("include(Platform/UnixPaths)\n")  # as the Pico SDK does
+    (robot.source / "toolchain.cmake").write_text(
+        f"set(CMAKE_SYSTEM_NAME {system})\n"
+        "list(APPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR}/cmake)\n"
+        "set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)\n"
+    )
+    output = robot.fails_to_configure(f"-DCMAKE_TOOLCHAIN_FILE={robot.source}/toolchain.cmake")
+    text = " ".join(output.split())
+    assert output.count("CMake Error") == 1, output
+    assert (
+        "robot): its target is 'host', a program for a computer, and this project is compiled for a microcontroller"
+        in text
+    )
+    assert f"(CMAKE_SYSTEM_NAME is {system})" in text
+    assert "epg_add_model(robot MODEL <folder>)" in text
