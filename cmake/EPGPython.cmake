@@ -166,7 +166,11 @@ endfunction()
 # Stops unless the project has enabled <language>.
 function(_epg_require_language language reason)
   get_property(languages GLOBAL PROPERTY ENABLED_LANGUAGES)
-  if(NOT language IN_LIST languages)
+  if(NOT languages)
+    message(FATAL_ERROR "EPG: ${reason} needs ${language}, and project() has not been called yet.
+Write project(<name> LANGUAGES ${language}) before the call of EPG.
+In an application of Zephyr, choose the .tcf of a target for Zephyr: 'epg targets' lists them. What is for another platform, and epg_add_model(), go after find_package(Zephyr) and project().")
+  elseif(NOT language IN_LIST languages)
     message(FATAL_ERROR "EPG: ${reason} needs ${language}: write project(${PROJECT_NAME} LANGUAGES ${languages} ${language})")
   endif()
 endfunction()

@@ -233,6 +233,17 @@ def test_paths_that_cmake_or_make_would_read_otherwise(robot: Project, name: str
     assert f"{name}' cannot be named in CMake: " in output and "[invalid-name]" in output
 
 
+def test_a_target_before_project(robot: Project) -> None:
+    """As in an application of Zephyr, where targets for Zephyr stand before find_package(Zephyr)."""
+    robot.edit("CMakeLists.txt", "project(robot LANGUAGES C)", "")
+    robot.edit("CMakeLists.txt", "epg_add_executable", "project(robot LANGUAGES C)\nepg_add_executable")
+    output = robot.fails_to_configure()
+    text = " ".join(output.split())
+    assert output.count("CMake Error") == 1, output
+    assert "EPG: EPG needs C, and project() has not been called yet." in text
+    assert "Write project(<name> LANGUAGES C) before the call of EPG." in text
+
+
 @pytest.mark.parametrize("system", ["Generic", "PICO"])
 def test_a_host_target_in_a_project_for_a_microcontroller(robot: Project, system: str) -> None:
     (robot.source / "cmake/Platform").mkdir(parents=True)
