@@ -37,7 +37,8 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     options.json = options.json or options.format == "json"
     request = request_of(options, "target")
     hardware: dict[str, Hardware] = {}
-    if options.tcf and options.model and options.bindings:
+    missing = _missing(options)
+    if options.model and not missing:
         application = load_application(request, diagnostics)
         hardware = {options.tcf: hardware_of(application)} if application is not None else {}
     else:
@@ -45,18 +46,19 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         for name in [*options.files, *([options.tcf] if options.tcf else [])]:
             found = load_hardware(replace(request, tcf=name), catalog, diagnostics)
             hardware |= {name: found} if found is not None else {}
-        if options.model:
-            load_model(options.model, diagnostics)
-        if options.bindings:
-            load_bindings(options.bindings, diagnostics)
-    if not (options.files or options.tcf or options.model or options.bindings):
+        for model in filter(None, (options.model, options.plant)):
+            load_model(model, diagnostics)
+        for bindings in filter(None, (options.bindings, options.plant_bindings)):
+            load_bindings(bindings, diagnostics)
+    if not (options.files or options.tcf or missing):
         sys.stderr.write("epg check: name a .tcf, or give --tcf, --model and --bindings\n")
         return 2
     if diagnostics.has_errors or options.format == "sarif":
         return 0  # the caller prints what there is
     if not options.json:
         _print_hardware(hardware if options.hardware else {})
-        print("no errors")
+        together = f" in each of them by itself; to check them together, add {missing}" if missing else ""
+        print(f"no errors{together}")
     else:
         from epg.cli.report import diagnostics_json, to_json
         from epg.emit.hardware import hardware_data
@@ -66,6 +68,16 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
             data["hardware"] = {name: hardware_data(found) for name, found in hardware.items()}
         sys.stdout.write(to_json(data))
     return 0
+
+
+def _missing(options: argparse.Namespace) -> str:
+    """The options that are missing to check a model, bindings or a plant with their target; empty if none was given."""
+    target = {"--tcf": options.tcf, "--model": options.model, "--bindings": options.bindings}
+    plant = {"--plant": options.plant, "--plant-bindings": options.plant_bindings}
+    if not any((options.model, options.bindings, *plant.values())):
+        return ""
+    needed = {**target, **plant} if any(plant.values()) else target
+    return ", ".join(name for name, value in needed.items() if not value)
 
 
 def _print_hardware(hardware: Mapping[str, Hardware]) -> None:

@@ -80,6 +80,20 @@ def test_check_alone_and_together(robot: Path, capsys: pytest.CaptureFixture[str
     assert capsys.readouterr().out == "no errors\n" * 3
 
 
+def test_check_says_what_was_not_checked(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Files that are given without the rest of their target are checked, too: by themselves."""
+    by_itself = "no errors in each of them by itself; to check them together, add "
+    assert main(["check", "--plant", "model"]) == 0
+    assert capsys.readouterr().out == f"{by_itself}--tcf, --model, --bindings, --plant-bindings\n"
+    assert main(["check", "--tcf", "robot.tcf", "--model", "model"]) == 0
+    assert capsys.readouterr().out == f"{by_itself}--bindings\n"
+    assert main(["check", *FILES, "--plant", "model"]) == 0
+    assert capsys.readouterr().out == f"{by_itself}--plant-bindings\n"
+    for option in ("--plant", "--plant-bindings"):
+        assert main(["check", "--tcf", "robot.tcf", option, "nothing"]) == 1
+        assert "nothing" in capsys.readouterr().err
+
+
 def test_all_predefined_configurations_are_right(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["targets", "--json"]) == 0
     names = json.loads(capsys.readouterr().out)["tcf"]
