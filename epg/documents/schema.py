@@ -2,12 +2,14 @@
 """JSON Schema validation that speaks of files, lines and keys.
 
 :func:`validate` runs jsonschema on the plain form of a :class:`~epg.source.Node` tree and turns every violation into
-a diagnostic at the value, or key, that is wrong.  Two annotations of ours (ignored by other validators) steer it:
+a diagnostic at the value, or key, that is wrong.  Annotations of ours (ignored by other validators) steer it:
 
 ``x-quantity``
     The dimension of a string such as ``20 kHz``: problems are explained by :mod:`epg.quantity`.
 ``x-message``
     What to say when the value does not match, for patterns and alternatives.
+``x-instead``
+    Hints for keys that people are likely to write and that do not exist.
 """
 
 from __future__ import annotations
@@ -94,7 +96,7 @@ def _report(error: Any, root: YamlNode, diagnostics: Diagnostics) -> None:
         known = _known_keys(schema)
         for key in (key for key, _ in node.items() if key not in schema.get("properties", {})):
             message = f"unknown key '{key}'" + _where(path)
-            hint = did_you_mean(key, known, "known keys")
+            hint = schema.get("x-instead", {}).get(key) or did_you_mean(key, known, "known keys")
             diagnostics.error("unknown-key", node.key_span(key), message, hint=hint, notes=notes)
         return
     if keyword in ("required", "dependentRequired"):
