@@ -7,21 +7,22 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
+import os
 import re
+import sys
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 import jinja2
-from jinja2 import nodes
-from jinja2.compiler import CodeGenerator
+from jinja2 import compiler, nodes
 from jinja2.runtime import Macro
 
 from epg.bootstrap import cache_folder
 from epg.diagnostics import Diagnostics, UserError
 from epg.emit import text
-from epg.emit.bytecode import TemplateCache
 from epg.emit.text import CMakeCode, Code, DevicetreeCode, Escaped, KconfigCode, ProjectText
 from epg.source import Span
 
@@ -83,7 +84,7 @@ def environment(folders: Iterable[Path], language: type[Escaped] = Code) -> jinj
         lstrip_blocks=True,
         keep_trailing_newline=True,
         extensions=["jinja2.ext.do"],
-        bytecode_cache=TemplateCache(cache_folder(), language.__name__),
+        bytecode_cache=_compiled(language),
     )
     env.language = language
     plain = {name: env.filters[name] for name in _PLAIN_FILTERS}
@@ -92,6 +93,25 @@ def environment(folders: Iterable[Path], language: type[Escaped] = Code) -> jinj
     env.filters.update(FILTERS[language])
     env.globals["pi"] = math.pi
     return env
+
+
+def _compiled(language: type[Escaped]) -> jinja2.BytecodeCache | None:
+    """Compiled templates in EPG's cache, as Python keeps compiled modules; None where nothing can be written.
+
+    Compiling takes two fifths of a run.  Jinja compares a template's text only.  The folder therefore is named after
+    everything else that decides what is compiled: the language, and the code of Jinja and of this package.
+    """
+    own = hashlib.sha256(language.__name__.encode())
+    for module in (compiler.__file__, text.__file__, __file__):
+        own.update(Path(str(module)).read_bytes())
+    folder = cache_folder() / f"templates-{sys.implementation.cache_tag}-{own.hexdigest()[:12]}"
+    try:
+        folder.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+        folder.mkdir(exist_ok=True)
+    except OSError:
+        return None
+    writable = os.access(folder, os.W_OK) and not sys.dont_write_bytecode
+    return jinja2.FileSystemBytecodeCache(str(folder)) if writable else None
 
 
 class _Loader(jinja2.FileSystemLoader):
@@ -118,7 +138,7 @@ class CodeMacro(Macro):
         return environment.language(super()._invoke(arguments, autoescape))
 
 
-class _CodeGenerator(CodeGenerator):
+class _CodeGenerator(compiler.CodeGenerator):
     """Templates in which what macros and blocks give is code of the language, not HTML (``Markup``)."""
 
     def visit_Template(self, node: nodes.Template, frame: Any = None) -> None:
