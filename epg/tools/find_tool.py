@@ -1,8 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Where an SDK or program is: the same order of places for all.
 
-CMake variable, environment variable, ``PATH``, the places their own installers use, CMake's user package registry,
-EPG's cache.  Among versions beside each other the newest wins.
+1. The first CMake variable with a value.  2. The first environment variable with a value.  A tool that a variable
+names must be there: it is not looked for elsewhere.  3. ``PATH``, for programs.  4. The places that its own installers
+use, in the order of the table.  5. CMake's user package registry.  6. EPG's cache.  Of several folders in one place the
+last one wins, with numbers compared as numbers.
+
+cmake/EPGSdk.cmake takes the same steps for SDKs, because builds find them without starting Python;
+tests/tools/test_same_answer.py compares the answers.
 
 >>> # find_tool(tools["pico_sdk"], Surroundings.here(cache_folder())).path
 """
@@ -85,7 +90,7 @@ def find_tool(tool: Tool, where: Surroundings) -> Finding:
             if path is not None:
                 asked = where.run or not (place.of_build and tool.programs)
                 version = _version(tool, path) if asked else ""
-                old = bool(tool.oldest and version) and _order(version) < _order(tool.oldest)
+                old = bool(tool.oldest and version) and _numbers(version) < _numbers(tool.oldest)
                 return Finding(tool, "old" if old else "found", path, place.source, version, tuple(looked), asked)
         if place.stated:
             return Finding(tool, "wrong", place.folders[0], place.source, looked=tuple(looked))
@@ -180,8 +185,17 @@ def _read(file: Path) -> str:
 
 
 def _newest_first(folders: Iterable[Path]) -> list[Path]:
-    return sorted(folders, key=lambda folder: (_order(folder.as_posix()), folder.as_posix()), reverse=True)
+    return sorted(folders, key=lambda folder: _natural(folder.as_posix()), reverse=True)
 
 
-def _order(version: str) -> tuple[int, ...]:
-    return tuple(int(digits) for digits in re.findall(r"\d+", version))
+def _natural(text: str) -> list[tuple[str, int]]:
+    """The order of CMake's ``COMPARE NATURAL``: by characters, but by value where both texts have a number."""
+    return [("0", int(part)) if part.isdecimal() else (part, 0) for part in re.findall(r"[0-9]+|[^0-9]", text)]
+
+
+def _numbers(version: str) -> tuple[int, ...]:
+    """The numbers of a version, without zeros at its end: 2.0 and 2.0.0 are the same version."""
+    numbers = [int(digits) for digits in re.findall(r"\d+", version)]
+    while numbers and not numbers[-1]:
+        numbers.pop()
+    return tuple(numbers)
