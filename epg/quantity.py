@@ -13,8 +13,6 @@ import math
 import re
 from fractions import Fraction
 
-Factor = "Fraction | float"
-
 #: unit -> (dimension, factor to the dimension's base unit); factors are exact wherever they can be
 UNITS: dict[str, tuple[str, Fraction | float]] = {
     "s": ("time", Fraction(1)),

@@ -53,7 +53,6 @@ class Control:
     enable_topic: str | None  # None: there is none
     enable_topic_span: Span
     fail_safe: str | None
-    fail_safe_span: Span
 
 
 @dataclass(frozen=True)
@@ -218,7 +217,6 @@ def _control(
         enable_topic=(str(topic.value) if topic.value is not False else None) if topic else default_topic,
         enable_topic_span=topic.span if topic else node.span,
         fail_safe=str(fail_safe.value) if fail_safe else None,
-        fail_safe_span=fail_safe.span if fail_safe else node.span,
     )
 
 

@@ -10,7 +10,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from fractions import Fraction
-from pathlib import Path
 
 from epg.diagnostics import Diagnostics
 from epg.documents.source_file import SourceFile, read_source
@@ -26,7 +25,7 @@ from epg.models.assignments import (
     listed_names,
     output_lines,
 )
-from epg.models.c_code import Code, Function, integer_value, parse_code, typedefs
+from epg.models.c_code import Code, Function, integer_value, typedefs
 from epg.models.completeness import check_variables
 from epg.models.features import check_features, check_method, check_tokens
 from epg.models.folders import source_files
@@ -98,7 +97,7 @@ class _Importer:
         step = self._step()
         method, method_code, method_at = self._method()
         check_method(method, self.diagnostics, method_code, method_at)
-        check_features(self.linked, roots, "", self.diagnostics)
+        check_features(self.linked, roots, self.diagnostics)
         check_variables(self.linked, self._prefix(), self.diagnostics)
         inputs_lines, outputs_lines = self._port_lines(roots)
         names = {kind: listed_names(self.file, kind) for kind in ("input", "output")}
@@ -431,9 +430,3 @@ class _Importer:
         return (
             "MEMORY" if self.instance_type else next((n for n in self.variables if n.endswith("MEMORY")), "xx_MEMORY")
         )
-
-
-def read_c_file(path: Path, diagnostics: Diagnostics) -> Code | None:
-    """The parsed file, or None after reporting why it cannot be read."""
-    file = read_source(path, diagnostics)
-    return parse_code(file) if file else None

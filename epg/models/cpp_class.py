@@ -79,7 +79,7 @@ class _Importer:
         check_method(method, self.diagnostics, method_code, method_at)
         roots = list(self.methods.values())
         roots += [f for _, f in self.linked.functions() if f.owner == method and f.name in ("Initialize", "Step")]
-        check_features(self.linked, roots, method, self.diagnostics)
+        check_features(self.linked, roots, self.diagnostics)
         for name in (self.class_name, method):
             check_methods(self.linked, name, self.diagnostics)
         ports = [self._ports("input"), self._ports("output")]

@@ -190,6 +190,3 @@ class FmuExport:
     terminated: bool  # fmi2GetBooleanStatus exists
     heap: int  # bytes of each instance; 0: the FMU allocates nothing
     instantiable: bool
-
-
-Details = CFunctionExport | CppClassExport | TokensExport | HandWritten | FmuExport

@@ -99,7 +99,6 @@ _CONSTRAINT_HINT = "replace constraint() by an explicit equation in 20-sim"
 def check_features(
     linked: Linked,
     roots: Sequence[Function],
-    method_class: str,
     diagnostics: Diagnostics,
     *,
     foreign: bool = False,

@@ -36,7 +36,7 @@ def check_fmu(linked: Linked, standard: int, diagnostics: Diagnostics) -> None:
     """Reports what cannot run, and what a user should know of."""
     running = _named(linked, standard, _RUN)
     starting = _named(linked, standard, _START)
-    check_features(linked, [*starting, *running], "", diagnostics, foreign=True, allowed=PROVIDED)
+    check_features(linked, [*starting, *running], diagnostics, foreign=True, allowed=PROVIDED)
     taking: list[tuple[str, Span]] = []
     for code, function in linked.reachable(running):
         body = code.body(function)

@@ -48,10 +48,9 @@ class Pair:
 
 @dataclass(frozen=True)
 class Comparison:
-    """``shift`` was added to the times of the run, s; ``aligned_by`` are the signals that told how much."""
+    """``shift`` was added to the times of the run, s."""
 
     shift: float
-    aligned_by: tuple[str, ...]
     pairs: tuple[Pair, ...]
 
 
@@ -79,7 +78,6 @@ def compare(
         shift = _best_shift(chosen, step)
     return Comparison(
         shift,
-        tuple(by),
         tuple(_pair(name, pairs[name], *signals, shift, step, window) for name, signals in both.items()),
     )
 

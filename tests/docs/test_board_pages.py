@@ -29,8 +29,6 @@ WIRELESS = ("rpi_pico_w", "rpi_pico2_w")
 ROBOTS = ("jiwy", "relbot")
 PLATFORMS = ("bare_metal", "freertos")
 FREQUENCIES = (1_000, 5_000, 10_000, 20_000, 25_000, 50_000, 100_000)
-DRIVEN = ("pwm", "digital_output")
-"""Classes whose pins the chip drives."""
 
 
 def page(board: str) -> Path:

@@ -304,7 +304,6 @@ class Spinner:
     """Spins a peer in a thread of its own until the end of the ``with`` block."""
 
     def __init__(self, peer: Peer) -> None:
-        self._peer = peer
         self._stop = threading.Event()
         self._thread = threading.Thread(target=peer.spin_until, args=(self._stop.is_set, float("inf")))
 

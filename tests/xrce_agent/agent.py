@@ -155,10 +155,6 @@ class Agent:
     def wait_until(self, condition: Callable[[], bool], seconds: float = 20.0) -> None:
         assert self.topics.wait_until(condition, seconds), f"not within {seconds} s; log:\n{self.tail()}"
 
-    def wait_for_client(self, count: int = 1, seconds: float = 20.0) -> None:
-        """Until ``count`` boards are connected."""
-        self.wait_until(lambda: len(self.clients) >= count, seconds)
-
     def tail(self, count: int = 30) -> str:
         return "\n".join(str(frame) for frame in list(self.log)[-count:])
 

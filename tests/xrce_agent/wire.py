@@ -165,10 +165,6 @@ class CdrReader:
     def flag(self) -> bool:
         return self.u8() != 0
 
-    def f64(self) -> float:
-        value: float = struct.unpack(self._order + "d", self.take(8, 8))[0]
-        return value
-
     def string(self) -> str:
         data = self.take(self.u32())
         if not data.endswith(b"\0"):

@@ -25,7 +25,6 @@ typedef union block {
 static struct {
     char *begin;
     char *end;
-    size_t most;
 } arena;
 
 static block_t *behind(block_t *block)
@@ -70,8 +69,6 @@ static void *allocate(size_t size, void *state)
             if (block->is.size >= size) {
                 split(block, size);
                 block->is.used = true;
-                const size_t most = (size_t)((char *)behind(block) - arena.begin);
-                arena.most = most > arena.most ? most : arena.most;
                 return block + 1;
             }
         }
@@ -133,7 +130,6 @@ bool epg_micro_ros_memory_start(void *bytes, size_t size)
 {
     arena.begin = bytes;
     arena.end = arena.begin + size / sizeof(block_t) * sizeof(block_t);
-    arena.most = 0;
     epg_micro_ros_memory_free();
 #ifdef EPG_MICRO_ROS_DEFAULT_ALLOCATOR
     /* Some of rcl allocates by its default allocator whatever it is given. */
@@ -142,11 +138,6 @@ bool epg_micro_ros_memory_start(void *bytes, size_t size)
 #else
     return true;
 #endif
-}
-
-size_t epg_micro_ros_memory_most(void)
-{
-    return arena.most;
 }
 
 #ifdef EPG_MICRO_ROS_CLOCK

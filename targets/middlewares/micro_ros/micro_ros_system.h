@@ -35,7 +35,4 @@ rcutils_allocator_t epg_micro_ros_memory(void);
 /** Frees every block that has not been.  None of them is used any more. */
 void epg_micro_ros_memory_free(void);
 
-/** How many bytes of it have been in use, with gaps, at most. */
-size_t epg_micro_ros_memory_most(void);
-
 #endif

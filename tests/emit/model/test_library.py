@@ -467,8 +467,6 @@ int main(void)
 
 # text ---------------------------------------------------------------------------------------------------------------
 
-NASTY = (("a */ int x; /*", "m"), ("b\\", "?" + "?/"), ("c ??/", 'x"y'))
-
 
 def test_text_of_the_export_cannot_break_out(tmp_path: Path) -> None:
     """Names that end comments, continue lines or hide in trigraphs give a header that compiles and means the same."""

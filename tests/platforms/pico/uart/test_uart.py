@@ -17,7 +17,6 @@ from tests.platforms.pico.images import PLATFORMS, TARGETS, skip_unless_buildabl
 BAUD = 921600
 RING = 256
 """Bytes of the ring for what is received, as wired.tcf.in says."""
-FIFO = 32
 PROJECT = "tests/platforms/pico/uart/project"
 EPG_PICO_ERROR_RESOURCE = 4
 
