@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
+from typing import cast
 
 import yaml
 
@@ -129,8 +130,9 @@ class _Builder:
             return self._refuse(
                 event, "yaml-alias", "anchors and aliases are not supported", "write the value out, or use 'extends'"
             )
-        if getattr(event, "tag", None) not in (None, "!"):
-            return self._refuse(event, "yaml-tag", f"tags such as '{event.tag}' are not supported", "remove the tag")
+        tag = getattr(event, "tag", None)
+        if tag not in (None, "!"):
+            return self._refuse(event, "yaml-tag", f"tags such as '{tag}' are not supported", "remove the tag")
         if isinstance(event, (yaml.MappingStartEvent, yaml.SequenceStartEvent)):
             if len(self.stack) >= MAX_DEPTH:
                 return self._refuse(
@@ -158,7 +160,7 @@ class _Builder:
         if not event.style and (self._foreign_comment(event) or self._key_without_colon(event, top)):
             self.failed = self.mistaken = True
         if top is not None and top.mapping and top.key is None:
-            top.key, top.key_mark = event.value, event.end_mark
+            top.key, top.key_mark = event.value, _marks(event)[1]
             if event.value in top.keys:
                 top.skip = self.failed = True
                 first = Note("first written here", top.keys[event.value])
@@ -176,8 +178,8 @@ class _Builder:
         """Reports ``//`` in plain text, which a person meant as a comment; True if there is one."""
         if "/" not in event.value:
             return False
-        start = event.start_mark
-        for number, line in enumerate(LINE_END.split(self.text[start.index : event.end_mark.index])):
+        start, end = _marks(event)
+        for number, line in enumerate(LINE_END.split(self.text[start.index : end.index])):
             comment = foreign_comment(line)
             if comment is not None:
                 first = start.column + 1 if number == 0 else 1
@@ -188,7 +190,7 @@ class _Builder:
 
     def _key_without_colon(self, event: yaml.ScalarEvent, top: _Collection | None) -> bool:
         """Reports ``{period 1 ms}``, where all is a key, and the decimal comma in ``{period: 1,5 ms}``; True if so."""
-        start, end = event.start_mark, event.end_mark
+        start, end = _marks(event)
         if event.value or top is None or not top.flow or top.key is None or top.key_mark is None or top.skip:
             return False
         if start.index != top.key_mark.index or self.text[end.index - 1] == ":":
@@ -249,7 +251,7 @@ class _Builder:
         top.key, top.skip = None, False
 
     def _span(self, event: yaml.Event) -> Span:
-        start, end = event.start_mark, event.end_mark
+        start, end = _marks(event)
         last = end.column + 1 if end.line == start.line else start.column + 2
         if isinstance(event, (yaml.MappingStartEvent, yaml.SequenceStartEvent)):
             last = start.column + 2
@@ -259,3 +261,8 @@ class _Builder:
         self.diagnostics.error(id, self._span(event), message, hint=hint)
         self.failed = True
         return False
+
+
+def _marks(event: yaml.Event) -> tuple[yaml.Mark, yaml.Mark]:
+    """Where an event of the parser begins and ends; every event that is parsed has both."""
+    return cast("tuple[yaml.Mark, yaml.Mark]", (event.start_mark, event.end_mark))
