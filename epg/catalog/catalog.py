@@ -17,6 +17,7 @@ from epg.catalog.check_middleware import check_offers
 from epg.catalog.hardware import Board, Platform, Soc, Target, make_board, make_platform, make_soc
 from epg.catalog.kind import Kind, KindPort, make_kind
 from epg.catalog.middleware import Middleware, make_middleware
+from epg.catalog.shared_parameters import with_shared_parameters
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.documents.yaml_file import load_yaml
 from epg.source import Span, YamlNode
@@ -159,6 +160,8 @@ class Catalog:
         if not paths:
             return None
         node = load_yaml(paths[0], self._diagnostics)
+        if node is not None and category == "component":
+            node = with_shared_parameters(node, self.roots, self._diagnostics)
         if node is None or not check_file(category, node, name, self._diagnostics):
             return None
         if len(paths) > 1:

@@ -174,9 +174,10 @@ class Kind:
 
     @property
     def files(self) -> tuple[Path, ...]:
-        """The files that describe and implement the kind."""
+        """The files that describe and implement the kind, with those that its shared parameters come from."""
         names = ("component.yaml", "code.c.j2", *self.headers, *self.sources)
-        return tuple(self.folder / name for name in names)
+        shared = (Path(parameter.span.file) for parameter in self.parameters)
+        return tuple(dict.fromkeys([*(self.folder / name for name in names), *shared]))
 
 
 def make_kind(node: YamlNode, folder: Path) -> Kind:

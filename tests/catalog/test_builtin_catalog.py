@@ -262,6 +262,37 @@ def test_only_what_is_asked_for_is_read(monkeypatch: pytest.MonkeyPatch) -> None
     assert sorted(read) == ["freertos", "pwm", "rp2350", "rpi_pico2"]
 
 
+def test_a_kind_of_a_user_shares_parameters_with_those_of_epg(tmp_path: Path) -> None:
+    """Its own parameter replaces a shared one, and the user's file one of EPG's with the same name."""
+    kind, common = tmp_path / "components" / "speed", tmp_path / "components" / "common"
+    for folder in (kind, common):
+        folder.mkdir(parents=True)
+    topic = "{type: string, required: true, description: a topic}"
+    qos = "{type: string, enum: [best_effort], default: best_effort, description: mine}"
+    head = "api: 1\nkind: speed\nsummary: a speed\ncommunication: publish\n"
+    shared = "parameters_from: [quality_of_service, publication]\n"
+    text = f"{head}{shared}parameters:\n  topic: {topic}\n  qos: {qos}\n"
+    (kind / "component.yaml").write_text(text, encoding="utf-8")
+    (kind / "code.c.j2").write_text("", encoding="utf-8")
+    every = "api: 1\nparameters:\n  every: {type: integer, description: mine}\n"
+    (common / "publication.yaml").write_text(every, encoding="utf-8")
+    problems = Diagnostics()
+    found = load_catalog(targets_roots([tmp_path]), problems).find_kind("speed")
+    assert found is not None and not list(problems)
+    assert [p.name for p in found.parameters] == ["topic", "qos", "depth", "every"]
+    assert {p.name: p.description for p in found.parameters if p.name in ("qos", "every")} == {
+        "qos": "mine",
+        "every": "mine",
+    }
+    read = {path.relative_to(path.parents[1]).as_posix() for path in found.files}
+    assert read == {
+        "speed/component.yaml",
+        "speed/code.c.j2",
+        "common/publication.yaml",
+        "common/quality_of_service.yaml",
+    }
+
+
 def test_what_is_wrong_is_reported_once(tmp_path: Path) -> None:
     """A kind that cannot be read is not reported again as unknown, however often it is used."""
     (tmp_path / "components" / "broken").mkdir(parents=True)

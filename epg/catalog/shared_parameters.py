@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Parameters that several kinds share: ``components/common/<name>.yaml`` below the ``targets`` folders."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from types import MappingProxyType
+
+from epg.diagnostics import Diagnostics, did_you_mean
+from epg.documents.yaml_file import load_yaml, newer_version
+from epg.source import Span, YamlNode
+
+KEY = "parameters_from"
+_KEYS = ("api", "parameters")
+
+
+def with_shared_parameters(kind: YamlNode, roots: Sequence[Path], diagnostics: Diagnostics) -> YamlNode | None:
+    """The kind's ``component.yaml`` with the parameters of the files that it names; None after reporting mistakes.
+
+    A parameter of the kind itself replaces a shared one of the same name, and a later file an earlier one.  In
+    positions, each parameter keeps the file where it is written.
+    """
+    names = kind.get(KEY)
+    own = kind.get("parameters") or YamlNode(MappingProxyType({}), kind.span)
+    if names is None or not names.is_sequence or not own.is_mapping:
+        return kind  # the schema says what is wrong
+    values, keys = dict(own.items()), dict(own.keys)
+    for name in names.elements():
+        shared = _load(name, roots, diagnostics)
+        if shared is None:
+            return None
+        for parameter, value in shared.items():
+            if parameter not in own:
+                values[parameter], keys[parameter] = value, shared.key_span(parameter)
+    merged = replace(own, value=MappingProxyType(values), keys=MappingProxyType(keys))
+    return replace(kind, value=MappingProxyType({**dict(kind.items()), "parameters": merged}))
+
+
+def _load(name: YamlNode, roots: Sequence[Path], diagnostics: Diagnostics) -> YamlNode | None:
+    """The parameters in the file that ``name`` names, of the first ``targets`` folder that has it."""
+    files = {path.stem: path for root in reversed(roots) for path in (root / "components" / "common").glob("*.yaml")}
+    if str(name.value) not in files:
+        hint = did_you_mean(str(name.value), sorted(files), "files in components/common/")
+        diagnostics.error("unknown-name", name.span, f"there are no shared parameters '{name.value}'", hint=hint)
+        return None
+    node = load_yaml(files[str(name.value)], diagnostics)
+    if node is None or newer_version(node, "api", diagnostics):
+        return None
+    for key, _ in node.items():
+        if key not in _KEYS:
+            hint = did_you_mean(key, _KEYS, "keys")
+            diagnostics.error("unknown-key", node.key_span(key), f"unknown key '{key}'", hint=hint)
+            return None
+    for key in _KEYS:
+        if key not in node:
+            span = Span(node.span.file, 1, 1, 2)
+            diagnostics.error("missing-key", span, f"'{key}' is missing", hint="it holds 'api: 1' and 'parameters'")
+            return None
+    if not node["parameters"].is_mapping:
+        diagnostics.error("wrong-type", node["parameters"].span, "'parameters' must be a map of names to parameters")
+        return None
+    return node["parameters"]
