@@ -18,7 +18,8 @@ from pathlib import Path
 import epg
 from epg.catalog.catalog import Catalog, Target, load_catalog, target_hint
 from epg.catalog.middleware import Middleware
-from epg.check.configuration import CONSOLE, Configuration
+from epg.check.communication import CONSOLE
+from epg.check.configuration import Configuration
 from epg.check.editor import USER_FILES, editor_schema
 from epg.check.names import identifier_problem, project_folder_problem
 from epg.check.target_names import check_name, check_sdk_headers

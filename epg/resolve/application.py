@@ -9,7 +9,8 @@ from fractions import Fraction
 from pathlib import Path
 
 from epg.catalog.catalog import Kind, KindPort, Target
-from epg.check.configuration import Communication, Control
+from epg.check.communication import Communication
+from epg.check.configuration import Control
 from epg.check.uses import Used
 from epg.models.model import Model, Port
 from epg.resolve.allocation import Assignment

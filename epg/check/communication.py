@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The section ``communication`` of a ``.tcf``: how topics travel, and whether the target has what that needs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import NamedTuple
+
+from epg.catalog.catalog import Catalog, Target
+from epg.catalog.middleware import Middleware
+from epg.check.compose import communication_schema, options_schema, typed_options
+from epg.check.middleware import check_lack, check_offer, offered, unoffered_hint
+from epg.diagnostics import Diagnostics, did_you_mean
+from epg.documents.schema import extended_from, validate
+from epg.quantity import QuantityError, parse_quantity
+from epg.source import Span, YamlNode
+
+CONSOLE = "console"
+"""The middleware that can run beside another one."""
+PERIOD = Fraction(33, 1000)
+"""Seconds between two runs of the communication side, if nothing else is written."""
+
+_Offers = Mapping[str, tuple[str, ...]]
+"""Middlewares of a target, each with its transports."""
+
+
+class _Range(NamedTuple):
+    """Times that are possible, in seconds; ``zero`` means none."""
+
+    low: Fraction
+    high: Fraction
+    zero: bool
+    words: str
+
+
+_PERIODS = _Range(Fraction(1, 1000), Fraction(3600), False, "1 ms to 3600 s")
+_DIAGNOSTICS = _Range(Fraction(1, 100), Fraction(3600), True, "10 ms to 3600 s, or 0 s for none")
+
+
+@dataclass(frozen=True)
+class Communication:
+    """How topics travel; ``period`` in seconds, ``options`` those of the middleware.
+
+    ``transport`` is one of the platform's, or the name of a component whose kind is a transport.
+    """
+
+    middleware: Middleware
+    transport: str | None
+    period: Fraction
+    domain: int | None  # None: the agent's, or the environment's
+    diagnostics: Fraction  # seconds between two messages; 0: none
+    console: Middleware | None  # that runs beside it
+    console_options: Mapping[str, object]
+    options: Mapping[str, object]
+    usb: Mapping[str, object]  # what is written of vendor_id, product_id, manufacturer, product, serial
+    span: Span  # of the middleware's name, if it is written
+
+    @property
+    def middlewares(self) -> tuple[Middleware, ...]:
+        """The middleware, and a console beside it."""
+        return (self.middleware,) if self.console is None else (self.middleware, self.console)
+
+
+def check_communication(
+    root: YamlNode, target: Target | None, carries: Mapping[str, bool], catalog: Catalog, diagnostics: Diagnostics
+) -> Communication | None:
+    """How topics travel, or None after reporting why not, or when there is no target.
+
+    ``carries`` says of each component that is right whether it can carry a middleware's bytes.
+    """
+    node = root.get("communication")
+    middleware = root.get("communication", "middleware")
+    transport = root.get("communication", "transport")
+    name, possible = _choice(middleware, target, catalog, diagnostics)
+    reported = transport is not None and transport.value in root["components"] and transport.value not in carries
+    if target and transport and name in possible and not reported:
+        _check_transport(transport, name, target, possible[name], carries, diagnostics)
+    period = _seconds(root.get("communication", "period"), PERIOD, _PERIODS, diagnostics)
+    found = catalog.find_middleware(name) if name in possible else None
+    if target is None or found is None:
+        return None
+    check_offer(target, found, diagnostics)
+    if node is not None and not validate(node, communication_schema(found), diagnostics):
+        return None
+    chosen = str(transport.value) if transport else next(iter(possible[name]), None)
+    check_lack(target, chosen, transport or middleware or node or root["target"], diagnostics)
+    domain = root.get("communication", "domain")
+    beside, console_options = _console(
+        root.get("communication", "console"), found, possible, target, catalog, diagnostics
+    )
+    return Communication(
+        middleware=found,
+        transport=chosen,
+        period=period,
+        domain=domain.value if domain is not None and isinstance(domain.value, int) else None,
+        diagnostics=_diagnostics(root.get("communication", "diagnostics"), found, diagnostics),
+        console=beside,
+        console_options=console_options,
+        options=typed_options(found, node, diagnostics),
+        usb=_usb(root.get("communication", "usb"), target, diagnostics),
+        span=(middleware or node or root).span,
+    )
+
+
+def _choice(
+    node: YamlNode | None, target: Target | None, catalog: Catalog, diagnostics: Diagnostics
+) -> tuple[str, _Offers]:
+    """The name of the middleware, and those that are possible; reports one that is not."""
+    possible: _Offers = dict(target.platform.middlewares) if target else {}
+    name = str(node.value) if node else next(iter(possible), "none")
+    if target and name not in possible:
+        possible = offered(target, catalog)
+    if target and node and name not in possible:
+        message = f"{target.platform.name} has no middleware '{name}'"
+        hint = unoffered_hint(name, possible, catalog)
+        diagnostics.error("unknown-middleware", node.span, message, hint=hint, notes=extended_from(node))
+    return name, possible
+
+
+def _check_transport(
+    node: YamlNode,
+    middleware: str,
+    target: Target,
+    own: Sequence[str],
+    carries: Mapping[str, bool],
+    diagnostics: Diagnostics,
+) -> None:
+    """A transport is one of the platform's, or a component that carries bytes."""
+    known = [*own, *(name for name, able in carries.items() if able)] if own else []
+    if node.value not in known:
+        message = f"'{middleware}' on {target.platform.name} has no transport '{node.value}'"
+        hint = did_you_mean(str(node.value), known, "it has") if known else "remove it: there is nothing to choose"
+        diagnostics.error("unknown-transport", node.span, message, hint=hint, notes=extended_from(node))
+
+
+def _usb(node: YamlNode | None, target: Target, diagnostics: Diagnostics) -> Mapping[str, object]:
+    """What the target is called as a USB device; platforms without USB leave it to others of the same robot."""
+    if node is None:
+        return {}
+    platform = target.platform
+    if not platform.has_usb_names and any("usb" in transports for transports in platform.middlewares.values()):
+        message = f"on {platform.name} a target configuration cannot say what the USB device is called"
+        hint = f"remove 'usb'; the documentation of {platform.name} says which settings of its build do that"
+        diagnostics.error("not-on-platform", node.span, message, hint=hint, notes=extended_from(node))
+    return {key: node[key].value for key in sorted(node.keys)}
+
+
+def _diagnostics(node: YamlNode | None, middleware: Middleware, diagnostics: Diagnostics) -> Fraction:
+    """Seconds between two messages of state and statistics; 0 for none, as with middlewares that are no ROS 2 node."""
+    seconds = _seconds(node, Fraction(1), _DIAGNOSTICS, diagnostics)
+    return seconds if middleware.is_node else Fraction(0)
+
+
+def _console(
+    node: YamlNode | None,
+    middleware: Middleware,
+    possible: _Offers,
+    target: Target,
+    catalog: Catalog,
+    diagnostics: Diagnostics,
+) -> tuple[Middleware | None, Mapping[str, object]]:
+    """The console beside ``middleware`` with its options; None if there is none, or if that is the console already."""
+    if node is None or node.value is False or middleware.name == CONSOLE:
+        return None, {}
+    found = catalog.find_middleware(CONSOLE) if CONSOLE in possible or CONSOLE in offered(target, catalog) else None
+    if found is None:
+        message = f"{target.platform.name} has no middleware '{CONSOLE}'"
+        diagnostics.error("unknown-middleware", node.span, message, hint="remove it", notes=extended_from(node))
+        return None, {}
+    if node.is_mapping and not validate(node, options_schema(found), diagnostics):
+        return None, {}
+    own = target.platform.middlewares.get(CONSOLE, ())
+    check_lack(target, next(iter(own), None), node, diagnostics)
+    return found, typed_options(found, node if node.is_mapping else None, diagnostics)
+
+
+def _seconds(node: YamlNode | None, default: Fraction, allowed: _Range, diagnostics: Diagnostics) -> Fraction:
+    """The time that ``node`` states, which must be in a range; the default if it states none."""
+    seconds = time_of(node, diagnostics)
+    if node is not None and seconds is not None:
+        possible = allowed.low <= seconds <= allowed.high or (allowed.zero and seconds == 0)
+        if not possible:
+            diagnostics.error("out-of-range", node.span, f"must be from {allowed.words}")
+    return default if seconds is None else seconds
+
+
+def time_of(node: YamlNode | None, diagnostics: Diagnostics) -> Fraction | None:
+    """The seconds that ``node`` states; None if it is missing, or after reporting that it is not a time."""
+    if node is None:
+        return None
+    try:
+        return Fraction(parse_quantity(node.value, "time"))
+    except QuantityError as problem:
+        diagnostics.error("wrong-unit", node.span, str(problem), hint=problem.hint)
+        return None
