@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import shlex
 import shutil
 from collections.abc import Iterator
 from functools import partial
@@ -12,7 +13,7 @@ import pytest
 
 from tests.emulator.toolchain import ROOT, arm_gcc, skip_if_missing
 
-from .west_workspace import BOARDS, fresh_workspace, west, west_build, west_sysbuild
+from .west_workspace import BOARDS, fresh_workspace, west
 from .workspace import c_library, workspace
 
 
@@ -35,7 +36,7 @@ def test_all_comes_from_the_manifest(place: Path) -> None:
 @pytest.mark.parametrize("board", BOARDS)
 def test_jiwy(board: str, place: Path) -> None:
     """As the README says it; EPG is the workspace's own, which west is asked for."""
-    output = west_build(place, "-b", board, "-d", f"build/{board}", "jiwy/app")
+    output = west(place, "build", "-b", board, "-d", f"build/{board}", "jiwy/app")
     assert "warning: " not in output
     build = place / "build" / board
     assert (build / "zephyr/zephyr.elf").stat().st_size > 100_000
@@ -50,20 +51,24 @@ def test_west_epg(place: Path) -> None:
 
 
 def test_two_boards_in_one_build(place: Path) -> None:
-    """sysbuild: each image has its own target, on its own board."""
-    example = "epg/examples/zephyr_two_boards"
-    images = {"zephyr_two_boards": "rpi_pico", "tilt": "nucleo_h743zi"}
-    output = west_sysbuild(place, "build/two", tuple(images), "-b", "rpi_pico", example)
+    """sysbuild, by the command that the README prints: each image has its own target, on its own board."""
+    example = place / "epg/examples/zephyr_two_boards"
+    readme = (example / "README.md").read_text(encoding="utf-8")
+    (command,) = (line for line in readme.splitlines() if line.startswith("west build "))
+    command = command.replace("<this folder>", str(example)).replace("<epg>", str(place / "epg"))
+    (place / "two").mkdir()
+    output = west(place / "two", *shlex.split(command)[1:])
     assert "warning: " not in output
+    images = {"zephyr_two_boards": "rpi_pico", "tilt": "nucleo_h743zi"}
     for image, board in images.items():
-        folder = place / "build/two" / image / "zephyr"
+        folder = place / "two/build" / image / "zephyr"
         assert f'CONFIG_BOARD="{board}"' in (folder / ".config").read_text(encoding="utf-8")
         assert b"epg_control" in (folder / "zephyr.elf").read_bytes()
 
 
 def test_an_existing_application(place: Path) -> None:
     """Its lamp and its decoder are there beside the controller, and prj.conf goes before EPG's defaults."""
-    output = west_build(place, "-b", "rpi_pico", "-d", "build/existing", "epg/examples/existing_zephyr_application")
+    output = west(place, "build", "-b", "rpi_pico", "-d", "build/existing", "epg/examples/existing_zephyr_application")
     assert "warning: " not in output
     build = place / "build/existing/zephyr"
     assert "CONFIG_MAIN_STACK_SIZE=2048" in (build / ".config").read_text(encoding="utf-8").splitlines()
@@ -79,5 +84,5 @@ def test_a_new_project(place: Path) -> None:
     model = str(place / "epg/examples/jiwy/model")
     west(place, "epg", "new", "--target", "rpi_pico_zephyr_jiwy", "--model", model, "robot")
     assert "\nwest build -b rpi_pico\n" in (place / "robot/README.md").read_text(encoding="utf-8")
-    assert "warning: " not in west_build(place / "robot", "-b", "rpi_pico")
+    assert "warning: " not in west(place / "robot", "build", "-b", "rpi_pico")
     assert (place / "robot/build/zephyr/zephyr.uf2").is_file()

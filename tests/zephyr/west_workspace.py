@@ -2,20 +2,18 @@
 """Workspaces that west has made from a manifest, and builds in them, as somebody makes them for the first time.
 
 >>> # place = fresh_workspace("examples/zephyr_jiwy", tmp_path / "ws")      # west init, west update
->>> # west_build(place, "-b", "rpi_pico", "jiwy/app")
+>>> # west(place, "build", "-b", "rpi_pico", "jiwy/app")
 """
 
 from __future__ import annotations
 
 import subprocess
-from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 
 from tests.emulator.toolchain import ROOT
 
 from .mirror import mirror
-from .workspace import HALS, BuildError, c_library, run, workspace
+from .workspace import HALS, BuildError, workspace
 
 BOARDS = ("rpi_pico", "nucleo_h743zi")
 assert set(BOARDS) <= set(HALS)
@@ -33,26 +31,6 @@ def west(folder: Path, *words: str, check: bool = True) -> str:
     if check and done.returncode != 0:
         raise BuildError(f"west {' '.join(words)}\n{done.stdout}")
     return done.stdout
-
-
-def west_build(folder: Path, *words: str) -> str:
-    """``west build``, with a C library where the compiler needs to be told of one.  Raises :class:`BuildError`."""
-    settings = [f"-D{name}={value}" for name, value in c_library().items()]
-    return west(folder, "build", *words, *(["--", *settings] if settings else []))
-
-
-def west_sysbuild(folder: Path, build: str, images: Sequence[str], *words: str) -> str:
-    """``west build --sysbuild`` into ``build``.  Raises :class:`BuildError`.
-
-    sysbuild hands few settings on: each of ``images`` is told of the C library, before it has chosen one.
-    """
-    output = west(folder, "build", "--sysbuild", "--cmake-only", "-d", build, *words)
-    here = workspace(*BOARDS)
-    for image in images if c_library() else ():
-        (folder / build / image / "zephyr/.config").unlink()
-        settings = [f"-D{name}={value}" for name, value in c_library().items()]
-        output += run(["cmake", *settings, str(folder / build / image)], replace(here, base=folder / "zephyr"))
-    return output + west(folder, "build", "-d", build)
 
 
 def fresh_workspace(repository: str, folder: Path) -> Path:
