@@ -46,3 +46,11 @@ def test_what_module_yml_names_is_there() -> None:
     named = re.findall(r"(?:zephyr_module|tests/zephyr)[\w/.]*", text)
     assert len(named) >= 6
     assert [name for name in named if not (ROOT / name).exists()] == []
+
+
+def test_every_property_of_a_target_is_generated() -> None:
+    binding = (ROOT / "zephyr_module/dts/bindings/epg,target.yaml").read_text(encoding="utf-8")
+    properties = re.findall(r"^  ([\w-]+):$", binding.partition("\nproperties:\n")[2], re.MULTILINE)
+    assert {"decoders", "gpios"} <= set(properties)
+    overlay = (ROOT / "targets/platforms/zephyr/NAME.overlay.j2").read_text(encoding="utf-8")
+    assert [name for name in properties if f"\t\t{name} = " not in overlay] == []

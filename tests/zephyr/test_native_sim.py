@@ -58,6 +58,13 @@ def image(folder: Path) -> Path:
     return folder / "zephyr" / "zephyr.exe"
 
 
+def test_flash_comes_with_the_store_only(folder: Path) -> None:
+    """native_sim has a storage_partition, but keeps what is saved in a file."""
+    configuration = (folder / "zephyr" / ".config").read_text(encoding="utf-8").splitlines()
+    assert "# CONFIG_EPG_STORE is not set" in configuration
+    assert [line for line in configuration if line.startswith("CONFIG_FLASH") and line.endswith("=y")] == []
+
+
 @pytest.fixture(scope="module")
 def host(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The same target on the platform host."""
