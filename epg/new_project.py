@@ -306,12 +306,12 @@ def _component_name(port: str) -> str:
 
 
 def _stand_ins(model: Model) -> dict[str, StandIn]:
-    """A topic for every port of the model that a topic can serve, by the port's name."""
+    """A topic for every port of the model, by the port's name."""
     kinds = {"input": "ros_subscriber", "output": "ros_publisher"}
+    types = {"real": "", "integer": "int32", "boolean": "bool"}
     return {
-        port.name: StandIn(_component_name(port.identifier), kinds[port.direction], port.type == "boolean")
+        port.name: StandIn(_component_name(port.identifier), kinds[port.direction], types[port.type])
         for port in (*model.inputs, *model.outputs)
-        if port.direction == "output" or port.type != "integer"
     }
 
 

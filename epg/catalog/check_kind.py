@@ -108,10 +108,11 @@ def _ports(node: YamlNode, parameters: Mapping[str, YamlNode], diagnostics: Diag
         direction = str(port["direction"].value)
         if "each" in port:
             _each(port, parameters, diagnostics)
-        for key, _ in port["boolean_with"].items() if "boolean_with" in port else ():
+        stated = [port[name] for name in ("boolean_with", "integer_with") if name in port]
+        for values, key in ((each, key) for each in stated for key, _ in each.items()):
             if key not in parameters:
                 hint = did_you_mean(key, parameters, "parameters")
-                key_span = port["boolean_with"].key_span(key)
+                key_span = values.key_span(key)
                 diagnostics.error("unknown-name", key_span, f"this kind has no parameter '{key}'", hint=hint)
         if "actuator" in port and port["actuator"].value is True and direction != "sink":
             diagnostics.error(

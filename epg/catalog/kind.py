@@ -45,6 +45,7 @@ class KindPort:
     ``default``: meant when only the component is named.  ``actuator``: made safe while the target is disabled.
     ``drive``: its value drives a motor, and the template's macro ``applied`` gives what it is at present.
     ``boolean_with``: values of parameters with which a component's port is boolean, though the kind's is not.
+    ``integer_with``: the same for whole numbers, which inputs that are integers take.
     ``each``: in a kind, the parameter whose names say how many such ports a component has; in a component's own kind
     (:meth:`Kind.of_component`) there is one for each ``element`` of it, and ``part`` is what the kind calls it.
     """
@@ -61,6 +62,7 @@ class KindPort:
     element: str = ""
     part: str = ""
     boolean_with: Mapping[str, str] = field(default_factory=dict)
+    integer_with: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -265,8 +267,13 @@ def _port(name: str, node: YamlNode) -> KindPort:
         description=text_of(node, "description"),
         each=text_of(node, "each"),
         part=name,
-        boolean_with=MappingProxyType({key: str(value.value) for key, value in map_of(node, "boolean_with").items()}),
+        boolean_with=_values(node, "boolean_with"),
+        integer_with=_values(node, "integer_with"),
     )
+
+
+def _values(node: YamlNode, key: str) -> Mapping[str, str]:
+    return MappingProxyType({parameter: str(value.value) for parameter, value in map_of(node, key).items()})
 
 
 def _use(name: str, node: YamlNode) -> KindUse:

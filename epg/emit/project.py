@@ -28,7 +28,8 @@ class StandIn:
 
     name: str
     kind: str
-    boolean: bool
+    type: str
+    """What the component states as ``type``; empty for its default, real numbers."""
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,7 @@ from epg.documents.xml_file import parse_xml
 from epg.models.assignments import assignments, exact_number, is_step, number
 from epg.models.c_code import typedefs
 from epg.models.details import FmuExport, FmuParameter, FmuPorts, GlobalVariable
+from epg.models.features import FIXED_STEP_METHODS
 from epg.models.fmu_description import Description, read_description
 from epg.models.fmu_features import check_fmu, check_guid, uses_heap
 from epg.models.fmu_files import DESCRIPTION, FmuFiles, read_fmu_files
@@ -75,6 +76,7 @@ def load_fmu(
     inputs, outputs = (_ports(description, direction, diagnostics) for direction in ("input", "output"))
     parameters, places = _parameters(description)
     if own_step is not None:
+        _check_method(sources, diagnostics)
         parameters = _values_of_sources(parameters, sources, diagnostics)
     if step is None or diagnostics.error_count > before:
         return None
@@ -143,6 +145,19 @@ def _own_step(description: Description, sources: FmuSources) -> Fraction | None:
             if value is not None and is_step(value) and not re.search("initial|max|min", match[1] or ""):
                 found.add(value)
     return found.pop() if len(found) == 1 else description.step
+
+
+def _check_method(sources: FmuSources, diagnostics: Diagnostics) -> None:
+    """Warns of a method whose steps vary: the FMU ends where it shall, but nobody knows when."""
+    for code, function in sources.linked.functions():
+        for name, start in code.calls(function) if function.name.endswith("CalculateSubmodel") else ():
+            method = name.removeprefix("XX").removesuffix("Step")
+            if name == f"XX{method}Step" and method not in FIXED_STEP_METHODS:
+                message = f"integration method '{method}' takes as many steps as it needs: no cycle has a longest time"
+                hint = (
+                    "for a target in real time, choose Discrete, Euler, Runge Kutta 2 or 4 in 20-sim and export again"
+                )
+                diagnostics.warning("model-variable-step", code.file.span(start, start + len(name)), message, hint=hint)
 
 
 def _step(

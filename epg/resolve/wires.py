@@ -49,17 +49,23 @@ def input_wires(
         component, component_port = end
         steps = _input_steps(port, binding, component, component_port, diagnostics, physical=direction == "sink")
         _check_range(steps, binding, diagnostics)
-        if component_port.type == "real" and port.type != "real":
+        whole = port.type == "integer" and _is_stated(component_port.integer_with, component)
+        if component_port.type == "real" and port.type != "real" and not whole:
             message = (
                 f"'{component.name}.{component_port.name}' gives any number, '{port.name}' wants {port.type} values"
             )
             hint = "make the model's input real"
-            if port.type == "boolean" and component_port.boolean_with:
-                stated = ", ".join(f"{key}: {value}" for key, value in component_port.boolean_with.items())
+            wanted = component_port.boolean_with if port.type == "boolean" else component_port.integer_with
+            if wanted:
+                stated = ", ".join(f"{key}: {value}" for key, value in wanted.items())
                 hint = f"state '{stated}' on '{component.name}', or {hint}"
             diagnostics.error("wrong-port-type", binding.span, message, hint=hint)
         wires.append(Wire(port, resolved[component.name], component_port, steps, binding.span))
     return tuple(wires)
+
+
+def _is_stated(values: Mapping[str, str], component: Component) -> bool:
+    return bool(values) and all(component.parameters[key] == value for key, value in values.items())
 
 
 def output_wires(

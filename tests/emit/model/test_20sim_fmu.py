@@ -9,7 +9,7 @@ import pytest
 
 from tests.models.direct import run_c_vectors, run_fmu
 from tests.models.exports import Export
-from tests.models.harness import build, loaded, run_program, run_wrapper, values
+from tests.models.harness import build, load, loaded, run_program, run_wrapper, values
 
 STEPS = 1500
 METHODS = ("Discrete", "Euler", "RungeKutta2", "RungeKutta4")
@@ -40,6 +40,21 @@ def test_one_step_at_a_time(form: str, method: str, tmp_path: Path) -> None:
     # the last step is as long as the time that is left: another rounding of 1 ms
     for row, other in zip(values(found), values(expected), strict=True):
         assert row == pytest.approx(other, rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize("form", ["globals", "instance", "output time"])
+def test_a_method_whose_steps_vary_is_a_warning_in_an_fmu_and_an_error_in_its_sources(
+    form: str, tmp_path: Path
+) -> None:
+    folder = Export(method="RungeKutta4").write_whole_fmu(tmp_path / "fmu", form)
+    for path in sorted((folder / "sources").iterdir()):
+        path.write_text(path.read_text("latin-1").replace("RungeKutta4", "VodeAdams"), "latin-1")
+    model, diagnostics = load(folder)
+    assert model is not None
+    assert [(i.severity, i.id) for i in diagnostics if i.severity != "note"] == [("warning", "model-variable-step")]
+    model, diagnostics = load(folder / "sources")
+    assert model is None
+    assert [(i.severity, i.id) for i in diagnostics if i.severity != "note"] == [("error", "model-variable-step")]
 
 
 @pytest.mark.parametrize("method", ["Discrete", "RungeKutta4"])
