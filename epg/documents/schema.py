@@ -106,20 +106,24 @@ def _report(error: Any, root: YamlNode, diagnostics: Diagnostics) -> None:
             hint = _key_hint(key, schema)
             diagnostics.error("missing-key", span, f"'{key}' is missing{_where(path)}", hint=hint, notes=notes)
         return
-    id, message, hint = _explain(keyword, error, node, schema)
+    id, message, hint = _explain(keyword, error, schema)
     diagnostics.error(id, node.span, message, hint=hint, notes=notes)
 
 
-def _explain(keyword: str, error: Any, node: YamlNode, schema: Mapping[str, Any]) -> tuple[str, str, str]:
+_BOUNDS = {
+    "minimum": "at least",
+    "exclusiveMinimum": "more than",
+    "maximum": "at most",
+    "exclusiveMaximum": "less than",
+}
+
+
+def _explain(keyword: str, error: Any, schema: Mapping[str, Any]) -> tuple[str, str, str]:
     """Id, message and hint for a value that is wrong in itself."""
     value, limit = error.instance, error.validator_value
     if "x-quantity" in schema and keyword in ("type", "pattern", "anyOf", "oneOf"):
-        try:
-            if schema["x-quantity"] == "ratio":
-                parse_ratio(value)
-            else:
-                parse_quantity(value, schema["x-quantity"])
-        except QuantityError as problem:
+        problem = _quantity_problem(value, schema["x-quantity"])
+        if problem is not None:
             return "wrong-unit" if "unit" in str(problem) else "wrong-quantity", str(problem), problem.hint
         if keyword == "pattern":
             return "out-of-range", f"{_shown(value)} has a sign", "write the number without a sign"
@@ -131,22 +135,32 @@ def _explain(keyword: str, error: Any, node: YamlNode, schema: Mapping[str, Any]
         wanted = [limit] if isinstance(limit, str) else list(limit)
         names = " or ".join(_TYPE_NAMES.get(name, name) for name in wanted)
         return "wrong-type", f"expected {names}, found {_shown(value)}", _type_hint(value, wanted)
-    if keyword == "enum":
-        return "wrong-value", f"{_shown(value)} is not possible here", did_you_mean(str(value), map(str, limit))
-    if keyword == "const":
-        return "wrong-value", f"expected {_shown(limit)}, found {_shown(value)}", ""
-    if keyword in ("minimum", "exclusiveMinimum", "maximum", "exclusiveMaximum"):
-        words = {
-            "minimum": "at least",
-            "exclusiveMinimum": "more than",
-            "maximum": "at most",
-            "exclusiveMaximum": "less than",
-        }
-        return "out-of-range", f"{_shown(value)} is out of range: must be {words[keyword]} {limit}", ""
     if keyword in ("anyOf", "oneOf"):
         kinds = [_TYPE_NAMES.get(str(option.get("type")), "") for option in limit if isinstance(option, dict)]
         expected = " or ".join(dict.fromkeys(kind for kind in kinds if kind)) or "something else"
         return "wrong-type", f"expected {expected}, found {_shown(value)}", ""
+    return _explain_limit(keyword, value, limit)
+
+
+def _quantity_problem(value: object, dimension: str) -> QuantityError | None:
+    try:
+        if dimension == "ratio":
+            parse_ratio(value)
+        else:
+            parse_quantity(value, dimension)
+    except QuantityError as problem:
+        return problem
+    return None
+
+
+def _explain_limit(keyword: str, value: object, limit: Any) -> tuple[str, str, str]:
+    """The same for a value of the right type that is none of those that are possible."""
+    if keyword == "enum":
+        return "wrong-value", f"{_shown(value)} is not possible here", did_you_mean(str(value), map(str, limit))
+    if keyword == "const":
+        return "wrong-value", f"expected {_shown(limit)}, found {_shown(value)}", ""
+    if keyword in _BOUNDS:
+        return "out-of-range", f"{_shown(value)} is out of range: must be {_BOUNDS[keyword]} {limit}", ""
     if keyword == "uniqueItems":
         return "wrong-value", "something stands twice in this list", "remove one of the two"
     if keyword in ("minItems", "maxItems") and isinstance(value, list) and value:

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The macros of component kinds, called for the components of one application."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from jinja2 import Environment
+
+from epg.diagnostics import Diagnostics, UserError
+from epg.emit.template import CodeMacro, macro_mistake
+from epg.emit.text import Code, identifier
+from epg.emit.views import ComponentView, UseView, ValueView
+from epg.resolve.application import Application, ResolvedComponent
+
+
+class Macros:
+    """The ``code.c.j2`` of all kinds that ``app`` uses, from the templates of ``env``."""
+
+    def __init__(self, app: Application, env: Environment) -> None:
+        self.app = app
+        self.env = env
+        self.modules: dict[str, Any] = {}
+        self.components = {component.name: component for component in app.components}
+        self.views = {component.name: self._view(component) for component in app.components}
+        self.views |= {name: replace(view, uses=self._uses(name)) for name, view in self.views.items()}
+
+    def macro(self, component: ResolvedComponent, macro: str, *arguments: object) -> Code:
+        """What the template of a component's kind gives; empty when it has no such macro."""
+        function = getattr(self._module(component), macro, None)
+        if not isinstance(function, CodeMacro):
+            return Code("")
+        taken, given = len(function.arguments), 1 + len(arguments)
+        if taken < given and not function.catch_varargs:
+            raise macro_mistake(
+                component.kind.folder, macro, f"macro '{macro}' takes {taken} of {given} arguments", given
+            )
+        try:
+            return Code(str(function(self.views[component.name], *arguments)).strip("\n"))
+        except ArithmeticError:  # what a kind computes of parameters that are each in their range
+            problems = Diagnostics()
+            message = f"the parameters of '{component.name}' together give a number that C's doubles do not hold"
+            hint = "very large and very small ones cancel out badly: check their units"
+            problems.error("out-of-range", component.span, message, hint=hint)
+            raise UserError(problems) from None
+
+    def expression(self, component: ResolvedComponent, macro: str, *arguments: object) -> Code:
+        return Code(" ".join(str(self.statement(component, macro, *arguments)).split()))
+
+    def statement(self, component: ResolvedComponent, macro: str, *arguments: object) -> Code:
+        code = self.macro(component, macro, *arguments)
+        if not code.strip():
+            port = f", which port '{arguments[0]}' needs" if arguments else ""
+            message = f"kind '{component.kind.name}' has no macro '{macro}'{port}"
+            if isinstance(getattr(self._module(component), macro, None), CodeMacro):
+                message = f"macro '{macro}' gives nothing" + (f" for port '{arguments[0]}'" if arguments else "")
+            raise macro_mistake(component.kind.folder, macro, message, 1 + len(arguments))
+        return code
+
+    def _view(self, component: ResolvedComponent) -> ComponentView:
+        return ComponentView(
+            name=component.name,
+            symbol=identifier(component.symbol),
+            parameters=component.parameters,
+            claims=component.claims,
+            first_index=component.first_index,
+            value_index=component.value_index,
+            values=[
+                ValueView(port.name, port.element, port.part, component.value_index[port.name])
+                for port in component.kind.ports
+                if port.name in component.value_index
+            ],
+            application=identifier(self.app.name),
+            period=self.app.period,
+            write_period=self.app.period * self.app.step_divider,
+        )
+
+    def _uses(self, name: str) -> dict[str, UseView]:
+        result = {}
+        for use, used in self.components[name].uses.items():
+            other = self.components[used.component]
+            value = Code("")
+            if used.port is not None:
+                value = self.expression(other, "applied" if used.port.drive else "read", used.port.name)
+            result[use] = UseView(other.name, value, self.macro(other, "resets").strip() or Code("0"))
+        return result
+
+    def _module(self, component: ResolvedComponent) -> Any:
+        kind = component.kind.name
+        if kind not in self.modules:
+            self.modules[kind] = self.env.get_template(f"components/{kind}/code.c.j2").make_module(
+                {"pi": self.env.globals["pi"]}
+            )
+        return self.modules[kind]
+
+    def safe_level(self, component: ResolvedComponent, claim: str) -> Code:
+        return self.macro(component, "safe_level", claim).strip() or Code("false")

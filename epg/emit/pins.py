@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Pins that components drive and read, and the states in which those that are driven are safe."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from epg.catalog.kind import OUTPUT_CLASSES
+from epg.emit.macros import Macros
+from epg.emit.views import InputPin, OutputGroup, OutputPin, SafeState
+from epg.resolve.application import Application
+
+
+def output_pins(macros: Macros) -> list[OutputPin]:
+    return [
+        OutputPin(component.name, signal, pin, macros.safe_level(component, claim.name))
+        for component in macros.app.components
+        for claim in component.kind.claims
+        if claim.resource_class in OUTPUT_CLASSES
+        for signal, pin in sorted(component.claims[claim.name].pins.items())
+    ]
+
+
+def input_pins(app: Application) -> list[InputPin]:
+    return [
+        InputPin(component.name, pin, bool(component.parameters.get("invert", False)))
+        for component in app.components
+        for claim in component.kind.claims
+        if claim.resource_class == "digital_input"
+        for pin in component.claims[claim.name].pins.values()
+    ]
+
+
+def output_groups(macros: Macros) -> list[OutputGroup]:
+    groups = []
+    first = 0
+    for component in macros.app.components:
+        claims = [
+            claim.name
+            for claim in component.kind.claims
+            if claim.resource_class in OUTPUT_CLASSES
+            for _ in component.claims[claim.name].pins
+        ]
+        if claims:
+            safe = {claim: "high" if macros.safe_level(component, claim) == "true" else "low" for claim in claims}
+            states = tuple(_safe_state(claims, state) for state in component.kind.safe_states or [safe])
+            groups.append(OutputGroup(component.name, first, len(claims), states))
+            first += len(claims)
+    return groups
+
+
+def _safe_state(claims: Sequence[str], levels: Mapping[str, str]) -> SafeState:
+    """The masks of a kind's safe state, for outputs that belong to these ``claims``."""
+
+    def bits(level: str) -> int:
+        return sum(1 << bit for bit, claim in enumerate(claims) if levels.get(claim) == level)
+
+    return SafeState(bits("low"), bits("high"))
