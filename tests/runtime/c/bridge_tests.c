@@ -11,10 +11,10 @@
 
 enum { CLOCKS = 1000, VALUE = 0, FORWARDS = 1, BACKWARDS = 2, PIN_A = 7, PIN_B = 8 };
 
-static epg_pwm_h_bridge_config_t config = {.pwm = {.unit = VALUE, .top = CLOCKS - 1}, .pin_a = PIN_A, .pin_b = PIN_B};
+static epg_pwm_h_bridge_config_t config = {.pwm = {.slot = VALUE, .top = CLOCKS - 1}, .pin_a = PIN_A, .pin_b = PIN_B};
 static epg_pwm_h_bridge_t bridge;
-static epg_dual_pwm_h_bridge_config_t dual_config = {.forwards = {.unit = FORWARDS, .top = CLOCKS - 1},
-                                                     .backwards = {.unit = BACKWARDS, .top = CLOCKS - 1}};
+static epg_dual_pwm_h_bridge_config_t dual_config = {.forwards = {.slot = FORWARDS, .top = CLOCKS - 1},
+                                                     .backwards = {.slot = BACKWARDS, .top = CLOCKS - 1}};
 static epg_dual_pwm_h_bridge_t dual;
 
 static void begin(epg_bridge_config_t bridge_config)

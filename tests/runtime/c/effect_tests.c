@@ -15,12 +15,12 @@
 #include "pwm_h_bridge.h"
 #include "quadrature_encoder.h"
 
-enum { PERIOD_NS = 1000000, PIN_A = 7, PIN_B = 8, PIN_FAIL_SAFE = 9, UNIT = 0 };
+enum { PERIOD_NS = 1000000, PIN_A = 7, PIN_B = 8, PIN_FAIL_SAFE = 9, SLOT = 0 };
 
 static const epg_quadrature_encoder_config_t encoder_config = {
-    .decoder = {.unit = UNIT}, .rad_per_count = 3.14159265358979323846 / 1112.0, .preset = 0.0};
+    .decoder = {.slot = SLOT}, .rad_per_count = 3.14159265358979323846 / 1112.0, .preset = 0.0};
 static const epg_pwm_h_bridge_config_t bridge_config = {
-    .pwm = {.unit = UNIT, .prescaler = 1, .top = 6249}, .pin_a = PIN_A, .pin_b = PIN_B, .bridge = {.max_duty = 0.95}};
+    .pwm = {.slot = SLOT, .prescaler = 1, .top = 6249}, .pin_a = PIN_A, .pin_b = PIN_B, .bridge = {.max_duty = 0.95}};
 
 static epg_control_t control;
 static epg_quadrature_encoder_t encoder;
@@ -174,12 +174,12 @@ static const epg_application_t application = {
 static void plant(void)
 {
     const int direction = (int)fake_port.outputs[PIN_A] - (int)fake_port.outputs[PIN_B];
-    const double duty = (double)fake_port.levels[UNIT] / 6250.0;
+    const double duty = (double)fake_port.levels[SLOT] / 6250.0;
     for (int i = 0; i < 20; i++) {
         motor_step(&motor, direction, duty, 50e-6);
     }
     const int64_t count = epg_quadrature_encoder_count_at(motor.angle, encoder_config.rad_per_count);
-    fake_port.counts[UNIT] = (uint32_t)((uint64_t)count & UINT32_MAX);
+    fake_port.counts[SLOT] = (uint32_t)((uint64_t)count & UINT32_MAX);
 }
 
 static void cycle(void)
@@ -233,7 +233,7 @@ static void begin(epg_setpoint_t setpoint)
 
 static void check_bridge_off(void)
 {
-    CHECK_EQUAL(fake_port.levels[UNIT], 0);
+    CHECK_EQUAL(fake_port.levels[SLOT], 0);
     CHECK(!fake_port.outputs[PIN_A] && !fake_port.outputs[PIN_B]);
 }
 
@@ -432,7 +432,7 @@ TEST(too_large_a_duty_is_limited_and_counted)
     wrong.duty = -5.0;
     run(10);
     CHECK_EQUAL(status().statistics.clamped, 10);
-    CHECK_EQUAL(fake_port.levels[UNIT], 5938); /* 0.95 * 6250, rounded */
+    CHECK_EQUAL(fake_port.levels[SLOT], 5938); /* 0.95 * 6250, rounded */
 }
 
 TEST(encoder_zero_stays_while_disabled)

@@ -204,7 +204,7 @@ static const epg_target_t target = {
 };
 static const epg_zephyr_target_t zephyr = {
 	.target = &target,
-	.tick = {.clock = CLOCK, .prescaler = PRESCALER, .top = TOP, .block = TICK_SLICE},
+	.tick = {.clock = CLOCK, .prescaler = PRESCALER, .top = TOP, .instance = TICK_SLICE},
 	.transport = &epg_zephyr_usb,
 	.transport_title = "EPG test",
 };
