@@ -3,7 +3,6 @@
 
 Literal arguments may hold CMake's names of the source folders.  A call that needs more is :class:`Unknown`: one with
 another variable, in a loop or in a function.  A call under a condition is taken as one that is made.
-
 Grammar: cmake-language(7), "Syntax".
 """
 
@@ -93,21 +92,25 @@ class LiteralCalls:
                 blocks.append(name)
             elif block and blocks:
                 blocks.pop()
-            elif name in CALLS:
-                if not blocks:
-                    self.calls.append(Call(name, words, folder, roots, span))
-                elif name == CALLS[0]:
-                    message = f"this call is inside of {blocks[-1]}(): only CMake knows what it makes"
-                    self.unknown.append(Unknown(span, message))
-            elif name == "find_package" and words and words[0].text == "Zephyr":
-                self.uses_zephyr = True
-            elif name == "add_subdirectory" and words and not blocks:
-                if words[0].text is None:
-                    self.unknown.append(not_literal(words[0]))
-                else:
-                    self._folder(Path(os.path.normpath(folder / words[0].text)), roots)
-            elif name == "set" and words and words[0].text == "EPG_TARGETS_PATH" and not blocks:
+            elif blocks and name == CALLS[0]:
+                message = f"this call is inside of {blocks[-1]}(): only CMake knows what it makes"
+                self.unknown.append(Unknown(span, message))
+            elif not blocks and words and name == "set" and words[0].text == "EPG_TARGETS_PATH":
                 roots = tuple(root for word in words[1:] for root in (word.text or "").split(";"))
+            elif not blocks:
+                self._command(Call(name, words, folder, roots, span))
+
+    def _command(self, call: Call) -> None:
+        first = call.words[0] if call.words else None
+        if call.name in CALLS:
+            self.calls.append(call)
+        elif call.name == "find_package":
+            self.uses_zephyr |= first is not None and first.text == "Zephyr"
+        elif call.name == "add_subdirectory" and first is not None:
+            if first.text is None:
+                self.unknown.append(not_literal(first))
+            else:
+                self._folder(Path(os.path.normpath(call.folder / first.text)), call.roots)
 
     def _commands(self, text: str, path: Path) -> Iterator[tuple[str, Span, tuple[Word, ...]]]:
         """The commands of ``text`` with names in lower case; a mistake in the syntax ends them and is reported."""

@@ -16,6 +16,7 @@ from epg.documents.source_file import SourceFile, read_source
 from epg.documents.text_file import one_line
 from epg.models import details
 from epg.models.assignments import (
+    Assignment,
     PortLine,
     assignments,
     exact_number,
@@ -32,7 +33,7 @@ from epg.models.folders import source_files
 from epg.models.global_variables import base_type, global_variables
 from epg.models.link import Linked, link
 from epg.models.metadata import Metadata, cross_check, find_metadata
-from epg.models.model import Model
+from epg.models.model import Model, Port
 from epg.models.ports import check_identifiers, make_parameters, make_ports
 from epg.source import Span
 
@@ -100,54 +101,18 @@ class _Importer:
         check_features(self.linked, roots, self.diagnostics)
         check_variables(self.linked, self._prefix(), self.diagnostics)
         inputs_lines, outputs_lines = self._port_lines(roots)
-        names = {kind: listed_names(self.file, kind) for kind in ("input", "output")}
-        for kind, lines in (("input", inputs_lines), ("output", outputs_lines)):
-            token_names = self.metadata.tokens.names(kind.upper()) if self.metadata.tokens else []
-            if len(names[kind]) != len(lines) and len(token_names) == len(lines):
-                names[kind] = [(name, self.whole) for name in token_names]
-        configuration = self.metadata.configuration
-        ports = [
-            make_ports(
-                lines,
-                kind,
-                names[kind],
-                configuration,
-                self.diagnostics,
-                self.whole,
-                self._stated_count(f"number_of_{kind}s"),
-            )
-            for kind, lines in (("input", inputs_lines), ("output", outputs_lines))
-        ]
+        ports = [self._ports("input", inputs_lines), self._ports("output", outputs_lines)]
         for group in ports:
             check_identifiers(group, self.diagnostics)
         if step is None or self.diagnostics.error_count > before:
             return None
-        parameter_array = self._array("P")
-        settings = [
-            (code, line)
-            for code, function in self.linked.reachable(roots)
-            for line in assignments(code.file, function.body_start, function.body_end)
-            if line.array in (parameter_array, f"model_instance->{parameter_array}")
-        ]
-        if settings and not self._exists(parameter_array):
-            _, line = settings[0]
-            message = f"'{line.array}' is set, but no file of the export defines it"
-            hint = "are all files there, and renamed in the same way? else export again"
-            self.diagnostics.error("model-incomplete", line.span, message, hint=hint)
+        settings = self._settings(roots)
+        if settings is None:
             return None
         token_parameters = self.metadata.tokens.names("PARAMETER") if self.metadata.tokens else []
         listed = [name for code in self.linked.units for name, _ in listed_names(code.file, "parameter")]
         parameters, places = make_parameters([line for _, line in settings], listed or token_parameters, ())
         holders = {id(line): code.file.path for code, line in settings}
-        elements = tuple(
-            tuple(
-                details.Element(self._member(line.array), line.array_index)
-                for line in sorted(group, key=lambda line: line.index)
-            )
-            if self._vectorless()
-            else ()
-            for group in (inputs_lines, outputs_lines)
-        )
         finish = self._scalar("finish_time") if not self.instance_type else self.metadata.finish
         model = Model(
             name=self._name(),
@@ -162,35 +127,14 @@ class _Importer:
             directory=self.file.path.parent,
             files=tuple(sorted({code.file.path for code in self.linked.all} | set(self.metadata.files))),
             span=self.whole,
-            details=details.CFunctionExport(
-                linked=self.linked,
-                real=self._base_type("XXDouble") or "double",
-                initialize=self._entry(self.entries["Initialize"]),
-                calculate=self._entry(self.entries["Calculate"]),
-                terminate=self._entry(self.entries["Terminate"])
-                if "Terminate" in self.entries
-                else details.EntryPoint("", ()),
-                calculate_static=next((self._entry(f) for f in self._static()), None),
-                model_initialize=self._entry(initialize) if initialize else None,
-                inputs=elements[0],
-                outputs=elements[1],
-                parameters=parameter_array if self._exists(parameter_array) else "",
-                states=self._array("s") if self._exists(self._array("s")) else "",
-                rates=self._array("R") if self._exists(self._array("R")) else "",
-                state_count=self._state_count(),
-                pointers=tuple(sorted(n for n, (_, v) in self.variables.items() if v.pointer)),
-                time=self._variable_name("time"),
-                stop=self._variable_name("stop_simulation"),
-                variables=self._globals(),
-                places=tuple(
+            details=self._details(
+                initialize,
+                self._elements(inputs_lines),
+                self._elements(outputs_lines),
+                tuple(
                     tuple(details.Place(holders[id(line)], line.value_start, line.value_end) for line in group)
                     for group in places
                 ),
-                instance_type=self.instance_type,
-                instance_header=self._instance_header(),
-                memory=self._memory(),
-                declared=self._declared(),
-                renames=self._renames(),
             ),
             finish_time=finite(finish),
             searched=self.linked.searched,
@@ -200,6 +144,75 @@ class _Importer:
         if self.metadata.tokens and cross_check(model, self._prefix(), self.metadata, self.diagnostics):
             check_tokens(self.metadata.tokens, self.diagnostics)
         return model if self.diagnostics.error_count == mine else None
+
+    def _ports(self, kind: str, lines: list[PortLine]) -> tuple[Port, ...]:
+        """The ports of ``kind`` "input" or "output", named by the sources or else by the tokens."""
+        names = listed_names(self.file, kind)
+        token_names = self.metadata.tokens.names(kind.upper()) if self.metadata.tokens else []
+        if len(names) != len(lines) and len(token_names) == len(lines):
+            names = [(name, self.whole) for name in token_names]
+        expected = self._stated_count(f"number_of_{kind}s")
+        return make_ports(lines, kind, names, self.metadata.configuration, self.diagnostics, self.whole, expected)
+
+    def _settings(self, roots: list[Function]) -> list[tuple[Code, Assignment]] | None:
+        """The lines that set parameters, with their files; None after reporting that nothing defines the array."""
+        array = self._array("P")
+        settings = [
+            (code, line)
+            for code, function in self.linked.reachable(roots)
+            for line in assignments(code.file, function.body_start, function.body_end)
+            if line.array in (array, f"model_instance->{array}")
+        ]
+        if settings and not self._exists(array):
+            _, line = settings[0]
+            message = f"'{line.array}' is set, but no file of the export defines it"
+            hint = "are all files there, and renamed in the same way? else export again"
+            self.diagnostics.error("model-incomplete", line.span, message, hint=hint)
+            return None
+        return settings
+
+    def _elements(self, lines: list[PortLine]) -> tuple[details.Element, ...]:
+        """Where each port is in the arrays of an export without vectors of inputs and outputs."""
+        if not self._vectorless():
+            return ()
+        ordered = sorted(lines, key=lambda line: line.index)
+        return tuple(details.Element(self._member(line.array), line.array_index) for line in ordered)
+
+    def _details(
+        self,
+        initialize: Function | None,
+        inputs: tuple[details.Element, ...],
+        outputs: tuple[details.Element, ...],
+        places: tuple[tuple[details.Place, ...], ...],
+    ) -> details.CFunctionExport:
+        """What generated code needs of the export."""
+        terminate, static = self.entries.get("Terminate"), self._static()
+        arrays = {letter: name if self._exists(name := self._array(letter)) else "" for letter in "PsR"}
+        return details.CFunctionExport(
+            linked=self.linked,
+            real=self._base_type("XXDouble") or "double",
+            initialize=self._entry(self.entries["Initialize"]),
+            calculate=self._entry(self.entries["Calculate"]),
+            terminate=self._entry(terminate) if terminate else details.EntryPoint("", ()),
+            calculate_static=self._entry(static[0]) if static else None,
+            model_initialize=self._entry(initialize) if initialize else None,
+            inputs=inputs,
+            outputs=outputs,
+            parameters=arrays["P"],
+            states=arrays["s"],
+            rates=arrays["R"],
+            state_count=self._state_count(),
+            pointers=tuple(sorted(name for name, (_, variable) in self.variables.items() if variable.pointer)),
+            time=self._variable_name("time"),
+            stop=self._variable_name("stop_simulation"),
+            variables=self._globals(),
+            places=places,
+            instance_type=self.instance_type,
+            instance_header=self._instance_header(),
+            memory=self._memory(),
+            declared=self._declared(),
+            renames=self._renames(),
+        )
 
     # names ----------------------------------------------------------------------------------------------------------
 
