@@ -102,6 +102,25 @@ def units_of(dimension: str) -> list[str]:
     return sorted((u for u, (d, _) in UNITS.items() if d == dimension and u), key=lambda u: float(UNITS[u][1]))
 
 
+def show(value: Fraction | float, dimension: str, rounding: int = 0, digits: int = 6) -> str:
+    """A time in s or a frequency in Hz as people write it: ``20 kHz``, ``133.693 ms``.
+
+    ``digits`` is how many are shown; ``rounding`` -1 never shows more than ``value``, 1 never less.
+    """
+    value = Fraction(value)
+    units = [unit for unit in units_of(dimension) if unit != "min"]
+    unit = next((unit for unit in reversed(units) if Fraction(UNITS[unit][1]) <= value), units[0])
+    number = value / Fraction(UNITS[unit][1])
+    if number >= 10**9:  # absurd, and so many digits that nobody reads them
+        return f"{float(number):.{digits}g} {unit}"
+    places = max(0, digits - len(str(math.floor(number))))
+    scaled = number * 10**places
+    whole = round(scaled) if rounding == 0 else math.floor(scaled) if rounding < 0 else math.ceil(scaled)
+    text = str(whole // 10**places)
+    rest = f"{whole % 10**places:0{places}d}".rstrip("0") if places else ""
+    return f"{text}.{rest} {unit}" if rest else f"{text} {unit}"
+
+
 def base_unit(dimension: str) -> str:
     """The unit of a dimension that EPG computes in: "s", "Hz", "rad"."""
     return next(unit for unit in units_of(dimension) if UNITS[unit][1] == 1)

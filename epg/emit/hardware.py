@@ -8,9 +8,9 @@ from fractions import Fraction
 from typing import Any
 
 from epg.emit.description import describe_divider
+from epg.quantity import show
 from epg.resolve.allocation import Assignment
 from epg.resolve.claims import TICK, ClaimKey
-from epg.resolve.divider import show
 
 
 def divider_text(divider: Mapping[str, Any]) -> tuple[str, str]:

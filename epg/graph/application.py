@@ -14,8 +14,8 @@ from epg.emit.topics import Topics
 from epg.graph.svg import Picture, width
 from epg.graph.wiring import wire_texts
 from epg.models.model import Port
+from epg.quantity import show
 from epg.resolve.application import Application, ResolvedComponent, Step, Wire
-from epg.resolve.divider import show
 
 _ROW = 40.0
 _HIGH = 30.0

@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from epg.graph.svg import Picture, width
+from epg.quantity import show
 from epg.resolve.application import Application, Topic, Wire
-from epg.resolve.divider import show
 
 _SMALL = 10.5
 _LINE = 15.0

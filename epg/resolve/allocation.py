@@ -15,9 +15,10 @@ from types import MappingProxyType
 
 from epg.catalog.hardware import Divider, Peripheral, ResourceClass, Target
 from epg.diagnostics import Diagnostics, Note, did_you_mean
+from epg.quantity import show
 from epg.resolve.claims import Claim, ClaimKey
 from epg.resolve.conflict import Candidate, report_conflicts
-from epg.resolve.divider import Division, clock_range, divide, neighbours, show
+from epg.resolve.divider import Division, clock_range, divide, neighbours
 from epg.resolve.pins import Pins
 from epg.resolve.search import WHOLE, Demand, Place, find_places
 

@@ -10,8 +10,8 @@ from fractions import Fraction
 from epg.catalog.hardware import Peripheral, ResourceClass, Target
 from epg.diagnostics import Diagnostics, Note
 from epg.documents.items import pin_list
+from epg.quantity import show
 from epg.resolve.claims import Claim
-from epg.resolve.divider import show
 from epg.resolve.pins import Pins
 from epg.resolve.search import Demand, find_places
 from epg.source import Span

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from epg.catalog.hardware import Divider
-from epg.quantity import UNITS, units_of
 
 NEAR_ENOUGH = Fraction(1, 100)
 """The largest relative error of a divider that need not be exact."""
@@ -59,23 +58,6 @@ def neighbours(clocks: Fraction, divider: Divider, exact: bool) -> tuple[int, in
     while above < last and divide(Fraction(above), divider, exact) is None:
         above += 1
     return below, above
-
-
-def show(value: Fraction | float, dimension: str, rounding: int = 0, digits: int = 6) -> str:
-    """A time in s or a frequency in Hz as people write it: ``20 kHz``, ``133.693 ms``.
-
-    ``digits`` is how many are shown; ``rounding`` -1 never shows more than ``value``, 1 never less.
-    """
-    value = Fraction(value)
-    units = [unit for unit in units_of(dimension) if unit != "min"]
-    unit = next((unit for unit in reversed(units) if Fraction(UNITS[unit][1]) <= value), units[0])
-    number = value / Fraction(UNITS[unit][1])
-    places = max(0, digits - len(str(math.floor(number))))
-    scaled = number * 10**places
-    whole = round(scaled) if rounding == 0 else math.floor(scaled) if rounding < 0 else math.ceil(scaled)
-    text = str(whole // 10**places)
-    rest = f"{whole % 10**places:0{places}d}".rstrip("0") if places else ""
-    return f"{text}.{rest} {unit}" if rest else f"{text} {unit}"
 
 
 def _exactly(clocks: int, divider: Divider) -> Division | None:

@@ -15,7 +15,7 @@ from epg.check.names import STATIC_NAMES
 from epg.diagnostics import Diagnostics, Note
 from epg.documents.schema import extended_from
 from epg.models.model import Model
-from epg.quantity import parse_quantity
+from epg.quantity import parse_quantity, show
 from epg.resolve.allocation import Assignment, allocate
 from epg.resolve.application import Application, Plant, ResolvedComponent, Wire
 from epg.resolve.claims import TICK, component_claims, tick_claims
@@ -131,15 +131,15 @@ def _period(configuration: Configuration, model: Model, diagnostics: Diagnostics
     period = configuration.control.period or model.step
     if not _SHORTEST <= period <= _LONGEST:
         stated = configuration.control.period is not None
-        message = f"a control period of {_ms(period)} is out of range: must be from 1 us to 3600 s"
+        message = f"a control period of {show(period, 'time')} is out of range: must be from 1 us to 3600 s"
         notes = [] if stated else [Note("it is the model's step", model.span)]
         diagnostics.error("out-of-range", configuration.control.period_span, message, notes=notes)
         return Fraction(1, 1000), 1
     delay = configuration.control.output_delay
     if delay is not None and not 0 < delay < period:
-        message = f"an output delay of {_ms(delay)} is out of range: "
+        message = f"an output delay of {show(delay, 'time')} is out of range: "
         message += "must be more than 0 and less than the control period"
-        notes = [Note(f"the control period is {_ms(period)}", configuration.control.period_span)]
+        notes = [Note(f"the control period is {show(period, 'time')}", configuration.control.period_span)]
         diagnostics.error("out-of-range", configuration.control.output_delay_span, message, notes=notes)
     ratio = model.step / period
     if ratio.denominator != 1:
@@ -255,16 +255,7 @@ def _files(
 def _apart(one: Fraction, other: Fraction) -> tuple[str, str]:
     """Two different times as people write them, with as many digits as make them differ."""
     for digits in range(6, 18):
-        texts = _ms(one, digits), _ms(other, digits)
+        texts = show(one, "time", digits=digits), show(other, "time", digits=digits)
         if texts[0] != texts[1]:
             return texts
     return f"{one} s", f"{other} s"
-
-
-def _ms(seconds: Fraction, digits: int = 6) -> str:
-    """A time as people write it: ``1 ms``, ``33.3 ms``, ``100 us``."""
-    for unit, factor in (("s", 1), ("ms", 1000), ("us", 1000_000)):
-        value = seconds * factor
-        if value.denominator == 1:
-            return f"{value.numerator if value < 1_000_000 else float(value):.{digits}g} {unit}"
-    return f"{float(seconds * 1000):.{digits}g} ms"

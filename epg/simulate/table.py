@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
+from epg.quantity import show
 from epg.simulate.executable import Statistics
 from epg.simulate.result import Result
 from epg.simulate.tracking import WindowResult
@@ -68,7 +71,4 @@ def _window(result: WindowResult, width: int) -> str:
 
 
 def _time(seconds: float) -> str:
-    for factor, unit in ((1.0, "s"), (1e3, "ms"), (1e6, "us")):
-        if seconds * factor >= 1.0:
-            return f"{seconds * factor:.3g} {unit}"
-    return f"{seconds * 1e9:.3g} ns"
+    return show(Fraction(seconds), "time", digits=3)

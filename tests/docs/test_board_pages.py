@@ -20,7 +20,8 @@ from epg.catalog.catalog import Target, load_catalog
 from epg.cli.main import main
 from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
-from epg.resolve.divider import clock_range, divide, show
+from epg.quantity import show
+from epg.resolve.divider import clock_range, divide
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 BOARDS = ("rpi_pico", "rpi_pico2")
