@@ -74,16 +74,7 @@ def find_metadata(main: Path, name: str, diagnostics: Diagnostics) -> Metadata:
     """The metadata beside the source file ``main`` of the model called ``name``; unreadable files give a warning."""
     directory = main.parent
     folders = [directory, directory.parent] if directory.name.lower() in ("src", "source", "sources") else [directory]
-    tokens: Tokens | None = None
-    for folder in folders:
-        files = [entry for entry in _entries(folder) if is_tokens_file(entry)]
-        own = [file for file in files if file.stem.casefold() == f"{main.stem}_tokens".casefold()]
-        candidates = own or [file for file in files if file.stem.casefold() == "tokens"] or files
-        loaded = [load_tokens(file, diagnostics, required=False) for file in candidates]
-        good = [item for item in loaded if item is not None]
-        if good:
-            tokens = next((item for item in good if item.trimmed("SUBMODEL_NAME") == name), good[0])
-            break
+    tokens = next((found for folder in folders if (found := _find_tokens(folder, main, name, diagnostics))), None)
     path = next((found for found in map(find_configuration, folders) if found), None)
     described = next((f / "modelDescription.xml" for f in folders if (f / "modelDescription.xml").is_file()), None)
     return Metadata(
@@ -91,6 +82,16 @@ def find_metadata(main: Path, name: str, diagnostics: Diagnostics) -> Metadata:
         load_configuration(path, diagnostics) if path else None,
         load_model_description(described, diagnostics) if described else None,
     )
+
+
+def _find_tokens(folder: Path, main: Path, name: str, diagnostics: Diagnostics) -> Tokens | None:
+    """The tokens in a folder: those named after the source file, else those of the model called ``name``, else any."""
+    files = [entry for entry in _entries(folder) if is_tokens_file(entry)]
+    own = [file for file in files if file.stem.casefold() == f"{main.stem}_tokens".casefold()]
+    candidates = own or [file for file in files if file.stem.casefold() == "tokens"] or files
+    loaded = [load_tokens(file, diagnostics, required=False) for file in candidates]
+    good = [item for item in loaded if item is not None]
+    return next((item for item in good if item.trimmed("SUBMODEL_NAME") == name), good[0] if good else None)
 
 
 def _entries(folder: Path) -> list[Path]:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from epg.diagnostics import Diagnostics, Note
 from epg.documents.text_file import one_line
@@ -12,6 +12,9 @@ from epg.models.configuration import Configuration
 from epg.models.identifiers import to_identifier, unique_identifiers
 from epg.models.model import Parameter, Port
 from epg.source import Span
+
+_VECTORS = {"input": "u", "output": "y"}
+"""What 20-sim calls the vector of all ports of a direction."""
 
 
 def make_ports(
@@ -31,49 +34,64 @@ def make_ports(
     for line in lines:
         by_index.setdefault(line.index, line)
     count = max(by_index, default=-1) + 1 if expected is None else expected
-    vector = "u" if direction == "input" else "y"
-    most = min(count, len(by_index) + 8)  # a count can be anything; eight missing ones are enough to tell
-    missing = [index for index in range(most) if index not in by_index]
-    surplus = sorted(index for index in by_index if index >= count)
-    if missing or surplus:
-        listed = ", ".join(f"{vector}[{index}]" for index in (missing or surplus)[:8])
-        what = f"no line connects {listed} to the model" if missing else f"there are lines for {listed} beyond that"
-        diagnostics.error(
-            "model-ports",
-            whole,
-            f"the model has {count} {direction}{'' if count == 1 else 's'}, but {what}",
-            hint="export the model again, or undo the edit of its generated code",
-        )
+    if not _are_complete(by_index, count, direction, whole, diagnostics):
         return ()
-    ports = []
-    for index in range(count):
-        line = by_index[index]
-        name, span = line.name, line.span
-        if not name and len(names) == count:
-            name = names[index][0]
-        if not name:
-            name = f"{vector}{index}"
-            diagnostics.warning(
-                "model-port-unnamed",
-                span,
-                f"the comment with the name of {vector}[{index}] is missing: the port is called '{name}'",
-                hint="keep the comments 20-sim writes behind these lines, or tokens.xml",
-            )
-        configured = configuration.port(direction, name) if configuration else None
-        title = one_line(name)
-        ports.append(
-            Port(
-                title,
-                to_identifier(title),
-                direction,
-                one_line(line.unit or (configured.unit if configured else "")),
-                configured.type if configured else "real",
-                index,
-                span,
-                one_line(configured.description if configured else ""),
-            )
+    given = [name for name, _ in names] if len(names) == count else [""] * count
+    return tuple(_port(by_index[i], i, direction, given[i], configuration, diagnostics) for i in range(count))
+
+
+def _are_complete(
+    lines: Mapping[int, PortLine], count: int, direction: str, whole: Span, diagnostics: Diagnostics
+) -> bool:
+    """Whether the lines connect the first ``count`` elements of the vector and no others; reports it if not."""
+    vector = _VECTORS[direction]
+    most = min(count, len(lines) + 8)  # a count can be anything; eight missing ones are enough to tell
+    missing = [index for index in range(most) if index not in lines]
+    surplus = sorted(index for index in lines if index >= count)
+    if not missing and not surplus:
+        return True
+    listed = ", ".join(f"{vector}[{index}]" for index in (missing or surplus)[:8])
+    what = f"no line connects {listed} to the model" if missing else f"there are lines for {listed} beyond that"
+    diagnostics.error(
+        "model-ports",
+        whole,
+        f"the model has {count} {direction}{'' if count == 1 else 's'}, but {what}",
+        hint="export the model again, or undo the edit of its generated code",
+    )
+    return False
+
+
+def _port(
+    line: PortLine,
+    index: int,
+    direction: str,
+    given: str,
+    configuration: Configuration | None,
+    diagnostics: Diagnostics,
+) -> Port:
+    """The port of one line; ``given`` is its name if the line has none."""
+    name = line.name or given
+    if not name:
+        vector = _VECTORS[direction]
+        name = f"{vector}{index}"
+        diagnostics.warning(
+            "model-port-unnamed",
+            line.span,
+            f"the comment with the name of {vector}[{index}] is missing: the port is called '{name}'",
+            hint="keep the comments 20-sim writes behind these lines, or tokens.xml",
         )
-    return tuple(ports)
+    configured = configuration.port(direction, name) if configuration else None
+    title = one_line(name)
+    return Port(
+        title,
+        to_identifier(title),
+        direction,
+        one_line(line.unit or (configured.unit if configured else "")),
+        configured.type if configured else "real",
+        index,
+        line.span,
+        one_line(configured.description if configured else ""),
+    )
 
 
 def check_identifiers(ports: Sequence[Port], diagnostics: Diagnostics) -> None:
