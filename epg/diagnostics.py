@@ -114,5 +114,7 @@ def did_you_mean(word: str, choices: Iterable[str], otherwise: str = "") -> str:
         return f"did you mean '{folded[near[0]]}'?"
     if not known:
         return ""
+    if len(word) >= 3:
+        known = [choice for choice in known if word.casefold() in choice.casefold()] or known
     listed = ", ".join(known) if len(known) <= 24 else ", ".join(known[:24]) + ", ..."
     return f"{otherwise or 'possible'}: {listed}"

@@ -90,10 +90,11 @@ def number_hint(text: str) -> str:
     percent = re.fullmatch(r"\s*([-+]?[0-9]{1,9}(?:\.[0-9]{0,9})?)\s*%\s*", text)
     if percent:
         return f"write {float(Fraction(percent[1]) / 100):g} for {text.strip()}"
+    with_word = re.fullmatch(rf"\s*({_NUMBER})\s*[A-Za-z_]\w*\s*", text)
     try:
         float(text.replace("_", ""))
     except ValueError:
-        return ""
+        return f"write {with_word[1]}: this number has no unit" if with_word else ""
     return f"write {text.replace('_', '')} without quotes or underscores"
 
 

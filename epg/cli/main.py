@@ -54,7 +54,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return EXIT_MISSING
     parser = _parser(words)
     try:
-        options = parser.parse_args(arguments)
+        options, unknown = parser.parse_known_args(arguments)
+        if unknown:
+            _refuse(unknown, getattr(options, "parser", parser))
     except SystemExit as stop:
         return int(stop.code or 0)
     if options.cmake_dir or options.twenty_sim_dir:
@@ -87,9 +89,20 @@ def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
     for name, summary in COMMANDS.items():
         sub = subparsers.add_parser(name, help=summary, description=summary[0].upper() + summary[1:] + ".")
         if name == chosen:
+            sub.set_defaults(parser=sub)
             sub.add_argument("--json", action="store_true", help="print data for programs")
             importlib.import_module(f"epg.cli.{name.replace('-', '_')}").add_arguments(sub)
     return parser
+
+
+def _refuse(unknown: Sequence[str], parser: argparse.ArgumentParser) -> None:
+    """Ends with the usage of the command that has no such options."""
+    from epg.diagnostics import did_you_mean
+
+    option = unknown[0].partition("=")[0]
+    hint = did_you_mean(option, parser._option_string_actions) if option.startswith("--") else ""
+    near = f" ({hint})" if hint.startswith("did you mean") else ""
+    parser.error(f"unrecognized arguments: {' '.join(unknown)}{near}")
 
 
 def _run(options: argparse.Namespace) -> int:

@@ -100,7 +100,10 @@ def _report(error: Any, root: YamlNode, diagnostics: Diagnostics) -> None:
             diagnostics.error("unknown-key", node.key_span(key), message, hint=hint, notes=notes)
         return
     if keyword in ("required", "dependentRequired"):
-        missing = [key for key in _required(error) if key not in node]
+        known = _known_keys(schema)
+        unknown = [key for key, _ in node.items() if key not in schema.get("properties", {})]
+        misspelt = {did_you_mean(key, known) for key in unknown}  # the error about the key that is there says it
+        missing = [key for key in _required(error) if key not in node and f"did you mean '{key}'?" not in misspelt]
         span = _owner_span(root, path)
         for key in missing:
             hint = _key_hint(key, schema)
@@ -200,6 +203,8 @@ def _type_hint(value: object, wanted: list[str]) -> str:
     if isinstance(value, str) and "object" in wanted:
         key = re.match(r"([A-Za-z_]\w*)\s*[=\s:]", value)
         return f"write ':' after each key, for example '{key[1]}: ...'" if key else ""
+    if isinstance(value, list) and "object" in wanted:
+        return "write 'name: value' for each entry, without '-' and without [ ]"
     if "string" in wanted and isinstance(value, (int, float, bool)):
         return "put it in quotes if it is meant as text"
     return ""

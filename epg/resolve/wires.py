@@ -32,9 +32,11 @@ def input_wires(
     Conversions on components stand between driver and controller, so a plant's wires do not see them.
     """
     wires: list[Wire] = []
-    _unknown_ports(bindings.inputs, model.inputs, model.outputs, model, "input", diagnostics)
+    misspelt = _unknown_ports(bindings.inputs, model.inputs, model.outputs, model, "input", diagnostics)
     for port in model.inputs:
         if port.name not in bindings.inputs:
+            if port.name in misspelt:
+                continue  # the error about the name that is bound says it
             otherwise = f"add 'inputs: {{{port.name}: ...}}' with one of"
             hint = _nearest(port.name, lambda: _possible(components.values(), direction), otherwise, diagnostics)
             span = bindings.root.key_span("inputs") if "inputs" in bindings.root else bindings.model_span
@@ -80,9 +82,11 @@ def output_wires(
     """The wires out of ``model``; no component port is driven twice.  A plant's outputs drive sensors: "source"."""
     wires: list[Wire] = []
     drivers: dict[tuple[str, str], tuple[str, Span]] = {}
-    _unknown_ports(bindings.outputs, model.outputs, model.inputs, model, "output", diagnostics)
+    misspelt = _unknown_ports(bindings.outputs, model.outputs, model.inputs, model, "output", diagnostics)
     for port in model.outputs:
         if port.name not in bindings.outputs:
+            if port.name in misspelt:
+                continue
             span = bindings.root.key_span("outputs") if "outputs" in bindings.root else bindings.model_span
             hint = f"bind it, or write '{port.name}: unconnected'"
             diagnostics.warning(
@@ -135,8 +139,10 @@ def _unknown_ports(
     model: Model,
     what: str,
     diagnostics: Diagnostics,
-) -> None:
+) -> set[str]:
+    """Reports names that are bound and are not ports; returns the ports that were probably meant."""
     assert isinstance(bound, Mapping)
+    meant = set()
     names = {port.name for port in ports}
     other_names = {port.name for port in others}
     for name, (span, _) in bound.items():
@@ -149,7 +155,9 @@ def _unknown_ports(
             )
             continue
         hint = _nearest(name, lambda: names, f"{what}s of {model.name}", diagnostics)
+        meant |= {port for port in names if hint == f"did you mean '{port}'?"}
         diagnostics.error("unknown-port", span, f"{model.name} has no {what} '{name}'", hint=hint)
+    return meant
 
 
 def _nearest(word: str, choices: Callable[[], Iterable[str]], otherwise: str, diagnostics: Diagnostics) -> str:

@@ -429,3 +429,10 @@ def test_null_deletes_any_key_of_an_extended_file(robot: Path, capsys: pytest.Ca
     (robot / "mine.tcf").write_text("version: 1\nextends: robot.tcf\nnamspace: null\n")
     assert main(["check", "mine.tcf"]) == 1
     assert "unknown key 'namspace'" in capsys.readouterr().err
+
+
+def test_a_misspelt_option_gets_the_usage_of_its_command(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", "--modell", "servo"]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith("usage: epg check ")
+    assert "epg check: error: unrecognized arguments: --modell (did you mean '--model'?)" in said
