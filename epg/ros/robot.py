@@ -26,7 +26,7 @@ RASPBERRY_PI = 0x2E8A
 """Vendor of a Pico's USB device without ``communication.usb``."""
 
 USB_NAMES = {"manufacturer": "Raspberry Pi", "product": "Pico"}
-"""Texts of a Pico's USB device without ``communication.usb``: targets/platforms/pico/usb/descriptors.c."""
+"""Texts of a Pico's USB device without ``communication.usb``: targets/families/rp2/usb/descriptors.c."""
 
 
 @dataclass(frozen=True)

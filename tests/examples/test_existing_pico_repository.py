@@ -74,8 +74,8 @@ NEEDED = {
     # what EPG asks of the SDK's C files
     "PICO_CORE1_STACK_SIZE", "PICO_DOUBLE_PROPAGATE_NANS", "PICO_USE_STACK_GUARDS",
     # <name>.h, epg/control.h, epg/pico.h, epg/pico_quadrature.h, tusb_config.h, tusb.h
-    "build/epg/turntable", "targets/runtime/include", "targets/platforms/pico/include",
-    "targets/libraries/pico_quadrature/include", "targets/platforms/pico/usb/include", "lib/tinyusb/src",
+    "build/epg/turntable", "targets/runtime/include", "targets/families/rp2/include",
+    "targets/libraries/pico_quadrature/include", "targets/families/rp2/usb/include", "lib/tinyusb/src",
 }  # fmt: skip
 """Definitions and folders of headers by which the commands that compile the program's own files change."""
 

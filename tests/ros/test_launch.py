@@ -81,7 +81,7 @@ def test_one_agent_for_each_board_and_one_for_all_by_udp(robots: Path, capsys: p
 def test_the_name_of_a_board_is_that_of_its_descriptors() -> None:
     """udev makes the name of manufacturer, product and serial number."""
     source = next(
-        file for root in targets_roots([]) if (file := root / "platforms/pico/usb/descriptors.c").is_file()
+        file for root in targets_roots([]) if (file := root / "families/rp2/usb/descriptors.c").is_file()
     ).read_text(encoding="utf-8")
     texts = dict(re.findall(r'#define EPG_PICO_USB_(\w+) "([^"]*)"', source))
     assert {key.upper(): text for key, text in USB_NAMES.items()} == texts

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # FreeRTOS on the Raspberry Pi Pico: core 1 controls, bare; the kernel runs on core 0, where communication is a task.
 
-include("${CMAKE_CURRENT_LIST_DIR}/../pico/pico.cmake")
+include("${CMAKE_CURRENT_LIST_DIR}/../../families/rp2/family.cmake")
 
 function(_epg_freertos_target name)
   if(TARGET pico_runtime)

@@ -3,7 +3,7 @@
  * @file
  * main() of an executable that holds a target and nothing else.
  */
-#include "../../pico/src/sdk.h"
+#include "../../../families/rp2/src/sdk.h"
 
 /* <name>_start() of the target; CMake names it. */
 extern bool EPG_PICO_START(void);

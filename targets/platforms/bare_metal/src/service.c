@@ -8,7 +8,7 @@
  *
  * It has a stack of its own, so that the user's need not be larger for it.
  */
-#include "../../pico/src/parts.h"
+#include "../../../families/rp2/src/parts.h"
 
 #define PERIOD_US 1000U
 

@@ -4,7 +4,7 @@
  * What the kernel calls when something is wrong, outputs first, and when nothing is to be done.  A hook of the user's
  * own takes the place of one here.
  */
-#include "../../pico/src/parts.h"
+#include "../../../families/rp2/src/parts.h"
 #include "rtos.h"
 
 void vApplicationStackOverflowHook(TaskHandle_t task, char *name);

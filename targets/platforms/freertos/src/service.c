@@ -6,7 +6,7 @@
  * It runs every millisecond and at once when a transport's interrupt asks for it.  Tasks of higher priority go before
  * it; if they keep it waiting longer than EPG_PICO_CORE0_TIMEOUT_MS, core 0 counts as stuck.
  */
-#include "../../pico/src/parts.h"
+#include "../../../families/rp2/src/parts.h"
 #include "epg/port_wait.h"
 #include "rtos.h"
 

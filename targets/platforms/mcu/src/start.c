@@ -3,9 +3,9 @@
  * @file
  * Starting and stopping a target; what core 0 does for it.
  */
+#include "../../../families/rp2/src/parts.h"
 #include "epg/port.h"
 #include "epg/serve.h"
-#include "parts.h"
 
 /** Bytes at the bottom of core 0's stack that its guard may cover, rounded up to where the MPU can begin. */
 #define GUARD 64U

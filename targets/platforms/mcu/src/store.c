@@ -8,10 +8,10 @@
  */
 #include <string.h>
 
+#include "../../../families/rp2/src/flash.h"
+#include "../../../families/rp2/src/parts.h"
 #include "epg/adler32.h"
 #include "epg/port.h"
-#include "flash.h"
-#include "parts.h"
 
 /** Bytes from the start of flash.  The last sector is left to others: picotool's mark for RP2350-E10, for one. */
 #ifndef EPG_PICO_STORE_OFFSET

@@ -3,7 +3,7 @@
  * @file
  * How much of the stacks has been used: painted before, looked at after.
  */
-#include "parts.h"
+#include "../../../families/rp2/src/parts.h"
 
 #define PATTERN 0xE96E96E9U
 
