@@ -177,7 +177,7 @@ def _find_base(request: ProjectRequest, catalog: Catalog, diagnostics: Diagnosti
         return None
     if target is None:
         return None
-    templates = project_folder((target.platform.name, *target.platform.shared), request.roots)
+    templates = project_folder(target.platform.project_names, request.roots)
     if templates is None:
         message = f"there are no files of a new project for the platform '{target.platform.name}'"
         hint = f"there are some for {', '.join(project_names(request.roots))}; docs/cmake.md says what to write instead"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The catalog: chips, boards, platforms, middlewares and component kinds of all ``targets`` folders, read on demand.
+"""The catalog: what the ``targets`` folders hold, from chips to component kinds, read on demand.
 
 >>> # catalog = load_catalog(targets_roots(), diagnostics)
 >>> # catalog.target("rpi_pico2_freertos", span, diagnostics).soc.name
@@ -12,11 +12,12 @@ from pathlib import Path
 from typing import TypeVar
 
 from epg.catalog.check_file import check_file
-from epg.catalog.check_hardware import check_target
+from epg.catalog.check_hardware import check_family, check_target
 from epg.catalog.check_middleware import check_offers
-from epg.catalog.hardware import Board, Platform, Soc, Target, make_board, make_platform, make_soc
+from epg.catalog.hardware import Board, Soc, Target, make_board, make_soc
 from epg.catalog.kind import Kind, KindPort, make_kind
 from epg.catalog.middleware import Middleware, make_middleware
+from epg.catalog.platform import Family, Platform, make_family, make_platform, platform_for
 from epg.catalog.shared_parameters import with_shared_parameters
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.documents.yaml_file import load_yaml
@@ -28,13 +29,14 @@ FOLDERS = {
     "soc": "socs",
     "board": "boards",
     "platform": "platforms",
+    "family": "families",
     "middleware": "middlewares",
     "component": "components",
 }
 """The folder of each category of items: an item is a folder with one file, such as ``boards/x/board.yaml``."""
 
 
-Item = TypeVar("Item", Soc, Board, Platform, Middleware, Kind)
+Item = TypeVar("Item", Soc, Board, Platform, Family, Middleware, Kind)
 
 
 class Catalog:
@@ -44,10 +46,10 @@ class Catalog:
         self.roots = tuple(roots)
         self._diagnostics = diagnostics
         self._files: dict[str, dict[str, list[Path]]] = {}
-        self._items: dict[tuple[str, str], Soc | Board | Platform | Middleware | Kind | None] = {}
+        self._items: dict[tuple[str, str], Soc | Board | Platform | Family | Middleware | Kind | None] = {}
 
     def names(self, category: str) -> list[str]:
-        """Names of all items of a category: "soc", "board", "platform", "middleware" or "component"."""
+        """Names of all items of a category: the keys of :data:`FOLDERS`."""
         return sorted(self._paths(category))
 
     def kind_names(self) -> list[str]:
@@ -66,7 +68,7 @@ class Catalog:
             for board_name in self.names("board"):
                 board = self._item("board", board_name, make_board)
                 soc = self._item("soc", board.soc, make_soc) if board else None
-                if soc and soc.family in platform.families:
+                if soc and self._on(platform, soc) is not None:
                     found.add(f"{board_name}_{platform_name}")
         return sorted(found)
 
@@ -77,6 +79,10 @@ class Catalog:
     def find_target(self, name: str) -> Target | None:
         """The target called ``name``, or None."""
         return self._target(name)[0]
+
+    def find_family(self, name: str) -> Family | None:
+        """The family of chips called ``name``, or None if it has no port layer of its own."""
+        return self._item("family", name, make_family)
 
     def find_middleware(self, name: str) -> Middleware | None:
         """The middleware called ``name``, or None."""
@@ -110,9 +116,12 @@ class Catalog:
             if board is None or soc is None:
                 self._report_missing(platform, board)
                 return None, True
-            if platform.board is None and soc.family not in platform.families:
+            on_chip = self._on(platform, soc)
+            if on_chip is None:
+                if platform.by_family and soc.family in self._paths("family") and self.find_family(soc.family) is None:
+                    return None, True
                 continue
-            target = Target(name, board, soc, platform)
+            target = Target(name, board, soc, on_chip)
             return (target if self._check_target(target) else None), True
         return None, False
 
@@ -122,6 +131,13 @@ class Catalog:
         check_offers(target, self.names("middleware"), self._diagnostics)
         check_target(target, self._diagnostics)
         return self._diagnostics.error_count == errors
+
+    def _on(self, platform: Platform, soc: Soc) -> Platform | None:
+        """The platform as it is on a chip, or None if it does not serve the chip's family."""
+        if not platform.by_family:
+            return platform if platform.board is not None or soc.family in platform.families else None
+        family = self.find_family(soc.family)
+        return platform_for(platform, family) if family is not None and platform.name in family.platforms else None
 
     def _splits(self, name: str) -> list[tuple[str, str]]:
         """The boards and platforms whose names could make ``name``."""
@@ -164,6 +180,8 @@ class Catalog:
             node = with_shared_parameters(node, self.roots, self._diagnostics)
         if node is None or not check_file(category, node, name, self._diagnostics):
             return None
+        if category == "family" and not check_family(node, self.names("platform"), self._diagnostics):
+            return None
         if len(paths) > 1:
             message = f"{category} '{name}' stands in {len(paths)} targets folders, of which this one is used"
             hint = "rename its folder to have both"
@@ -171,7 +189,7 @@ class Catalog:
         return make(node, paths[0].parent)
 
 
-_NAME_KEYS = {"soc": "soc", "board": "board", "platform": "platform", "middleware": "middleware", "component": "kind"}
+_NAME_KEYS = {category: "kind" if category == "component" else category for category in FOLDERS}
 
 
 def not_found_hint(name: str, known: Sequence[str], otherwise: str) -> str:

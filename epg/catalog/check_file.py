@@ -39,14 +39,17 @@ def check_file(category: str, node: YamlNode, name: str, diagnostics: Diagnostic
         check_board(node, diagnostics)
     elif category == "platform":
         check_platform(node, diagnostics)
-        _files_exist(node, ("templates",), _names_in(node, ("templates",)), diagnostics)
-        _check_templates(_names_in(node, ("templates",)), diagnostics)
         if node["builds"].value is True:
             _beside(node["builds"], "platform.cmake", "docs/adding-a-platform.md", diagnostics)
+    elif category == "family":
+        _beside(node["family"], "family.cmake", "docs/adding-a-family.md", diagnostics)
     elif category == "middleware":
         check_middleware(node, diagnostics)
     else:
         check_kind(node, diagnostics)
+    if category in ("platform", "family"):
+        _files_exist(node, ("templates",), _names_in(node, ("templates",)), diagnostics)
+        _check_templates(_names_in(node, ("templates",)), diagnostics)
     for path in (("driver", "headers"), ("driver", "sources")):
         _files_exist(node, path, _names_in(node, path), diagnostics)
     if category == "component":

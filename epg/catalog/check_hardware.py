@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 
 from epg.catalog.hardware import Target
 from epg.diagnostics import Diagnostics, Note, did_you_mean
-from epg.documents.items import integer_range, map_of, pin_list, pin_names
+from epg.documents.items import integer_range, map_of, pin_list, pin_names, texts_of
 from epg.quantity import QuantityError, parse_quantity
 from epg.source import Span, YamlNode
 
@@ -56,15 +56,42 @@ def _layout(layout: YamlNode, pins: set[str], diagnostics: Diagnostics) -> None:
 
 
 def check_platform(node: YamlNode, diagnostics: Diagnostics) -> None:
-    """A platform serves families of chips or one board; its tick is one of its classes."""
-    if ("board" in node) == ("families" in node):
-        message = "a platform states either 'families' or 'board'"
-        hint = "'families' lists the chips it runs on; 'board' is for a port layer that has one board"
+    """A platform serves families of chips, one board, or what folders of families serve; its tick is of its classes."""
+    if sum(key in node for key in ("board", "families", "by_family")) != 1:
+        message = "a platform states either 'families', 'board' or 'by_family'"
+        hint = (
+            "'families' lists the chips it runs on; 'board' is for a port layer that has one board; "
+            "'by_family' leaves the port layer to the folders in families/"
+        )
         diagnostics.error("exactly-one", node["platform"].span, message, hint=hint)
+    if "by_family" in node:
+        _left_to_families(node, diagnostics)
+        return
+    for key in ("classes", "middlewares"):
+        if key not in node:
+            diagnostics.error("missing-key", node["platform"].span, f"'{key}' is missing")
     tick = node.get("tick", "class")
-    classes = [str(element.value) for element in node["classes"].elements()]
-    if tick is not None and tick.value not in classes:
+    classes = texts_of(node, "classes")
+    if tick is not None and "classes" in node and tick.value not in classes:
         _unknown("class", tick, classes, diagnostics)
+
+
+def _left_to_families(node: YamlNode, diagnostics: Diagnostics) -> None:
+    """Reports what a platform says in the place of the families that bring its port layer."""
+    for key in ("classes", "middlewares", "usb_names", "templates", "shared", "sdk", "products"):
+        if key in node:
+            message = f"'{key}' depends on the family of chips, so a platform with 'by_family' cannot state it"
+            diagnostics.error("only-with", node.key_span(key), message, hint="move it to families/<name>/family.yaml")
+
+
+def check_family(node: YamlNode, platforms: Sequence[str], diagnostics: Diagnostics) -> bool:
+    """Whether all platforms that a family names are among ``platforms``."""
+    errors = diagnostics.error_count
+    for platform in node["platforms"].elements():
+        if platform.value not in platforms:
+            hint = did_you_mean(str(platform.value), platforms, "in platforms/")
+            diagnostics.error("unknown-name", platform.span, f"there is no platform '{platform.value}'", hint=hint)
+    return diagnostics.error_count == errors
 
 
 def check_target(target: Target, diagnostics: Diagnostics) -> None:

@@ -38,7 +38,7 @@ def check_middleware(node: YamlNode, diagnostics: Diagnostics) -> None:
 
 def check_offers(target: Target, known: Sequence[str], diagnostics: Diagnostics) -> None:
     """Whatever a platform offers in ``middlewares`` is among the ``known`` ones."""
-    offered = target.platform.node["middlewares"]
+    offered = target.platform.offers["middlewares"]
     for name in target.platform.middlewares:
         if name not in known:
             hint = did_you_mean(name, known, "in middlewares/")

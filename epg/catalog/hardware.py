@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Chips, boards and platforms as data: ``socs/``, ``boards/`` and ``platforms/`` below the ``targets`` folders.
+"""Chips and boards as data: ``socs/`` and ``boards/`` below the ``targets`` folders; targets of these.
 
 The relations that a chip's peripherals can have are few, and all are here: an instance is exclusive or has *slots*;
 its users *agree* on attributes; it is reached through enumerated *pins*, through any pins, or through *neighbours*;
@@ -17,6 +17,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from epg.catalog.layout import Layout, make_layout
+from epg.catalog.platform import Platform
 from epg.documents.items import flag_of, integer_range, map_of, pin_names, text_of, texts_of
 from epg.quantity import parse_quantity
 from epg.source import Span, YamlNode
@@ -165,60 +166,6 @@ class Board:
 
 
 @dataclass(frozen=True)
-class Product:
-    """A file beside an executable; ``*`` in ``file`` is the executable's name without its ending.
-
-    ``what`` says what a person does with it.
-    """
-
-    file: str
-    what: str
-
-
-@dataclass(frozen=True)
-class Platform:
-    """A port layer for the chips of ``families``, or for one ``board``.
-
-    Without ``builds`` there is none yet: targets can be checked but not built.
-
-    ``middlewares`` names transports; the first of each is the default.  With ``has_usb_names`` a target configuration
-    says what the target is called as a USB device.  ``tick`` is the class of the peripheral that
-    times the control loop, None where the system software does, as also on chips without that class where
-    ``tick_is_optional``.  With ``has_nodes`` a component can name a node of a devicetree instead of pins.  ``shared``
-    are folders beside this one whose templates it uses too.
-
-    ``sdk`` is the SDK whose name for the board a build is given, "" where there is none, ``headers`` those of
-    its headers that are included by name alone; ``built_by`` "cmake" or
-    "west"; ``program`` the CMake target of the executable where the SDK makes it; ``needs`` are tools by name,
-    ``products`` what a build makes for people, the best first.
-    """
-
-    name: str
-    summary: str
-    families: tuple[str, ...]
-    board: str | None  # serves this board only, and its one target is called as the platform is
-    simulates_plant: bool
-    classes: tuple[str, ...]
-    middlewares: Mapping[str, tuple[str, ...]]
-    has_usb_names: bool
-    tick: str | None
-    tick_is_optional: bool
-    has_nodes: bool
-    builds: bool
-    templates: tuple[str, ...]
-    shared: tuple[str, ...]
-    sdk: str
-    headers: tuple[str, ...]
-    built_by: str
-    program: str
-    needs: tuple[str, ...]
-    products: tuple[Product, ...]
-    node: YamlNode
-    folder: Path
-    span: Span
-
-
-@dataclass(frozen=True)
 class Target:
     """A board with a platform: what ``target:`` in a ``.tcf`` names."""
 
@@ -234,6 +181,7 @@ class Target:
             self.board.folder / "board.yaml",
             self.platform.folder / "platform.yaml",
             self.soc.folder / "soc.yaml",
+            *(() if self.platform.family is None else (self.platform.family.folder / "family.yaml",)),
         )
 
     @property
@@ -299,43 +247,6 @@ def make_board(node: YamlNode, folder: Path) -> Board:
         node=node,
         folder=folder,
         span=node["board"].span,
-    )
-
-
-def make_platform(node: YamlNode, folder: Path) -> Platform:
-    """The platform that a checked ``platform.yaml`` describes."""
-    tick, products = node.get("tick", "class"), node.get("products")
-    middlewares = {
-        name: tuple(str(transport.value) for transport in child.elements())
-        for name, child in map_of(node, "middlewares").items()
-    }
-    return Platform(
-        name=text_of(node, "platform"),
-        summary=text_of(node, "summary"),
-        families=texts_of(node, "families"),
-        board=text_of(node, "board") or None,
-        simulates_plant=flag_of(node, "simulates_plant"),
-        classes=texts_of(node, "classes"),
-        middlewares=MappingProxyType(middlewares),
-        has_usb_names=flag_of(node, "usb_names"),
-        tick=str(tick.value) if tick is not None else None,
-        tick_is_optional=tick is not None and flag_of(node["tick"], "optional"),
-        has_nodes=flag_of(node, "nodes"),
-        builds=flag_of(node, "builds"),
-        templates=texts_of(node, "templates"),
-        shared=texts_of(node, "shared"),
-        sdk=text_of(node, "sdk"),
-        headers=texts_of(node, "headers"),
-        built_by=text_of(node, "built_by") or "cmake",
-        program=text_of(node, "program"),
-        needs=texts_of(node, "needs"),
-        products=tuple(
-            Product(text_of(product, "file"), text_of(product, "what"))
-            for product in (products.elements() if products is not None else ())
-        ),
-        node=node,
-        folder=folder,
-        span=node["platform"].span,
     )
 
 

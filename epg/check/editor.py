@@ -24,7 +24,7 @@ from epg.quantity import SPELLINGS, units_of
 Schema = dict[str, Any]
 
 USER_FILES = ("tcf", "bindings", "model", "scenario")
-TARGET_FILES = ("board", "component", "middleware", "platform", "soc", "tool")
+TARGET_FILES = ("board", "component", "family", "middleware", "platform", "soc", "tool")
 _NUMBER = r"([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][-+]?[0-9]+)?"
 _COMPLETE = {"required": ["target"], "not": {"required": ["extends"]}}
 

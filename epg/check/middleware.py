@@ -32,7 +32,7 @@ def unoffered_hint(name: str, possible: Iterable[str], catalog: Catalog) -> str:
 
 def check_offer(target: Target, middleware: Middleware, diagnostics: Diagnostics) -> None:
     """Transports are named for middlewares only that use one."""
-    transports = target.platform.node.get("middlewares", middleware.name)
+    transports = target.platform.offers.get("middlewares", middleware.name)
     if transports is None:
         transports = middleware.node["platforms"][target.platform.name]
     if middleware.connection != "stream" and transports.elements():

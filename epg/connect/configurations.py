@@ -195,7 +195,7 @@ def _new_reason(choice: Choice, roots: Sequence[Path]) -> str:
     platform = choice.target.platform
     if not platform.builds:
         return f"EPG can check files for {platform.name}, but has no code for it"
-    if project_folder((platform.name, *platform.shared), roots) is None:
+    if project_folder(platform.project_names, roots) is None:
         return f"there are no files of a new project for {platform.name}: docs/cmake.md says what to write"
     return ""
 

@@ -62,7 +62,7 @@ class Emitter:
         platform = self.app.target.platform
         for file, template in platform_files(self.app).items():
             env = self._environment(file)
-            result[file] = env.get_template(f"platforms/{platform.name}/{template}").render(context)
+            result[file] = env.get_template(f"{platform.template_folder}/{template}").render(context)
         return {file: _tidy(text) for file, text in result.items()}
 
     def _environment(self, file: str) -> Environment:

@@ -84,6 +84,10 @@ def _target(app: Application, names: PathNames) -> list[str]:
     """The platform, what it needs, and the middlewares."""
     lines = _set("EPG_PLATFORM", [str(cmake(app.target.platform.name))])
     lines += _set("EPG_PLATFORM_CMAKE", [names.cmake(app.target.platform.folder / "platform.cmake")])
+    family = app.target.platform.family
+    if family is not None:
+        lines += _set("EPG_FAMILY", [str(cmake(family.name))])
+        lines += _set("EPG_FAMILY_CMAKE", [names.cmake(family.folder / "family.cmake")])
     lines += _set("EPG_NEEDS", [str(cmake(name)) for name in needed_tools(app)])
     for sdk, board in sorted(app.target.board.sdks.items()):
         lines += _set(f"EPG_BOARD_{sdk}", [str(cmake(board))])
@@ -100,8 +104,8 @@ def _target(app: Application, names: PathNames) -> list[str]:
 def _read(app: Application) -> tuple[list[Path], set[Path], list[Path]]:
     """Files that were read, folders that were searched, and files that would have been read if they existed."""
     platform = app.target.platform
-    folders = {platform.folder, *(platform.folder.parent / name for name in platform.shared)}
-    files = [*app.files, *app.target.files, *(platform.folder / name for name in platform.templates)]
+    folders = set(platform.folders)
+    files = [*app.files, *app.target.files]
     files += [path for folder in folders for path in folder.rglob("*.j2")]
     parts: list[Kind | Middleware] = [*_kinds(app), *app.communication.middlewares]
     for part in parts:

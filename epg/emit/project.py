@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A new project as text: the templates of ``targets/projects``, filled in.
 
->>> # files = project_files(plan, folder_of_project("pico", roots), roots)
+>>> # files = project_files(plan, folder_of_project("rp2", roots), roots)
 >>> # sorted(files)  ->  [".gitignore", ".vscode/launch.json", "CMakeLists.txt", ...]
 """
 

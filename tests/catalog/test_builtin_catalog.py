@@ -41,8 +41,8 @@ def test_everything_is_right() -> None:
     read_everything(catalog)
     assert [(p.span, p.message) for p in problems] == []
     folders = {path.name for folder in FOLDERS.values() for path in (TARGETS / folder).iterdir() if path.is_dir()}
-    shared = {"pico", "common"}  # by platforms, by kinds
-    assert {name for sort in FOLDERS for name in catalog.names(sort)} == folders - shared
+    shared = {"mcu", "common"}  # by platforms, by kinds
+    assert {name for category in FOLDERS for name in catalog.names(category)} == folders - shared
 
 
 def test_the_targets_of_the_thesis_and_those_without_a_board() -> None:

@@ -104,7 +104,8 @@ def test_what_is_not_known_is_not_accepted(keyword: str) -> None:
 
 def test_epgs_own_files_are_accepted_without_jsonschema() -> None:
     targets = data_folder("targets")
-    sorts = {"soc": "socs", "board": "boards", "platform": "platforms", "component": "components"}
+    sorts = {"soc": "socs", "board": "boards", "platform": "platforms", "family": "families"}
+    sorts |= {"component": "components"}
     for sort, folder in sorts.items():
         found = sorted((targets / folder).glob(f"*/{sort}.yaml"))
         assert found

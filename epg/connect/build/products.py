@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from epg.catalog.hardware import Platform
+from epg.catalog.platform import Platform
 
 CLIENT = "client-epg"
 _QUERY = "codemodel-v2"

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from epg.bootstrap import cache_folder
 from epg.catalog.catalog import load_catalog
-from epg.catalog.hardware import Platform
+from epg.catalog.platform import Platform
 from epg.connect.projects import find_jobs
 from epg.diagnostics import Diagnostics
 from epg.project import load_configuration
