@@ -1,46 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-# What the platforms on the Raspberry Pi Pico share: the port layer as sources of whoever links a target, and how
-# executables are made.  The Pico SDK is the user's: it is there when epg_add_target() is called, or the message says
-# what to write.
-
-# Adds the port layer to target <name>; <service> are the sources that say how core 0 serves communication.
-function(_epg_pico_target name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SERVICE;LIBRARIES")
-  _epg_pico_check("${name}" good)
-  if(NOT good)
-    set_property(TARGET ${name} PROPERTY EPG_FAILED TRUE) # what is said once need not be said of executables too
-    return()
-  endif()
-  _epg_pico_in_ram("${name}")
-  _epg_pico_library()
-  include("${EPG_TARGETS_DIR}/libraries/pico_quadrature/library.cmake")
-
-  # Its own interface library, because the sources must not be compiled into the static library.
-  add_library(${name}_port INTERFACE)
-  target_sources(${name}_port INTERFACE ${arg_SERVICE})
-  target_link_libraries(${name}_port INTERFACE epg_pico ${arg_LIBRARIES})
-  set(ports 0)
-  if(EPG_TRANSPORT STREQUAL "usb")
-    set(ports 1)
-  endif()
-  list(LENGTH EPG_MIDDLEWARES middlewares)
-  if(middlewares GREATER 1)
-    math(EXPR ports "${ports} + 1") # a console beside another middleware is on USB whatever that is on
-  endif()
-  if(ports GREATER 0)
-    _epg_pico_usb_library()
-    target_link_libraries(${name}_port INTERFACE epg_pico_usb)
-  endif()
-  # Only when a directory is done is it known what the user has set of executables.
-  cmake_language(EVAL CODE "cmake_language(DEFER DIRECTORY [[${CMAKE_SOURCE_DIR}]] CALL _epg_pico_check_executables [[${name}]] [[${ports}]] [[${CMAKE_SOURCE_DIR}]])")
-  _epg_pico_binary_info("${name}" info)
-  target_sources(${name}_port INTERFACE "${info}")
-  target_include_directories(${name} PRIVATE "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/include")
-  target_link_libraries(${name} INTERFACE ${name}_port)
-endfunction()
+# RP2040 and RP2350: built with the Raspberry Pi Pico SDK, which is the user's: it is there when epg_add_target() is
+# called, or the message says what to write.
 
 # Sets <result> to FALSE after an error when the Pico SDK is not there, or is there for another board.
-function(_epg_pico_check name result)
+function(_epg_rp2_check name result)
   set(${result} FALSE PARENT_SCOPE)
   set(board "${EPG_BOARD_pico_sdk}")
   if(NOT TARGET pico_runtime)
@@ -78,8 +41,29 @@ Configure with -DPICO_BOARD=${board} in a build folder of its own, or choose the
   set(${result} TRUE PARENT_SCOPE)
 endfunction()
 
+# Adds to the port layer <name>_port of target <name> what depends on the target.
+function(_epg_rp2_target name)
+  _epg_rp2_in_ram("${name}")
+  set(ports 0)
+  if(EPG_TRANSPORT STREQUAL "usb")
+    set(ports 1)
+  endif()
+  list(LENGTH EPG_MIDDLEWARES middlewares)
+  if(middlewares GREATER 1)
+    math(EXPR ports "${ports} + 1") # a console beside another middleware is on USB whatever that is on
+  endif()
+  if(ports GREATER 0)
+    _epg_rp2_usb_library()
+    target_link_libraries(${name}_port INTERFACE epg_pico_usb)
+  endif()
+  # Only when a directory is done is it known what the user has set of executables.
+  cmake_language(EVAL CODE "cmake_language(DEFER DIRECTORY [[${CMAKE_SOURCE_DIR}]] CALL _epg_rp2_check_executables [[${name}]] [[${ports}]] [[${CMAKE_SOURCE_DIR}]])")
+  _epg_rp2_binary_info("${name}" info)
+  target_sources(${name}_port INTERFACE "${info}")
+endfunction()
+
 # What `picotool info` shows of target <name>, as a source of whoever links it.
-function(_epg_pico_binary_info name result)
+function(_epg_rp2_binary_info name result)
   string(TOUPPER "${name}" NAME)
   set(file "${CMAKE_BINARY_DIR}/epg/${name}_binary_info.c")
   file(CONFIGURE OUTPUT "${file}" @ONLY CONTENT
@@ -95,13 +79,13 @@ endfunction()
 
 # Reports executables below <directory> that link target <name> and are set to what it cannot run with; <usb>: it is the
 # USB device.
-function(_epg_pico_check_executables name usb directory)
+function(_epg_rp2_check_executables name usb directory)
   get_property(targets DIRECTORY "${directory}" PROPERTY BUILDSYSTEM_TARGETS)
   foreach(target IN LISTS targets)
     get_target_property(libraries ${target} LINK_LIBRARIES)
     if("${name}" IN_LIST libraries OR "EPG::${name}" IN_LIST libraries)
       if(usb)
-        _epg_pico_check_stdio("${name}" "${target}" "${libraries}")
+        _epg_rp2_check_stdio("${name}" "${target}" "${libraries}")
       endif()
       get_target_property(definitions ${target} COMPILE_DEFINITIONS)
       list(FILTER definitions INCLUDE REGEX "^(-D)?PICO_NO_RAM_VECTOR_TABLE(=1)?$")
@@ -113,12 +97,12 @@ Take PICO_NO_RAM_VECTOR_TABLE out of the compile definitions of ${target}.")
   endforeach()
   get_property(subdirectories DIRECTORY "${directory}" PROPERTY SUBDIRECTORIES)
   foreach(subdirectory IN LISTS subdirectories)
-    _epg_pico_check_executables("${name}" "${usb}" "${subdirectory}")
+    _epg_rp2_check_executables("${name}" "${usb}" "${subdirectory}")
   endforeach()
 endfunction()
 
 # Reports <target>, an executable that links target <name>, when the SDK's stdio over USB is on for it, too.
-function(_epg_pico_check_stdio name target libraries)
+function(_epg_rp2_check_stdio name target libraries)
   get_target_property(enabled ${target} PICO_TARGET_STDIO_USB)
   set(by "pico_enable_stdio_usb()")
   if(enabled MATCHES "-NOTFOUND$")
@@ -141,7 +125,7 @@ endfunction()
 # the tables and the runtime are floating-point and time-critical code too, so their archives get names that end so.
 # That needs no linker script of our own, in any type of binary, and leaves the linker free to drop what is not used.
 # in_ram.ld stops the link when a linker script has other ideas.
-function(_epg_pico_in_ram name)
+function(_epg_rp2_in_ram name)
   foreach(library ${name} epg_runtime ${EPG_MODELS})
     get_target_property(done ${library} EPG_IN_RAM)
     if(NOT done)
@@ -154,28 +138,20 @@ function(_epg_pico_in_ram name)
   endforeach()
 endfunction()
 
-# The port layer that both platforms share.
-function(_epg_pico_library)
-  if(TARGET epg_pico)
-    return()
-  endif()
+# Adds to <library>, the port layer of all targets, what its sources need.
+function(_epg_rp2_library library)
   set(folder "${CMAKE_CURRENT_FUNCTION_LIST_DIR}")
-  set(shared "${folder}/../../platforms/mcu/src")
-  file(GLOB sources "${folder}/src/*.c" "${shared}/*.c")
-  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${folder}/src" "${shared}")
-  add_library(epg_pico INTERFACE)
-  target_sources(epg_pico INTERFACE ${sources})
-  target_include_directories(epg_pico INTERFACE "${folder}/include")
-  target_link_libraries(epg_pico INTERFACE
+  include("${EPG_TARGETS_DIR}/libraries/pico_quadrature/library.cmake")
+  target_link_libraries(${library} INTERFACE
     EPG::pico_quadrature pico_runtime pico_runtime_init pico_multicore pico_flash pico_unique_id
     hardware_clocks hardware_exception hardware_flash hardware_gpio hardware_irq hardware_pwm hardware_sync
     hardware_timer hardware_uart hardware_watchdog)
   # The user's own files are compiled with these, too: what only assembler reads is for assembler only.
   foreach(part DOUBLE FLOAT DIVIDER INT64_OPS BITS MEM)
     # What the control cycle calls of the SDK lies in RAM too.
-    target_compile_definitions(epg_pico INTERFACE $<$<COMPILE_LANGUAGE:ASM>:PICO_${part}_IN_RAM=1>)
+    target_compile_definitions(${library} INTERFACE $<$<COMPILE_LANGUAGE:ASM>:PICO_${part}_IN_RAM=1>)
   endforeach()
-  target_compile_definitions(epg_pico INTERFACE
+  target_compile_definitions(${library} INTERFACE
     # NaN stays NaN where the RP2040's ROM routines can do that.
     PICO_DOUBLE_PROPAGATE_NANS=1
     # An overflowing stack is a HardFault, which makes outputs safe.
@@ -184,15 +160,15 @@ function(_epg_pico_library)
     PICO_CORE1_STACK_SIZE=0)
   foreach(function panic __assert_func _exit multicore_reset_core1 multicore_launch_core1
       multicore_launch_core1_with_stack multicore_launch_core1_raw)
-    target_link_options(epg_pico INTERFACE LINKER:--wrap=${function})
+    target_link_options(${library} INTERFACE LINKER:--wrap=${function})
   endforeach()
-  target_link_options(epg_pico INTERFACE "${folder}/in_ram.ld")
-  set_property(TARGET epg_pico APPEND PROPERTY INTERFACE_LINK_DEPENDS "${folder}/in_ram.ld")
+  target_link_options(${library} INTERFACE "${folder}/in_ram.ld")
+  set_property(TARGET ${library} APPEND PROPERTY INTERFACE_LINK_DEPENDS "${folder}/in_ram.ld")
 endfunction()
 
 # The transport over USB: its own TinyUSB device, so it excludes the SDK's stdio over USB.
 # The program that links it has an epg_pico_target.h, which says how many serial ports it has.
-function(_epg_pico_usb_library)
+function(_epg_rp2_usb_library)
   if(TARGET epg_pico_usb)
     return()
   endif()
@@ -208,15 +184,21 @@ function(_epg_pico_usb_library)
   target_link_libraries(epg_pico_usb INTERFACE tinyusb_device_unmarked pico_usb_reset_interface_headers)
 endfunction()
 
-# An executable that holds target <name> and nothing else; <main> is its main().
-function(_epg_pico_executable executable name main)
+# Makes an <executable> with EPG's main() run from RAM, and files of it to flash.
+function(_epg_rp2_executable executable)
   _epg_find_picotool()
-  add_executable(${executable} "${main}")
-  target_compile_definitions(${executable} PRIVATE EPG_PICO_START=${name}_start)
-  target_link_libraries(${executable} PRIVATE ${name})
-  set_target_properties(${executable} PROPERTIES C_STANDARD 11 C_STANDARD_REQUIRED ON)
   pico_set_binary_type(${executable} copy_to_ram)
   pico_enable_stdio_uart(${executable} 0)
   pico_enable_stdio_usb(${executable} 0)
   pico_add_extra_outputs(${executable})
+endfunction()
+
+# The folder of the FreeRTOS kernel's port, and the submodule of the kernel that holds it.
+function(_epg_rp2_freertos_port port submodule)
+  set(${submodule} "portable/ThirdParty/Community-Supported-Ports" PARENT_SCOPE)
+  if(PICO_RP2040)
+    set(${port} "portable/ThirdParty/GCC/RP2040" PARENT_SCOPE)
+  else()
+    set(${port} "portable/ThirdParty/Community-Supported-Ports/GCC/RP2350_ARM_NTZ" PARENT_SCOPE)
+  endif()
 endfunction()

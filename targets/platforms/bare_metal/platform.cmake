@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-# Bare metal on the Raspberry Pi Pico: core 1 controls, core 0 communicates in an interrupt of lowest priority.
+# Bare metal: control in the interrupt of a timer, communication in one of lowest priority.
 
-include("${CMAKE_CURRENT_LIST_DIR}/../../families/rp2/family.cmake")
+include("${CMAKE_CURRENT_LIST_DIR}/../mcu/mcu.cmake")
 
 function(_epg_bare_metal_target name)
-  _epg_pico_target("${name}" SERVICE "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/src/service.c")
+  _epg_mcu_check("${name}" good)
+  if(good)
+    _epg_mcu_target("${name}" SERVICE "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/src/service.c")
+  endif()
 endfunction()
 
 function(_epg_bare_metal_executable executable name)
-  _epg_pico_executable("${executable}" "${name}" "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/src/main.c")
+  _epg_mcu_executable("${executable}" "${name}" "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/src/main.c")
 endfunction()

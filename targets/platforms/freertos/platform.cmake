@@ -1,23 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
-# FreeRTOS on the Raspberry Pi Pico: core 1 controls, bare; the kernel runs on core 0, where communication is a task.
+# FreeRTOS: control in the interrupt of a timer, above the kernel; communication in a task.
 
-include("${CMAKE_CURRENT_LIST_DIR}/../../families/rp2/family.cmake")
+include("${CMAKE_CURRENT_LIST_DIR}/../mcu/mcu.cmake")
 
 function(_epg_freertos_target name)
-  if(TARGET pico_runtime)
+  _epg_mcu_check("${name}" good)
+  if(good)
     _epg_freertos_kernel("${name}" good)
-    if(NOT good)
-      set_property(TARGET ${name} PROPERTY EPG_FAILED TRUE)
-      return()
-    endif()
   endif()
-  _epg_pico_target("${name}"
-    SERVICE "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/src/service.c" "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/src/hooks.c"
-    LIBRARIES FreeRTOS-Kernel-Static)
+  if(good)
+    _epg_mcu_target("${name}"
+      SERVICE "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/src/service.c" "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/src/hooks.c"
+      LIBRARIES FreeRTOS-Kernel-Static)
+  endif()
 endfunction()
 
 function(_epg_freertos_executable executable name)
-  _epg_pico_executable("${executable}" "${name}" "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/src/main.c")
+  _epg_mcu_executable("${executable}" "${name}" "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/src/main.c")
 endfunction()
 
 # The kernel's own CMake targets: the project's, or made here with EPG's FreeRTOSConfig.h.
@@ -27,19 +26,18 @@ function(_epg_freertos_kernel name result)
     return()
   endif()
   _epg_find_sdk(FREERTOS_KERNEL_PATH freertos_kernel)
-  set(port "portable/ThirdParty/GCC/RP2040")
   set(problem "${FREERTOS_KERNEL_PATH_PROBLEM}")
-  if(NOT PICO_RP2040)
-    set(port "portable/ThirdParty/Community-Supported-Ports/GCC/RP2350_ARM_NTZ")
-  endif()
+  cmake_language(CALL _epg_${EPG_FAMILY}_freertos_port port submodule)
   if(FREERTOS_KERNEL_PATH AND NOT EXISTS "${FREERTOS_KERNEL_PATH}/${port}/library.cmake")
-    set(problem "The FreeRTOS kernel in ${FREERTOS_KERNEL_PATH} has no port for this chip: there is no ${port}. Get it:\n  git -C \"${FREERTOS_KERNEL_PATH}\" submodule update --init portable/ThirdParty/Community-Supported-Ports")
+    set(problem "The FreeRTOS kernel in ${FREERTOS_KERNEL_PATH} has no port for this chip: there is no ${port}. Get it:\n  git -C \"${FREERTOS_KERNEL_PATH}\" submodule update --init ${submodule}")
   endif()
   if(problem)
     message(SEND_ERROR "epg_add_target(${name}): ${problem}")
+    set_property(TARGET ${name} PROPERTY EPG_FAILED TRUE)
     set(${result} FALSE PARENT_SCOPE)
     return()
   endif()
-  set(FREERTOS_CONFIG_FILE_DIRECTORY "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/include")
+  cmake_path(GET EPG_FAMILY_CMAKE PARENT_PATH family)
+  set(FREERTOS_CONFIG_FILE_DIRECTORY "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/include" "${family}/freertos/include")
   include("${FREERTOS_KERNEL_PATH}/${port}/library.cmake")
 endfunction()

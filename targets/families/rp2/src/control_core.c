@@ -13,6 +13,7 @@
 #include <string.h>
 
 #include "epg/port.h"
+#include "epg/ticks.h"
 #include "parts.h"
 
 #if PICO_RP2040
@@ -35,11 +36,6 @@
 /** Milliseconds without a control cycle until the watchdog resets the chip; several periods where those are long. */
 #ifndef EPG_PICO_WATCHDOG_MS
 #define EPG_PICO_WATCHDOG_MS 100
-#endif
-
-/** Milliseconds in which core 0 must have served communication once, or the watchdog is no longer fed. */
-#ifndef EPG_PICO_CORE0_TIMEOUT_MS
-#define EPG_PICO_CORE0_TIMEOUT_MS 500
 #endif
 
 /** How long a flash write may keep core 1 waiting before the watchdog is no longer fed. */
@@ -72,8 +68,7 @@ static struct {
     const epg_pico_target_t *pico;
     epg_control_t *control;
     const epg_application_t *application;
-    uint64_t due_ns; /* of the newest tick */
-    int64_t period_ns;
+    epg_mcu_ticks_t ticks;
     uint32_t tick_bit;
     uint32_t watchdog_load; /* 0: off */
     uint32_t silence_limit; /* control cycles */
@@ -87,7 +82,7 @@ static_assert(sizeof vectors <= 512, "the alignment of a vector table");
 /* A section of the SDK's linker scripts: at the end of SCRATCH_X, a memory bank that core 0 leaves alone. */
 static uint32_t stack[EPG_PICO_CONTROL_STACK_SIZE / sizeof(uint32_t)]
     __attribute__((section(".stack1.epg"), aligned(32)));
-const epg_pico_stack_t epg_pico_control_stack = {.bottom = stack, .top = stack + sizeof stack / sizeof stack[0]};
+const epg_mcu_stack_t epg_family_control_stack = {.bottom = stack, .top = stack + sizeof stack / sizeof stack[0]};
 
 /* The tick ------------------------------------------------------------------------------------------------------ */
 
@@ -98,19 +93,9 @@ static inline void feed_watchdog(void)
     }
 }
 
-/** Ticks that have passed since `due_ns`, none of which is late; the rest is the present one's. */
 static inline uint32_t pass_ticks(uint64_t now_ns)
 {
-    const int64_t late = (int64_t)(now_ns - loop.due_ns) - loop.period_ns;
-    uint32_t passed = 1U;
-    if (late < -TIMER_NS) {
-        return 0U; /* this wrap was counted together with the one before */
-    }
-    if (late >= loop.period_ns - TIMER_NS) {
-        passed += (uint32_t)((late + TIMER_NS) / loop.period_ns);
-    }
-    loop.due_ns += passed * (uint64_t)loop.period_ns;
-    return passed;
+    return epg_mcu_ticks_pass(&loop.ticks, now_ns, TIMER_NS);
 }
 
 /** Waits in RAM while core 0 writes to flash.  The outputs are safe and stay so. */
@@ -158,10 +143,10 @@ static void __not_in_flash_func(on_wrap)(void)
 
     /* The counter says to a clock how long ago the wrap was, the timer says whether it is that wrap's counter. */
     const uint32_t fine_ns = epg_pico_clocks_to_ns(count * tick->prescaler);
-    const int64_t difference = (int64_t)(loop.due_ns + fine_ns - now_ns);
+    const int64_t difference = (int64_t)(loop.ticks.due_ns + fine_ns - now_ns);
     const bool agree = difference > -2 * TIMER_NS && difference < 2 * TIMER_NS;
-    epg_pico_cycle_clock_begin(agree ? loop.due_ns + fine_ns : now_ns);
-    epg_control_cycle(loop.control, loop.due_ns, passed - 1U);
+    epg_pico_cycle_clock_begin(agree ? loop.ticks.due_ns + fine_ns : now_ns);
+    epg_control_cycle(loop.control, loop.ticks.due_ns, passed - 1U);
     epg_pico_cycle_clock_end();
 
     if (epg_control_silence(loop.control) < loop.silence_limit) {
@@ -185,11 +170,11 @@ static void __attribute__((noreturn)) __not_in_flash_func(sleep_between_ticks)(v
 
 static void start_watchdog(void)
 {
-    const uint32_t periods_ms = (uint32_t)(4 * loop.period_ns / 1000000);
+    const uint32_t periods_ms = (uint32_t)(4 * loop.ticks.period_ns / 1000000);
     const uint32_t timeout_ms = periods_ms > EPG_PICO_WATCHDOG_MS ? periods_ms : EPG_PICO_WATCHDOG_MS;
     watchdog_enable(timeout_ms, true);
     loop.watchdog_load = timeout_ms * 1000U * WATCHDOG_STEPS_PER_US;
-    const int64_t silence = (int64_t)EPG_PICO_CORE0_TIMEOUT_MS * 1000000 / loop.period_ns;
+    const int64_t silence = (int64_t)EPG_FAMILY_SERVICE_TIMEOUT_MS * 1000000 / loop.ticks.period_ns;
     loop.silence_limit = silence < 4 ? 4U : (uint32_t)silence;
 }
 
@@ -198,7 +183,7 @@ static void core1_main(void)
     memcpy(vectors, (const void *)(uintptr_t)scb_hw->vtor, sizeof vectors);
     vectors[16 + WRAP_IRQ] = on_wrap;
     scb_hw->vtor = (uintptr_t)vectors;
-    epg_pico_guard_faults();
+    epg_family_guard_faults();
 
     const epg_pico_tick_t *tick = &loop.pico->tick;
     epg_pico_resource_taken = false;
@@ -225,7 +210,7 @@ static void core1_main(void)
     start_watchdog();
 
     atomic_store(&state, STATE_RUNNING);
-    loop.due_ns = epg_pico_timer_us() * 1000U;
+    loop.ticks.due_ns = epg_pico_timer_us() * 1000U;
     hw_set_bits(&pwm_hw->en, epg_pico_output_slices | loop.tick_bit);
     sleep_between_ticks();
 }
@@ -258,7 +243,7 @@ static bool wait_while(state_t from)
     return true;
 }
 
-epg_pico_error_t epg_pico_control_start(const epg_pico_target_t *pico, epg_fault_t fault)
+epg_pico_error_t epg_family_control_start(const epg_pico_target_t *pico, epg_fault_t fault)
 {
     if (atomic_load(&state) != STATE_OFF) {
         return EPG_PICO_ERROR_RUNNING;
@@ -274,7 +259,7 @@ epg_pico_error_t epg_pico_control_start(const epg_pico_target_t *pico, epg_fault
     loop.pico = pico;
     loop.control = pico->target->control;
     loop.application = application;
-    loop.period_ns = (int64_t)application->period_ns;
+    loop.ticks.period_ns = (int64_t)application->period_ns;
     loop.tick_bit = 1U << pico->tick.slice;
     loop.fault = fault;
     atomic_store(&hold_request, 0U);
@@ -283,14 +268,14 @@ epg_pico_error_t epg_pico_control_start(const epg_pico_target_t *pico, epg_fault
 
     /* RP2040 data sheet 2.1.5: at equal priority core 0's flood of accesses could delay core 1's by a clock each. */
     busctrl_hw->priority = BUSCTRL_BUS_PRIORITY_PROC1_BITS;
-    epg_pico_stack_paint(epg_pico_control_stack.bottom, epg_pico_control_stack.top);
+    epg_mcu_stack_paint(epg_family_control_stack.bottom, epg_family_control_stack.top);
     __real_multicore_reset_core1();
-    __real_multicore_launch_core1_with_stack(core1_main, epg_pico_control_stack.bottom, sizeof stack);
+    __real_multicore_launch_core1_with_stack(core1_main, epg_family_control_stack.bottom, sizeof stack);
     if (wait_while(STATE_STARTING) && atomic_load(&state) == STATE_RUNNING) {
         return EPG_PICO_OK;
     }
     const bool failed = atomic_load(&state) == STATE_FAILED;
-    epg_pico_control_stop();
+    epg_family_control_stop();
     return failed ? EPG_PICO_ERROR_RESOURCE : EPG_PICO_ERROR_CORE;
 }
 
@@ -299,7 +284,7 @@ bool epg_pico_control_runs(void)
     return atomic_load(&state) != STATE_OFF;
 }
 
-void epg_pico_control_stop(void)
+void epg_family_control_stop(void)
 {
     if (atomic_load(&state) == STATE_OFF) {
         return;

@@ -22,11 +22,17 @@ bool epg_pico_core1_taken(void)
     return taken;
 }
 
+epg_mcu_error_t epg_family_check_start(const epg_family_target_t *target)
+{
+    (void)target;
+    return taken ? EPG_MCU_ERROR_CORE_TAKEN : EPG_MCU_OK;
+}
+
 /** Whether the program may have core 1 now. */
 static bool granted(void)
 {
     if (epg_pico_control_runs()) {
-        epg_pico_report(EPG_PICO_ERROR_CORE_TAKEN);
+        epg_mcu_report(EPG_PICO_ERROR_CORE_TAKEN);
         return false;
     }
     return true;
@@ -43,7 +49,7 @@ void __wrap_multicore_reset_core1(void)
 /** The program gets the control loop's stack, which is not in use then and is larger than the SDK's for core 1. */
 void __wrap_multicore_launch_core1(void (*entry)(void))
 {
-    const epg_pico_stack_t *stack = &epg_pico_control_stack;
+    const epg_mcu_stack_t *stack = &epg_family_control_stack;
     __wrap_multicore_launch_core1_with_stack(entry, stack->bottom,
                                              (size_t)(stack->top - stack->bottom) * sizeof *stack->bottom);
 }

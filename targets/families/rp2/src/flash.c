@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Writing to flash while a target runs: only while it is disabled, with core 1 waiting in RAM.
+ * Writing to flash while a target runs: only while it is disabled, with core 1 waiting in RAM; the store's two sectors.
  *
  * While flash is erased or written nothing can be read from it.  The control cycle lies in RAM, but what a user has
  * added to it may not.  So flash_safe_execute() of the SDK asks this first (get_flash_safety_helper() is its hook for
@@ -9,7 +9,31 @@
  */
 #include "flash.h"
 
+#include <string.h>
+
 #include "parts.h"
+
+/** Bytes from the start of flash.  The last sector is left to others: picotool's mark for RP2350-E10, for one. */
+#ifndef EPG_PICO_STORE_OFFSET
+#define EPG_PICO_STORE_OFFSET (PICO_FLASH_SIZE_BYTES - 3 * FLASH_SECTOR_SIZE)
+#endif
+
+/** How long core 1 may take to answer: its present cycle. */
+#define HOLD_TIMEOUT_MS 300U
+
+static_assert(EPG_FAMILY_STORE_CAPACITY == FLASH_SECTOR_SIZE - FLASH_PAGE_SIZE,
+              "the head has the last page of a sector");
+
+typedef struct job {
+    uint32_t offset; /* of the sector */
+    const uint8_t *data;
+    size_t size;
+    const uint8_t *head;
+    size_t head_size;
+} job_t;
+
+/* The end of the image in flash, from the SDK's linker scripts. */
+extern char __flash_binary_end;
 
 static uint32_t interrupts;
 
@@ -44,4 +68,46 @@ flash_safety_helper_t *get_flash_safety_helper(void)
         .exit_safe_zone_timeout_ms = leave,
     };
     return &helper;
+}
+
+/* The store ------------------------------------------------------------------------------------------------------ */
+
+const uint8_t *epg_family_store_sector(uint32_t index)
+{
+    return (const uint8_t *)(XIP_BASE + EPG_PICO_STORE_OFFSET + index * FLASH_SECTOR_SIZE);
+}
+
+/** Programs `size` bytes at `offset`, a multiple of a page, the rest of the last page with ones. */
+static void program(uint32_t offset, const uint8_t *data, size_t size)
+{
+    static uint8_t page[FLASH_PAGE_SIZE];
+    for (size_t done = 0; done < size; done += FLASH_PAGE_SIZE) {
+        const size_t part = size - done < FLASH_PAGE_SIZE ? size - done : FLASH_PAGE_SIZE;
+        memset(page, 0xFF, sizeof page);
+        memcpy(page, data + done, part);
+        flash_range_program(offset + (uint32_t)done, page, FLASH_PAGE_SIZE);
+    }
+}
+
+static void run(void *argument)
+{
+    const job_t *job = argument;
+    flash_range_erase(job->offset, FLASH_SECTOR_SIZE);
+    program(job->offset, job->data, job->size);
+    program(job->offset + EPG_FAMILY_STORE_CAPACITY, job->head, job->head_size);
+}
+
+bool epg_family_store_write(uint32_t index, const void *data, size_t size, const void *head, size_t head_size)
+{
+    if ((uintptr_t)&__flash_binary_end > (uintptr_t)epg_family_store_sector(0)) {
+        return false;
+    }
+    job_t job = {
+        .offset = EPG_PICO_STORE_OFFSET + index * FLASH_SECTOR_SIZE,
+        .data = data,
+        .size = size,
+        .head = head,
+        .head_size = head_size,
+    };
+    return flash_safe_execute(run, &job, HOLD_TIMEOUT_MS) == PICO_OK;
 }

@@ -63,7 +63,7 @@ void __not_in_flash_func(epg_pico_safe_state)(void)
     watchdog_hw->scratch[FAULT_WORD] = FAULT_MAGIC;
 }
 
-epg_fault_t epg_pico_fault_before_reset(void)
+epg_fault_t epg_family_fault_before_reset(void)
 {
     static epg_fault_t fault = EPG_FAULT_NONE;
     if (watchdog_hw->scratch[FAULT_WORD] == FAULT_MAGIC) {
@@ -117,7 +117,7 @@ static void __attribute__((naked)) __not_in_flash_func(on_hard_fault)(void)
                               : [cpuid] "i"(SIO_BASE + SIO_CPUID_OFFSET));
 }
 
-void epg_pico_guard_faults(void)
+void epg_family_guard_faults(void)
 {
     exception_handler_t *handlers = (exception_handler_t *)(uintptr_t)scb_hw->vtor;
     const exception_handler_t present = handlers[HARD_FAULT];

@@ -59,7 +59,7 @@ static void serve(uint number)
     const bool any = receive(hw, lines);
     send(hw, lines);
     if (any) {
-        epg_pico_service_wake();
+        epg_mcu_service_wake();
     }
 }
 

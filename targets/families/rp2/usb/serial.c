@@ -16,7 +16,7 @@ static uint8_t number_of(const void *context)
 
 static void on_interrupt(void)
 {
-    epg_pico_service_wake();
+    epg_mcu_service_wake();
 }
 
 static bool start(void *context, const char *title)

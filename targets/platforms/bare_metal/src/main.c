@@ -3,17 +3,17 @@
  * @file
  * main() of an executable that holds a target and nothing else.
  */
-#include "../../../families/rp2/src/sdk.h"
+#include "epg/family.h"
 
 /* <name>_start() of the target; CMake names it. */
-extern bool EPG_PICO_START(void);
+extern bool EPG_MCU_START(void);
 
 int main(void)
 {
-    if (!EPG_PICO_START()) {
-        panic(NULL);
+    if (!EPG_MCU_START()) {
+        epg_family_panic(NULL);
     }
     for (;;) {
-        __wfi();
+        epg_family_sleep();
     }
 }

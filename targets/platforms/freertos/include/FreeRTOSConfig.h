@@ -3,7 +3,8 @@
  * @file
  * The FreeRTOS kernel as EPG runs it: one core, static memory, a tick of 1 ms.
  *
- * Core 1 belongs to the control loop and knows nothing of the kernel, so the kernel is that of one core, on core 0.
+ * The control loop knows nothing of the kernel: it has a core of its own, or an interrupt above all that the kernel
+ * masks.  So the kernel is that of one core.
  * A project that brings its own FreeRTOSConfig.h (a target FreeRTOS-Kernel of its own) uses that; src/rtos.h says what
  * must be the same.
  */
@@ -67,16 +68,8 @@ void epg_freertos_assert_failed(const char *file, int line);
     } while (0)
 #endif
 
-/* Ports for RP2040 and RP2350: mutexes, semaphores and sleep_ms() of the Pico SDK work in tasks. */
-#define configSUPPORT_PICO_SYNC_INTEROP 1
-#define configSUPPORT_PICO_TIME_INTEROP 1
-
-/* Port for RP2350 (Cortex-M33): all in secure state, FPU saved, kernel below the SDK's default interrupt priority. */
-#define configENABLE_FPU 1
-#define configENABLE_MPU 0
-#define configENABLE_TRUSTZONE 0
-#define configRUN_FREERTOS_SECURE_ONLY 1
-#define configMAX_SYSCALL_INTERRUPT_PRIORITY 16
+/* What the kernel's port for the chips of a family takes. */
+#include "epg/freertos_port.h"
 
 #define INCLUDE_vTaskPrioritySet 1
 #define INCLUDE_uxTaskPriorityGet 1

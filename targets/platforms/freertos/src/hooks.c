@@ -4,7 +4,7 @@
  * What the kernel calls when something is wrong, outputs first, and when nothing is to be done.  A hook of the user's
  * own takes the place of one here.
  */
-#include "../../../families/rp2/src/parts.h"
+#include "epg/family.h"
 #include "rtos.h"
 
 void vApplicationStackOverflowHook(TaskHandle_t task, char *name);
@@ -13,18 +13,16 @@ void vApplicationIdleHook(void);
 void __attribute__((weak)) vApplicationStackOverflowHook(TaskHandle_t task, char *name)
 {
     (void)task;
-    epg_pico_safe_state();
-    panic("stack overflow in task %s", name);
+    epg_family_panic("stack overflow in task %s", name);
 }
 
-/** Core 0 sleeps until an interrupt, and leaves the bus to core 1. */
+/** Sleeps until an interrupt, and leaves the bus to the control loop. */
 void __attribute__((weak)) vApplicationIdleHook(void)
 {
-    __wfi();
+    epg_family_sleep();
 }
 
 void epg_freertos_assert_failed(const char *file, int line)
 {
-    epg_pico_safe_state();
-    panic("FreeRTOS: assertion in %s, line %d", file, line);
+    epg_family_panic("FreeRTOS: assertion in %s, line %d", file, line);
 }

@@ -1,24 +1,24 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Communication on FreeRTOS: a task, from static memory, with the user's tasks beside it on core 0.
+ * Communication on FreeRTOS: a task, from static memory, with the user's tasks beside it.
  *
  * It runs every millisecond and at once when a transport's interrupt asks for it.  Tasks of higher priority go before
- * it; if they keep it waiting longer than EPG_PICO_CORE0_TIMEOUT_MS, core 0 counts as stuck.
+ * it; if they keep it waiting longer than EPG_FAMILY_SERVICE_TIMEOUT_MS, communication counts as stuck.
  */
-#include "../../../families/rp2/src/parts.h"
+#include "epg/family.h"
 #include "epg/port_wait.h"
 #include "rtos.h"
 
 /**
- * Bytes that the task takes besides its middleware, with its registers while others run; interrupts have core 0's own
- * stack.  Measured on RP2040 over six runs with USB flooded: 1652 in all with the console.  RP2350 was not measured.
+ * Bytes that the task takes besides its middleware, with its registers while others run; interrupts have a stack of
+ * their own.  Measured on RP2040 over six runs with USB flooded: 1652 in all with the console.  RP2350 was not measured.
  */
-#define SERVICE_AND_CONTEXT (128 + 2 * EPG_PICO_FPU_FRAME)
+#define SERVICE_AND_CONTEXT (128 + 2 * EPG_FAMILY_FPU_FRAME)
 
 /** Words of the task's stack, a quarter more than was measured. */
 #ifndef EPG_FREERTOS_STACK_WORDS
-#define EPG_FREERTOS_STACK_WORDS ((EPG_PICO_MIDDLEWARE_STACK + SERVICE_AND_CONTEXT) * 5 / 16)
+#define EPG_FREERTOS_STACK_WORDS ((EPG_FAMILY_MIDDLEWARE_STACK + SERVICE_AND_CONTEXT) * 5 / 16)
 #endif
 
 #ifndef EPG_FREERTOS_PRIORITY
@@ -38,8 +38,7 @@ static TaskHandle_t task;
 static atomic_uint state = PARKED;
 static void (*service)(void);
 
-/** Asks for the service, from an interrupt of core 0. */
-void epg_pico_service_wake(void)
+void epg_mcu_service_wake(void)
 {
     if (task != NULL && xTaskGetSchedulerState() != taskSCHEDULER_NOT_STARTED) {
         BaseType_t woken = pdFALSE;
@@ -56,7 +55,7 @@ static void rest(void)
 
 void epg_port_wait_for_bytes(void)
 {
-    epg_pico_serve_others(rest);
+    epg_mcu_serve_others(rest);
 }
 
 static void run(void *argument)
@@ -78,7 +77,7 @@ static void run(void *argument)
     }
 }
 
-bool epg_pico_service_start(void (*serve)(void))
+bool epg_mcu_service_start(void (*serve)(void))
 {
     service = serve;
     atomic_store(&state, SERVING);
@@ -90,15 +89,14 @@ bool epg_pico_service_start(void (*serve)(void))
     return task != NULL;
 }
 
-bool epg_pico_service_stop(void)
+bool epg_mcu_service_stop(void)
 {
     const BaseType_t scheduler = xTaskGetSchedulerState();
     if (scheduler == taskSCHEDULER_NOT_STARTED) {
         atomic_store(&state, PARKED); /* the task has never run */
         return true;
     }
-    if (scheduler == taskSCHEDULER_SUSPENDED || __get_current_exception() != 0U ||
-        xTaskGetCurrentTaskHandle() == task) {
+    if (scheduler == taskSCHEDULER_SUSPENDED || epg_family_in_interrupt() || xTaskGetCurrentTaskHandle() == task) {
         return false;
     }
     atomic_store(&state, PARKING);
@@ -109,7 +107,7 @@ bool epg_pico_service_stop(void)
     return true;
 }
 
-void epg_pico_service_stack(uint32_t *size, uint32_t *used)
+void epg_mcu_service_stack(uint32_t *size, uint32_t *used)
 {
     *size = sizeof stack;
     *used = task == NULL ? 0U : (uint32_t)(sizeof stack - uxTaskGetStackHighWaterMark(task) * sizeof(StackType_t));

@@ -3,24 +3,18 @@
  * @file
  * How much of the stacks has been used: painted before, looked at after.
  */
-#include "../../../families/rp2/src/parts.h"
+#include "epg/family.h"
 
 #define PATTERN 0xE96E96E9U
 
-/* The SDK's linker scripts. */
-extern uint32_t __StackBottom;
-extern uint32_t __StackTop;
-
-const epg_pico_stack_t epg_pico_main_stack = {.bottom = &__StackBottom, .top = &__StackTop};
-
-void epg_pico_stack_paint(uint32_t *bottom, const uint32_t *end)
+void epg_mcu_stack_paint(uint32_t *bottom, const uint32_t *end)
 {
     for (volatile uint32_t *word = bottom; word < end; word++) {
         *word = PATTERN;
     }
 }
 
-uint32_t epg_pico_stack_used(const epg_pico_stack_t *stack, uint32_t unpainted)
+uint32_t epg_mcu_stack_used(const epg_mcu_stack_t *stack, uint32_t unpainted)
 {
     const volatile uint32_t *word = stack->bottom + unpainted / sizeof *word;
     while (word < stack->top && *word == PATTERN) {
@@ -29,7 +23,7 @@ uint32_t epg_pico_stack_used(const epg_pico_stack_t *stack, uint32_t unpainted)
     return (uint32_t)((uintptr_t)stack->top - (uintptr_t)word);
 }
 
-bool epg_pico_stack_full(const epg_pico_stack_t *stack)
+bool epg_mcu_stack_full(const epg_mcu_stack_t *stack)
 {
     return *stack->bottom != PATTERN;
 }

@@ -13,6 +13,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "epg/mcu.h"
 #include "epg/middleware.h"
 #include "epg/target.h"
 #include "epg/transport.h"
@@ -50,29 +51,19 @@ typedef struct epg_pico_target {
 } epg_pico_target_t;
 
 /** Why epg_pico_start() did not start, epg_pico_stop() did not stop, or the program did not get core 1. */
-typedef enum epg_pico_error {
-    EPG_PICO_OK = 0,
-    EPG_PICO_ERROR_RUNNING,   /**< it runs already */
-    EPG_PICO_ERROR_CLOCK,     /**< clk_sys is not what the generator computed all dividers for */
-    EPG_PICO_ERROR_PLACEMENT, /**< code or tables of the control cycle lie in flash: another linker script? */
-    EPG_PICO_ERROR_RESOURCE,  /**< a PIO block, an alarm or an interrupt is taken by somebody else */
-    EPG_PICO_ERROR_CORE,      /**< core 1 did not answer */
-    EPG_PICO_ERROR_CALLER,    /**< epg_pico_stop() was called where it cannot wait */
-    EPG_PICO_ERROR_CORE_TAKEN /**< start: the program uses core 1; later: the program has asked for core 1, in vain */
-} epg_pico_error_t;
+typedef epg_mcu_error_t epg_pico_error_t;
 
-/** What the port layer counts besides the statistics of the control cycle. */
-typedef struct epg_pico_status {
-    epg_pico_error_t error;      /**< the newest one; EPG_PICO_OK after a start */
-    bool after_watchdog;         /**< the watchdog ended the run before this one */
-    uint32_t control_stack_size; /**< bytes of core 1's stack, */
-    uint32_t control_stack_used; /**< and how many of them have ever been used */
-    uint32_t main_stack_size;    /**< of the stack that main() and interrupts of core 0 use */
-    uint32_t main_stack_used;
-    uint32_t service_stack_size; /**< of communication: of its interrupt on bare metal, of its task on FreeRTOS */
-    uint32_t service_stack_used;
-    uint32_t transport_lost; /**< bytes that the middleware's transport has received and lost */
-} epg_pico_status_t;
+#define EPG_PICO_OK EPG_MCU_OK
+#define EPG_PICO_ERROR_RUNNING EPG_MCU_ERROR_RUNNING
+#define EPG_PICO_ERROR_CLOCK EPG_MCU_ERROR_CLOCK           /**< of clk_sys */
+#define EPG_PICO_ERROR_PLACEMENT EPG_MCU_ERROR_PLACEMENT   /**< in flash */
+#define EPG_PICO_ERROR_RESOURCE EPG_MCU_ERROR_RESOURCE     /**< a PIO block, an alarm, a UART or an interrupt */
+#define EPG_PICO_ERROR_CORE EPG_MCU_ERROR_CORE             /**< core 1 */
+#define EPG_PICO_ERROR_CALLER EPG_MCU_ERROR_CALLER         /**< of epg_pico_stop() */
+#define EPG_PICO_ERROR_CORE_TAKEN EPG_MCU_ERROR_CORE_TAKEN /**< core 1 */
+
+/** What the port layer counts.  Control runs on core 1's stack, main() and interrupts use core 0's. */
+typedef epg_mcu_status_t epg_pico_status_t;
 
 /** The transport over USB CDC, in usb/, linked where a target uses it: the first serial port of the device, */
 extern const epg_transport_t epg_pico_usb;

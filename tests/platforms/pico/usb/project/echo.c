@@ -28,7 +28,7 @@ void epg_pico_outputs_off(void)
     outputs_off++;
 }
 
-void epg_pico_service_wake(void)
+void epg_mcu_service_wake(void)
 {
     __sev();
 }
