@@ -248,7 +248,7 @@ def test_a_users_folder_comes_first_and_a_missing_one_is_said(tmp_path: Path) ->
 
 
 def test_only_what_is_asked_for_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A target costs its three files, a kind its own."""
+    """A target costs the files of board, chip, platform and family, a kind its own."""
     from epg.catalog import catalog as module
 
     read: list[str] = []
@@ -258,7 +258,7 @@ def test_only_what_is_asked_for_is_read(monkeypatch: pytest.MonkeyPatch) -> None
     catalog.find_target("rpi_pico2_freertos")
     catalog.find_kind("pwm")
     catalog.find_kind("pwm")
-    assert sorted(read) == ["freertos", "pwm", "rp2350", "rpi_pico2"]
+    assert sorted(read) == ["freertos", "pwm", "rp2", "rp2350", "rpi_pico2"]
 
 
 def test_a_kind_of_a_user_shares_parameters_with_those_of_epg(tmp_path: Path) -> None:

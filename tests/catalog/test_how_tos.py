@@ -23,7 +23,14 @@ from tests.middlewares.client import Host
 from tests.middlewares.test_console_docs import hold
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGES = ["adding-a-board", "adding-a-component-kind", "adding-a-middleware", "adding-a-platform", "tutorial"]
+PAGES = [
+    "adding-a-board",
+    "adding-a-component-kind",
+    "adding-a-family",
+    "adding-a-middleware",
+    "adding-a-platform",
+    "tutorial",
+]
 NEEDS_PICO_SDK = "<!-- from here on the commands need the Pico SDK -->\n"
 _BLOCK = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 _FILE = re.compile(r"`([^`\s]+)`[^`\n]*:\s*\Z")

@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/**
+ * @file
+ * The store's records on a family whose two sectors are arrays: power cuts, sectors that cannot be read, refusals.
+ */
+#include <stdio.h>
+#include <string.h>
+
+#include "epg/family.h"
+#include "epg/port.h"
+#include "epg/ticks.h"
+
+#define SECTOR (EPG_FAMILY_STORE_CAPACITY + 16U)
+
+static uint8_t sectors[2][SECTOR];
+static bool readable[2];
+static int steps; /* until the supply fails, one for each byte programmed */
+static bool permitted;
+
+static void require(bool good, int line)
+{
+    if (!good) {
+        (void)printf("line %d\n", line);
+        __builtin_trap();
+    }
+}
+#define REQUIRE(condition) require(condition, __LINE__)
+
+const uint8_t *epg_family_store_sector(uint32_t index)
+{
+    return readable[index] ? sectors[index] : NULL;
+}
+
+static bool program(uint8_t *to, const uint8_t *from, size_t size)
+{
+    for (size_t i = 0; i < size; i++) {
+        if (steps-- <= 0) {
+            return false;
+        }
+        REQUIRE(to[i] == 0xFF); /* no place is programmed twice */
+        to[i] = from[i];
+    }
+    return true;
+}
+
+bool epg_family_store_write(uint32_t index, const void *data, size_t size, const void *head, size_t head_size)
+{
+    if (!permitted) {
+        return false;
+    }
+    REQUIRE(size <= EPG_FAMILY_STORE_CAPACITY && head_size <= 16U);
+    memset(sectors[index], 0xFF, SECTOR);
+    readable[index] = true;
+    return program(sectors[index], data, size) && program(sectors[index] + EPG_FAMILY_STORE_CAPACITY, head, head_size);
+}
+
+static void begin(void)
+{
+    memset(sectors, 0xFF, sizeof sectors);
+    readable[0] = readable[1] = permitted = true;
+    steps = 1000;
+}
+
+static bool stored(const char *text)
+{
+    char found[64] = {0};
+    return epg_port_store_read(found, sizeof found) == strlen(text) && strcmp(found, text) == 0;
+}
+
+static bool write_text(const char *text)
+{
+    return epg_port_store_write(text, strlen(text));
+}
+
+static void newest_counts(void)
+{
+    begin();
+    REQUIRE(stored(""));
+    REQUIRE(write_text("first") && stored("first"));
+    REQUIRE(write_text("second") && stored("second"));
+    REQUIRE(write_text("third") && stored("third"));
+    readable[0] = false; /* as by an error of ECC: the third record is there */
+    REQUIRE(stored("second"));
+    readable[0] = true;
+    readable[1] = false;
+    REQUIRE(stored("third"));
+    readable[0] = false;
+    REQUIRE(stored(""));
+    REQUIRE(write_text("again") && stored("again"));
+}
+
+static void power_cut(void)
+{
+    for (int cut = 0; cut < 6 + 16; cut++) {
+        begin();
+        REQUIRE(write_text("old one"));
+        steps = cut;
+        REQUIRE(!write_text("newest"));
+        REQUIRE(stored("old one"));
+        steps = 1000;
+        REQUIRE(write_text("after") && stored("after"));
+    }
+}
+
+static void refusals(void)
+{
+    char large[EPG_FAMILY_STORE_CAPACITY + 1U] = {0};
+    begin();
+    REQUIRE(write_text("kept"));
+    REQUIRE(!epg_port_store_write(large, sizeof large));
+    permitted = false;
+    REQUIRE(!write_text("lost") && stored("kept"));
+}
+
+static void ticks(void)
+{
+    epg_mcu_ticks_t clock = {.due_ns = 5000000, .period_ns = 1000000};
+    REQUIRE(epg_mcu_ticks_pass(&clock, 6000000 - 900, 1000) == 1 && clock.due_ns == 6000000);
+    REQUIRE(epg_mcu_ticks_pass(&clock, 6000900, 1000) == 0 && clock.due_ns == 6000000);
+    REQUIRE(epg_mcu_ticks_pass(&clock, 7700000, 1000) == 1 && clock.due_ns == 7000000);
+    REQUIRE(epg_mcu_ticks_pass(&clock, 10200000, 1000) == 3 && clock.due_ns == 10000000);
+}
+
+int main(void)
+{
+    newest_counts();
+    power_cut();
+    refusals();
+    ticks();
+    return 0;
+}
