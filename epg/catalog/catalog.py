@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from epg.catalog.check_file import check_file
-from epg.catalog.check_hardware import check_family, check_target
+from epg.catalog.check_hardware import check_target
 from epg.catalog.check_middleware import check_offers
 from epg.catalog.hardware import Board, Soc, Target, make_board, make_soc
 from epg.catalog.kind import Kind, KindPort, make_kind
@@ -178,9 +178,7 @@ class Catalog:
         node = load_yaml(paths[0], self._diagnostics)
         if node is not None and category == "component":
             node = with_shared_parameters(node, self.roots, self._diagnostics)
-        if node is None or not check_file(category, node, name, self._diagnostics):
-            return None
-        if category == "family" and not check_family(node, self.names("platform"), self._diagnostics):
+        if node is None or not check_file(category, node, name, self.names("platform"), self._diagnostics):
             return None
         if len(paths) > 1:
             message = f"{category} '{name}' stands in {len(paths)} targets folders, of which this one is used"

@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from pathlib import Path
 
-from epg.catalog.check_hardware import check_board, check_platform, check_soc
+from epg.catalog.check_hardware import check_board, check_family, check_platform, check_soc
 from epg.catalog.check_kind import check_kind
 from epg.catalog.check_middleware import check_middleware
 from epg.diagnostics import Diagnostics, did_you_mean
@@ -17,8 +17,8 @@ from epg.documents.yaml_file import newer_version
 from epg.source import Span, YamlNode
 
 
-def check_file(category: str, node: YamlNode, name: str, diagnostics: Diagnostics) -> bool:
-    """Whether the file of the item ``name`` is right; reports its mistakes."""
+def check_file(category: str, node: YamlNode, name: str, platforms: Sequence[str], diagnostics: Diagnostics) -> bool:
+    """Whether the file of the item ``name`` is right; reports its mistakes.  ``platforms`` are all that there are."""
     key = "kind" if category == "component" else category
     if not node.is_mapping:
         span = Span(node.span.file, 1, 1, 2)
@@ -42,6 +42,7 @@ def check_file(category: str, node: YamlNode, name: str, diagnostics: Diagnostic
         if node["builds"].value is True:
             _beside(node["builds"], "platform.cmake", "docs/adding-a-platform.md", diagnostics)
     elif category == "family":
+        check_family(node, platforms, diagnostics)
         _beside(node["family"], "family.cmake", "docs/adding-a-family.md", diagnostics)
     elif category == "middleware":
         check_middleware(node, diagnostics)

@@ -84,14 +84,12 @@ def _left_to_families(node: YamlNode, diagnostics: Diagnostics) -> None:
             diagnostics.error("only-with", node.key_span(key), message, hint="move it to families/<name>/family.yaml")
 
 
-def check_family(node: YamlNode, platforms: Sequence[str], diagnostics: Diagnostics) -> bool:
-    """Whether all platforms that a family names are among ``platforms``."""
-    errors = diagnostics.error_count
+def check_family(node: YamlNode, platforms: Sequence[str], diagnostics: Diagnostics) -> None:
+    """All platforms that a family names are among ``platforms``."""
     for platform in node["platforms"].elements():
         if platform.value not in platforms:
             hint = did_you_mean(str(platform.value), platforms, "in platforms/")
             diagnostics.error("unknown-name", platform.span, f"there is no platform '{platform.value}'", hint=hint)
-    return diagnostics.error_count == errors
 
 
 def check_target(target: Target, diagnostics: Diagnostics) -> None:
