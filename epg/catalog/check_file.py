@@ -10,6 +10,7 @@ from pathlib import Path
 from epg.catalog.check_hardware import check_board, check_family, check_platform, check_soc
 from epg.catalog.check_kind import check_kind
 from epg.catalog.check_middleware import check_middleware
+from epg.catalog.kind import TEMPLATE
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.documents.schema import load_schema, validate
 from epg.documents.text_file import is_file
@@ -54,7 +55,7 @@ def check_file(category: str, node: YamlNode, name: str, platforms: Sequence[str
     for path in (("driver", "headers"), ("driver", "sources")):
         _files_exist(node, path, _names_in(node, path), diagnostics)
     if category == "component":
-        _beside(node["kind"], "code.c.j2", "docs/adding-a-component-kind.md", diagnostics)
+        _beside(node["kind"], TEMPLATE, "docs/adding-a-component-kind.md", diagnostics)
     return diagnostics.error_count == errors
 
 

@@ -12,6 +12,9 @@ from typing import Any
 from epg.documents.items import flag_of, map_of, text_of, texts_of
 from epg.source import Span, YamlNode
 
+TEMPLATE = "code.c.j2"
+"""The file of a kind, and of a middleware that has one, with what it adds to generated code."""
+
 OUTPUT_CLASSES = ("digital_output", "pwm")
 """Classes of peripherals whose pins a component drives."""
 
@@ -177,7 +180,7 @@ class Kind:
     @property
     def files(self) -> tuple[Path, ...]:
         """The files that describe and implement the kind, with those that its shared parameters come from."""
-        names = ("component.yaml", "code.c.j2", *self.headers, *self.sources)
+        names = ("component.yaml", TEMPLATE, *self.headers, *self.sources)
         shared = (Path(parameter.span.file) for parameter in self.parameters)
         return tuple(dict.fromkeys([*(self.folder / name for name in names), *shared]))
 

@@ -8,12 +8,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 
-from epg.catalog.kind import KindParameter, make_parameters
+from epg.catalog.kind import TEMPLATE, KindParameter, make_parameters
 from epg.documents.items import flag_of, map_of, text_of, texts_of
 from epg.source import Span, YamlNode
 
-TEMPLATE = "code.c.j2"
-"""What generated code holds of a middleware, if it has this file."""
 STACK = 2048
 """Bytes of stack for middlewares that do not say how much they take."""
 

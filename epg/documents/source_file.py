@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import bisect
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics
+from epg.documents.text_file import ANOTHER_FILE, too_large
 from epg.source import Span
 
 MAX_BYTES = 16 << 20
@@ -73,23 +75,28 @@ def read_source(path: Path, diagnostics: Diagnostics, wanted_by: Span | None = N
 def read_any_text(path: Path, diagnostics: Diagnostics, wanted_by: Span | None = None) -> str | None:
     """The text of ``path`` in whatever encoding, or None after reporting why there is none."""
     whole = wanted_by or Span(str(path))
-    try:
-        with path.open("rb") as file:
-            data = file.read(MAX_BYTES + 1)
-    except OSError as error:
-        message = f"cannot read '{path.name}': {error.strerror or error}"
-        diagnostics.error("model-unreadable", whole, message, hint="check the file's permissions")
-        return None
-    if len(data) > MAX_BYTES:
-        limit = MAX_BYTES >> 20
-        message = f"'{path.name}' is larger than {limit} MiB"
-        diagnostics.error("model-unreadable", whole, message, hint="is this the right file?")
+    data = read_bytes(path, lambda message, hint: diagnostics.error("model-unreadable", whole, message, hint=hint))
+    if data is None:
         return None
     if b"\0" in data and not data.startswith((b"\xff\xfe", b"\xfe\xff")):
         message = f"'{path.name}' is not a text file"
         diagnostics.error("model-unreadable", whole, message, hint="export the model again")
         return None
     return decode(data)
+
+
+def read_bytes(path: Path, report: Callable[[str, str], None]) -> bytes | None:
+    """The bytes of a file of at most 16 MiB, or None after calling ``report`` with a message and a hint."""
+    try:
+        with path.open("rb") as file:
+            data = file.read(MAX_BYTES + 1)
+    except OSError as error:
+        report(f"cannot read '{path.name}': {error.strerror or error}", "check the file's permissions")
+        return None
+    if len(data) > MAX_BYTES:
+        report(too_large(path.name, MAX_BYTES), ANOTHER_FILE)
+        return None
+    return data
 
 
 def is_includable(name: str) -> bool:

@@ -21,6 +21,15 @@ Drafts = Mapping[Path, str]
 NO_DRAFTS: Drafts = MappingProxyType({})
 
 
+ANOTHER_FILE = "is this the right file?"
+"""The hint for a file that is too large to be what is asked for."""
+
+
+def too_large(name: str, limit: int) -> str:
+    """The message for a file of more than ``limit`` bytes, which are whole MiB."""
+    return f"'{name}' is larger than {limit >> 20} MiB"
+
+
 def read_text(
     path: Path, diagnostics: Diagnostics, wanted_by: Span | None = None, drafts: Drafts = NO_DRAFTS
 ) -> str | None:
@@ -42,9 +51,7 @@ def read_text(
         diagnostics.error("file-unreadable", whole, f"cannot read '{path.name}': {error.strerror or error}")
         return None
     if len(data) > MAX_BYTES:
-        diagnostics.error(
-            "file-too-large", whole, f"'{path.name}' is larger than 1 MiB", hint="is this the right file?"
-        )
+        diagnostics.error("file-too-large", whole, too_large(path.name, MAX_BYTES), hint=ANOTHER_FILE)
         return None
     try:
         text = data.decode("utf-8-sig")

@@ -11,7 +11,7 @@ from pathlib import Path
 from xml.parsers import expat
 
 from epg.diagnostics import Diagnostics, Note
-from epg.documents.source_file import MAX_BYTES, decode
+from epg.documents.source_file import decode, read_bytes
 from epg.documents.text_file import one_line
 from epg.source import Span
 
@@ -54,17 +54,12 @@ def load_xml(path: Path, diagnostics: Diagnostics, *, required: bool = True) -> 
     Files that only add to what the sources say (``required`` false) give warnings instead of errors.
     """
     report = diagnostics.error if required else diagnostics.warning
-    hint = "" if required else _IGNORED
-    try:
-        with path.open("rb") as file:
-            data = file.read(MAX_BYTES + 1)
-    except OSError as error:
-        message = f"cannot read '{path.name}': {error.strerror or error}"
-        report("model-unreadable", Span(str(path)), message, hint=hint or "check the file's permissions")
-        return None
-    if len(data) > MAX_BYTES:
-        message = f"'{path.name}' is larger than {MAX_BYTES >> 20} MiB"
-        report("model-unreadable", Span(str(path)), message, hint=hint or "is this the right file?")
+
+    def unreadable(message: str, hint: str) -> None:
+        report("model-unreadable", Span(str(path)), message, hint=hint if required else _IGNORED)
+
+    data = read_bytes(path, unreadable)
+    if data is None:
         return None
     return parse_xml(data, Span(str(path)), diagnostics, required=required)
 

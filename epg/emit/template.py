@@ -21,6 +21,7 @@ from jinja2 import compiler, nodes
 from jinja2.runtime import Macro
 
 from epg.bootstrap import cache_folder
+from epg.catalog.kind import TEMPLATE
 from epg.diagnostics import Diagnostics, UserError
 from epg.emit import text
 from epg.emit.text import CMakeCode, Code, DevicetreeCode, Escaped, KconfigCode, ProjectText
@@ -199,7 +200,7 @@ def mistake_in_template(error: Exception) -> tuple[str, int, str] | None:
 
 def macro_mistake(folder: Path, macro: str, message: str, arguments: int) -> UserError:
     """What is wrong with ``macro`` of the kind in ``folder``, which is called with so many ``arguments``."""
-    path = folder / "code.c.j2"
+    path = folder / TEMPLATE
     lines = path.read_text(encoding="utf-8").splitlines()
     found = [number for number, line in enumerate(lines, 1) if re.search(rf"\bmacro\s+{macro}\b", line)]
     form = f"{{% macro {macro}({', '.join(('c', 'port', 'value')[:arguments])}) %}}"

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 
 from epg.diagnostics import Diagnostics
 from epg.documents.source_file import MAX_BYTES
+from epg.documents.text_file import ANOTHER_FILE, too_large
 from epg.source import Span
 
 if TYPE_CHECKING:
@@ -116,7 +117,7 @@ def _folder(root: Path) -> FmuFiles:
         if total > MAX_UNPACKED:
             raise _Refused(f"'{SOURCES}' holds more than {MAX_UNPACKED >> 20} MiB", "is this the right folder?")
     if DESCRIPTION not in contents:
-        raise _Refused(f"'{DESCRIPTION}' is larger than {MAX_BYTES >> 20} MiB", "is this the right file?")
+        raise _Refused(too_large(DESCRIPTION, MAX_BYTES), ANOTHER_FILE)
     binaries = root / "binaries"
     platforms = sorted(entry.name for entry in binaries.iterdir()) if binaries.is_dir() else []
     return FmuFiles(root, False, contents, tuple(platforms))
@@ -137,10 +138,10 @@ def _archive(path: Path) -> FmuFiles:
             left = MAX_UNPACKED
             for name, entry in sorted(wanted.items()):
                 if entry.file_size > MAX_BYTES:
-                    raise _Refused(f"'{name}' in it is larger than {MAX_BYTES >> 20} MiB", "is this the right file?")
+                    raise _Refused(too_large(name, MAX_BYTES), ANOTHER_FILE)
                 left -= entry.file_size
                 if left < 0:
-                    raise _Refused(f"its sources are larger than {MAX_UNPACKED >> 20} MiB", "is this the right file?")
+                    raise _Refused(f"its sources are larger than {MAX_UNPACKED >> 20} MiB", ANOTHER_FILE)
                 with archive.open(entry) as file:
                     data = file.read(entry.file_size + 1)  # what the entry says of its size may be a lie
                 if len(data) != entry.file_size:
@@ -164,7 +165,7 @@ def _check_directory(path: Path) -> None:
     """Refuses what would cost memory and time before the first entry is looked at."""
     size = path.stat().st_size
     if size > MAX_ARCHIVE:
-        raise _Refused(f"'{path.name}' is larger than {MAX_ARCHIVE >> 20} MiB", "is this the right file?")
+        raise _Refused(too_large(path.name, MAX_ARCHIVE), ANOTHER_FILE)
     with path.open("rb") as file:
         file.seek(max(0, size - (1 << 16) - _END.size - 20))
         tail = file.read()
@@ -175,7 +176,7 @@ def _check_directory(path: Path) -> None:
         raise _Refused(f"'{path.name}' is not a zip archive", "an FMU is a zip file with 'modelDescription.xml' in it")
     _, _, _, _, count, directory, _, _ = _END.unpack_from(tail, at)
     if tail[max(0, at - 20) : at][:4] == _END64_LOCATOR or count > MAX_ENTRIES or directory > MAX_DIRECTORY:
-        raise _Refused(f"'{path.name}' holds more than {MAX_ENTRIES} files", "is this the right file?")
+        raise _Refused(f"'{path.name}' holds more than {MAX_ENTRIES} files", ANOTHER_FILE)
 
 
 def _entries(archive: zipfile.ZipFile) -> tuple[dict[str, zipfile.ZipInfo], set[str]]:
@@ -184,7 +185,7 @@ def _entries(archive: zipfile.ZipFile) -> tuple[dict[str, zipfile.ZipInfo], set[
     platforms: set[str] = set()
     seen: dict[str, str] = {}
     if len(archive.infolist()) > MAX_ENTRIES:  # the number at the end of the archive may be a lie
-        raise _Refused(f"it holds more than {MAX_ENTRIES} files", "is this the right file?")
+        raise _Refused(f"it holds more than {MAX_ENTRIES} files", ANOTHER_FILE)
     for entry in archive.infolist():
         name = entry.orig_filename
         parts = name.rstrip("/").split("/")

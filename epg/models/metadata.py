@@ -20,7 +20,9 @@ from epg.models.configuration import (
     load_configuration,
     load_model_description,
 )
+from epg.models.fmu_files import DESCRIPTION
 from epg.models.model import Model, Port
+from epg.models.neighbours import SOURCE_FOLDERS
 from epg.models.ports import make_parameters
 from epg.models.tokens import Tokens, is_tokens_file, load_tokens
 from epg.source import Span
@@ -73,10 +75,10 @@ class Metadata:
 def find_metadata(main: Path, name: str, diagnostics: Diagnostics) -> Metadata:
     """The metadata beside the source file ``main`` of the model called ``name``; unreadable files give a warning."""
     directory = main.parent
-    folders = [directory, directory.parent] if directory.name.lower() in ("src", "source", "sources") else [directory]
+    folders = [directory, directory.parent] if directory.name.lower() in SOURCE_FOLDERS else [directory]
     tokens = next((found for folder in folders if (found := _find_tokens(folder, main, name, diagnostics))), None)
     path = next((found for found in map(find_configuration, folders) if found), None)
-    described = next((f / "modelDescription.xml" for f in folders if (f / "modelDescription.xml").is_file()), None)
+    described = next((f / DESCRIPTION for f in folders if (f / DESCRIPTION).is_file()), None)
     return Metadata(
         tokens,
         load_configuration(path, diagnostics) if path else None,
