@@ -132,13 +132,14 @@ def _pins_needed(kind: Kind) -> Schema:
 
 
 def _middlewares(targets: Iterable[Target], catalog: Catalog, named: bool) -> list[Schema]:
-    """What each platform offers in ``communication``, for files that name one of its targets.
+    """What each platform offers in ``communication`` on a family of chips, for files that name one of its targets.
 
     ``named``: a transport can be the name of a component too.
     """
     platforms: dict[str, list[Target]] = {}
     for target in targets:
-        platforms.setdefault(target.platform.name, []).append(target)
+        family = target.platform.family
+        platforms.setdefault(f"{target.platform.name} {family.name if family else ''}", []).append(target)
     rules: list[Schema] = []
     for group in platforms.values():
         possible = offered(group[0], catalog)
