@@ -324,6 +324,10 @@ TEST(diagnostics_tell_state_and_statistics)
     run(5);
     CHECK(strcmp(diagnosed("cycles", diagnose(), &level), "5") == 0);
     CHECK_EQUAL(level, 0);
+    node.malformed = UINT32_MAX;
+    node.unsent = 1020;
+    CHECK(strcmp(diagnosed("malformed", diagnose(), &level), "4294967295") == 0);
+    CHECK(strcmp(diagnosed("unsent", diagnose(), &level), "1020") == 0);
     CHECK(strcmp(diagnosed("firmware", diagnose(), &level), "0123456789abcdef") == 0);
     epg_control_request(&fake.control, false);
     run(1);
