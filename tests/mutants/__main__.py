@@ -2,7 +2,7 @@
 """Tries mutants of the generator and the runtime against the tests::
 
 python -m tests.mutants --check     # fails if a mutant that was caught before survives now
-python -m tests.mutants --choose    # chooses 200 mutants anew, and writes tests/mutants/caught.txt
+python -m tests.mutants --choose    # tries 200 mutants, without those that tests/mutants/caught.txt has
 """
 
 from __future__ import annotations
@@ -15,8 +15,9 @@ from pathlib import Path
 
 from . import results
 from .choice import AREAS, Choice, all_mutants, choose, find
-from .results import CAUGHT, EQUIVALENT, SURVIVED, Result
+from .results import CAUGHT, SURVIVED, Result
 from .trial import Trial
+from .workshop import ALL, SOME
 
 RESULTS = Path(__file__).resolve().parent / "caught.txt"
 
@@ -25,7 +26,7 @@ def main(arguments: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="python -m tests.mutants", description=(__doc__ or "").partition("\n")[0])
     task = parser.add_mutually_exclusive_group(required=True)
     task.add_argument("--check", action="store_true", help="try the mutants of the file of results again")
-    task.add_argument("--choose", action="store_true", help="choose mutants and write the file of results")
+    task.add_argument("--choose", action="store_true", help="choose mutants and add them to the file of results")
     parser.add_argument("--results", type=Path, default=RESULTS, help="the file of results")
     parser.add_argument("--each", type=int, default=50, help="how many mutants to choose in each of the four areas")
     parser.add_argument("--seed", type=int, default=1, help="another number chooses other mutants")
@@ -44,13 +45,12 @@ def main(arguments: list[str]) -> int:
 
 def _choose(options: argparse.Namespace, everything: list[Choice], folder: Path) -> int:
     chosen = [one for area in AREAS for one in choose(everything, area, options.each, options.seed, folder)]
-    earlier = results.read(options.results) if options.results.is_file() else []
-    equivalent = {result.identity: result for result in earlier if result.state == EQUIVALENT}
-    found = []
-    for one, caught in Trial(folder, options.jobs).run(chosen):
-        result = Result(CAUGHT if caught else SURVIVED, one.area, one.mutant.identity)
-        found.append(result if caught else equivalent.get(result.identity, result))
-        _show(found[-1], one)
+    found = results.read(options.results) if options.results.is_file() else []
+    known = {result.identity for result in found}
+    rest = [one for one in chosen if one.mutant.identity not in known]
+    for one, caught in Trial(folder, options.jobs, SOME).run(rest):
+        found.append(Result(CAUGHT if caught else SURVIVED, one.area, one.mutant.identity))
+        _show(found[-1].state, found[-1], one)
         results.write(options.results, found)
     for state in results.STATES:
         print(f"{state}: {sum(result.state == state for result in found)}")
@@ -58,33 +58,26 @@ def _choose(options: argparse.Namespace, everything: list[Choice], folder: Path)
 
 
 def _check(options: argparse.Namespace, everything: list[Choice], folder: Path) -> int:
-    before = results.read(options.results)
-    places = {result: find(everything, result.identity) for result in before if result.state != EQUIVALENT}
-    result_of = {one: result for result, found in places.items() for one in found}
-    now = {result: "gone" for result in before if result not in places or not places[result]}
-    for one, caught in Trial(folder, options.jobs).run(list(result_of)):
-        result = result_of[one]
-        if now.get(result) != SURVIVED:
-            now[result] = CAUGHT if caught else SURVIVED
-        if now[result] != result.state:
-            _show(Result(now[result], result.area, result.identity), one)
-    for result in places:
-        if now[result] == "gone":
-            _show(Result("gone", result.area, result.identity))
-    for state in results.STATES:
-        counts = [sum(r.state == state and now[r] == other for r in places) for other in (CAUGHT, SURVIVED, "gone")]
-        if state != EQUIVALENT:
-            print(f"{state} before: {counts[0]} caught, {counts[1]} survive, {counts[2]} gone")
-    return 1 if any(result.state == CAUGHT and now[result] == SURVIVED for result in places) else 0
+    """Tries those that were caught, with all tests: which of them are the quickest changes from run to run."""
+    before = [result for result in results.read(options.results) if result.state == CAUGHT]
+    results_of = {one: result for result in before for one in find(everything, result.identity)}
+    for result in before:
+        if result not in results_of.values():
+            _show("gone", result)
+    survived = set()
+    for one, caught in Trial(folder, options.jobs, ALL).run(list(results_of)):
+        if not caught:
+            survived.add(results_of[one])
+            _show(SURVIVED, results_of[one], one)
+    found = len(set(results_of.values()))
+    print(f"{found - len(survived)} are still caught, {len(survived)} survive, {len(before) - found} are gone")
+    return 1 if survived else 0
 
 
-def _show(result: Result, one: Choice | None = None) -> None:
+def _show(state: str, result: Result, one: Choice | None = None) -> None:
     place = f" {one.mutant.file}:{one.mutant.lines.start}" if one else ""
-    identity = result.identity
-    print(
-        f"{result.state}: {result.area} {identity.function}{place}\n  - {identity.before}\n  + {identity.after}",
-        flush=True,
-    )
+    found = result.identity
+    print(f"{state}: {result.area} {found.function}{place}\n  - {found.before}\n  + {found.after}", flush=True)
 
 
 if __name__ == "__main__":

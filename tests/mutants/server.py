@@ -76,7 +76,8 @@ def _run(session: pytest.Session, request: dict[str, Any]) -> int:
     if "code" in request:
         replace_functions(marshal.loads(Path(request["code"]).read_bytes()))
     if "record" in request:
-        return _record(session, session.items, Path(request["record"]))
+        files = sorted({item.path for item in session.items})[request["part"] :: request["parts"]]
+        return _record(session, [item for item in session.items if item.path in files], Path(request["record"]))
     tests = {item.nodeid: item for item in session.items}
     items = [tests[name] for name in request["tests"]]
     for item, following in zip(items, [*items[1:], None]):

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.mutants import c_source, python_source, results, workshop
+from tests.mutants.__main__ import main
 from tests.mutants.choice import Choice, find
 from tests.mutants.mutant import Identity, Mutant
 from tests.mutants.results import CAUGHT, EQUIVALENT, Result
@@ -150,16 +151,24 @@ def test_functions_are_replaced_where_they_are() -> None:
     assert not imported(10)
 
 
-def test_the_tests_that_run_a_line_come_in_the_order_of_their_time() -> None:
+def test_the_tests_that_run_a_line_come_in_order() -> None:
     mutant = in_python(PYTHON)[0]
     coverage = {
         "slow": (9.0, {"pins.py": [5, 6]}),
         "quick": (0.1, {"pins.py": [6]}),
+        "tests/test_pins.py::own": (5.0, {"pins.py": [6]}),
         "elsewhere": (0.1, {"pins.py": [7], "a.py": [6]}),
-        "too slow": (workshop.FIRST_SECONDS, {"pins.py": [6]}),
+        "too slow": (10.0, {"pins.py": [6]}),
     }
-    assert workshop.tests_of(mutant, coverage) == ["quick", "slow"]
+    own = "tests/test_pins.py::own"
+    assert workshop.tests_of(mutant, coverage, 15.0) == [own, "quick", "slow"]
+    assert workshop.tests_of(mutant, coverage, workshop.ALL) == [own, "quick", "slow", "too slow"]
+    assert workshop.tests_of(mutant, coverage, 0.0) == [own]
 
 
 def test_the_tests_that_are_chosen_exist() -> None:
     assert [name for name in [*IN_PROCESS, *CLOSED_LOOP] if not (workshop.ROOT / name).exists()] == []
+
+
+def test_mutants_that_were_caught_are_still_caught() -> None:
+    assert main(["--check"]) == 0

@@ -34,9 +34,11 @@ RUNS = ("emit", "runtime")
 class Trial:
     """Copies of the project in ``folder``, one for each of ``jobs`` threads."""
 
-    def __init__(self, folder: Path, jobs: int) -> None:
+    def __init__(self, folder: Path, jobs: int, at_most: float) -> None:
+        """``at_most`` bounds the seconds of tests that one mutant of Python meets."""
         self._folder = folder
         self._jobs = jobs
+        self._at_most = at_most
         self._free: SimpleQueue[Workshop] = SimpleQueue()
 
     def run(self, chosen: Sequence[Choice]) -> Iterator[tuple[Choice, bool]]:
@@ -48,7 +50,9 @@ class Trial:
             copy.mkdir()
             workshops.append(Workshop(copy, IN_PROCESS))
             self._free.put(workshops[-1])
-        self._coverage = workshops[0].record()
+        with ThreadPoolExecutor(self._jobs) as pool:
+            parts = pool.map(lambda k: workshops[k].record(k, self._jobs), range(self._jobs))
+            self._coverage = {test: found for part in parts for test, found in part.items()}
         minutes = (time.monotonic() - began) / 60
         print(f"{len(self._coverage)} tests without a mutant: {minutes:.0f} minutes", flush=True)
         self._objects = Objects(self._folder / "objects")
@@ -65,7 +69,7 @@ class Trial:
             if one.mutant.file.endswith(".c"):
                 caught = self._objects.catch(one.mutant, workshop.folder)
             else:
-                caught = workshop.catches(one.mutant, self._coverage)
+                caught = workshop.catches(one.mutant, self._coverage, self._at_most)
             return caught or (one.area in RUNS and workshop.catches_last(one.mutant, CLOSED_LOOP))
         finally:
             self._free.put(workshop)

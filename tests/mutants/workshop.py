@@ -19,8 +19,9 @@ from epg.bootstrap import cache_folder
 from .mutant import Mutant
 
 ROOT = Path(__file__).resolve().parents[2]
-FIRST_SECONDS = 15.0
-"""Tests that run a mutant's line are tried, the quickest first, until they take longer than this together."""
+SOME = 6.0
+"""Seconds of tests, the quickest first, that a mutant meets which is tried for the first time."""
+ALL = float("inf")
 LIMIT = 400
 """A mutant with which a run of pytest takes longer than this, in seconds, is caught: it does not end."""
 
@@ -58,16 +59,16 @@ class Workshop:
         self._from_server.close()
         self._server.wait()
 
-    def record(self) -> Coverage:
-        """The lines that each test runs.  Tests that fail without a mutant are left out."""
+    def record(self, part: int, parts: int) -> Coverage:
+        """The lines that each test of a part of the files runs.  Tests that fail without a mutant are left out."""
         path = self.folder / "record.json"
-        self._ask({"record": str(path), "limit": 3600})
+        self._ask({"record": str(path), "part": part, "parts": parts, "limit": 3600})
         found = json.loads(path.read_text("utf-8"))
         return {test: (seconds, lines) for test, (seconds, lines) in found.items()}
 
-    def catches(self, mutant: Mutant, coverage: Coverage) -> bool:
-        """True if a test fails that runs the line of a mutant of Python."""
-        tests = tests_of(mutant, coverage)
+    def catches(self, mutant: Mutant, coverage: Coverage, at_most: float) -> bool:
+        """True if a test fails that runs the line of a mutant of Python.  ``at_most`` bounds the seconds of tests."""
+        tests = tests_of(mutant, coverage, at_most)
         seconds = sum(coverage[test][0] for test in tests)
         if not tests:
             return False
@@ -76,7 +77,7 @@ class Workshop:
                 return not self._passes(tests)
         code = self.folder / "code"
         code.write_bytes(marshal.dumps(compile(mutant.changed(), str(self.tree / mutant.file), "exec")))
-        return not self._ask({"code": str(code), "tests": tests, "limit": 60 + 10 * seconds})
+        return not self._ask({"code": str(code), "tests": tests, "limit": 30 + 5 * seconds})
 
     def catches_last(self, mutant: Mutant, tests: Sequence[str]) -> bool:
         """True if a test fails, whatever lines it runs."""
@@ -133,18 +134,22 @@ def run(command: Sequence[str | Path], folder: Path, environment: Mapping[str, s
         return -1
 
 
-def tests_of(mutant: Mutant, coverage: Coverage) -> list[str]:
-    """The tests that run a mutant's line, the quickest first."""
+def tests_of(mutant: Mutant, coverage: Coverage, at_most: float) -> list[str]:
+    """The tests that run a mutant's line: those of the file that is named after its module, then the quickest first.
+
+    All of that file, or one test at least; others as long as the sum of their times is not above ``at_most`` seconds.
+    """
+    own = f"/test_{Path(mutant.file).stem}.py::"
     tests = []
     for test, (seconds, lines) in coverage.items():
         found = lines.get(mutant.file, ())
         if found and (mutant.at_import or any(number in mutant.lines for number in found)):
-            tests.append((seconds, test))
+            tests.append((own not in test, seconds, test))
     chosen: list[str] = []
     total = 0.0
-    for seconds, test in sorted(tests):
+    for other, seconds, test in sorted(tests):
         total += seconds
-        if chosen and total > FIRST_SECONDS:
+        if chosen and other and total > at_most:
             break
         chosen.append(test)
     return chosen
