@@ -8,6 +8,7 @@ answers are lines of JSON in the pipes whose numbers ``EPG_MUTANTS_PIPES`` gives
 from __future__ import annotations
 
 import gc
+import importlib
 import json
 import marshal
 import os
@@ -74,6 +75,7 @@ def _memory(process: int) -> int:
 
 def _run(session: pytest.Session, request: dict[str, Any]) -> int:
     if "code" in request:
+        importlib.import_module(request["module"])  # the command line imports it when a test calls it, with other code
         replace_functions(marshal.loads(Path(request["code"]).read_bytes()))
     if "record" in request:
         files = sorted({item.path for item in session.items})[request["part"] :: request["parts"]]

@@ -77,7 +77,9 @@ class Workshop:
                 return not self._passes(tests)
         code = self.folder / "code"
         code.write_bytes(marshal.dumps(compile(mutant.changed(), str(self.tree / mutant.file), "exec")))
-        return not self._ask({"code": str(code), "tests": tests, "limit": 30 + 5 * seconds})
+        module = mutant.file.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
+        request = {"code": str(code), "module": module, "tests": tests, "limit": 30 + 5 * seconds}
+        return not self._ask(request)
 
     def catches_last(self, mutant: Mutant, tests: Sequence[str]) -> bool:
         """True if a test fails, whatever lines it runs."""
