@@ -225,7 +225,7 @@ class _Reader:
         )
 
     def _plain(self, number: int, line: str, start: int) -> Mistake | None:
-        value = re.sub(r"\s#.*", "", line[start:]).rstrip()
+        value = re.sub(r"(^|\s)#.*", "", line[start:]).rstrip()
         comment = foreign_comment(value)
         if comment:
             return Mistake(number, start + comment[0] + 1, start + len(value) + 1, *comment[1:])
