@@ -12,7 +12,9 @@
 
 function(epg_add_target name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "TCF;MODEL;BINDINGS;PLANT;PLANT_BINDINGS;NODE;NAMESPACE" "SET")
-  _epg_require(epg_add_target "${name}" "${arg_UNPARSED_ARGUMENTS}" "${arg_KEYWORDS_MISSING_VALUES}" TCF MODEL BINDINGS)
+  string(CONCAT usage "TCF <file> MODEL <folder> BINDINGS <file> [PLANT <folder> PLANT_BINDINGS <file>] [NODE <name>] "
+    "[NAMESPACE <name>] [SET <key.key=value>...]")
+  _epg_require(epg_add_target "${usage}" "${name}" "${arg_UNPARSED_ARGUMENTS}" "${arg_KEYWORDS_MISSING_VALUES}" TCF MODEL BINDINGS)
   foreach(pair "PLANT;PLANT_BINDINGS" "PLANT_BINDINGS;PLANT")
     list(GET pair 0 one)
     list(GET pair 1 other)

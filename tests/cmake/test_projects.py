@@ -155,6 +155,8 @@ def test_a_wrong_setting_names_the_cmakelists(tmp_path: Path) -> None:
         ("TCF robot.tcf ", "", "epg_add_target(robot): TCF is missing"),
         ("MODEL model", "MODEL model PINS x", "epg_add_target(robot): unknown argument: PINS"),
         ("BINDINGS bindings.yaml", "BINDINGS", "a keyword without a value: BINDINGS"),
+        ("MODEL model", "MODLE model", "It takes: epg_add_target(<name> TCF <file> MODEL <folder> BINDINGS <file>"),
+        ("robot TCF", "TCF", "epg_add_target(TCF ...): the first argument must be a name."),
         ("BINDINGS bindings.yaml", "BINDINGS bindings.yaml PLANT plant", "PLANT needs PLANT_BINDINGS"),
         ("LANGUAGES C", "LANGUAGES NONE", "EPG needs C: write project(robot LANGUAGES"),
         ("epg_add_executable(robot_host EPG::robot)", "epg_add_executable(x EPG::other)", "call epg_add_target(other"),
