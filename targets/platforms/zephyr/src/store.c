@@ -156,7 +156,7 @@ static bool erased(uint32_t at, uint32_t size)
 /** Writes `size` bytes in units of flash, the rest of the last one as if erased. */
 static bool program(uint32_t at, const void *data, size_t size)
 {
-    uint8_t slot[ALIGN_MAX];
+    uint8_t unit[ALIGN_MAX];
     const uint8_t *bytes = data;
     for (size_t done = 0; done < size; done += flash.align) {
         const size_t part = MIN(flash.align, size - done);
