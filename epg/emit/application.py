@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An application as C: ``<name>.h``, ``<name>_version.c`` and ``.h``, ``<name>_app.c`` and what its platform adds.
+"""The C files of an application: ``<name>.h``, ``<name>_version.c``, ``<name>_version.h``, ``<name>_app.c``.
 
-The layout of the files stands in ``templates/``; what each component contributes stands in the ``code.c.j2`` of its
-kind, one macro per place of the generation order (docs/architecture.md lists them).
+The templates of the platform can add files, for example a devicetree overlay.
+
+The templates in ``templates/`` define the layout of the files.  The ``code.c.j2`` of a component kind defines the code
+that each component of the kind contributes.  It has one macro for each place of the generation order;
+docs/architecture.md lists the macros.
 """
 
 from __future__ import annotations
@@ -36,11 +39,11 @@ LANGUAGES: Mapping[str, type[Escaped]] = {
     ".Kconfig": KconfigCode,
     ".cmake": CMakeCode,
 }
-"""What templates of platforms are written in, by the ends of the files they become; the others are C."""
+"""The output language of a platform's template, by the suffix of the file that it makes.  All other files are C."""
 
 
 class Emitter:
-    """Renders one application; ``roots`` are the ``targets`` folders, the user's first."""
+    """Renders the files of one application.  ``roots`` are the ``targets`` folders; the user's folders come first."""
 
     def __init__(self, app: Application, roots: Sequence[Path]) -> None:
         self.app = app
@@ -50,7 +53,7 @@ class Emitter:
         self.macros = Macros(app, self.env)
 
     def files(self) -> dict[str, str]:
-        """All generated C of the application by file name."""
+        """The text of each generated file of the application and its platform, by file name."""
         context = self._context()
         name = str(self.prefix)
         result = {
@@ -66,7 +69,7 @@ class Emitter:
         return {file: _tidy(text) for file, text in result.items()}
 
     def _environment(self, file: str) -> Environment:
-        """The one for the language that ``file`` is written in."""
+        """The Jinja environment for the output language of ``file``."""
         language = next((found for suffix, found in LANGUAGES.items() if file.endswith(suffix)), Code)
         return self.env if language is Code else environment([TEMPLATES, *self.roots], language)
 
@@ -115,7 +118,7 @@ class Emitter:
         return context
 
     def _plant(self) -> dict[str, Any]:
-        """What a simulated plant needs, on platforms that have one."""
+        """The template variables of a simulated plant.  The lists are empty if the application has no plant."""
         plant = self.app.plant
         details = plant.model.details if plant else None
         return {
@@ -137,7 +140,7 @@ class Emitter:
         )
 
     def _service_macro(self, component: ResolvedComponent, macro: str, *arguments: object) -> Code:
-        if macro == "write":  # at once
+        if macro == "write":  # there is no output delay when the user moves an actuator by hand: write it at once
             prepare, write = self._output_statements(component, *arguments)
             return Code("\n".join(statements for statements in (prepare, write) if statements))
         return self.macros.macro(component, macro, *arguments)
@@ -150,14 +153,20 @@ class Emitter:
         return Code(str(template.make_module().globals(view)).strip("\n"))  # type: ignore[attr-defined]
 
     def _transport(self) -> Code:
-        """The C object of the component that carries the middleware's bytes; empty when no component does."""
+        """The C expression of the transport component, which carries the middleware's bytes.
+
+        Empty if the middleware has no such component.
+        """
         component = self.macros.components.get(self.app.communication.transport or "")
         if component is None or not component.kind.transport:
             return Code("")
         return self.macros.expression(component, "transport")
 
     def _arrivals(self, direction: str) -> list[Arrival]:
-        """What components have to do with topics of a direction besides their values."""
+        """The statements of components that use a topic, for topics of one direction, in the order of topics.
+
+        ``direction`` is "subscribe" or "publish".  The statements come from the macro ``probe(c, "topic")``.
+        """
         publications = [topic.component.name if topic.component else "" for topic in self.app.publications]
         result = []
         for component in self.app.components:
@@ -197,9 +206,10 @@ class Emitter:
         return OutputView(wire.port.name, _reference(wire), Code(""), _indented(statement))
 
     def _converted(self, value: Code, steps: Sequence[Step], *, counted: bool = True) -> Code:
-        """The C expression for ``value`` after all steps; steps without limits between them become one.
+        """The C expression for ``value`` after all conversion steps.
 
-        Limits count in the controller's statistics, those of a plant (not ``counted``) do not.
+        Steps without limits between them become one step.  If ``counted``, the controller's statistics count each
+        value that a limit changed.  Limits of a plant must not be ``counted``.
         """
         for step in folded(steps):
             if step.scale != 1:
@@ -215,7 +225,7 @@ class Emitter:
 
 
 def emit_application(app: Application, roots: Sequence[Path]) -> dict[str, str]:
-    """The generated C of ``app`` by file name."""
+    """The text of each generated file of ``app`` and its platform, by file name."""
     return Emitter(app, roots).files()
 
 
@@ -231,7 +241,7 @@ def _reference(wire: Wire) -> str:
 
 
 def _indented(code: Code, blanks: str = "    ") -> Code:
-    """Statements of a macro at the depth of a function body, whatever depth they are written at."""
+    """The statements of a macro, indented by ``blanks``.  Their depth relative to each other stays."""
     lines = [line.rstrip() for line in str(code).split("\n")]
     filled = [line for line in lines if line]
     depth = min((len(line) - len(line.lstrip()) for line in filled), default=0)

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bindings files as text: new ones, and old ones after a re-export with everything else kept as it was written."""
+"""The text of bindings files: a new file, or an existing file after the model was exported again.
+
+An update changes only the lines of ports that the model gained or lost.  All other text stays as the user wrote it.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +21,11 @@ from epg.resolve.matching import Match
 
 @dataclass(frozen=True)
 class Change:
-    """An updated file: ports the model has gained or lost since, and those that wait for the user."""
+    """An updated bindings file.
+
+    ``added`` are the new ports that were bound by their names, ``removed`` the ports that the model lost, and
+    ``open`` the new ports that the user must bind.
+    """
 
     text: str
     added: tuple[str, ...]
@@ -27,7 +34,7 @@ class Change:
 
 
 def new_bindings(model: Model, matches: Mapping[str, Match]) -> str:
-    """A bindings file for ``model``; ports without a match stand in it as comments that name the candidates."""
+    """The text of a bindings file for ``model``.  A port without a match is a comment that names the candidates."""
     lines = ["version: 1", f"model: {scalar_text(model.name)}"]
     for section, ports in (("inputs", model.inputs), ("outputs", model.outputs)):
         if ports:
@@ -40,9 +47,10 @@ def new_bindings(model: Model, matches: Mapping[str, Match]) -> str:
 def updated_bindings(
     text: str, file: str, model: Model, matches: Mapping[str, Match], diagnostics: Diagnostics
 ) -> Change | None:
-    """``text`` with lines for new ports and with removed ports commented out; None after reporting a mistake in it.
+    """Returns ``text`` with a line for each new port, and with the lines of removed ports commented out.
 
-    Raises :class:`~epg.edit.yaml_edit.CannotEdit` for a text that is written as EPG does not understand.
+    Returns None if ``text`` has a mistake, which is reported in ``diagnostics``.  Raises
+    :class:`~epg.edit.yaml_edit.CannotEdit` if EPG cannot edit the way in which ``text`` is written.
     """
     root = parse_yaml(text, file, diagnostics)
     if root is None or not validate(root, load_schema("bindings"), diagnostics):
@@ -70,7 +78,8 @@ def updated_bindings(
                 text = add_open_port(text, section, names, name, matches[name].candidates)
                 left.append(name)
     after = parse_yaml(text, file, Diagnostics())
-    # maps are equal in whatever order; 1 and true are equal, too, but nothing here turns one into the other
+    # Parse the edited text again, to be sure that only the wanted ports changed.  Maps are equal in any order.  Python
+    # treats 1 and true as equal, too, but no edit above turns one into the other.
     if text != before and (after is None or after.plain() != wanted):
         raise CannotEdit(
             f"{file}: EPG does not understand how this is written: write one 'port: component' on each line"

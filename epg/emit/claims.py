@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The hardware of an application as templates of platforms see it: every claim with the names of what it got.
+"""The hardware of an application, as the templates of platforms see it: each claim with the names of its assignment.
 
-For platforms whose hardware is described in a language of its own, such as devicetree; C gets along with numbers.
+Platforms with a separate language for hardware, such as devicetree, need the names of peripherals and pins.  C needs
+only their numbers.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from epg.resolve.claims import TICK
 
 @dataclass(frozen=True)
 class PinView:
-    """A pin: its name as the chip's data have it, and its number in C."""
+    """A pin: its name in the data of the SoC, and its number in C."""
 
     name: str
     number: int
@@ -25,10 +26,11 @@ class PinView:
 
 @dataclass(frozen=True)
 class ClaimView:
-    """A claim of ``component`` (empty: the control loop).
+    """A claim of ``component``.  ``component`` is empty for the claim of the control loop.
 
-    ``label`` is a name for it that no other claim has, and that can be part of an identifier.  ``roles`` are what the
-    component calls the pins of ``pins``.  The rest is as in :class:`~epg.resolve.allocation.Assignment`.
+    ``label`` is unique among the claims of a resource class, and can be part of an identifier.  ``roles`` maps each
+    signal in ``pins`` to the name that the component has for the pin.  The other members are those of
+    :class:`~epg.resolve.allocation.Assignment`.
     """
 
     component: str
@@ -48,7 +50,7 @@ class ClaimView:
 
 
 def claims_of(app: Application) -> list[ClaimView]:
-    """The claims of all components, in the order they are written."""
+    """The claims of all components, in the order of the components and of the claims in their kinds."""
     labels: set[tuple[str, str]] = set()
     result = []
     for component in app.components:
@@ -66,9 +68,10 @@ def claims_of(app: Application) -> list[ClaimView]:
 
 @dataclass(frozen=True)
 class GpioView:
-    """A pin that is read or driven by itself; a PWM output of a chip is one too, so that it can be made safe.
+    """A pin that the platform can read or drive as a plain digital pin.
 
-    ``role`` is what the component calls the pin: ``direction_a``.
+    A PWM output of a SoC is also such a pin, so that the platform can set it to its safe level.  ``role`` is the name
+    that the component has for the pin, for example ``direction_a``.
     """
 
     component: str
@@ -78,7 +81,7 @@ class GpioView:
 
 
 def gpios_of(app: Application) -> list[GpioView]:
-    """The pins of all components that are digital inputs or outputs, or PWM outputs where pins are real."""
+    """The digital input and output pins of all components.  On a target with real pins, PWM outputs also belong."""
     classes = ("digital_input", "digital_output", *(("pwm",) if app.target.has_pins else ()))
     return [
         GpioView(claim.component, claim.roles[signal], pin, claim.node)
@@ -89,14 +92,14 @@ def gpios_of(app: Application) -> list[GpioView]:
 
 
 def tick_of(app: Application) -> ClaimView | None:
-    """The claim of the control loop; None where the platform times it without a peripheral."""
+    """The claim of the control loop for its tick.  None if the platform times the tick without a claimed peripheral."""
     if app.tick is None or app.target.tick is None:
         return None
     return _view(app, TICK[0], TICK[1], app.target.tick, TICK[1], app.tick)
 
 
 def board_nodes(app: Application) -> list[str]:
-    """Labels of nodes that the board's devicetree enables and whose pins the application's components have."""
+    """The labels of devicetree nodes that the board enables and whose pins are assigned to components."""
     used = {pin.name for claim in claims_of(app) for pin in claim.pins.values()}
     return [label for label, pins in app.target.board.devicetree.items() if used.intersection(pins)]
 

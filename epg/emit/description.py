@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``<name>.json``: an application for programs and for ``epg explain``.
+"""``<name>.json``: the description of an application, for ``epg explain`` and other programs.
 
-The only generated file with line numbers: an edit that only moves lines changes nothing that is compiled.
+No other generated file has line numbers of the user's files.  An edit that only moves lines therefore changes no file
+that is compiled.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from epg.source import Span
 
 
 def describe(app: Application, topics: Topics, names: PathNames, hash: str = "") -> str:
-    """The description of ``app`` as JSON text; ``hash`` is empty where nothing is generated."""
+    """The description of ``app`` as JSON text.  ``hash`` is empty if no files are generated."""
     data: dict[str, Any] = {
         "name": app.name,
         "epg": __version__,
@@ -96,7 +97,10 @@ def _component(component: ResolvedComponent, names: PathNames) -> dict[str, Any]
 
 
 def describe_divider(found: Assignment) -> dict[str, Any] | None:
-    """The frequency that was asked for and the one that is reached, in Hz, and the steps of a period; None without."""
+    """The requested frequency and the frequency that the divider reaches, in Hz, and the steps in one period.
+
+    ``error`` is the relative error of the frequency.  None if the assignment has no frequency.
+    """
     if found.frequency is None or found.asked is None:
         return None
     return {
@@ -108,8 +112,10 @@ def describe_divider(found: Assignment) -> dict[str, Any] | None:
 
 
 def _topic(view: TopicView) -> dict[str, Any]:
-    """``values`` are the names of its numbers in CSV files of topics and setpoints, ``elements`` all that the message
-    has, bound or not.
+    """The description of one topic.
+
+    ``values`` are the names of its values in the CSV files of topics and setpoints.  ``elements`` are the names of all
+    elements of the message, also of those that are not bound.
     """
     topic = view.topic
     return {

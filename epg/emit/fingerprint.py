@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One hash over everything an application is made from: two that have the same behave the same.
+"""A hash that identifies the behaviour of an application: equal hashes mean equal behaviour.
 
-It is taken of what is generated and of the sources that are compiled with it, not of the files people write: a comment
-in a ``.tcf`` changes nothing, wherever the files lie, and whatever their line ends are.  EPG's own runtime and port
-layers are known by EPG's version, which stands beside the hash.
+The hash covers the generated files and the sources that are compiled with them, not the files that the user writes.
+A comment in a ``.tcf``, the folder of the project and the line ends of files therefore do not change it.  The hash does
+not cover EPG's own runtime and port layers; EPG's version, which is reported beside the hash, identifies them.
 """
 
 from __future__ import annotations
@@ -20,13 +20,16 @@ from epg.resolve.application import Application
 DIGITS = 16
 
 PLACE = "\ue000"
-"""Where the hash goes in generated text.  No text of a user can hold it: filters write it as an escape."""
+"""The placeholder of the hash in generated text.  Text of the user cannot contain it: the filters escape it."""
 
 LITERAL = Code(f'"{PLACE}"')
 
 
 def application_hash(app: Application, generated: Mapping[str, str]) -> str:
-    """The first hexadecimal digits of SHA-256; ``generated`` is the C, with :data:`PLACE` where the hash goes."""
+    """The first :data:`DIGITS` hexadecimal digits of the SHA-256 of ``app``.
+
+    ``generated`` holds the generated files, with :data:`PLACE` in the place of the hash.
+    """
     communication, target = app.communication, app.target
     digest = hashlib.sha256()
     configured = [target.name, target.board.name, target.platform.name]
@@ -47,7 +50,10 @@ def application_hash(app: Application, generated: Mapping[str, str]) -> str:
 
 
 def model_hash(model: Model, parameters: Mapping[str, float]) -> Code:
-    """A C literal that identifies a model and the values of its parameters: what stored parameters belong to."""
+    """A C literal that identifies a model and the generated values of its parameters.
+
+    The firmware keeps it with stored parameters, so that parameters of another model are not loaded.
+    """
     digest = hashlib.sha256()
     values = [(p.name, repr(parameters.get(p.name, p.value))) for p in model.parameters]
     _add(digest, model.name, json.dumps(values).encode())
@@ -60,11 +66,11 @@ def _add_files(digest: hashlib._Hash, label: str, folder: Path, files: Iterable[
         (path.relative_to(folder).as_posix() if path.is_relative_to(folder) else path.name, path) for path in files
     ]
     read = ((name, path.read_bytes().replace(b"\r\n", b"\n")) for name, path in named)
-    for name, data in sorted(read):  # files of one name may lie in several folders outside of this one
+    for name, data in sorted(read):  # with the data: files from different outside folders can have the same name
         _add(digest, f"{label}/{name}", data)
 
 
 def _add(digest: hashlib._Hash, name: str, data: bytes) -> None:
-    """Lengths are added too, so that no part can pass for the end of another one."""
+    """Adds one part with its length, so that different parts cannot give the same sequence of bytes."""
     digest.update(f"{len(name)} {name} {len(data)}\n".encode())
     digest.update(data)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes a whole folder at once: all of its files, or none of them."""
+"""Writes all files of a folder, or none of them if one cannot be written."""
 
 from __future__ import annotations
 
@@ -12,7 +12,10 @@ from epg.emit.leftovers import held_folder, remove_leftovers, temporary_beside
 
 
 def present_files(folder: Path, names: Iterable[str]) -> list[Path]:
-    """Those of the files ``names`` below ``folder`` that could not be written without replacing something."""
+    """The existing paths that prevent :func:`write_folder` from writing the files ``names`` into ``folder``.
+
+    A path prevents it if it is one of the files, or if it is a file where a folder is needed.
+    """
     found = []
     for name in names:
         path = folder / name
@@ -23,14 +26,16 @@ def present_files(folder: Path, names: Iterable[str]) -> list[Path]:
 
 
 def write_folder(folder: Path, files: Mapping[str, bytes]) -> None:
-    """Makes ``folder`` hold ``files`` (relative name -> contents) besides what it holds already.
+    """Writes ``files`` (relative name -> contents) into ``folder``.  Files that it already holds stay.
 
-    Everything is written under a temporary name first.  A folder that is new then gets its name at once; in one that
-    is there, files are moved to their places, and taken away again if one of them cannot be.  Replaces
-    nothing: raises FileExistsError.  Raises OSError, with ``folder`` as it was.
+    All files are first written into a temporary folder.  If ``folder`` is new, the temporary folder is renamed.  If it
+    exists, each file is moved to its place; if one cannot be moved, those that were moved are removed again.
+
+    Never replaces a file: raises FileExistsError instead.  Raises OSError for other failures.  After an error,
+    ``folder`` is as it was before.
     """
     folder = folder.absolute()
-    is_new = not folder.is_dir()  # one that is there stays, empty or not: somebody may work in it
+    is_new = not folder.is_dir()  # an existing folder is never replaced, even if empty: another program may be using it
     around = folder.parent if is_new else folder
     made = _make_folders(around)
     remove_leftovers(around / folder.name)
@@ -71,7 +76,7 @@ def _move(staging: Path, folder: Path, names: list[str]) -> None:
 
 
 def _make_folders(path: Path) -> list[Path]:
-    """Makes a folder and those above it; returns the new ones, outermost first."""
+    """Creates a folder and its parents.  Returns the folders that are new, the outermost first."""
     missing = [place for place in (*reversed(path.parents), path) if not place.exists()]
     path.mkdir(parents=True, exist_ok=True)
     return missing

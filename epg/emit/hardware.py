@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What components got of the hardware: peripherals, pins, and the frequencies that dividers reach."""
+"""The assignments of hardware to components: peripherals, pins, and the frequencies that dividers reach."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from epg.resolve.claims import TICK, ClaimKey
 
 
 def divider_text(divider: Mapping[str, Any]) -> tuple[str, str]:
-    """Frequency and remark for people: ``("19.9984 kHz", "6250 steps; 20 kHz asked for, -0.008 %")``."""
+    """Frequency and remark as text for the user: ``("19.9984 kHz", "6250 steps; 20 kHz asked for, -0.008 %")``."""
     reached, asked = Fraction(divider["reached"]), Fraction(divider["asked"])
     steps = f"{divider['steps']} steps"
     if divider["error"] == 0:
@@ -23,7 +23,7 @@ def divider_text(divider: Mapping[str, Any]) -> tuple[str, str]:
 
 
 def hardware_data(assignments: Mapping[ClaimKey, Assignment]) -> list[dict[str, Any]]:
-    """One entry per claim, for programs."""
+    """One entry for each claim, as data for programs."""
     return [
         {
             "component": component or None,
@@ -37,7 +37,7 @@ def hardware_data(assignments: Mapping[ClaimKey, Assignment]) -> list[dict[str, 
 
 
 def hardware_rows(assignments: Mapping[ClaimKey, Assignment]) -> list[tuple[str, str, str, str, str]]:
-    """The same for people: who uses which hardware, pins, frequency, and what there is to say about that."""
+    """One row of text for each claim, for the user: user of the hardware, hardware, pins, frequency, remark."""
     rows = []
     for key, entry in zip(assignments, hardware_data(assignments)):
         frequency, remark = divider_text(entry["divider"]) if entry["divider"] else ("", "")

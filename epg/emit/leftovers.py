@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Temporary files and folders beside what is being written: the next run removes those of a run that was killed."""
+"""Temporary files and folders, each beside the path that it is going to become.
+
+A run that is killed leaves its temporary files behind; the next run removes them.  A run locks its temporary files, so
+that no other run removes them while they are in use.
+"""
 
 from __future__ import annotations
 
@@ -13,12 +17,15 @@ from pathlib import Path
 
 
 def temporary_beside(path: Path) -> Path:
-    """A name of its own, in the same folder, for what will be ``path`` when it is complete."""
+    """A unique path in the same folder, for contents that are renamed to ``path`` when they are complete."""
     return path.with_name(f".{path.name}.{secrets.token_hex(6)}")
 
 
 def lock(file: int) -> None:
-    """Holds a file until it is closed or the process ends; raises OSError where somebody else holds it."""
+    """Locks a file until it is closed or the process ends.  Raises OSError if another process has locked it.
+
+    Does nothing on Windows, which refuses to remove an open file.
+    """
     if os.name != "nt":
         import fcntl
 
@@ -27,7 +34,7 @@ def lock(file: int) -> None:
 
 @contextmanager
 def held_folder(path: Path) -> Iterator[None]:
-    """Makes the folder ``path`` and holds it: no other run takes it for what a killed one has left."""
+    """Creates the folder ``path`` and locks it, so that no other run removes it as the rest of a killed run."""
     path.mkdir()
     if os.name == "nt":
         yield
@@ -41,7 +48,7 @@ def held_folder(path: Path) -> Iterator[None]:
 
 
 def remove_leftovers(path: Path) -> None:
-    """Removes what killed runs have left beside ``path`` on their way to it; never what is being written."""
+    """Removes the temporary files and folders of ``path`` that killed runs left.  Keeps those that are in use."""
     pattern = re.compile(rf"\.{re.escape(path.name)}\.[0-9a-f]{{12}}")
     with suppress(OSError, ValueError):
         for entry in os.scandir(path.parent):
@@ -50,7 +57,7 @@ def remove_leftovers(path: Path) -> None:
 
 
 def _remove_unless_held(entry: os.DirEntry[str]) -> None:
-    with suppress(OSError):  # Windows refuses to remove a file that is open, the lock says it elsewhere
+    with suppress(OSError):  # it is in use: Windows refuses to remove it, other systems refuse the lock
         if os.name != "nt":
             handle = os.open(entry.path, os.O_RDONLY)
             try:

@@ -1,9 +1,9 @@
-"""The line that says the licence, first in each generated file that can have a comment.
+"""The line with the licence, which is the first line of each generated file that can have a comment.
 
 >>> first_line("jiwy_app.c")
 '/* SPDX-License-Identifier: Apache-2.0 */'
 
-``NOTICE`` permits to use generated files under any terms.
+``NOTICE`` permits the use of generated files under any terms.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ _BLOCK = (".c", ".cpp", ".h", ".overlay")
 
 
 def with_licence(files: Mapping[str, str]) -> dict[str, str]:
-    """The generated ``files`` with that line; copies of the model's own files are left alone."""
+    """The generated ``files`` with their licence lines.  Copies of the model's own files stay unchanged."""
     return {name: f"{line}\n{text}" if (line := first_line(name)) else text for name, text in files.items()}
 
 
 def first_line(name: str) -> str:
-    """The line for the generated file ``name``, or ""."""
+    """The licence line of the generated file ``name``, or "" if it gets none."""
     path = PurePosixPath(name)
     folder = path.parts[0] if len(path.parts) > 1 else ""
     if folder.endswith(("_copies", "_fmu")):

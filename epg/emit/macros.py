@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The macros of component kinds, called for the components of one application."""
+"""Calls the macros of component kinds for the components of one application."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from epg.resolve.application import Application, ResolvedComponent
 
 
 class Macros:
-    """The ``code.c.j2`` of all kinds that ``app`` uses, from the templates of ``env``."""
+    """The macros in the ``code.c.j2`` of each kind that ``app`` uses.  ``env`` loads the templates."""
 
     def __init__(self, app: Application, env: Environment) -> None:
         self.app = app
@@ -27,7 +27,11 @@ class Macros:
         self.views |= {name: replace(view, uses=self._uses(name)) for name, view in self.views.items()}
 
     def macro(self, component: ResolvedComponent, macro: str, *arguments: object) -> Code:
-        """What the template of a component's kind gives; empty when it has no such macro."""
+        """The text of a macro for one component; empty if the template of its kind does not have the macro.
+
+        Raises UserError if the macro takes too few arguments, or if the values of parameters give a number that is
+        not finite.
+        """
         function = getattr(self._module(component), macro, None)
         if not isinstance(function, CodeMacro):
             return Code("")
@@ -38,7 +42,7 @@ class Macros:
             )
         try:
             return Code(str(function(self.views[component.name], *arguments)).strip("\n"))
-        except ArithmeticError:  # what a kind computes of parameters that are each in their range
+        except ArithmeticError:  # each parameter is in its range, but a computation with several of them is not
             problems = Diagnostics()
             message = f"the parameters of '{component.name}' together give a number that C's doubles do not hold"
             hint = "very large and very small ones cancel out badly: check their units"

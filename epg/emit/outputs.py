@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""All generated files of a target or of a model, by name."""
+"""All generated files of a target or of a model library, by file name."""
 
 from __future__ import annotations
 
@@ -17,7 +17,10 @@ from epg.resolve.application import Application
 
 
 def application_outputs(app: Application, roots: Sequence[Path], names: PathNames) -> dict[str, str]:
-    """C, the model libraries, CMake and the description of ``app``; ``roots`` are the ``targets`` folders."""
+    """The text of each generated file of ``app``: C, the libraries of its models, CMake and the description.
+
+    ``roots`` are the ``targets`` folders.
+    """
     files = emit_application(app, roots)
     parts = [(app.model, f"{app.name}_model", app.parameters)]
     if app.plant is not None:
@@ -34,7 +37,7 @@ def application_outputs(app: Application, roots: Sequence[Path], names: PathName
 
 
 def model_outputs(model: Model, name: str, instances: int, names: PathNames) -> dict[str, str]:
-    """The library of a model alone, as ``epg_add_model`` makes it."""
+    """The text of each generated file of a model library without a target, for ``epg_add_model``."""
     files = emit_model(model, name, {}, instances)
     files[f"{name}.cmake"] = model_cmake(model, name, model_build(model, name, {}), files, names)
     return with_licence(files)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pins that components drive and read, and the states in which those that are driven are safe."""
+"""The pins that components drive or read, and the safe states of the driven pins."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def output_groups(macros: Macros) -> list[OutputGroup]:
 
 
 def _safe_state(claims: Sequence[str], levels: Mapping[str, str]) -> SafeState:
-    """The masks of a kind's safe state, for outputs that belong to these ``claims``."""
+    """One safe state of a kind as bit masks.  ``claims`` are the claims of the outputs, in the order of the bits."""
 
     def bits(level: str) -> int:
         return sum(1 << bit for bit, claim in enumerate(claims) if levels.get(claim) == level)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A new project as text: the templates of ``targets/projects``, filled in.
+"""Renders the files of a new project from the templates in ``targets/projects``.
 
 >>> # files = project_files(plan, folder_of_project("rp2", roots), roots)
 >>> # sorted(files)  ->  [".gitignore", ".vscode/launch.json", "CMakeLists.txt", ...]
@@ -18,25 +18,27 @@ from epg.emit.text import ProjectText
 from epg.install import ACTIVATE, install_command
 
 NAME = "NAME"
-"""What stands in names of files for the name of the project."""
+"""The placeholder of the project's name in names of files."""
 SUFFIX = ".j2"
 
 
 @dataclass(frozen=True)
 class StandIn:
-    """A component, and topic, that stands for a port of the model until the user puts another in its place."""
+    """A component with a topic that takes the place of a port's sensor or actuator until the user replaces it."""
 
     name: str
     kind: str
     type: str
-    """What the component states as ``type``; empty for its default, real numbers."""
+    """The component's parameter ``type``.  Empty for the default, real numbers."""
 
 
 @dataclass(frozen=True)
 class Axis:
-    """What a scenario moves: the topic that is set, the signal that should follow, the one that drives (or empty).
+    """An axis that a scenario moves.
 
-    ``unit`` is that of the topic and the signal, ``none`` for plain numbers, empty for a scenario's default.
+    ``setpoint`` is the topic with its setpoint, ``position`` the signal that must follow the setpoint, and ``duty`` the
+    signal that drives the motor, or empty.  ``unit`` is the unit of the topic and of the position: ``none`` for numbers
+    without a unit, empty for the default unit of scenarios.
     """
 
     name: str
@@ -48,13 +50,16 @@ class Axis:
 
 @dataclass(frozen=True)
 class ProjectPlan:
-    """What templates know of a project.
+    """The values that the templates of a project can use.
 
-    ``extends`` is the predefined ``.tcf`` it builds on, empty for one that begins with ``stand_ins``.  ``middleware``
-    and ``transport`` are empty where those of ``extends`` stay; ``console``: a person can type to the firmware;
-    ``node``: it is a node of ROS 2.
-    ``plant``: a simulated robot is among the project's files; ``axes``: what its scenario moves.
-    ``model`` is the model's place relative to the project, ``versions`` those of EPG and of the tools, by name.
+    ``extends`` is the predefined ``.tcf`` that the project extends.  It is empty if the project starts from
+    ``stand_ins`` instead.  ``middleware`` and ``transport`` are empty if the project keeps those of ``extends``.
+
+    ``console`` is True if the user can type commands to the firmware, ``node`` if the firmware is a ROS 2 node, and
+    ``plant`` if the project has a simulated robot.  ``axes`` are the axes that its scenario moves.
+
+    ``model`` is the path of the model's folder relative to the project.  ``versions`` are the versions of EPG and of
+    the tools, by name.
     """
 
     name: str
@@ -79,7 +84,10 @@ class ProjectPlan:
 
 
 def project_folder(names: Iterable[str], roots: Iterable[Path]) -> Path | None:
-    """The templates for the first of ``names`` that has some: a platform's own, or of what it shares."""
+    """The folder of templates of the first name in ``names`` that has one, or None.
+
+    Callers give the name of the platform first, then the names of what it shares with other platforms.
+    """
     roots = list(roots)
     for name in names:
         for root in roots:
@@ -89,13 +97,16 @@ def project_folder(names: Iterable[str], roots: Iterable[Path]) -> Path | None:
 
 
 def project_names(roots: Iterable[Path]) -> list[str]:
-    """Names that :func:`project_folder` knows."""
+    """The names for which :func:`project_folder` finds a folder, sorted."""
     folders = (folder for root in roots for folder in (root / "projects").glob("*/"))
     return sorted({folder.name for folder in folders if folder.is_dir() and folder.name != "common"})
 
 
 def project_files(plan: ProjectPlan, folder: Path, roots: Iterable[Path]) -> dict[str, str]:
-    """The text of every file that ``folder`` has templates for, by its name in the project."""
+    """The text of each file of the project that ``folder`` makes, by its path in the project.
+
+    A template can make an empty text; the project then does not have that file.
+    """
     env = environment([folder, *(root / "projects" for root in roots)], ProjectText)
     files = {}
     for path in sorted(path for path in folder.rglob("*") if path.is_file()):

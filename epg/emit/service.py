@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the generator makes for a middleware: the model's ports by name, parameters, recordings, actuators by hand.
+"""The services that the generated code offers to a middleware.
 
-A middleware's ``uses`` says which of them; ``templates/service.c.j2`` lays them out.  Its own ``code.c.j2``, if it has
-one, has a macro ``globals(m)``, of which ``m`` is a :class:`MiddlewareView`.
+They are: ports of the model by name, parameters that can be changed, recordings, and actuators that can be moved by
+hand.  The list ``uses`` of a middleware names those that it needs; ``templates/service.c.j2`` writes their C.
+
+A middleware can have a ``code.c.j2`` with a macro ``globals(m)``.  Its argument is a :class:`MiddlewareView`.
 """
 
 from __future__ import annotations
@@ -20,7 +22,7 @@ from epg.resolve.application import Application, ResolvedComponent
 
 @dataclass(frozen=True)
 class SignalView:
-    """A port of the model; ``index`` is its place among the monitoring values."""
+    """A port of the model.  ``index`` is its value index among the monitoring values."""
 
     name: str
     unit: str
@@ -31,7 +33,7 @@ class SignalView:
 
 @dataclass(frozen=True)
 class ParameterView:
-    """A parameter of the model with the value it is generated with."""
+    """A parameter of the model, with its generated value."""
 
     name: str
     unit: str
@@ -40,7 +42,7 @@ class ParameterView:
 
 @dataclass(frozen=True)
 class ActuatorView:
-    """A port that can be driven by hand; ``statement`` drives it with ``duty``."""
+    """An actuator port that the user can drive by hand.  ``statement`` is C that drives it with ``duty``."""
 
     name: str
     function: Code
@@ -49,7 +51,7 @@ class ActuatorView:
 
 @dataclass(frozen=True)
 class EncoderView:
-    """A sensor that counts; ``count`` and ``position`` are expressions."""
+    """A sensor that counts.  ``count`` and ``position`` are C expressions; ``unit`` is the unit of the position."""
 
     name: str
     symbol: Code
@@ -60,14 +62,16 @@ class EncoderView:
 
 @dataclass(frozen=True)
 class MiddlewareView:
-    """The middleware as its own template sees it; ``monitor_count`` numbers are monitored in each cycle.
+    """The middleware as its own template sees it.
 
-    ``publications`` and ``subscriptions`` are how many topics there are, diagnostics and enabling among them.
+    ``monitor_count`` is the number of monitoring values in each cycle.  ``publications`` and ``subscriptions`` are
+    numbers of topics, including the topics for diagnostics and for enabling.
 
-    ``longest_topic`` and ``longest_node`` are characters of the longest full name of a topic, and of the node with its
-    namespace, with a serial number in the place of ``$serial``.
+    ``longest_topic`` is the length in characters of the longest full name of a topic.  ``longest_node`` is the length
+    of the node's name with its namespace.  Both count the longest serial number in the place of ``$serial``.
 
-    ``prefix`` begins the names that the template makes: "middleware", or "console" for one beside a middleware.
+    ``prefix`` is the beginning of the C names in the template's code: "middleware", or "console" for a console that
+    runs beside another middleware.
     """
 
     name: str
@@ -83,10 +87,14 @@ class MiddlewareView:
 
 @dataclass(frozen=True)
 class Service:
-    """All of it; empty lists and zeros for what the middleware does not use."""
+    """All services of an application.  Services that no middleware uses are empty, zero, False or None.
 
-    middleware: MiddlewareView | None  # None when nothing runs
-    console: MiddlewareView | None  # beside it
+    ``time_index`` is the value index of the cycle's time among the monitoring values.  ``capture`` is the number of
+    values that a recording can hold.
+    """
+
+    middleware: MiddlewareView | None  # None if the middleware has no code, as "none"
+    console: MiddlewareView | None  # a console that runs beside the middleware
     signals: tuple[SignalView, ...]
     time_index: int | None
     monitor_count: int
@@ -99,7 +107,7 @@ class Service:
 
 
 def service_of(app: Application, macro: Macro) -> Service:
-    """What the middleware of ``app``, and a console beside it, use."""
+    """The services that the middleware of ``app``, and the console beside it, use."""
     communication = app.communication
     middleware, options, console = communication.middleware, communication.options, communication.console
     uses = {*middleware.uses, *(console.uses if console else ())}
@@ -146,7 +154,7 @@ def _view(
 
 
 def _full(app: Application, topic: str) -> str:
-    """The name of a topic on the network."""
+    """The full name of a topic, with namespace and node."""
     return absolute_topic(topic, app.namespace, app.node)
 
 
@@ -163,7 +171,7 @@ def _signals(app: Application, first: int) -> Iterable[SignalView]:
 def _parameters(app: Application) -> Iterable[ParameterView]:
     names: set[str] = set()
     for parameter in app.model.parameters:
-        if not parameter.tunable:  # they come last: positions here are those of the model's enumeration
+        if not parameter.tunable:  # these come last, so that the index of a parameter is that of the C enumeration
             continue
         value = app.parameters.get(parameter.name, parameter.value)
         yield ParameterView(_word(parameter.name, names), _word(parameter.unit), value)
@@ -185,7 +193,10 @@ def _encoders(component: ResolvedComponent, macro: Macro) -> Iterable[EncoderVie
 
 
 def _word(text: str, taken: set[str] | None = None) -> str:
-    """``text`` as one word that a line of text can hold and name: no blanks, and none of ``=<>,``."""
+    """``text`` as one printable ASCII word for a line of text: blanks and the characters ``=<>,`` become ``_``.
+
+    If ``taken`` is given, the word gets a number at its end if it is in ``taken``, and is added to ``taken``.
+    """
     word = re.sub(r"[\s=<>,]|[^\x21-\x7e]", "_", text)
     if taken is not None:
         number = 2

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Jinja templates in which text cannot pass unescaped.
+"""Jinja templates that refuse to print text without escaping it.
 
 >>> # env = environment([folder])
 >>> # env.from_string("{{ name|identifier }} = {{ value|double }};").render(name="gain", value=0.5)
@@ -61,15 +61,15 @@ FILTERS: Mapping[type[Escaped], Mapping[str, Callable[..., object]]] = {
         "code": ProjectText,
     },
 }
-"""What makes text of an output language.  ``code`` takes constants of the template only."""
+"""The filters of each output language, which make code of values.  ``code`` accepts only constants of the template."""
 
 _PLAIN_FILTERS = """abs count default first float int last length list lower map max min reject rejectattr reverse round
 select selectattr sort sum unique upper""".split()
-"""Filters of Jinja that escape nothing: what they give is as escaped as what they got."""
+"""Filters of Jinja that do not change whether text is escaped: their result is escaped exactly if their input is."""
 
 
 def environment(folders: Iterable[Path], language: type[Escaped] = Code) -> jinja2.Environment:
-    """A Jinja environment for one output language; undefined names are errors."""
+    """A Jinja environment for one output language.  Undefined names and text without a filter are errors."""
 
     def only_code(value: object) -> object:
         if isinstance(value, language) or type(value) is int:
@@ -97,10 +97,11 @@ def environment(folders: Iterable[Path], language: type[Escaped] = Code) -> jinj
 
 
 def _compiled(language: type[Escaped]) -> jinja2.BytecodeCache | None:
-    """Compiled templates in EPG's cache, as Python keeps compiled modules; None where nothing can be written.
+    """A cache of compiled templates in EPG's cache folder, or None if the folder cannot be written.
 
-    Compiling takes two fifths of a run.  Jinja compares a template's text only.  The folder therefore is named after
-    everything else that decides what is compiled: the language, and the code of Jinja and of this package.
+    Without a cache, compiling templates takes two fifths of the time of a run.  Jinja detects only a change of a
+    template's text.  The name of the folder therefore depends on everything else that affects the compiled code: the
+    language, and the code of Jinja and of this package.
     """
     own = hashlib.sha256(language.__name__.encode())
     for module in (compiler.__file__, text.__file__, __file__):
@@ -116,7 +117,7 @@ def _compiled(language: type[Escaped]) -> jinja2.BytecodeCache | None:
 
 
 class _Loader(jinja2.FileSystemLoader):
-    """Says of a template that is not UTF-8 where it is not."""
+    """Loads templates.  For a template that is not UTF-8, the error has the line of the first wrong byte."""
 
     def get_source(self, environment: jinja2.Environment, template: str) -> tuple[str, str, Callable[[], bool]]:
         try:
@@ -131,7 +132,7 @@ NOT_UTF_8 = "it is not UTF-8 text"
 
 
 class CodeMacro(Macro):
-    """A macro whose text is code of its environment's language."""
+    """A macro whose result is code in the language of its environment."""
 
     def _invoke(self, arguments: list[Any], autoescape: bool) -> Escaped:
         environment = self._environment
@@ -140,7 +141,7 @@ class CodeMacro(Macro):
 
 
 class _CodeGenerator(compiler.CodeGenerator):
-    """Templates in which what macros and blocks give is code of the language, not HTML (``Markup``)."""
+    """Compiles templates so that macros and blocks return code of the language instead of HTML (``Markup``)."""
 
     def visit_Template(self, node: nodes.Template, frame: Any = None) -> None:
         super().visit_Template(node, frame)
@@ -151,7 +152,7 @@ class _CodeGenerator(compiler.CodeGenerator):
 
 
 class _Environment(jinja2.Environment):
-    """Refuses, where it is written, what would go round the filters."""
+    """Refuses expressions that avoid the filters, with the line of the template on which they are written."""
 
     code_generator_class = _CodeGenerator
     language: type[Escaped]
@@ -182,24 +183,29 @@ def _is_constant(node: nodes.Node | None) -> bool:
 
 
 def mistake_in_template(error: Exception) -> tuple[str, int, str] | None:
-    """File, line and message of an error that a template made; None if it is not one of a template's."""
+    """The file, the line and the message of an error in a template.  None if no template caused the error."""
     if isinstance(error, jinja2.TemplateSyntaxError):
-        file = error.filename or error.name  # an open comment has the file as its name
+        file = error.filename or error.name  # for a comment without an end, Jinja has the file in the name
         return (file, error.lineno, error.message or "") if file else None
     place = None
     trace = error.__traceback__
     while trace is not None:
         template = trace.tb_frame.f_globals.get("__jinja_template__")
-        if template is not None and template.filename:  # a macro called from Python: lines are those of compiled code
+        # If Python called a macro, the line is that of the compiled code.  Otherwise Jinja has already rewritten the
+        # traceback with the lines of the template.
+        if template is not None and template.filename:
             place = template.filename, template.get_corresponding_lineno(trace.tb_lineno)
-        elif trace.tb_frame.f_code.co_filename.endswith(".j2"):  # Jinja has put the template's lines in
+        elif trace.tb_frame.f_code.co_filename.endswith(".j2"):
             place = trace.tb_frame.f_code.co_filename, trace.tb_lineno
         trace = trace.tb_next
     return (*place, str(error)) if place else None
 
 
 def macro_mistake(folder: Path, macro: str, message: str, arguments: int) -> UserError:
-    """What is wrong with ``macro`` of the kind in ``folder``, which is called with so many ``arguments``."""
+    """The error for a mistake in ``macro`` of the kind in ``folder``.
+
+    ``arguments`` is the number of arguments with which EPG calls the macro.
+    """
     path = folder / TEMPLATE
     lines = path.read_text(encoding="utf-8").splitlines()
     found = [number for number, line in enumerate(lines, 1) if re.search(rf"\bmacro\s+{macro}\b", line)]

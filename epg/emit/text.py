@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Text of generated files: each output language has its own escaping, and unescaped text is an error.
+"""Text of generated files.  Each output language has its own escaping, and unescaped text is an error.
 
-A template may print numbers and text that is code of its language already, by a filter: ``|cstring``, ``|comment``,
-``|identifier``, ``|double``, ``|bool``, ``|ns`` make C of values.  Anything else raises, so that no text of a user can
-reach generated code by accident, and no escaping of one language can stand in another.  What would let text pass
-unseen is refused when a template is read (:mod:`epg.emit.template`).
+A template can print two things: whole numbers, and values that a filter has made code of the template's language.
+The filters for C are ``|cstring``, ``|comment``, ``|identifier``, ``|include``, ``|double``, ``|bool`` and ``|ns``.
+Printing anything else raises an error.  Text of the user therefore cannot reach generated code without escaping, and
+text that is escaped for one language cannot reach a file of another language.
+
+Expressions of Jinja that would avoid these checks are refused when a template is read (:mod:`epg.emit.template`).
 """
 
 from __future__ import annotations
@@ -23,11 +25,14 @@ if TYPE_CHECKING:
 
 
 class Escaped(Markup):
-    """Text of an output language.  Text that is none cannot be joined to it."""
+    """Text that is code of an output language.  Joining any other text to it raises TypeError."""
 
     @classmethod
-    def escape(cls, text: Any) -> Self:  # what Markup does to the other operand of +, %, join() and format()
-        """``text`` if it is of this language; raises TypeError (Markup would turn ``&`` into ``&amp;``)."""
+    def escape(cls, text: Any) -> Self:  # Markup calls this for the other operand of +, %, join() and format()
+        """Returns ``text`` if it is code of this language or an ``int``.  Raises TypeError for any other value.
+
+        Markup itself would escape such text for HTML: ``&`` would become ``&amp;``.
+        """
         if isinstance(text, cls):
             return text
         if type(text) is int:
@@ -59,11 +64,14 @@ class ProjectText(Escaped):
 
 
 class NotFinite(ArithmeticError, ValueError):
-    """A number that no literal of C has: infinite or NaN."""
+    """A number for which C has no literal: infinite or NaN."""
 
 
 def cstring(text: object) -> Code:
-    """A C string literal: ``a"b`` becomes ``"a\\"b"``; everything but printable ASCII as octal escapes of its UTF-8."""
+    """A C string literal: ``a"b`` becomes ``"a\\"b"``.
+
+    Each byte of the UTF-8 text that is not printable ASCII becomes an octal escape.
+    """
     out = []
     for byte in str(text).encode("utf-8"):
         char = chr(byte)
@@ -77,7 +85,7 @@ def cstring(text: object) -> Code:
 
 
 def comment(text: object) -> Code:
-    """Text inside a C comment: one line, printable, unable to end the comment or continue the line."""
+    """Text for a C comment, on one line of printable characters.  It cannot end the comment or continue the line."""
     line = "".join(char if char.isprintable() else " " for char in str(text))
     line = re.sub(r"\*(?=/)", "* ", line)
     line = re.sub(r"/(?=\*)", "/ ", line)
@@ -86,7 +94,7 @@ def comment(text: object) -> Code:
 
 
 def identifier(text: object) -> Code:
-    """A C identifier; anything else is a bug in EPG, as names are checked before."""
+    """A C identifier.  Raises ValueError for other text; that is a bug in EPG, because names are checked before."""
     name = str(text)
     if not re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", name):
         raise ValueError(f"{name!r} {identifier_problem(name)}")
@@ -94,7 +102,7 @@ def identifier(text: object) -> Code:
 
 
 def include(name: object) -> Code:
-    """The name between the brackets of ``#include <...>``; one that cannot stand there is an error."""
+    """The name between the brackets of ``#include <...>``.  Raises ValueError if C does not allow the name there."""
     text = str(name)
     if not text or not text.isprintable() or re.search(r'[<>"\\]|//|/\*', text):
         raise ValueError(f"{text!r} cannot be included")
@@ -102,7 +110,7 @@ def include(name: object) -> Code:
 
 
 def double(value: object) -> Code:
-    """A C literal with exactly the value of the nearest double; infinite and NaN are bugs."""
+    """A C literal whose value is exactly the double nearest to ``value``.  Raises NotFinite for infinite and NaN."""
     if isinstance(value, bool) or not isinstance(value, (int, float, Fraction)):
         raise TypeError(f"{value!r} is no number")
     number = float(value)
@@ -119,13 +127,13 @@ def boolean(value: object) -> Code:
 
 
 def nanoseconds(value: object) -> Code:
-    """A time in seconds as a C literal in whole nanoseconds."""
+    """A time in seconds, as a C literal in nanoseconds, rounded to a whole number."""
     assert isinstance(value, (int, float, Fraction))
     return Code(f"{round(Fraction(value) * 1_000_000_000)}u")
 
 
 def cmake(text: object) -> CMakeCode:
-    """A quoted argument of CMake."""
+    """A quoted argument of a CMake command.  Raises ValueError for text with NUL."""
     value = str(text)
     if "\0" in value:
         raise ValueError("NUL in a CMake argument")
@@ -134,14 +142,17 @@ def cmake(text: object) -> CMakeCode:
 
 
 def devicetree_string(text: object) -> DevicetreeCode:
-    """A string property's value; what dtc does not take as it is becomes an octal escape of its UTF-8."""
+    """The value of a string property.  Bytes of UTF-8 that dtc does not accept as they are become octal escapes.
+
+    Raises ValueError for text with NUL.
+    """
     if "\0" in str(text):
         raise ValueError("NUL in a devicetree string")
     return DevicetreeCode(str(cstring(text)).replace("\\?", "?"))
 
 
 def kconfig_string(text: object) -> KconfigCode:
-    """The value of a string symbol, which ends with its line."""
+    """The quoted value of a string symbol.  It must be on one line: raises ValueError for text with a line end."""
     value = str(text)
     if not all(char.isprintable() for char in value):
         raise ValueError(f"{value!r} cannot stand on one line")
@@ -149,7 +160,7 @@ def kconfig_string(text: object) -> KconfigCode:
 
 
 def kconfig_symbol(value: object) -> KconfigCode:
-    """Part of a symbol's name: capital letters, digits and ``_``."""
+    """A part of the name of a symbol, in capital letters, digits and ``_``."""
     return KconfigCode(str(identifier(value)).upper())
 
 
@@ -158,7 +169,7 @@ def kconfig_bool(value: object) -> KconfigCode:
 
 
 def word(value: object) -> ProjectText:
-    """A name or version that needs no quotes in any language."""
+    """A name or a version that does not need quotes in CMake, YAML, JSON or Markdown.  Raises ValueError otherwise."""
     name = str(value)
     if not re.fullmatch(r"[A-Za-z0-9_.+-]+", name):
         raise ValueError(f"{name!r} is no word")
@@ -166,5 +177,8 @@ def word(value: object) -> ProjectText:
 
 
 def line(value: object) -> ProjectText:
-    """Text in a comment or in prose: one line of printable characters, and none that ends a span of code."""
+    """Text for a comment or for prose, on one line of printable characters.
+
+    Backquotes become blanks, because they would end inline code of Markdown.
+    """
     return ProjectText("".join(char if char.isprintable() and char != "`" else " " for char in str(value)))

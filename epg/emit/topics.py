@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Topics as C: what ``templates/topics.c.j2`` lays out, with the messages that the templates of kinds name.
+"""The topics of an application with their messages, for ``templates/topics.c.j2``.
 
-A kind's ``code.c.j2`` says its message by macros: ``message(c)`` (an ``epg_message_t``), ``message_type(c)`` (as ROS
-names it), ``message_size(c)`` (bytes of the largest one) and ``layout(c)`` (what the message's functions want to know).
-Kinds without them are of std_msgs/msg/Float64.
+The ``code.c.j2`` of a kind names its message by macros: ``message(c)`` is an ``epg_message_t``, ``message_type(c)``
+the name of the type in ROS, ``message_size(c)`` the bytes of the largest message, and ``layout(c)`` data for the
+functions of the message.  A kind without these macros has the message std_msgs/msg/Float64.
 """
 
 from __future__ import annotations
@@ -15,12 +15,16 @@ from epg.emit.text import Code
 from epg.resolve.application import Application, ResolvedComponent, Topic
 
 Macro = Callable[..., Code]
-"""``macro(component, name, *arguments)``: what the template of a component's kind gives; empty when it has no such."""
+"""``macro(component, name, *arguments)``: the text of a macro of the component's kind; empty if the kind has none."""
 
 
 @dataclass(frozen=True)
 class TopicView:
-    """A topic with its message; ``ros_type`` is text, ``size`` a C expression, ``layout`` empty for none."""
+    """A topic with its message.
+
+    ``ros_type`` is the name of the type in ROS.  ``size`` is a C expression in bytes.  ``layout`` is a C expression, or
+    empty if the message does not need one.
+    """
 
     topic: Topic
     message: Code
@@ -30,7 +34,7 @@ class TopicView:
 
     @property
     def value_names(self) -> Sequence[str]:
-        """Names of the values, if they are not called as the topic."""
+        """The names of the values; empty if there is one value with the name of the topic."""
         names = [value.name for value in self.topic.values]
         return names if names != [self.topic.name] else []
 
@@ -39,8 +43,9 @@ class TopicView:
 class Topics:
     """All topics of an application.
 
-    ``largest`` and ``largest_received`` are C expressions for the bytes of the largest message that is published and
-    of the largest that is expected.
+    ``largest`` is a C expression for the bytes of the largest message that the target publishes, ``largest_received``
+    for those of the largest message that it receives.  ``most_received`` is the largest number of values in one
+    received message; it is at least 1.
     """
 
     subscriptions: tuple[TopicView, ...]
@@ -53,7 +58,7 @@ class Topics:
 
     @property
     def has_changes(self) -> bool:
-        """Whether a publication is sent when its values have changed."""
+        """True if at least one publication is sent when its values change."""
         return any(view.topic.trigger == "change" for view in self.publications)
 
 
@@ -90,7 +95,10 @@ def _view(topic: Topic, macro: Macro) -> TopicView:
 
 
 def message_of(component: ResolvedComponent, macro: Macro) -> tuple[Code, str, Code, Code]:
-    """Message, type, size and layout of a component's topic."""
+    """The message, its type in ROS, its size and its layout, for the topic of a component.
+
+    Raises LookupError if the kind of the component lacks a macro that its message needs.
+    """
     message = macro(component, "message").strip()
     if not message:
         if len(component.value_index) > 1:

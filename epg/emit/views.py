@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What templates see of an application's components, wires and pins."""
+"""The components, wires and pins of an application, as templates see them."""
 
 from __future__ import annotations
 
@@ -13,9 +13,10 @@ from epg.emit.text import Code
 
 @dataclass(frozen=True)
 class UseView:
-    """Another component that one names: the C expressions for its value, and for how often that was reset.
+    """A component that another component uses.
 
-    ``value`` is what a sensor gives or what a drive is given at present; empty for a topic.
+    ``value`` is a C expression: the value of a sensor, or the duty that a drive is given at present.  It is empty for a
+    topic.  ``resets`` is a C expression that counts the resets of the value.
     """
 
     name: str
@@ -25,7 +26,10 @@ class UseView:
 
 @dataclass(frozen=True)
 class ValueView:
-    """One number of a component's topic: the port, with element and part as in :class:`~epg.catalog.kind.KindPort`."""
+    """One value of a component's topic.
+
+    ``element`` and ``part`` are those of :class:`~epg.catalog.kind.KindPort`.  ``index`` is the value index.
+    """
 
     port: str
     element: str
@@ -35,11 +39,11 @@ class ValueView:
 
 @dataclass(frozen=True)
 class ComponentView:
-    """A component as templates of its kind see it; names that are printed are code already.
+    """A component as the template of its kind sees it.  Members of the type ``Code`` can be printed without a filter.
 
-    ``period`` is that of the control cycle, ``write_period`` the one at which actuators are written, both in seconds.
-    ``values`` are the numbers of its topic in the order of the message, ``value_index`` their indices by port,
-    ``first_index`` the first one.
+    ``period`` is the control period, ``write_period`` the time between two writes of actuators, both in seconds.
+    ``values`` are the values of the component's topic in the order of the message.  ``value_index`` has their value
+    indices by port, and ``first_index`` is the first of them; it is None for a component without a topic.
     """
 
     name: str
@@ -57,7 +61,7 @@ class ComponentView:
 
 @dataclass(frozen=True)
 class Part:
-    """What one component contributes to the places of the generation order."""
+    """The code that one component contributes to each place of the generation order."""
 
     component: ComponentView
     number: int
@@ -70,12 +74,12 @@ class Part:
 
 
 POINTS = ("cycle", "inputs", "model", "outputs")
-"""Points of the control cycle at which a kind may have statements: its macro ``probe(c, point)``."""
+"""The points of the control cycle at which a kind can have statements, by its macro ``probe(c, point)``."""
 
 
 @dataclass(frozen=True)
 class Arrival:
-    """Statements for when a setpoint has arrived, or a publication is about to leave."""
+    """Statements of a component that run when a setpoint has arrived, or before a publication is sent."""
 
     component: str
     index: int  # of the topic's first setpoint, or of the publication
@@ -84,7 +88,7 @@ class Arrival:
 
 @dataclass(frozen=True)
 class InputView:
-    """An assignment to a model input."""
+    """An assignment to a model input.  ``source`` describes the wire in a comment, ``value`` is a C expression."""
 
     name: str
     source: str
@@ -94,7 +98,10 @@ class InputView:
 
 @dataclass(frozen=True)
 class OutputView:
-    """Statements that hand a model output on: what can be done before its instant, if anything, and the rest."""
+    """Statements that write a model output.  ``sink`` describes the wire in a comment.
+
+    ``prepare`` does the work that is not time-critical, and can be empty.  ``statement`` then writes the output.
+    """
 
     name: str
     sink: str
@@ -104,7 +111,7 @@ class OutputView:
 
 @dataclass(frozen=True)
 class OutputPin:
-    """A pin that a component drives; ``high`` is C that says whether its level is high while nothing is to move."""
+    """A pin that a component drives.  ``high`` is a C expression, true if the safe level of the pin is high."""
 
     component: str
     signal: str
@@ -114,7 +121,7 @@ class OutputPin:
 
 @dataclass(frozen=True)
 class InputPin:
-    """A pin that the component ``name`` reads; ``invert``: as 1 when it is low."""
+    """A pin that the component ``name`` reads.  If ``invert``, a low level is read as 1."""
 
     name: str
     pin: int
@@ -123,7 +130,10 @@ class InputPin:
 
 @dataclass(frozen=True)
 class SafeState:
-    """Which of a component's outputs must be low and which must be high, one bit each, the first one lowest."""
+    """One safe state: bit masks of the outputs of a component that must be low, and of those that must be high.
+
+    The lowest bit belongs to the first output.
+    """
 
     low: int
     high: int
@@ -131,7 +141,10 @@ class SafeState:
 
 @dataclass(frozen=True)
 class OutputGroup:
-    """The output pins of one component, ``count`` of them from the ``first`` on, and its safe states."""
+    """The output pins of one component and its safe states.
+
+    ``first`` is the index of its first pin in the list of all output pins, ``count`` the number of its pins.
+    """
 
     component: str
     first: int

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes generated files: only what changed, each at once and whole, and nothing outside the output folder."""
+"""Writes generated files: only those that changed, each atomically, and never outside the output folder."""
 
 from __future__ import annotations
 
@@ -12,10 +12,12 @@ from epg.emit.leftovers import lock, remove_leftovers, temporary_beside
 
 
 def write_outputs(folder: Path, files: Mapping[str, str]) -> list[str]:
-    """Makes ``folder`` hold ``files`` (name -> text); returns the names that were written.
+    """Writes ``files`` (name -> text) into ``folder``.  Returns the names of the files that were written.
 
-    A file whose text is the same is not touched, so nothing that depends on it is rebuilt.  Files are complete before
-    they get their name: an interrupted run leaves old files or new ones, never halves.
+    A file whose text did not change is not touched, so that nothing that depends on it is built again.  Each file is
+    complete before it gets its name: an interrupted run leaves old or new files, but never a part of one.
+
+    Raises PermissionError if a symbolic link leads out of ``folder``, and OSError for other failures.
     """
     written = []
     for name, text in sorted(files.items()):
@@ -47,7 +49,10 @@ def write_outputs(folder: Path, files: Mapping[str, str]) -> list[str]:
 
 
 def remove_stale(folder: Path, keep: Mapping[str, str], owned: list[str]) -> list[str]:
-    """Deletes those of ``owned`` (outputs of the run before) that are not in ``keep``; returns their names."""
+    """Deletes the files in ``owned``, the outputs of the previous run, that are not in ``keep``.
+
+    Returns the names of the deleted files.  Files outside ``folder`` are never deleted.
+    """
     removed = []
     for name in owned:
         path = folder / name

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The library of one model: a typed header, its implementation, and what keeps the model apart from others.
+"""The library of one model: a typed header, its implementation, and files that separate it from other models.
 
 >>> # files = emit_model(model, "pan")           # {"pan.h": ..., "pan.c": ..., "pan_export.c": ...}
 >>> # build = model_build(model, "pan")          # what to compile, and how
@@ -7,17 +7,17 @@
 Names of generated files and symbols begin with the name of the library:
 
 ``<name>.h``, ``<name>.c``
-    the interface, and ports by name; compiled with the project's warnings
+    the interface, in which ports have names; compiled with the project's warnings
 ``<name>_export.h``, ``<name>_export.c`` or ``.cpp``
-    access to the model's own code; compiled with it, without warnings
+    access to the model's own code; compiled like that code, without warnings
 ``<name>_names.h``
     renames the global symbols of a C model; included before every file of the model
 ``<name>_copies/<file>``
     a copy of one of the model's files with other parameter values
 ``<name>_headers/``
-    headers the model includes under a name of another case, and those of FMI
+    headers under the names by which the model includes them, and the headers of FMI
 ``<name>_fmu/``
-    the sources of an FMU that is an archive
+    the unpacked sources of an FMU that is an archive
 """
 
 from __future__ import annotations
@@ -35,11 +35,13 @@ __all__ = ["ModelBuild", "emit_model", "model_build"]
 def emit_model(
     model: Model, name: str, parameters: Mapping[str, float] | None = None, instances: int = 1
 ) -> dict[str, str]:
-    """The generated files of ``model`` as library ``name``: file name to text.
+    """The generated files of ``model`` as the library ``name``: file name to text.
 
-    ``parameters`` replaces exported values by their 20-sim names, as if the model had been exported with these: they
-    act from the first initial equation on.  ``name`` must be a C identifier and ``parameters`` hold names of the model
-    only; ``instances`` is 1 unless ``model.instantiable``.  Raises ValueError otherwise: callers check first.
+    ``parameters`` holds new values by the names of 20-sim.  They replace the exported values as if the model had been
+    exported with them, so that the first initial equation already uses them.
+
+    ``name`` must be a C identifier.  Each name in ``parameters`` must be a parameter of the model.  ``instances`` must
+    be 1 unless ``model.instantiable``.  Raises ValueError otherwise; callers must check before.
     """
     values = dict(parameters or {})
     unknown = sorted(values.keys() - {parameter.name for parameter in model.parameters})

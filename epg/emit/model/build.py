@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What to compile for a model's library."""
+"""The sources of a model's library, and how to compile them."""
 
 from __future__ import annotations
 
@@ -15,12 +15,13 @@ from epg.models.model import Model
 
 @dataclass(frozen=True)
 class ModelBuild:
-    """Files are relative to the folder of the generated files unless they are paths.
+    """The sources of a model's library.  Names (``str``) are relative to the folder of the generated files.
 
-    ``generated`` is compiled with the project's options.  ``exported_generated`` and ``exported`` are the model's own
-    code: without warnings, as C11 or C++17, with ``-ffp-contract=off``, with ``include_dirs`` (and, in the generated
-    folder, ``generated_include_dirs``) as their private include path, followed by the generated folder and its
-    ``<name>_headers``, and with ``forced_header`` included first.
+    ``generated`` are compiled with the project's options.
+
+    ``exported_generated`` and ``exported`` are the model's own code.  They are compiled without warnings, as C11 or
+    C++17, with ``-ffp-contract=off``, and with ``forced_header`` included first.  Their private include path is
+    ``include_dirs`` and ``generated_include_dirs``, then the generated folder and its ``<name>_headers``.
     """
 
     generated: tuple[str, ...]
@@ -33,7 +34,7 @@ class ModelBuild:
 
 
 def model_build(model: Model, name: str, parameters: Mapping[str, float] | None = None) -> ModelBuild:
-    """How to compile what ``emit_model(model, name, parameters)`` gives."""
+    """How to compile the files that ``emit_model(model, name, parameters)`` returns."""
     edited = copies(model, name, dict(parameters or {}))
     suffix = "cpp" if model.language == "c++" else "c"
     own = [f"{name}_export.{suffix}"]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The C headers of FMI 2.0 and 3.0, for FMUs that leave them to the importer.
+"""The C headers of FMI 2.0 and 3.0, for FMUs that do not contain them and expect the importer to supply them.
 
-Types and functions are those of the specifications, FMI 2.0.4 and FMI 3.0.1.
+Types and functions are those of the specifications FMI 2.0.4 and FMI 3.0.1.
 
 >>> sorted(fmi_headers(2))
 ['fmi2FunctionTypes.h', 'fmi2Functions.h', 'fmi2TypesPlatform.h']
@@ -109,8 +109,8 @@ typedef void (*fmi3LockPreemptionCallback)(void);
 typedef void (*fmi3UnlockPreemptionCallback)(void);
 """
 
-# Result, name without the prefix, arguments.  "I" is the instance, "V" are value references and their count, "R" and
-# "B" a number and a truth value, "S" a string.
+# Each line: result, name without the prefix "fmi2" or "fmi3", arguments.  Short forms: "." is the status, "I" the
+# instance, "V" an array of value references and its length, "R" a real number, "B" a Boolean, "S" a string.
 _FUNCTIONS_2 = """
 const char * GetTypesPlatform(void)
 const char * GetVersion(void)
@@ -227,12 +227,12 @@ _SHORT = {
 
 
 def fmi_functions(standard: int) -> tuple[str, ...]:
-    """The names of all functions of FMI ``standard``."""
+    """The names of all functions of FMI ``standard``, which is 2 or 3."""
     return tuple(f"fmi{standard}{name}" for _, name, _ in _functions(standard))
 
 
 def fmi_headers(standard: int) -> dict[str, str]:
-    """The three headers of FMI ``standard``, by name."""
+    """The text of the three headers of FMI ``standard``, by file name.  ``standard`` is 2 or 3."""
     fmi = f"fmi{standard}"
     types = f"{fmi}{'TypesPlatform' if standard == 2 else 'PlatformTypes'}.h"
     functions = f"{fmi}FunctionTypes.h"
@@ -278,7 +278,7 @@ def _declarations(standard: int, function_types: str) -> str:
 
 
 def _functions(standard: int) -> list[tuple[str, str, str]]:
-    """Result, name and arguments of every function."""
+    """The result, the name without its prefix, and the arguments of each function."""
     short = _SHORT[standard]
     found = []
     for line in (_FUNCTIONS_2 if standard == 2 else _FUNCTIONS_3).splitlines():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the templates of an FMU's library need: names of FMI's functions, variables by type, unpacked files."""
+"""The variables of the templates of an FMU's library: names of FMI functions, variables grouped by type, files."""
 
 from __future__ import annotations
 
@@ -15,7 +15,11 @@ from epg.models.model import Model
 
 @dataclass(frozen=True)
 class FmiType:
-    """A type of FMI as C has it.  ``low`` and ``high`` are the doubles nearest to its limits; empty for reals."""
+    """A type of FMI and its C type ``c``.
+
+    ``low`` and ``high`` are the smallest and the largest double that the C type can hold.  They are empty for real
+    numbers and Booleans.
+    """
 
     name: str  # "Real", "UInt8"
     c: str
@@ -51,7 +55,7 @@ _TYPES = {
 def fmu_code(
     model: Model, details: FmuExport, name: str, values: Mapping[str, float], instances: int
 ) -> dict[str, Any]:
-    """The context of ``fmu.c.j2`` and ``fmu_names.h.j2``."""
+    """The template variables of ``fmu.c.j2`` and ``fmu_names.h.j2``."""
     fmi = f"fmi{details.standard}"
     types = _TYPES[details.standard]
     used = sorted({place.type for place in details.parameters})
@@ -82,12 +86,12 @@ def _group(group: FmuPorts, types: Mapping[str, FmiType]) -> dict[str, Any]:
 
 
 def fmu_files(details: FmuExport, name: str) -> dict[str, str]:
-    """The files of an archive, and the headers of the standard that the FMU lacks."""
+    """The files of an FMU that is an archive, and the headers of FMI that the FMU does not contain."""
     files = {f"{fmu_folder(name)}/{path}": text for path, text in details.packed}
     headers = fmi_headers(details.standard)
     return files | {f"{name}_headers/{header}": headers[header] for header in details.headers}
 
 
 def fmu_folder(name: str) -> str:
-    """Where an archive is unpacked."""
+    """The name of the folder into which an archive is unpacked."""
     return f"{name}_fmu"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The templates of a model's library, filled."""
+"""Renders the templates of a model's library."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from epg.models.model import Model, Parameter, Port
 
 
 def render(model: Model, name: str, values: Mapping[str, float], instances: int) -> dict[str, str]:
-    """All files that are made from templates."""
+    """The text of all files of the library that are made from templates, by file name."""
     common: dict[str, Any] = {
         "model": model,
         "name": Code(name),
@@ -71,18 +71,22 @@ def render(model: Model, name: str, values: Mapping[str, float], instances: int)
 
 _PUBLIC = """t inputs inputs_t outputs outputs_t parameter parameter_t instance init step terminate stopped finite
 get_parameter set_parameter heap_used""".split()
-"""What follows ``<name>_`` in the names of types and functions of a library."""
+"""The parts after ``<name>_`` in the names of the types and functions of a library."""
 
 
 def parameter_constants(name: str, parameters: Sequence[Parameter]) -> list[str]:
-    """Enumerators: ``PAN_PID1_KP``.  Parameters that differ in case only keep theirs: ``PAN_Kp``, ``PAN_KP``."""
+    """The names of the parameters in the C enumeration: ``PAN_PID1_KP``.
+
+    Parameters whose names differ only in case keep their case: ``PAN_Kp``, ``PAN_KP``.
+    """
     upper = [f"{name}_{parameter.identifier}".upper() for parameter in parameters]
     reserved = {
         f"{name}_{word}".upper()
         for word in ("h", "step_size", "instances", "parameters", "heap_size", "export_h", "names_h")
     }
-    reserved |= {f"{name}_{word}" for word in _PUBLIC}  # a name in capitals: PAN_step() and parameters "step", "STEP"
-    result: dict[str, None] = {}  # in order
+    # A library named in capitals: PAN_step() is a function, and the parameters can be called "step" and "STEP".
+    reserved |= {f"{name}_{word}" for word in _PUBLIC}
+    result: dict[str, None] = {}  # a set that keeps its order
     counts = Counter(upper)
     for constant, parameter in zip(upper, parameters, strict=True):
         unique = constant if counts[constant] == 1 else f"{name.upper()}_{parameter.identifier}"
@@ -95,7 +99,7 @@ def parameter_constants(name: str, parameters: Sequence[Parameter]) -> list[str]
 @cache
 def _environment() -> jinja2.Environment:
     env = environment([Path(__file__).resolve().parent / "templates"])
-    env.filters["parsed"] = Code  # what EPG's parsers took from a source as it stands there
+    env.filters["parsed"] = Code  # text that EPG's parsers took from a C source: it is C already
     env.filters["told"] = _told
     env.filters["last_name"] = lambda text: str(text).rpartition("::")[2].removeprefix("struct ")
     return env
@@ -111,7 +115,7 @@ def _about(model: Model) -> str:
 
 
 def _told(item: Port | Parameter) -> Code:
-    """A port or parameter as its comment names it: ``in {rad}``."""
+    """The text about a port or parameter in a C comment: ``in {rad}``."""
     unit = f" {{{item.unit}}}" if item.unit else ""
     kind = f", {item.type}" if isinstance(item, Port) and item.type != "real" else ""
     told = f": {item.description}" if isinstance(item, Port) and item.description else ""
@@ -125,8 +129,9 @@ def _c_function(model: Model, details: CFunctionExport) -> dict[str, Any]:
     elements = [element.array for element in (*details.inputs, *details.outputs)]
     wanted = {*states, *elements, *([details.parameters] if model.parameters else [])}
     if details.instance_type:
-        # arrays are members of the instance: xx_P is a macro for model_instance->P there.  FMU sources point into a
-        # common memory, which has all of them; an export by EPG's target for 20-sim has those that it needs.
+        # The arrays are members of the instance: in the export, xx_P is a macro for model_instance->P.  In sources of
+        # an FMU, the members are pointers into one common memory, which has all arrays.  In an export by EPG's target
+        # for 20-sim, they are arrays, and only those that the model needs exist.
         members = [name for name, _ in details.memory] or ["s", "R"]
         return {
             "entries": _entries(details),
@@ -169,7 +174,7 @@ def _cpp_class(model: Model, details: CppClassExport, name: str, values: Mapping
 
 
 def _include_name(path: Path, folders: Sequence[Path]) -> str:
-    """The shortest name under which the include path finds ``path``, and finds no other file."""
+    """The shortest name by which the include path finds ``path`` and not another file."""
     names = [path.relative_to(folder).as_posix() for folder in folders if path.is_relative_to(folder)]
     names = sorted(names, key=len) or [path.name]
     for name in names:

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""C code for a model that is given by its tokens alone.
+"""The C code of a model whose export has tokens, but no C files.
 
-The equations stay as 20-sim writes them, but for the names of their arrays and system variables, which become members
-of the model's instance.  The helper functions are EPG's own; they follow the definitions of the SIDOPS+ language and
-give bit for bit what the functions of 20-sim's C templates give for arguments in range.
+The equations stay as 20-sim writes them, except for the names of arrays and system variables: these become members of
+the model's instance.
+
+The helper functions are EPG's own.  They follow the definitions of the SIDOPS+ language.  For arguments in range, their
+results are equal, bit for bit, to those of the functions in 20-sim's C templates.
 """
 
 from __future__ import annotations
@@ -44,7 +46,10 @@ _SCALARS = {
 
 
 def tokens_code(model: Model, details: TokensExport, values: Mapping[str, float]) -> dict[str, Any]:
-    """What the template of a tokens model needs: code blocks, sizes of arrays, times."""
+    """The template variables of ``tokens.c.j2``: blocks of code, sizes of arrays, times.
+
+    ``values`` holds new values of parameters by the names of 20-sim.
+    """
     tokens = details.tokens
     names = _names(tokens, details.functions)
     blocks = {token: Code(_block(tokens, token, names, model, values)) for token in CODE}
@@ -62,7 +67,7 @@ def tokens_code(model: Model, details: TokensExport, values: Mapping[str, float]
     )
     start = exact_number(tokens.trimmed("START_TIME")) or Fraction(0)
     finish = exact_number(tokens.trimmed("FINISH_TIME")) or Fraction(0)
-    # 4.5 added the four slopes of Runge Kutta 4 in another order
+    # Up to version 4.5, 20-sim added the four slopes of Runge Kutta 4 in another order, which rounds differently.
     old = re.match(r"4\.[0-5]\b", model.version) is not None
     return {
         "code": blocks,
@@ -71,7 +76,7 @@ def tokens_code(model: Model, details: TokensExport, values: Mapping[str, float]
 
 
 def _names(tokens: Tokens, functions: Sequence[str]) -> dict[str, str]:
-    """Identifiers in the equations and what they become."""
+    """The identifiers in the equations, with the C that replaces each."""
     prefix = tokens.trimmed("VARPREFIX")
     names = {}
     for token, (default, member) in _ARRAYS.items():
@@ -90,7 +95,7 @@ def _names(tokens: Tokens, functions: Sequence[str]) -> dict[str, str]:
 
 
 def _block(tokens: Tokens, token: str, names: Mapping[str, str], model: Model, values: Mapping[str, float]) -> str:
-    """One token as C code, indented as a body, with parameters replaced."""
+    """The C code of one token, indented as the body of a function, with the new values of parameters."""
     file = tokens.code(token)
     text = file.text
     if token == "INITIALIZE_PARAMETERS":
@@ -100,7 +105,8 @@ def _block(tokens: Tokens, token: str, names: Mapping[str, str], model: Model, v
             if parameter is not None and parameter.name in values:
                 text = text[: line.value_start] + str(double(values[parameter.name])) + text[line.value_end :]
             elif parameter is None:
-                # a string, which lives in no double here: only dll() functions read it, and they are refused
+                # A parameter that is a string.  A double cannot hold it, and does not need to: only dll() functions
+                # read strings, and EPG refuses models that use them.
                 text = text[: line.value_start] + "0.0" + text[line.value_end :]
     pieces = re.split(r"(/\*.*?\*/|//[^\n]*)", text, flags=re.DOTALL)
     for position, piece in enumerate(pieces):
@@ -122,7 +128,7 @@ def _helper_name(function: str) -> str:
 
 
 def helper_texts(functions: Sequence[str]) -> list[str]:
-    """The C functions behind ``functions``, in the order they need."""
+    """The C definitions of the helper functions ``functions``, in alphabetical order."""
     return [_HELPERS[function].strip("\n") for function in sorted(functions)]
 
 
