@@ -68,7 +68,7 @@ class MiddlewareView:
     numbers of topics, including the topics for diagnostics and for enabling.
 
     ``longest_topic`` is the length in characters of the longest full name of a topic.  ``longest_node`` is the length
-    of the node's name with its namespace.  Both count the longest serial number in the place of ``$serial``.
+    of the node's name with its namespace.  Both count a serial number in the place of ``$serial``.
 
     ``prefix`` is the beginning of the C names in the template's code: "middleware", or "console" for a console that
     runs beside another middleware.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Models: exports of 20-sim and controllers written by hand.
+"""Models: exports of 20-sim, FMUs, and controllers written by hand.
 
 >>> # model = load_model(Path("model"), diagnostics)
 >>> # [port.name for port in model.inputs]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The lines of generated code that carry the model's data: array elements with their 20-sim names.
+"""Finds the lines of exported code that hold the model's data: array elements with their names in 20-sim.
 
-``xx_V[7] = u[0];  /* in {rad} */`` and ``xx_P[1] = 2.6;  /* PID1\\kp {} */`` look alike in every target and version of
-20-sim; renaming prefixes and reformatting leave them recognisable.
+Examples are ``xx_V[7] = u[0];  /* in {rad} */`` and ``xx_P[1] = 2.6;  /* PID1\\kp {} */``.  These lines have the same
+form in every target and version of 20-sim, also after the user renamed prefixes or reformatted the code.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import TypeGuard
 from epg.documents.source_file import STRING, SourceFile
 from epg.source import Span
 
-# Two steps: one expression for a whole statement takes quadratic time where its `;` is missing.
+# The search takes two steps, because a regular expression for a whole statement takes quadratic time if `;` is missing.
 _STATEMENT_END = re.compile(r"[;{}]")
 _ASSIGNMENT = re.compile(
     r"(?<![\w.>])((?:[A-Za-z_]\w{0,255}->)?[A-Za-z_]\w{0,255})\s{0,80}\[\s{0,80}(\d{1,9})\s{0,80}\]\s{0,80}=(?!=)\s*",
@@ -32,7 +32,10 @@ _LIST_END = re.compile(r"\bNULL\b|\}")
 
 @dataclass(frozen=True)
 class Assignment:
-    """``array[index] = value;  /* name {unit} */``; ``name`` is empty where there is no comment."""
+    """A line ``array[index] = value;  /* name {unit} */``.  ``name`` and ``unit`` are empty if there is no comment.
+
+    ``start``, ``value_start`` and ``value_end`` are offsets into the text of the file.
+    """
 
     array: str
     index: int
@@ -47,7 +50,7 @@ class Assignment:
 
 @dataclass(frozen=True)
 class PortLine:
-    """A port: ``array[array_index]`` holds its value, ``index`` is the position in ``u`` or ``y``."""
+    """A port.  ``array[array_index]`` holds its value; ``index`` is its position in the vector ``u`` or ``y``."""
 
     name: str
     unit: str
@@ -58,7 +61,7 @@ class PortLine:
 
 
 def assignments(file: SourceFile, start: int = 0, end: int | None = None) -> Iterator[Assignment]:
-    """All assignments of a value to an array element with a literal index, in order."""
+    """All assignments to an array element with a literal index, in the order of the code."""
     code = file.code
     statement = start
     for mark in _STATEMENT_END.finditer(code, start, len(code) if end is None else end):
@@ -83,7 +86,7 @@ def assignments(file: SourceFile, start: int = 0, end: int | None = None) -> Ite
 
 
 def input_lines(file: SourceFile, vector: str, start: int = 0, end: int | None = None) -> list[PortLine]:
-    """The lines ``array[i] = u[k];``; ``vector`` is what ``u`` is called."""
+    """The lines ``array[i] = u[k];``.  ``vector`` is the name of ``u`` in the code."""
     result = []
     for line in assignments(file, start, end):
         elements = [match for match in _ELEMENT.finditer(line.value) if match[1] == vector]
@@ -93,7 +96,7 @@ def input_lines(file: SourceFile, vector: str, start: int = 0, end: int | None =
 
 
 def output_lines(file: SourceFile, vector: str, start: int = 0, end: int | None = None) -> list[PortLine]:
-    """The lines ``y[k] = array[i];``; ``vector`` is what ``y`` is called."""
+    """The lines ``y[k] = array[i];``.  ``vector`` is the name of ``y`` in the code."""
     result = []
     for line in assignments(file, start, end):
         elements = list(_ELEMENT.finditer(line.value))
@@ -104,14 +107,14 @@ def output_lines(file: SourceFile, vector: str, start: int = 0, end: int | None 
 
 
 def split_name(comment: str) -> tuple[str, str]:
-    """Name and unit of a comment: ``PID1\\tauD {s}`` gives ``("PID1\\tauD", "s")``."""
+    """The name and the unit in a comment: ``PID1\\tauD {s}`` gives ``("PID1\\tauD", "s")``."""
     text = comment.strip()
     name, brace, unit = text[:-1].rpartition("{") if text.endswith("}") else ("", "", "")
     return (name.strip(), unit.strip()) if brace and "}" not in unit else (text, "")
 
 
 def listed_names(file: SourceFile, kind: str) -> list[tuple[str, Span]]:
-    """Names in the list ``xx_<kind>_names[]``, which exports carry inside a comment."""
+    """The names in the list ``xx_<kind>_names[]``, which exports contain inside a comment."""
     head = re.compile(rf"{kind}_names\w{{0,80}}\s{{0,80}}\[\s{{0,80}}\]\s{{0,80}}=\s{{0,80}}\{{", re.ASCII)
     for match in head.finditer(file.text):
         end = _LIST_END.search(file.text, match.end(), match.end() + _LONGEST_LIST)
@@ -127,7 +130,10 @@ def listed_names(file: SourceFile, kind: str) -> list[tuple[str, Span]]:
 
 
 def exact_number(text: str) -> Fraction | None:
-    """The value of a literal, exact; also ``1.0 / 1000.0``, a cast or a truth value.  None for anything else."""
+    """The exact value of a literal, of a quotient such as ``1.0 / 1000.0``, or of a truth value.
+
+    The text can contain a cast.  None for any other text.
+    """
     text = text.strip()
     if len(text) > _LONGEST_NUMBER:
         return None
@@ -147,12 +153,12 @@ def exact_number(text: str) -> Fraction | None:
 
 
 def number(text: str) -> float | None:
-    """The value of a literal as a double; None for anything else."""
+    """The value of :func:`exact_number` as the nearest double, or None."""
     return finite(exact_number(text))
 
 
 def finite(value: Fraction | None) -> float | None:
-    """The nearest double; None where there is none, or no value."""
+    """The nearest double.  None if ``value`` is None or larger than every double."""
     if value is None:
         return None
     try:
@@ -162,7 +168,10 @@ def finite(value: Fraction | None) -> float | None:
 
 
 def is_step(value: Fraction | None) -> TypeGuard[Fraction]:
-    """Whether a value in seconds can be the step of a model: a double, and whole nanoseconds when it is a period."""
+    """True if ``value``, in seconds, can be the step of a model: from 1 ns to 1000000 s.
+
+    Such a step is a normal double.  As a control period, it is at least one whole nanosecond.
+    """
     return value is not None and Fraction(1, 1_000_000_000) <= value <= 1_000_000
 
 

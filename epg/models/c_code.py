@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a file of C or C++ defines and uses: enough of the language for generated code, and no more.
+"""Finds the definitions in a file of C or C++, and the names that it uses.
+
+The parser understands as much of the languages as generated code needs, and no more.
 
 >>> # unit = parse_code(SourceFile(path, text))
 >>> # [function.name for function in unit.functions]  ->  ['XXInitializeSubmodel', ...]
 
-Conditional compilation is not evaluated: a definition inside ``#ifdef`` counts.
+Conditional compilation is not evaluated: a definition inside ``#ifdef`` counts as a definition.
 """
 
 from __future__ import annotations
@@ -25,8 +27,8 @@ KEYWORDS = words(
     """
 )
 
-_LONGEST_HEAD = 2000  # characters of a declaration before its body that are looked at
-_LONGEST_SIZE = 2000  # characters of a size such as "xx_states_size + 1" when its macros are replaced
+_LONGEST_HEAD = 2000  # characters before a body that are parsed as its declaration
+_LONGEST_SIZE = 2000  # characters of a size such as "xx_states_size + 1" after its macros are replaced
 _IDENTIFIER = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 _MACRO = re.compile(
     r"^[ \t]*#[ \t]*define[ \t]+([A-Za-z_]\w*)(\([^)\n]*\))?[ \t]*((?:\\\n|[^\n])*)", re.MULTILINE | re.ASCII
@@ -47,7 +49,11 @@ _TYPEDEF = re.compile(r"\btypedef\b([^;{}()]{1,200});")
 
 @dataclass(frozen=True)
 class Function:
-    """A function with a body; ``name`` without, ``owner`` the class before ``::``."""
+    """A function with a body.  ``owner`` is the class before ``::``, or empty; ``name`` does not contain it.
+
+    ``start``, ``body_start`` and ``body_end`` are offsets into the text of the file.  The body does not include its
+    braces.
+    """
 
     name: str
     owner: str
@@ -61,7 +67,7 @@ class Function:
 
 @dataclass(frozen=True)
 class Variable:
-    """A variable at file scope that is defined (not only declared ``extern``)."""
+    """A variable that is defined at file scope.  A declaration with ``extern`` is not a definition."""
 
     name: str
     type: str
@@ -97,22 +103,22 @@ class Code:
     variables: tuple[Variable, ...]
     macros: tuple[Macro, ...]
     includes: tuple[Include, ...]
-    identifiers: frozenset[str]  # all
-    used: frozenset[str]  # in bodies of functions and definitions of variables: what a linker would look for
+    identifiers: frozenset[str]  # all identifiers in the file
+    used: frozenset[str]  # only those in bodies of functions and definitions of variables, which a linker can need
 
     def body(self, function: Function) -> str:
         """The body of ``function`` with comments and strings blanked."""
         return self.file.code[function.body_start : function.body_end]
 
     def calls(self, function: Function) -> Iterator[tuple[str, int]]:
-        """Names that are called in ``function``, and where."""
+        """The names of the functions that ``function`` calls, each with the offset of the call."""
         for match in _CALL.finditer(self.file.code, function.body_start, function.body_end):
             if match[1] not in KEYWORDS:
                 yield match[1], match.start(1)
 
 
 def parse_code(file: SourceFile) -> Code:
-    """Takes ``file`` apart.  Never fails: what is not understood is passed over."""
+    """Parses ``file``.  Never fails: text that the parser does not understand is skipped."""
     functions: list[Function] = []
     variables: list[Variable] = []
     for start, body_start, end in _top_level(file.code):
@@ -141,7 +147,7 @@ def parse_code(file: SourceFile) -> Code:
 
 @dataclass(frozen=True)
 class Head:
-    """What stands before the body of a function; ``start`` is where its name, with the owner's, begins."""
+    """The text before the body of a function.  ``start`` is the offset of its name, or of the owner if there is one."""
 
     name: str
     owner: str
@@ -150,9 +156,9 @@ class Head:
 
 
 def function_head(head: str) -> Head | None:
-    """The name and the parameters in ``head``, the text before a ``{``; None if it is no function's.
+    """The name and the parameters in ``head``, the text before a ``{``.  None if the ``{`` does not begin a function.
 
-    Takes linear time, which no regular expression for the whole does.
+    Takes linear time; a single regular expression for this would take more.
     """
     if "(" not in head:
         return None
@@ -160,7 +166,7 @@ def function_head(head: str) -> Head | None:
     for match in _PARAMETERS.finditer(head, begin):
         at = match.end()
         nested = min((found for found in (head.find("(", at), head.find(")", at)) if found >= 0), default=-1)
-        if nested >= 0 and ":" not in head[at:nested]:  # only the initialisers of a constructor hold parentheses
+        if nested >= 0 and ":" not in head[at:nested]:  # only the initialisers of a constructor have () behind it
             continue
         start, name = _word_before(head, match.start())
         if not name or name in KEYWORDS:
@@ -177,7 +183,10 @@ def function_head(head: str) -> Head | None:
 
 
 def _word_before(text: str, end: int) -> tuple[int, str]:
-    """Start and text of the identifier that stands, with blanks behind it, before ``end``; empty if there is none."""
+    """The start and the text of the identifier that ends at ``end``, or at the blanks before it.
+
+    The text is empty if there is no identifier.
+    """
     while end > 0 and text[end - 1].isspace():
         end -= 1
     start = end
@@ -188,13 +197,13 @@ def _word_before(text: str, end: int) -> tuple[int, str]:
 
 
 def _opens_type(head: str) -> bool:
-    """Whether ``head`` is that of an initialiser or of a type instead of a function's."""
+    """True if the ``{`` after ``head`` begins an initialiser or a type instead of a function."""
     end = head.rstrip()[-300:]
     return re.search(r"=$|\b(?:struct|union|enum|class|namespace)(?:\s+\w+)?$", end) is not None
 
 
 def typedefs(code: Code) -> Iterator[tuple[str, str]]:
-    """Name and type of each ``typedef`` of one plain type: ``("XXDouble", "double")``."""
+    """The name and the type of each ``typedef`` that names a plain type: ``("XXDouble", "double")``."""
     for match in _TYPEDEF.finditer(code.file.code):
         words_of_it = match[1].split()
         if len(words_of_it) > 1 and all(_IDENTIFIER.fullmatch(word) for word in words_of_it):
@@ -202,7 +211,10 @@ def typedefs(code: Code) -> Iterator[tuple[str, str]]:
 
 
 def integer_value(expression: str, macros: Mapping[str, str]) -> int | None:
-    """The value of a size such as ``xx_states_size`` or ``0 + 6 + 1``; None if it is not that simple, or no ``int``."""
+    """The value of the size of an array, such as ``xx_states_size`` or ``0 + 6 + 1``.
+
+    None for an expression that is not a sum or product of integers and ``macros``, or whose value is not an ``int``.
+    """
 
     def replacement(match: re.Match[str]) -> str:
         value = macros.get(match[0], match[0])
@@ -262,9 +274,10 @@ def _includes(file: SourceFile) -> Iterator[Include]:
 
 
 def _top_level(code: str) -> Iterator[tuple[int, int, int]]:
-    """Start, start of the body or -1, and end of every declaration outside of braces.
+    """The start, the start of the body or -1, and the end of each declaration outside braces.
 
-    A body that is no initialiser ends a declaration; ``extern "C" {`` is passed through.
+    A body ends a declaration, unless it is an initialiser or a type.  The declarations in ``extern "C" {`` and in a
+    namespace count as outside braces.
     """
     start, depth, body_start, head_start = 0, 0, -1, 0
     for match in re.finditer(r"[{};]", code):
@@ -284,7 +297,7 @@ def _top_level(code: str) -> Iterator[tuple[int, int, int]]:
             depth -= 1
             if depth == 0:
                 head = code[max(start, head_start, body_start - _LONGEST_HEAD) : body_start].rstrip()
-                head_start = at + 1  # no part of the text is looked at twice
+                head_start = at + 1  # so that no part of the text is parsed twice
                 if not head:
                     start, body_start = at + 1, -1
                     continue
@@ -322,7 +335,7 @@ def _variables(text: str, offset: int) -> Iterator[Variable]:
         return
     name_of_type, at = matched[2], matched.end()
     if re.match(r"\s*(?:[\[=,]|$)", text[at:]) and re.search(r"\b(unsigned|signed|long|short)\b", matched[1]):
-        name_of_type, at = matched[1].split()[-1], matched.start(2)  # "unsigned long e": there is no further word
+        name_of_type, at = matched[1].split()[-1], matched.start(2)  # "unsigned long e": the word after is the name
     rest = text[at:]
     for part, part_at in _split_commas(rest, at):
         part_at += len(part) - len(part.lstrip())

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Import of 20-sim's C function target (4.5 to 5.1) and of the C sources of its FMU target.
+"""Imports exports of 20-sim's C function target (versions 4.5 to 5.1), and the C sources of its FMU target.
 
-The entry points are recognised by the middle of their name (``...InitializeSubmodel...``), which survives the changes
-of prefix and suffix people make to link two models; both are read off the variable that holds the step size.
+Users change the prefix or the suffix of all names to link two models.  The importer therefore recognises the entry
+points by the middle of their names (``...InitializeSubmodel...``), and reads the prefix and the suffix from the name
+of the variable that holds the step size.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ SUFFIXES = (".c",)
 _ENTRY = re.compile(r"\w*?(Initialize|Calculate|Terminate)Submodel\w*")
 _METHODS = re.compile(r"(Discrete|Euler|RungeKutta2|RungeKutta4|MeBDFi|VodeAdams|BDF|AdamsBashford2?|Vode\w*)")
 _SCALAR = re.compile(r"(?<!\w)((?:\w{1,255}->)?\w{1,255})\s{0,80}=(?!=)\s{0,80}([^=;]+);", re.ASCII)
-_MOST_PARAMETERS = 16  # of a function that are looked at; exports have four
+_MOST_PARAMETERS = 16  # parameters of a function that are parsed; functions of exports have four
 _MEMORY_COUNTS = (
     "constants_count",
     "parameter_count",
@@ -67,7 +68,7 @@ def is_c_function(code: Code) -> bool:
 
 
 def load_c_function(main: Code, diagnostics: Diagnostics) -> Model | None:
-    """The model whose entry points ``main`` defines, or None after reporting why it cannot be used."""
+    """The model whose entry points ``main`` defines.  None if it cannot be used; the reasons are reported."""
     before = diagnostics.error_count
     linked = link(main, SUFFIXES, diagnostics)
     if linked is None:
@@ -146,7 +147,7 @@ class _Importer:
         return model if self.diagnostics.error_count == mine else None
 
     def _ports(self, kind: str, lines: list[PortLine]) -> tuple[Port, ...]:
-        """The ports of ``kind`` "input" or "output", named by the sources or else by the tokens."""
+        """The ports of ``kind`` "input" or "output".  Their names come from the sources, else from the tokens."""
         names = listed_names(self.file, kind)
         token_names = self.metadata.tokens.names(kind.upper()) if self.metadata.tokens else []
         if len(names) != len(lines) and len(token_names) == len(lines):
@@ -155,7 +156,7 @@ class _Importer:
         return make_ports(lines, kind, names, self.metadata.configuration, self.diagnostics, self.whole, expected)
 
     def _settings(self, roots: list[Function]) -> list[tuple[Code, Assignment]] | None:
-        """The lines that set parameters, with their files; None after reporting that nothing defines the array."""
+        """The lines that set parameters, with their files.  None, after an error, if no file defines the array."""
         array = self._array("P")
         settings = [
             (code, line)
@@ -172,7 +173,7 @@ class _Importer:
         return settings
 
     def _elements(self, lines: list[PortLine]) -> tuple[details.Element, ...]:
-        """Where each port is in the arrays of an export without vectors of inputs and outputs."""
+        """The array element of each port, for an export without vectors of inputs and outputs; else empty."""
         if not self._vectorless():
             return ()
         ordered = sorted(lines, key=lambda line: line.index)
@@ -185,7 +186,7 @@ class _Importer:
         outputs: tuple[details.Element, ...],
         places: tuple[tuple[details.Place, ...], ...],
     ) -> details.CFunctionExport:
-        """What generated code needs of the export."""
+        """The details of the export that the emitter needs."""
         terminate, static = self.entries.get("Terminate"), self._static()
         arrays = {letter: name if self._exists(name := self._array(letter)) else "" for letter in "PsR"}
         return details.CFunctionExport(
@@ -231,7 +232,7 @@ class _Importer:
         return self.metadata.version
 
     def _step_name(self) -> str:
-        """What the variable (or macro) with the step size is called: it shows the prefix and suffix of all names."""
+        """The name of the variable or macro with the step size.  It has the prefix and the suffix of all names."""
         candidates = [name for name in self.variables if "step_size" in name]
         candidates += [macro for macro in self.macros if "step_size" in macro]
         used = self.main.identifiers
@@ -245,7 +246,7 @@ class _Importer:
         return self._step_name().partition("step_size")[2]
 
     def _array(self, letter: str) -> str:
-        """The name of an array; some developers put their suffix to the arrays only."""
+        """The name of an array.  Some users add their suffix to the names of arrays only."""
         names = [f"{self._prefix()}{letter}{suffix}" for suffix in (self._suffix(), *self._array_suffixes(), "")]
         return next((name for name in names if self._exists(name)), names[0])
 
@@ -302,11 +303,11 @@ class _Importer:
         return any(self.entries["Calculate"].name in code.identifiers for code in found)
 
     def _member(self, array: str) -> str:
-        """The member of the instance behind an array: ``xx_V`` is a macro for ``model_instance->V``."""
+        """The member of the instance for an array: ``V`` for ``xx_V``, which is a macro for ``model_instance->V``."""
         return re.sub(r".*->\s*", "", self.macros.get(array, array)) if self.instance_type else array
 
     def _memory(self) -> tuple[tuple[str, str], ...]:
-        """Pointers of the instance and their offsets, in the order in which the FMI functions lay them out."""
+        """The pointers of the instance, each with its offset in MEMORY, in the order that the FMI functions use."""
         if not self.instance_type:
             return ()
         text = "".join(code.file.code for code in self.linked.headers)
@@ -321,12 +322,12 @@ class _Importer:
         return tuple(result)
 
     def _static(self) -> list[Function]:
-        """The function that computes the static equations, as Initialize calls it."""
+        """The function for the static equations, if Initialize calls one: a list with at most one function."""
         called = {name for name, _ in self.main.calls(self.entries["Initialize"])}
         return [f for _, f in self.linked.functions() if f.name in called and "CalculateStatic" in f.name][:1]
 
     def _model_initialize(self) -> Function | None:
-        """The function that sets the parameters, where Initialize leaves calling it to the FMI functions."""
+        """The function that sets the parameters, if not Initialize but the FMI functions call it.  Else None."""
         initialize = [self.entries["Initialize"]]
         name = re.compile(r"\w*?ModelInitialize(?!_)\w*")
         if any(name.fullmatch(function.name) for _, function in self.linked.reachable(initialize)):
@@ -337,7 +338,7 @@ class _Importer:
     # values ---------------------------------------------------------------------------------------------------------
 
     def _scalar(self, word: str) -> Fraction | None:
-        """The first value of the variable ``<prefix><word><suffix>``, or what the FMI functions set it to."""
+        """The initial value of the variable ``<prefix><word><suffix>``, or the value that the FMI functions set."""
         place = self._scalar_place(word)
         return exact_number(place[1]) if place else None
 
@@ -439,7 +440,7 @@ class _Importer:
         return inputs, outputs
 
     def _fmi_array(self) -> str:
-        """The memory that value references count in."""
+        """The name of the array in which a value reference is an index."""
         return (
             "MEMORY" if self.instance_type else next((n for n in self.variables if n.endswith("MEMORY")), "xx_MEMORY")
         )

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Variables and methods of an export that somebody has deleted: they would be missed by the compiler or the linker."""
+"""Finds variables and methods that are missing in an export, for example because the user deleted a file.
+
+Without this check, the user would only see an error of the compiler or of the linker.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +21,10 @@ _HINT = "are all files there, as 20-sim exported them? else export again"
 
 
 def check_variables(linked: Linked, prefix: str, diagnostics: Diagnostics) -> None:
-    """Reports variables with the model's ``prefix`` that no file defines: code that never runs is linked too."""
+    """Reports variables with the model's ``prefix`` that are used, but that no file defines.
+
+    Checks all functions, because the linker also needs the variables of code that never runs.
+    """
     if len(prefix) < 2:
         return
     known = {variable.name for code in linked.all for variable in code.variables}
@@ -35,9 +41,9 @@ def check_variables(linked: Linked, prefix: str, diagnostics: Diagnostics) -> No
 
 
 def check_methods(linked: Linked, class_name: str, diagnostics: Diagnostics) -> None:
-    """Reports what the linker needs of a class that declares it, and that no file defines."""
+    """Reports methods that a class declares and the linker needs, but that no file defines."""
     defined = {function.name for _, function in linked.functions() if function.owner == class_name}
-    wanted = {class_name, f"~{class_name}", "Initialize", "Step"}  # and virtual methods, called or not
+    wanted = {class_name, f"~{class_name}", "Initialize", "Step"}  # the linker needs virtual methods even if not called
     for header in linked.headers:
         wanted |= {match[1] for match in _VIRTUAL.finditer(header.file.code)}
     missing: dict[str, Span] = {}
@@ -58,7 +64,7 @@ def _report(missing: dict[str, Span], what: str, diagnostics: Diagnostics) -> No
 
 
 def _is_declared(name: str, linked: Linked, code: Code) -> bool:
-    """Whether something else than an ``extern`` says what ``name`` is: a header, or a declaration in a function."""
+    """True if a header, or a declaration in a function, declares ``name`` other than as ``extern``."""
     for header in linked.headers:
         if name in header.identifiers and re.search(rf"\b{name}\b", _EXTERN.sub("", header.file.code)):
             return True
@@ -72,7 +78,7 @@ _TYPES = frozenset("double float int char long short unsigned signed".split())
 
 
 def _bodies(class_name: str, header: Code) -> Iterable[tuple[int, str]]:
-    """Where the class is declared in a header, and what stands between its braces."""
+    """The offset and the text between the braces of the class in ``header``; nothing if it is not declared there."""
     text = header.file.code
     for match in re.finditer(rf"\bclass\s{{1,80}}{re.escape(class_name)}\b[^;{{}}]{{0,500}}\{{", text):
         yield match.end(), text[match.end() : end_of_block(text, match.end())]

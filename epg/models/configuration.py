@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``ModelConfiguration.xml`` and an FMU's ``modelDescription.xml``: types, sizes and descriptions of ports.
+"""Reads types, sizes and descriptions of ports from ``ModelConfiguration.xml`` or an FMU's ``modelDescription.xml``.
 
-Both list variables in the order of their declaration, which is not the order of ``u[]`` and ``y[]``: use by name only.
+Both files list variables in the order of their declarations.  This is not the order of ``u[]`` and ``y[]``: ports must
+be found by their names only.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ _INDEX = re.compile(r"[0-9]{1,9}")
 
 @dataclass(frozen=True)
 class ConfiguredPort:
-    """A port as these files describe it.  ``array`` is empty for an FMU, ``index`` then is the value reference."""
+    """A port as these files describe it.  For an FMU, ``array`` is empty and ``index`` is the value reference."""
 
     name: str
     direction: str  # "input" or "output"
@@ -52,7 +53,10 @@ class Configuration:
 
 
 def find_configuration(directory: Path) -> Path | None:
-    """The configuration beside the sources: ``ModelConfiguration.xml``, ``*.mcf``, ``config/*.xxsim``."""
+    """The configuration in the folder of the sources or in its ``config``, or None.
+
+    It is called ``ModelConfiguration.xml``, ``*.mcf`` or ``*.xxsim``.
+    """
     for folder in (directory, directory / "config"):
         try:
             files = sorted(entry for entry in folder.iterdir() if entry.is_file())
@@ -65,7 +69,7 @@ def find_configuration(directory: Path) -> Path | None:
 
 
 def load_configuration(path: Path, diagnostics: Diagnostics) -> Configuration | None:
-    """The configuration in ``path``, or None after a warning."""
+    """The configuration in ``path``.  None if it cannot be used; an unreadable file is reported as a warning."""
     root = load_xml(path, diagnostics, required=False)
     if root is None or root.name != "modelConfiguration":
         return None
@@ -83,7 +87,7 @@ def load_configuration(path: Path, diagnostics: Diagnostics) -> Configuration | 
 
 
 def load_model_description(path: Path, diagnostics: Diagnostics) -> Configuration | None:
-    """The ports of an FMU 1.0 or 2.0, or None after a warning."""
+    """The ports of an FMU 1.0 or 2.0.  None if ``path`` cannot be used; an unreadable file is reported as a warning."""
     root = load_xml(path, diagnostics, required=False)
     if root is None or root.name != "fmiModelDescription":
         return None

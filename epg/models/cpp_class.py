@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Import of 20-sim's C++ class target: ``<Sub>.cpp``, ``<Sub>.h`` and ``common/``."""
+"""Imports exports of 20-sim's C++ class target: ``<Sub>.cpp``, ``<Sub>.h`` and ``common/``."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ from epg.models.ports import check_identifiers, make_parameters, make_ports
 from epg.source import Span
 
 SUFFIXES = (".cpp", ".cc", ".cxx")
-_MOST_PARAMETERS = 16  # of a method that are looked at; exports have three
+_MOST_PARAMETERS = 16  # parameters of a method that are parsed; methods of exports have three
 _NEEDED = {"CopyInputsToVariables", "Initialize", "Calculate"}
 
 
 def submodel_classes(code: Code) -> list[str]:
-    """Names of the classes in ``code`` that have the methods of a 20-sim submodel."""
+    """The names of the classes in ``code`` that have the methods of a 20-sim submodel."""
     methods: dict[str, set[str]] = {}
     for function in code.functions:
         if function.owner:
@@ -47,7 +47,7 @@ def submodel_classes(code: Code) -> list[str]:
 
 
 def load_cpp_class(main: Code, diagnostics: Diagnostics) -> Model | None:
-    """The model whose class ``main`` defines, or None after reporting why it cannot be used."""
+    """The model whose class ``main`` defines.  None if it cannot be used; the reasons are reported."""
     before = diagnostics.error_count
     linked = link(main, SUFFIXES, diagnostics)
     if linked is None or diagnostics.error_count > before:
@@ -168,7 +168,7 @@ class _Importer:
         return (integer_value(place[1], self.linked.macros()) or 0) if place else 0
 
     def _method(self) -> tuple[str, Code, int]:
-        """The type of the member whose ``Step()`` Calculate calls."""
+        """The integration method and its place: the type of the member whose ``Step()`` is called by Calculate."""
         body = self.methods["Calculate"]
         match = re.search(r"\b(\w+)\s*(?:\.|->)\s*Step\s*\(", self.main.body(body))
         if match:
@@ -209,7 +209,7 @@ class _Importer:
         return ports
 
     def _members(self) -> set[str]:
-        """Data members of the class and its bases, as far as the wrapper asks for them."""
+        """The data members of the class and its bases that the generated wrapper can use."""
         wanted = {self._prefix() + word for word in ("stop_run", "stop_simulation", "finish_time", "time")}
         return {name for code in self.linked.headers for name in wanted if re.search(rf"\b{name}\s*;", code.file.code)}
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What headers declare: functions, variables and classes that some file must define."""
+"""Finds the functions, variables and classes that a header declares and that another file must define."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _METHOD = re.compile(r"\([^();{}]{0,1000}\)\s{0,80}(?:const\s{0,80}|override\s{0
 
 
 def declared_names(code: Code) -> set[str]:
-    """Functions and ``extern`` variables that ``code`` declares outside of bodies, and classes with open methods."""
+    """The functions and ``extern`` variables that ``code`` declares outside bodies, and its :func:`open_classes`."""
     names = open_classes(code)
     for text in outside_bodies(code):
         text = _without_classes(text)
@@ -29,11 +29,11 @@ def declared_names(code: Code) -> set[str]:
 
 
 def open_classes(code: Code) -> set[str]:
-    """Classes with a method that has no body where the class is declared, and is not pure."""
+    """The classes with a method that another file must define: it has no body in the class and is not pure virtual."""
     text = code.file.code
     found, at = set(), 0
     for match in _CLASS.finditer(text):
-        if match.start() < at:  # of a class inside: no part of the text is looked at twice
+        if match.start() < at:  # a class inside the previous one, whose text was already searched
             continue
         at = end_of_block(text, match.end())
         if any(_METHOD.search(part) for part in _level(text[match.end() : at])):
@@ -42,7 +42,7 @@ def open_classes(code: Code) -> set[str]:
 
 
 def _without_classes(text: str) -> str:
-    """What stands outside of the braces of classes, whose methods are theirs alone."""
+    """``text`` without the text between the braces of classes, because methods are not functions."""
     parts, at = [], 0
     for match in _CLASS.finditer(text):
         if match.start() >= at:
@@ -52,7 +52,7 @@ def _without_classes(text: str) -> str:
 
 
 def end_of_block(text: str, start: int) -> int:
-    """Where the brace that opens before ``start`` closes."""
+    """The offset of the brace that closes the block which opens just before ``start``; the end of ``text`` if none."""
     depth = 1
     for match in _BRACE.finditer(text, start):
         depth += 1 if match[0] == "{" else -1
@@ -62,7 +62,7 @@ def end_of_block(text: str, start: int) -> int:
 
 
 def _level(body: str) -> Iterator[str]:
-    """The body of a class without friends and without what stands in braces."""
+    """The parts of the body of a class that are not in braces, without declarations of friends."""
     depth, at = 0, 0
     for match in _BRACE.finditer(body):
         if match[0] == "{":

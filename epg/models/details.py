@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the emitter needs of a model beyond :class:`~epg.models.model.Model`, one class per origin."""
+"""The data of a model that only the emitter needs, beside :class:`~epg.models.model.Model`.  One class per origin."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from epg.models.tokens import Tokens
 
 @dataclass(frozen=True)
 class EntryPoint:
-    """A function of the export.  ``arguments`` name what it takes, in order.
+    """A function of the export that the wrapper calls.  ``arguments`` are the meanings of its arguments, in order.
 
-    "u" and "y" are the port vectors, "time" the time before the step, "next_time" the time after it, "step" the step
-    size (some developers pass it instead of the time), "instance" a pointer to the model's memory.
+    "u" and "y" are the vectors of ports.  "time" is the time before the step and "next_time" the time after it.
+    "step" is the step size, which some users pass instead of the time.  "instance" is a pointer to the model's memory.
     """
 
     name: str
     arguments: tuple[str, ...]
-    result: str = "void"  # type, of C or of the export's headers
+    result: str = "void"  # the type of its result, in C
 
 
 @dataclass(frozen=True)
 class Element:
-    """An array element that holds a port: in FMU exports there are no ``u[]`` and ``y[]``."""
+    """The array element that holds a port, in exports without ``u[]`` and ``y[]``: sources of FMUs."""
 
     array: str
     index: int
@@ -34,7 +34,7 @@ class Element:
 
 @dataclass(frozen=True)
 class Place:
-    """Where a parameter's value is written in the sources: offsets into the decoded text of ``file``."""
+    """The place of a parameter's value in the sources.  ``start`` and ``end`` are offsets into the text of ``file``."""
 
     file: Path
     start: int
@@ -43,7 +43,10 @@ class Place:
 
 @dataclass(frozen=True)
 class GlobalVariable:
-    """A variable of the export that the wrapper puts back to its first value; ``count`` is 0 for a scalar."""
+    """A variable of the export that the wrapper resets to its initial value at each start.
+
+    ``count`` is the number of elements of an array, which becomes zero.  It is 0 for a scalar, which becomes ``value``.
+    """
 
     name: str
     type: str  # of C: "double", "int", "char"
@@ -53,31 +56,31 @@ class GlobalVariable:
 
 @dataclass(frozen=True)
 class CFunctionExport:
-    """The C function target, or the C sources of the FMU target."""
+    """An export of 20-sim's C function target, or the C sources of its FMU target."""
 
     linked: Linked
-    real: str  # the C type behind XXDouble
+    real: str  # the C type of XXDouble
     initialize: EntryPoint
     calculate: EntryPoint
     terminate: EntryPoint
     calculate_static: EntryPoint | None
-    model_initialize: EntryPoint | None  # only where Initialize does not call it: FMU of 4.6 and later
-    inputs: tuple[Element, ...]  # only where the entry points take no vectors
+    model_initialize: EntryPoint | None  # None if Initialize calls it; it does not in FMUs of 20-sim 4.6 and later
+    inputs: tuple[Element, ...]  # empty if the entry points take vectors of ports
     outputs: tuple[Element, ...]
-    parameters: str  # array
+    parameters: str  # names of arrays
     states: str
     rates: str
     state_count: int
-    pointers: tuple[str, ...]  # arrays that are pointers into the export's memory
-    time: str
-    stop: str  # variable; empty when the model has none
+    pointers: tuple[str, ...]  # the global variables that are pointers, for example into the export's memory
+    time: str  # names of variables; empty if the model does not have them
+    stop: str
     variables: tuple[GlobalVariable, ...]
-    places: tuple[tuple[Place, ...], ...]  # of each parameter
-    instance_type: str  # typedef of the model's memory; empty for exports with global variables
-    instance_header: str  # that declares it
-    memory: tuple[tuple[str, str], ...]  # its pointers, each with the offset it has in its MEMORY
-    declared: bool  # that header declares the entry points too
-    renames: tuple[str, ...]  # global symbols
+    places: tuple[tuple[Place, ...], ...]  # the places of each parameter's value
+    instance_type: str  # the typedef of the model's memory; empty for exports with global variables
+    instance_header: str  # the header that declares this type
+    memory: tuple[tuple[str, str], ...]  # the pointers in an instance, each with its offset in MEMORY
+    declared: bool  # True if that header also declares the entry points
+    renames: tuple[str, ...]  # the global symbols, which generated macros rename
 
     @property
     def instantiable(self) -> bool:
@@ -86,15 +89,15 @@ class CFunctionExport:
 
 @dataclass(frozen=True)
 class CppClassExport:
-    """The C++ class target."""
+    """An export of 20-sim's C++ class target."""
 
     linked: Linked
     class_name: str
     real: str
-    methods: frozenset[str]  # of the class: "Reset" and "SetFinishTime" are not in every version
-    members: frozenset[str]  # data members of the base class: "m_stop_run", ...
+    methods: frozenset[str]  # of the class: not every version of 20-sim has "Reset" and "SetFinishTime"
+    members: frozenset[str]  # data members of the class and its bases: "m_stop_run", ...
     state_count: int
-    parameters: str  # array
+    parameters: str  # names of arrays
     states: str
     rates: str
     places: tuple[tuple[Place, ...], ...]
@@ -103,22 +106,22 @@ class CppClassExport:
 
 @dataclass(frozen=True)
 class TokensExport:
-    """``tokens.xml`` alone."""
+    """A ``tokens.xml`` without exported C or C++ files."""
 
     tokens: Tokens
-    functions: tuple[str, ...]  # helper functions the equations call, without prefix: "Absolute", "Sign", ...
+    functions: tuple[str, ...]  # the helper functions that the equations call, without prefix: "Absolute", "Sign", ...
     instantiable = True
 
 
 @dataclass(frozen=True)
 class HandWritten:
-    """``model.yaml`` and the user's own sources."""
+    """A controller written by hand: a ``model.yaml`` and the user's own sources."""
 
     style: str  # "struct" or "arrays"
     header: str
     sources: tuple[Path, ...]
     include_dirs: tuple[Path, ...]
-    instance: str  # type; empty: functions without an instance
+    instance: str  # the C type of an instance; empty if the functions do not take an instance
     inputs_type: str
     outputs_type: str
     init: str
@@ -126,7 +129,7 @@ class HandWritten:
     terminate: str
     stopped: str
     finite: str
-    members: tuple[str, ...]  # of each parameter: member of the instance, or global variable
+    members: tuple[str, ...]  # for each parameter, the member of the instance or the global variable
     renames: tuple[str, ...]
     system_headers: tuple[str, ...]
 
@@ -137,9 +140,10 @@ class HandWritten:
 
 @dataclass(frozen=True)
 class FmuPorts:
-    """Ports of one type of FMI, "Real" or "Float64": value references, and positions among all inputs or outputs.
+    """All inputs, or all outputs, of one type of FMI, for example "Real" or "Float64".
 
-    An array has one reference and several positions.  ``limits`` are those of enumerations, by position.
+    ``references`` are value references; ``positions`` are positions among all inputs or outputs.  An array has one
+    reference and several positions.  ``limits`` has for each position the limits of an enumeration, or None.
     """
 
     type: str
@@ -150,7 +154,7 @@ class FmuPorts:
 
 @dataclass(frozen=True)
 class FmuParameter:
-    """How a parameter is set: its type in FMI, and its value reference."""
+    """A parameter in FMI: its type and its value reference."""
 
     type: str
     reference: int
@@ -158,15 +162,16 @@ class FmuParameter:
 
 @dataclass(frozen=True)
 class FmuExport:
-    """The sources of an FMU behind the functions of FMI 2.0 or 3.0.
+    """A source-code FMU of FMI 2.0 or 3.0.
 
-    Names of files inside an archive (``packed``, with their texts) begin with ``sources/``; they are empty for a
-    folder, and ``units`` and ``include_dirs`` exist for a folder only.
+    For an archive, ``packed`` holds its files with their texts.  Their names, and those in ``packed_units`` and
+    ``packed_include_dirs``, begin with ``sources``.  For a folder, these three are empty; the files are those of
+    ``units`` and ``include_dirs``.
     """
 
     standard: int  # 2 or 3
-    tool: str  # that made it
-    guid: str  # FMI 3.0: instantiation token
+    tool: str  # the program that made the FMU
+    guid: str  # in FMI 3.0, the instantiation token
     instance_name: str
     linked: Linked
     units: tuple[Path, ...]
@@ -174,19 +179,19 @@ class FmuExport:
     packed: tuple[tuple[str, str], ...]
     packed_units: tuple[str, ...]
     packed_include_dirs: tuple[str, ...]
-    headers: tuple[str, ...]  # of the standard, that the FMU does not bring
-    definitions: tuple[tuple[str, str], ...]
-    renames: tuple[str, ...]  # global symbols; FMI's functions, among them, get a prefix instead
-    prefixes: tuple[str, ...]  # that the sources themselves put before the names of FMI's functions
-    plain_names: bool  # no header puts a prefix before these names
+    headers: tuple[str, ...]  # the headers of the standard that the FMU does not contain
+    definitions: tuple[tuple[str, str], ...]  # macros with their values
+    renames: tuple[str, ...]  # the global symbols; those that are functions of FMI get a prefix instead
+    prefixes: tuple[str, ...]  # prefixes that the sources themselves give to the functions of FMI
+    plain_names: bool  # True if no header gives a prefix to the functions of FMI
     inputs: tuple[FmuPorts, ...]
     outputs: tuple[FmuPorts, ...]
     parameters: tuple[FmuParameter, ...]
     states: tuple[int, ...]  # value references of continuous states
-    state_count: int  # of their values: arrays have several
-    variables: tuple[GlobalVariable, ...]  # that a start puts back; only where the FMU has no memory per instance
-    own_step: Fraction | None  # of 20-sim's FMUs, in seconds: each call of DoStep asks for one of these
-    endless: bool  # an end of the experiment is given, far away: without it the FMU takes its own
-    terminated: bool  # fmi2GetBooleanStatus exists
-    heap: int  # bytes of each instance; 0: the FMU allocates nothing
+    state_count: int  # the number of their values: an array has several
+    variables: tuple[GlobalVariable, ...]  # reset at a start; empty if the FMU has memory for each instance
+    own_step: Fraction | None  # seconds: the step of an FMU of 20-sim, which each call of DoStep requests
+    endless: bool  # True if the start must give a stop time, far away: the FMU would stop at its own otherwise
+    terminated: bool  # True if the function fmi2GetBooleanStatus exists
+    heap: int  # bytes of heap for each instance; 0 if the FMU does not allocate memory
     instantiable: bool

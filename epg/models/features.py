@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a model does that a target cannot run, found in the code that runs and not in what merely lies beside it."""
+"""Finds parts of a model that a target cannot run.
+
+Only the code that runs is checked.  Exports also contain code that never runs, and its problems do not matter.
+"""
 
 from __future__ import annotations
 
@@ -65,7 +68,7 @@ _LIBRARY_ALL = _LIBRARY | {f"{name}f" for name in _LIBRARY} | HEAP | _FILES | _P
 
 
 def check_method(method: str, diagnostics: Diagnostics, code: Code, start: int) -> None:
-    """Reports an integration method that needs a variable step or that EPG does not know."""
+    """Reports an integration method that has no fixed step, or that EPG does not know."""
     if method in FIXED_STEP_METHODS:
         return
     word = re.compile(r"\w*").match(code.file.code, start)
@@ -79,7 +82,7 @@ def check_method(method: str, diagnostics: Diagnostics, code: Code, start: int) 
 
 
 def check_tokens(tokens: Tokens, diagnostics: Diagnostics) -> None:
-    """Reports what the counts in ``tokens.xml`` say about equations that need a solver."""
+    """Reports equations that need a solver, from their numbers in ``tokens.xml``."""
     for name, id, what, hint in (
         ("NUMBER_DEPSTATES", "model-dependent-states", "dependent states", _DEPENDENT_HINT),
         ("NUMBER_ALGLOOPS", "model-algebraic-loop", "algebraic loops", _LOOP_HINT),
@@ -104,10 +107,10 @@ def check_features(
     foreign: bool = False,
     allowed: frozenset[str] = frozenset(),
 ) -> None:
-    """Reports everything in the code reachable from ``roots`` that cannot run, or that a user should know of.
+    """Reports code reachable from ``roots`` that a target cannot run, and warns of code with unexpected effects.
 
-    ``foreign`` code is of no known shape: which of its functions exist and are declared is left to the compiler.  It
-    may call what is ``allowed``.
+    ``foreign`` code, of FMUs, has no known structure: the compiler checks which of its functions exist and are
+    declared.  The code can call the functions in ``allowed``.
     """
     reachable = linked.reachable(roots)
     _check_directives(linked, reachable, diagnostics)
@@ -132,7 +135,7 @@ def check_features(
             if causes.look_at_call(name, start, code, known):
                 continue
             if of_files and name not in known:
-                continue  # what is done with the file
+                continue  # an operation on the file, which is already reported
             if not foreign:
                 _check_declared(name, start, code, declarations, told, diagnostics)
             elif name not in _LIBRARY_ALL and name not in stubs:
@@ -155,11 +158,11 @@ def check_features(
 
 
 class _Declarations:
-    """Where functions are defined and declared: asked for each call."""
+    """The files that define and declare each function."""
 
     def __init__(self, linked: Linked) -> None:
         self._headers = [header.identifiers for header in linked.headers]
-        self._defined: dict[str, set[Path]] = {}  # by functions that other files see
+        self._defined: dict[str, set[Path]] = {}  # the files that define each function that is not static
         self._own: dict[Path, set[str]] = {}
         for unit in linked.units:
             for function in unit.functions:
@@ -169,11 +172,11 @@ class _Declarations:
         self._prototypes: dict[Path, set[str]] = {}
 
     def elsewhere(self, name: str, code: Code) -> bool:
-        """Whether another file than ``code`` defines the function."""
+        """True if a file other than ``code`` defines the function ``name``, and not as static."""
         return bool(self._defined.get(name, set()) - {code.file.path})
 
     def visible(self, name: str, code: Code) -> bool:
-        """Whether ``code`` defines or declares the function, or a header does."""
+        """True if ``code`` defines or declares the function ``name``, or if a header mentions it."""
         path = code.file.path
         if name in self._own.get(path, ()) or any(name in header for header in self._headers):
             return True
@@ -187,7 +190,7 @@ class _Declarations:
 def _check_declared(
     name: str, start: int, code: Code, declarations: _Declarations, told: set[str], diagnostics: Diagnostics
 ) -> None:
-    """Reports a call of a function of another C file that no header declares: C would take it to return int."""
+    """Reports a call of a function in another C file that no header declares: C assumes that it returns int."""
     if code.file.path.suffix != ".c" or name in told or not declarations.elsewhere(name, code):
         return
     if declarations.visible(name, code):
@@ -201,7 +204,7 @@ def _check_declared(
 
 
 class _Causes:
-    """Uses of files and of the heap.  The first of each is an error, and names the others."""
+    """Collects the uses of files and of the heap.  Each of the two is reported by one error for all its uses."""
 
     def __init__(self, foreign: bool) -> None:
         self._foreign = foreign
@@ -209,7 +212,7 @@ class _Causes:
         self._heap: list[tuple[str, Span]] = []
 
     def look_at_types(self, code: Code, function: Function) -> bool:
-        """Whether ``function`` has objects that are files: what else it does is about them."""
+        """Collects the objects in ``function`` that need files or the heap.  True if there is an object for a file."""
         uses = list(library_uses(code, function))
         files = [use for use in uses if use.name in FILE_TYPES]
         for use in files or uses:
@@ -218,7 +221,7 @@ class _Causes:
         return bool(files)
 
     def look_at_call(self, name: str, start: int, code: Code, known: set[str]) -> bool:
-        """Whether ``name`` is a function of the C library for files or for the heap."""
+        """Collects a call of a function of the C library for files or for the heap.  True if ``name`` is one."""
         if name in known or (name not in HEAP and name not in _FILES) or _TERMINAL.match(code.file.code, start):
             return False
         found = self._heap if name in HEAP else self._files
@@ -234,7 +237,7 @@ class _Causes:
             (self._heap, "model-heap", "", _HEAP_HINT),
         ):
             if found:
-                found.sort(key=lambda use: not re.search(r"open\(|uses", use[0]))  # what the rest follows from
+                found.sort(key=lambda use: not re.search(r"open\(|uses", use[0]))  # the cause of the others comes first
                 text, span = found[0]
                 others = sorted({other for other, _ in found} - {text})
                 also = f" ({', '.join(word.split()[1] for word in others[:6])} too)" if others else ""
@@ -299,7 +302,10 @@ def _check_call(
 
 
 def _undefined(name: str, span: Span, linked: Linked, diagnostics: Diagnostics) -> None:
-    """One error for all functions that a file calls and that no file defines: they are missing for one reason."""
+    """Reports a function that no file defines.
+
+    All such functions that one file calls share one error, because they are missing for the same reason.
+    """
     message = "is called, but no file of the export defines it"
     hint = "are all files there, and renamed in the same way? else export again"
     hint = f"{linked.looked}; {hint}" if linked.looked else hint
@@ -315,7 +321,7 @@ def _undefined(name: str, span: Span, linked: Linked, diagnostics: Diagnostics) 
 
 
 def _known_names(linked: Linked) -> set[str]:
-    """Names that are something else than calls into the unknown: functions, types, macros, methods."""
+    """The names before a parenthesis that the files define: functions, types, macros, methods, and keywords."""
     known = {function.name for _, function in linked.functions()} | {
         function.owner for _, function in linked.functions()
     }
@@ -334,7 +340,7 @@ def _known_names(linked: Linked) -> set[str]:
 
 
 def _inline_functions(text: str) -> set[str]:
-    """Functions with a body anywhere in ``text``: those that a class defines inside its braces too."""
+    """The functions with a body anywhere in ``text``, including those that a class defines inside its braces."""
     found = set()
     start = 0
     for match in re.finditer(r"[{};]", text):
@@ -347,7 +353,7 @@ def _inline_functions(text: str) -> set[str]:
 
 
 def _check_directives(linked: Linked, reachable: Iterable[tuple[Code, Function]], diagnostics: Diagnostics) -> None:
-    """Reports ``#warning`` and ``#error`` texts of 20-sim's templates in code that runs, or outside of functions."""
+    """Reports ``#warning`` and ``#error`` of 20-sim's templates in functions that run, or outside functions."""
     running = {(code.file.path, function.start) for code, function in reachable}
     for code in linked.all:
         starts = [function.body_start for function in code.functions]
@@ -381,7 +387,7 @@ _SOLVER_ARRAYS = (
 
 
 def _check_solver_arrays(linked: Linked, diagnostics: Diagnostics) -> None:
-    """Reports arrays that only exist where equations need a solver: ``xx_S``, ``xx_r``, ``xx_A``, ``xx_a``."""
+    """Reports arrays that exist only if equations need a solver: ``xx_S``, ``xx_r``, ``xx_A``, ``xx_a``."""
     for letters, id, what, hint in _SOLVER_ARRAYS:
         for code in linked.units:
             pattern = re.compile(rf"(?<![\w.])(?:\w+->)?(?:xx_|m_)[{letters}](?=\s*\[\s*\d+\s*\]\s*=[^=])")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Source-code FMUs of FMI 2.0 and 3.0 for co-simulation: a ``.fmu``, or the folder it is unpacked to.
+"""Imports source-code FMUs of FMI 2.0 and 3.0 for co-simulation: a ``.fmu``, or the folder of an unpacked one.
 
 >>> # model = load_fmu(Path("servo.fmu"), diagnostics)
 >>> # model.origin, [port.name for port in model.inputs]  ->  'FMI 2.0 FMU', ['setpoint', 'position']
@@ -34,10 +34,10 @@ from epg.models.ports import check_identifiers
 from epg.source import Span
 
 HEAP = 16 << 10
-"""Bytes of heap of each instance, where nothing else is said: 20-sim's FMUs take what their variables need."""
+"""The default heap of each instance, in bytes.  FMUs of 20-sim need heap for their variables."""
 
 _HINT = "export the FMU again"
-_MOST_CALLS = 100_000  # of DoStep in a step of the model: no target computes as many in time
+_MOST_CALLS = 100_000  # calls of DoStep in one step of the model; more would take too long on every target
 _STEP_SIZE = re.compile(r"(?<!\w)(\w{1,64}(?:->|_))?step_size\s{0,80}=(?!=)\s{0,80}([^=;]{1,40});", re.ASCII)
 _TYPES = {**TYPES_2, **TYPES_3}
 
@@ -52,10 +52,11 @@ def load_fmu(
     definitions: tuple[tuple[str, str], ...] = (),
     beside: Path | None = None,
 ) -> Model | None:
-    """The model in the FMU at ``path``, or None after reporting why there is none.
+    """The model in the FMU at ``path``.  None if it cannot be used; the reasons are reported.
 
-    ``step`` (in seconds, written at ``step_span``) and ``heap`` (in bytes) replace what the FMU says and EPG's default,
-    ``definitions`` are macros for its sources; ``beside`` is the model.yaml that says so.
+    ``step``, in seconds, replaces the step of the FMU; it is written at ``step_span``.  ``heap``, in bytes, replaces
+    the default :data:`HEAP`.  ``definitions`` are macros for its sources.  ``beside`` is the model.yaml that contains
+    these values, if there is one.
     """
     before = diagnostics.error_count
     files = read_fmu_files(path, diagnostics)
@@ -129,9 +130,9 @@ def load_fmu(
 
 
 def _own_step(description: Description, sources: FmuSources) -> Fraction | None:
-    """The step of the integration method in an FMU of 20-sim; None for other FMUs.
+    """The step of the integration method of an FMU of 20-sim, in seconds.  None for other FMUs.
 
-    The sources set it, as ``xx_step_size = 0.001`` (4.5) or ``model_instance->step_size = 0.001``.
+    The sources set it: ``xx_step_size = 0.001`` in version 4.5, ``model_instance->step_size = 0.001`` in later ones.
     """
     names = {function.name for _, function in sources.linked.functions()}
     if description.standard != 2 or not (
@@ -148,7 +149,10 @@ def _own_step(description: Description, sources: FmuSources) -> Fraction | None:
 
 
 def _check_method(sources: FmuSources, diagnostics: Diagnostics) -> None:
-    """Warns of a method whose steps vary: the FMU ends where it shall, but nobody knows when."""
+    """Warns of an integration method with a variable step.
+
+    Such an FMU reaches the end of each step, but the time that it needs for that has no upper limit.
+    """
     for code, function in sources.linked.functions():
         for name, start in code.calls(function) if function.name.endswith("CalculateSubmodel") else ():
             method = name.removeprefix("XX").removesuffix("Step")
@@ -167,11 +171,11 @@ def _step(
     wanted_span: Span | None,
     diagnostics: Diagnostics,
 ) -> Fraction | None:
-    """The time between two steps of the model, after checking that the FMU can keep to it."""
+    """The time between two steps of the model, in seconds.  None if there is none, or if the FMU cannot make it."""
     step = wanted or description.step
     if step is None:
         if any(item.id == "fmu-step" for item in diagnostics):
-            return None  # it says one that is not a number
+            return None  # the FMU has a step that is not a number, which is already reported
         message = "the FMU does not say its step: there is no stepSize in its DefaultExperiment"
         hint = "write a model.yaml with 'version: 1', 'fmu: <its file or folder>' and 'step: 1 ms', and name that"
         diagnostics.error("fmu-step", description.step_span, message, hint=hint)
@@ -217,7 +221,7 @@ def _ports(description: Description, direction: str, diagnostics: Diagnostics) -
 
 
 def _groups(description: Description, direction: str) -> tuple[FmuPorts, ...]:
-    """The ports by type, as FMI's functions get and set them; arrays count as many values."""
+    """The ports grouped by type, because each function of FMI gets or sets values of one type."""
     groups: dict[str, tuple[list[int], list[int], list[tuple[int, int] | None]]] = {}
     position = 0
     for variable in description.variables:
@@ -231,7 +235,7 @@ def _groups(description: Description, direction: str) -> tuple[FmuPorts, ...]:
 
 
 def _parameters(description: Description) -> tuple[tuple[Parameter, ...], tuple[FmuParameter, ...]]:
-    """Scalar parameters with a start value: text has none that EPG could set, arrays keep theirs."""
+    """The scalar parameters whose start value is a number, tunable ones first.  Others keep their start values."""
     chosen: list[tuple[Variable, float]] = []
     for variable in description.variables:
         if variable.causality == "parameter" and not variable.dimensions:
@@ -258,9 +262,9 @@ def _parameters(description: Description) -> tuple[tuple[Parameter, ...], tuple[
 def _values_of_sources(
     parameters: tuple[Parameter, ...], sources: FmuSources, diagnostics: Diagnostics
 ) -> tuple[Parameter, ...]:
-    """The parameters of an FMU of 20-sim with the values that its sources give them, after a warning of differences.
+    """The parameters of an FMU of 20-sim, with their values in the sources.  Warns if the description differs.
 
-    Elements of arrays are left out: their numbers begin at 0 in the descriptions of some versions.
+    Elements of arrays keep the values of the description: some versions count them from 0 there.
     """
     told: dict[str, set[float]] = {}
     places: dict[str, Span] = {}
@@ -288,7 +292,7 @@ def _values_of_sources(
 
 
 def _packed(files: FmuFiles, sources: FmuSources) -> tuple[tuple[str, str], ...]:
-    """The files of an archive that are compiled, which the emitter unpacks."""
+    """The source files in an archive with their texts, which the emitter writes.  Empty for a folder."""
     if not files.archive:
         return ()
     names = sorted({*sources.units, *sources.headers})
@@ -296,14 +300,14 @@ def _packed(files: FmuFiles, sources: FmuSources) -> tuple[tuple[str, str], ...]
 
 
 def _lacking(standard: int, sources: FmuSources) -> tuple[str, ...]:
-    """The headers of the standard, where the FMU leaves them to the importer."""
+    """The headers of the standard that the FMU does not contain, so that the importer must supply them."""
     return tuple(name for name in FMI_HEADERS[standard] if name not in sources.own_headers)
 
 
 def _prefixes(linked: Linked, identifier: str) -> tuple[str, ...]:
-    """What the FMU's sources put before FMI's function names, where they insist on it.
+    """The prefixes that the FMU's sources themselves define for the names of FMI's functions.
 
-    Some put it together from other macros: then it is what the standard asks for (FMI 2.0.4, 2.1.1).
+    If the prefix is composed of other macros, it is the one that the standard requires (FMI 2.0.4, section 2.1.1).
     """
     found = {
         macro.value if macro.value.isidentifier() else f"{identifier}_"
@@ -315,7 +319,7 @@ def _prefixes(linked: Linked, identifier: str) -> tuple[str, ...]:
 
 
 def _names_by_header(standard: int, sources: FmuSources) -> bool:
-    """Whether the header that gives FMI's functions their prefix is included where they are defined."""
+    """True if the sources include the header that gives the functions of FMI their prefix."""
     header = FMI_HEADERS[standard][2]
     if header in sources.own_headers:
         return True
@@ -323,7 +327,10 @@ def _names_by_header(standard: int, sources: FmuSources) -> bool:
 
 
 def _global_memory(linked: Linked) -> tuple[GlobalVariable, ...]:
-    """The variables of an FMU of 20-sim 4.5 or 4.6.0, which keeps its state in them and does not reset all of them."""
+    """The global variables of an FMU of 20-sim 4.5 or 4.6.0; empty for later versions.
+
+    These FMUs keep their state in global variables, and do not reset all of them at a start.
+    """
     variables = [variable for code in linked.units for variable in code.variables if not variable.static]
     if not any(variable.name.endswith("MEMORY") for variable in variables):
         return ()
@@ -333,7 +340,7 @@ def _global_memory(linked: Linked) -> tuple[GlobalVariable, ...]:
 
 
 def _renames(linked: Linked) -> tuple[str, ...]:
-    """Global symbols of the FMU, those of the standard among them: their names are made by a prefix."""
+    """The global symbols of the FMU, including the functions of FMI."""
     names: set[str] = set()
     for code in linked.all:
         names |= {function.name for function in code.functions if not function.static}

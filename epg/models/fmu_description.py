@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``modelDescription.xml`` of FMI 2.0 and 3.0: what an FMU offers, and whether a target can use it."""
+"""Reads the ``modelDescription.xml`` of FMI 2.0 and 3.0, and checks that a target can use the FMU."""
 
 from __future__ import annotations
 
@@ -17,9 +17,11 @@ from epg.source import Span
 
 @dataclass(frozen=True)
 class Description:
-    """What the rest of EPG needs of the description.  ``standard`` is 2 or 3, ``step`` None when there is none.
+    """The data in the description that EPG needs.  ``standard`` is 2 or 3.
 
-    ``sources`` are the files of ``<SourceFiles>`` of FMI 2.0, each with its position; None when there is no such list.
+    ``step`` is the step of the default experiment, or else the internal step, in seconds; None if both are missing.
+    ``once`` is True if a program can have only one instance.  ``sources`` are the files in ``<SourceFiles>`` of FMI
+    2.0, each with its position; None if there is no such list.
     """
 
     standard: int
@@ -42,7 +44,7 @@ class Description:
 
 
 def read_description(root: Element, diagnostics: Diagnostics) -> Description | None:
-    """The description, or None after reporting why this FMU cannot be a model."""
+    """The description.  None if the FMU cannot be a model; the reasons are reported."""
     version = root.attributes.get("fmiVersion", "")
     match = re.match(r"([23])\.", version)
     if root.name != "fmiModelDescription" or match is None:
@@ -104,7 +106,7 @@ def _time(element: Element | None, name: str, diagnostics: Diagnostics) -> Fract
 
 
 def _sources_2(interface: Element) -> tuple[tuple[str, Span], ...] | None:
-    """``<SourceFiles>`` of FMI 2.0.4, 4.3.1: names relative to ``sources``."""
+    """The files in ``<SourceFiles>`` (FMI 2.0.4, section 4.3.1).  Their names are relative to ``sources``."""
     listed = interface.find("SourceFiles")
     if listed is None:
         return None

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What an FMU does that a target cannot: found in the code behind the functions EPG calls.
+"""Finds parts of an FMU that a target cannot run, in the code that the functions of FMI reach.
 
-FMUs get memory from an array of fixed size.  They may take some while they start, and for a while in a step: memory
-that a step takes and keeps would run out.
+EPG gives FMUs memory from an array of fixed size.  An FMU can allocate memory while it starts.  A step can allocate
+memory only if it frees it again, because the memory would run out otherwise.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from epg.models.features import HEAP, check_features
 from epg.models.link import Linked
 from epg.source import Span
 
-#: the heap that EPG gives to FMUs; their callbacks (FMI 2.0.4, 2.1.5) lead to the same
+#: functions of the heap that EPG supplies to FMUs; the callbacks for memory (FMI 2.0.4, section 2.1.5) use it, too
 PROVIDED = frozenset(("malloc", "calloc", "realloc", "free", "strdup"))
 _TAKES = re.compile(r"\b(malloc|calloc|realloc|strdup|allocateMemory)\s*\)?\s*\(")
 _GIVES_BACK = re.compile(r"\b(?:free|freeMemory)\s*\)?\s*\(")
@@ -33,7 +33,7 @@ SetFloat64 SetFloat32""".split()
 
 
 def check_fmu(linked: Linked, standard: int, diagnostics: Diagnostics) -> None:
-    """Reports what cannot run, and what a user should know of."""
+    """Reports code that a target cannot run, and warns of code with unexpected effects."""
     running = _named(linked, standard, _RUN)
     starting = _named(linked, standard, _START)
     check_features(linked, [*starting, *running], diagnostics, foreign=True, allowed=PROVIDED)
@@ -53,10 +53,11 @@ def check_fmu(linked: Linked, standard: int, diagnostics: Diagnostics) -> None:
 
 
 def check_guid(codes: Collection[Code], guid: str, span: Span, standard: int, diagnostics: Diagnostics) -> None:
-    """Reports sources that know themselves by another identifier than the description: they would refuse to start.
+    """Reports sources whose identifier differs from the description's: such an FMU would refuse to start.
 
-    ``span`` is the description's.  Sources hold it as a macro with text, ``FMI_GUID`` in 20-sim's.  Macros that the
-    code does not use do not count; of several, for different versions of FMI, one must fit.
+    ``span`` is the place of the description.  Sources define the identifier as a macro with text, which is ``FMI_GUID``
+    in those of 20-sim.  Macros that the code does not use are ignored.  If there are several, for different versions of
+    FMI, one of them must be equal.
     """
     used = {name for code in codes for name in code.used}
     used |= {word for code in codes for macro in code.macros for word in re.findall(r"\w+", macro.value)}
@@ -79,7 +80,7 @@ def check_guid(codes: Collection[Code], guid: str, span: Span, standard: int, di
 
 
 def uses_heap(codes: Iterable[Code]) -> bool:
-    """Whether there is anything in the sources that may want memory."""
+    """True if the sources can allocate memory from the heap."""
     wanted = HEAP | {"allocateMemory"}
     for code in codes:
         in_macros = (word for macro in code.macros for word in re.findall(r"\w+", macro.value))

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The files of an FMU: an unpacked folder, or a ``.fmu``, which is a zip archive.
+"""Reads the files of an FMU: an unpacked folder, or a ``.fmu``, which is a zip archive.
 
-An archive is read and never unpacked here.  It may come from anybody: names that lead out of it, links, encrypted or
-doubled entries, methods of compression that no FMU uses, and contents that grow beyond any model's size are refused
-before anything of it is used.
+An archive is read here, but never unpacked.  It can come from an untrusted source.  EPG therefore refuses, before it
+uses any contents: names that lead out of the archive, links, encrypted entries, entries with the same name, methods of
+compression that FMUs do not use, and contents that are larger than any model.
 """
 
 from __future__ import annotations
@@ -29,25 +29,25 @@ DESCRIPTION = "modelDescription.xml"
 SOURCES = "sources"
 SUFFIX = ".fmu"
 
-MAX_ARCHIVE = 512 << 20  # bytes; binaries of many platforms and tables of data make some FMUs large
+MAX_ARCHIVE = 512 << 20  # bytes; some FMUs are large, because of binaries for many platforms and tables of data
 MAX_ENTRIES = 20_000
-MAX_DIRECTORY = 8 << 20  # bytes of the zip's own list of files
+MAX_DIRECTORY = 8 << 20  # bytes of the archive's central directory, its list of files
 MAX_UNPACKED = 64 << 20  # bytes of the description and the sources together
-MAX_DEPTH = 8  # folders below sources/
+MAX_DEPTH = 8  # levels of folders below sources/
 
-_STORED, _DEFLATED = 0, 8  # methods of compression: section 4.4.5; FMI 2.0.4, section 2.3, allows deflate alone
+_STORED, _DEFLATED = 0, 8  # methods of compression: APPNOTE.TXT, 4.4.5; FMI 2.0.4, 2.3, allows only deflate
 _METHODS = {9: "deflate64", 12: "bzip2", 14: "LZMA", 20: "Zstandard", 93: "Zstandard", 95: "XZ", 98: "PPMd"}
 _END = struct.Struct("<4s4H2LH")  # end of central directory record: APPNOTE.TXT 6.3.10, section 4.3.16
 _END64_LOCATOR = b"PK\x06\x07"  # section 4.3.15
-_BAD_NAME = re.compile(r'[\\:*?"<>|;$\[\]]')  # what no Windows file is called either, or CMake cannot have in lists
+_BAD_NAME = re.compile(r'[\\:*?"<>|;$\[\]]')  # not allowed in names of files on Windows, or in lists of CMake
 _RESERVED = re.compile(r"(?i)(con|prn|aux|nul|com\d|lpt\d)(\..*)?$")
 
 
 @dataclass(frozen=True)
 class FmuFiles:
-    """Description and sources of an FMU: names with ``/``, relative to its top.
+    """The description and the sources of an FMU, by their names.  Names have ``/`` and are relative to the FMU's top.
 
-    ``root`` is the folder or the archive; ``binaries`` names the platforms for which there are any.
+    ``root`` is the folder or the archive.  ``binaries`` are the names of the platforms for which it has binaries.
     """
 
     root: Path
@@ -56,12 +56,12 @@ class FmuFiles:
     binaries: tuple[str, ...]
 
     def path(self, name: str) -> Path:
-        """Where the file is; inside an archive only a name for people."""
+        """The path of a file.  In an archive this path does not exist; it is only for messages to the user."""
         return self.root / name
 
     @property
     def inputs(self) -> tuple[Path, ...]:
-        """The archive, or the description: what makes another model when it changes, beside the sources used."""
+        """The archive, or the description in a folder.  The model changes if one of these or a used source changes."""
         return (self.root,) if self.archive else (self.path(DESCRIPTION),)
 
 
@@ -72,7 +72,7 @@ class _Refused(Exception):
 
 
 def is_fmu_folder(folder: Path) -> bool:
-    """Whether a folder is an unpacked FMU: its description names the standard's version."""
+    """True if a folder is an unpacked FMU: its description states a version of FMI."""
     try:
         with (folder / DESCRIPTION).open("rb") as file:
             head = file.read(1 << 16)
@@ -84,7 +84,7 @@ def is_fmu_folder(folder: Path) -> bool:
 
 
 def read_fmu_files(path: Path, diagnostics: Diagnostics) -> FmuFiles | None:
-    """The files of the FMU at ``path``, or None after reporting why they cannot be read."""
+    """The files of the FMU at ``path``.  None if they cannot be read; the reason is reported."""
     try:
         return _folder(path) if path.is_dir() else _archive(path)
     except _Refused as problem:
@@ -111,7 +111,7 @@ def _folder(root: Path) -> FmuFiles:
     for name in names:
         path = root / name
         if not path.is_file() or path.stat().st_size > MAX_BYTES:
-            continue  # no source: one that is named all the same is reported where it is named
+            continue  # not a source; if the FMU names it as one, an error is reported there
         contents[name] = path.read_bytes()
         total += len(contents[name])
         if total > MAX_UNPACKED:
@@ -127,7 +127,7 @@ def _folder(root: Path) -> FmuFiles:
 
 
 def _archive(path: Path) -> FmuFiles:
-    import zipfile  # every run would pay for it
+    import zipfile  # not at the top: the import would slow down every run
     import zlib
 
     _check_directory(path)
@@ -143,7 +143,7 @@ def _archive(path: Path) -> FmuFiles:
                 if left < 0:
                     raise _Refused(f"its sources are larger than {MAX_UNPACKED >> 20} MiB", ANOTHER_FILE)
                 with archive.open(entry) as file:
-                    data = file.read(entry.file_size + 1)  # what the entry says of its size may be a lie
+                    data = file.read(entry.file_size + 1)  # the size that the entry states can be wrong
                 if len(data) != entry.file_size:
                     raise _Refused(f"'{name}' in it does not have the size that the archive says")
                 contents[name] = data
@@ -162,7 +162,7 @@ def _archive(path: Path) -> FmuFiles:
 
 
 def _check_directory(path: Path) -> None:
-    """Refuses what would cost memory and time before the first entry is looked at."""
+    """Refuses an archive that would need much memory and time even before its first entry is read."""
     size = path.stat().st_size
     if size > MAX_ARCHIVE:
         raise _Refused(too_large(path.name, MAX_ARCHIVE), ANOTHER_FILE)
@@ -180,11 +180,11 @@ def _check_directory(path: Path) -> None:
 
 
 def _entries(archive: zipfile.ZipFile) -> tuple[dict[str, zipfile.ZipInfo], set[str]]:
-    """Description and sources, and the platforms with binaries, after looking at every name."""
+    """The entries of the description and the sources, and the platforms with binaries.  Checks all names first."""
     wanted: dict[str, zipfile.ZipInfo] = {}
     platforms: set[str] = set()
     seen: dict[str, str] = {}
-    if len(archive.infolist()) > MAX_ENTRIES:  # the number at the end of the archive may be a lie
+    if len(archive.infolist()) > MAX_ENTRIES:  # the number that the end of the archive states can be wrong
         raise _Refused(f"it holds more than {MAX_ENTRIES} files", ANOTHER_FILE)
     for entry in archive.infolist():
         name = entry.orig_filename
@@ -192,7 +192,7 @@ def _entries(archive: zipfile.ZipFile) -> tuple[dict[str, zipfile.ZipInfo], set[
         if parts[0] == "binaries" and len(parts) > 1:
             platforms.add("".join(char for char in parts[1][:40] if char.isprintable()))
         if name.endswith("/") or (name != DESCRIPTION and parts[0] != SOURCES) or len(parts) > MAX_DEPTH:
-            continue  # no part of the model: nothing of it is read
+            continue  # not a part of the model: it is never read
         shown = "".join(char if char.isprintable() else "?" for char in name[:80])
         if not _may_be_unpacked(name, parts):
             raise _Refused(f"it holds a file called '{shown}', which cannot be unpacked")
@@ -203,7 +203,7 @@ def _entries(archive: zipfile.ZipFile) -> tuple[dict[str, zipfile.ZipInfo], set[
         if entry.flag_bits & 0x1:
             raise _Refused(f"'{shown}' in it is encrypted", "pack it without a password")
         if entry.compress_type not in (_STORED, _DEFLATED):
-            # Others can grow a thousand times as much for each byte that is read, or are not in every Python.
+            # Other methods can compress a thousand times more, or are not part of every Python.
             method = _METHODS.get(entry.compress_type, f"method {entry.compress_type}")
             raise _Refused(f"'{shown}' in it is packed with {method}, which FMUs must not use", "pack it with deflate")
         wanted[name] = entry
@@ -215,7 +215,7 @@ def _entries(archive: zipfile.ZipFile) -> tuple[dict[str, zipfile.ZipInfo], set[
 
 
 def _may_be_unpacked(name: str, parts: list[str]) -> bool:
-    """Whether a name is one of a file inside the folder it is unpacked to, on every system."""
+    """True if, on every operating system, a file of this name can be unpacked and stays inside its folder."""
     if not name.isprintable() or _BAD_NAME.search(name):
         return False
     return all(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``model.yaml`` of an FMU: its file, and what is said of it that it does not say itself.
+"""Reads the ``model.yaml`` of an FMU, which names the FMU and replaces or adds settings of it.
 
 >>> # version: 1
 >>> # fmu: servo.fmu
@@ -58,7 +58,7 @@ class FmuSettings(ModelYaml):
         )
 
     def _definitions(self) -> tuple[tuple[str, str], ...]:
-        """Macros for the FMU's sources."""
+        """The macros for the FMU's sources, with their values."""
         node = self.node.get("definitions")
         if node is None:
             return ()
@@ -80,7 +80,7 @@ class FmuSettings(ModelYaml):
         return tuple(found)
 
     def _heap(self) -> int | None:
-        """Bytes; None when nothing is said."""
+        """The size of the heap in bytes, or None if the file does not set it."""
         node = self.node.get("heap")
         if node is None:
             return None

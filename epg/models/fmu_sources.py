@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which files of an FMU are compiled, with which definitions, and what they include.
+"""Finds the files of an FMU that must be compiled, their definitions, and the headers that they include.
 
-FMI 2.0 lists the files in its description or, in FMUs of older tools, not at all: then it is every C file.  FMI 3.0 has
-``sources/buildDescription.xml``, with preprocessor definitions and include folders.
+In FMI 2.0, the description lists the files.  FMUs of older tools do not have a list; then every C file in ``sources``
+is compiled.  FMI 3.0 has ``sources/buildDescription.xml``, with definitions of macros and folders of headers.
 """
 
 from __future__ import annotations
@@ -45,10 +45,10 @@ _INACTIVE = re.compile(r"^[ \t]*#[ \t]*(if|endif)\w*", re.MULTILINE)
 
 @dataclass(frozen=True)
 class FmuSources:
-    """What is compiled: ``units``, with ``headers`` (whatever they include), by names inside the FMU.
+    """The source files of an FMU.  All names are relative to its top.
 
-    ``include_dirs`` are names of folders inside the FMU, ``definitions`` macros with their values.  ``own_headers`` are
-    those of the standard that the FMU brings itself.
+    ``units`` are compiled, ``headers`` are the files that they include.  ``include_dirs`` are folders of headers.
+    ``definitions`` are macros with their values.  ``own_headers`` are the headers of FMI that the FMU contains.
     """
 
     units: tuple[str, ...]
@@ -60,7 +60,7 @@ class FmuSources:
 
     @property
     def linked(self) -> Linked:
-        """The parsed files, for the checks that exports of 20-sim get."""
+        """The parsed files, for the same checks as those of exports of 20-sim."""
         units, headers = ([self.codes[name] for name in names] for names in (self.units, self.headers))
         return Linked(tuple(units), tuple(headers), (), ())
 
@@ -73,7 +73,7 @@ class _Listed:
 
 
 def find_sources(files: FmuFiles, description: Description, diagnostics: Diagnostics) -> FmuSources | None:
-    """The sources of the FMU, or None after reporting why it cannot be compiled."""
+    """The sources of the FMU.  None if it cannot be compiled; the reasons are reported."""
     before = diagnostics.error_count
     present = [name for name in files.contents if name.startswith(f"{SOURCES}/") and name != BUILD]
     if not any(name.endswith((".c", ".h")) for name in present):
@@ -91,7 +91,7 @@ def find_sources(files: FmuFiles, description: Description, diagnostics: Diagnos
             message = f"'{one_line(name)[:80]}' is named as a source, but the FMU does not hold it"
             diagnostics.error("fmu-file-missing", span, message, hint="export the FMU again, with its sources")
         elif place.lower().endswith(".h"):
-            continue  # some tools list the headers too: what includes them finds them
+            continue  # some tools also list the headers; the files that include them find them
         elif not place.lower().endswith(".c"):
             foreign.append((name, span))
         elif reader.read(place):
@@ -142,12 +142,12 @@ def _listed(files: FmuFiles, description: Description, diagnostics: Diagnostics)
 
 
 def _configuration(root: Element, description: Description, diagnostics: Diagnostics) -> _Listed | None:
-    """The build configuration for this interface; of several, the first that is for no certain platform."""
+    """The build configuration for this FMU.  If there are several, the first one without a platform is chosen."""
     found = [child for child in root.children if child.name == "BuildConfiguration"]
     fitting = [child for child in found if child.attributes.get("modelIdentifier") == description.identifier]
     wanted = f"'{one_line(description.identifier)[:60]}'"
     if not fitting and len({child.attributes.get("modelIdentifier") for child in found}) == 1:
-        fitting = found  # FMUs that were made from another one's files have its name here
+        fitting = found  # if an FMU was made from the files of another one, that one's name can be left here
         other = one_line(found[0].attributes.get("modelIdentifier", ""))[:60]
         message = f"the build configuration is for '{other}', but the FMU is {wanted}: it is used nevertheless"
         diagnostics.warning("fmu-other-name", found[0].span, message, hint="check that these are the FMU's sources")
@@ -182,7 +182,7 @@ def _configuration(root: Element, description: Description, diagnostics: Diagnos
 
 
 def _define(name: str, item: Element, definitions: dict[str, str], diagnostics: Diagnostics) -> None:
-    """Adds a definition.  All files of the FMU get all of them: two values of one name are an error."""
+    """Adds a definition.  All files of the FMU get the same definitions, so that one name cannot have two values."""
     value = item.attributes.get("value", "")
     if not is_identifier(name) or not is_definition(value):
         message = f"'{one_line(name)[:40]}={one_line(value)[:40]}' is not a definition of C"
@@ -197,17 +197,17 @@ def is_identifier(name: str) -> bool:
 
 
 def is_definition(value: str) -> bool:
-    """Whether a macro can have this value: it ends with its line and opens no comment."""
+    """True if a macro can have this value: it is on one line and does not begin a comment."""
     return value.isprintable() and not value.endswith("\\") and "/*" not in value
 
 
 def _inside(name: str) -> str:
-    """The place inside the FMU of a file named relative to ``sources``."""
+    """The name inside the FMU of a file whose ``name`` is relative to ``sources``."""
     return posixpath.normpath(posixpath.join(SOURCES, name.replace("\\", "/")))
 
 
 class _Reader:
-    """Parses files and follows what they include."""
+    """Parses files, and finds the files that they include."""
 
     def __init__(self, files: FmuFiles, include_dirs: Iterable[str], diagnostics: Diagnostics) -> None:
         self.files = files
@@ -219,14 +219,14 @@ class _Reader:
 
     @cached_property
     def _places(self) -> dict[str, list[str]]:
-        """All files by the last part of their names."""
+        """All files of the FMU, by the last part of their names."""
         places: dict[str, list[str]] = {}
         for name in sorted(self.files.contents):
             places.setdefault(posixpath.basename(name), []).append(name)
         return places
 
     def own(self, headers: Iterable[str]) -> dict[str, str]:
-        """Those of the standard's headers that the FMU has where EPG's own code will find them."""
+        """The headers of the standard that the FMU contains in a folder where generated code finds them."""
         found = {}
         for header in headers:
             places = [f"{folder}/{header}" for folder in self.include_dirs]
@@ -269,7 +269,10 @@ class _Reader:
         return None
 
     def _is_needed(self, code: Code, include: Include) -> bool:
-        """Whether a file that is not there must be: headers of C and of FMI need not, nor those of other systems."""
+        """True if the FMU must contain the header of ``include``.
+
+        It need not contain headers of C and of FMI, nor headers inside ``#if``, which are often of other systems.
+        """
         basename = posixpath.basename(include.name)
         if include.system or basename in C_HEADERS or any(basename in headers for headers in FMI_HEADERS.values()):
             return False
@@ -278,7 +281,11 @@ class _Reader:
         return before.count("if") - before.count("endif") <= guards
 
     def _find_below(self, code: Code, include: Include) -> str | None:
-        """The file in whichever folder it lies: some tools put folders into their FMUs and name them in no file."""
+        """The header in any folder of the FMU, or None after an error.
+
+        Some tools put headers into folders that no file of the FMU names.  The header is taken if there is only one, or
+        if all have the same text.
+        """
         wanted = f"/{include.name.replace(chr(92), '/')}"
         places = [name for name in self._places.get(posixpath.basename(wanted), ()) if name.endswith(wanted)]
         if len({re.sub(rb"\s+", b" ", self.files.contents[place]) for place in places}) == 1:
@@ -298,7 +305,7 @@ class _Reader:
         return None
 
     def report_taken(self) -> None:
-        """Says which headers were found in folders that neither the FMU nor an include names."""
+        """Reports, as notes, the headers that were found in folders that neither the FMU nor an include names."""
         for folder, names in sorted(self.taken.items()):
             message = f"found in '{one_line(folder)}', which the FMU does not name as a folder of headers: "
             shown = ", ".join(one_line(name) for name in sorted(set(names))[:12])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Variables of an FMU, of its ``modelDescription.xml``."""
+"""Reads the variables of an FMU from its ``modelDescription.xml``."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from epg.documents.text_file import one_line
 from epg.documents.xml_file import Element
 from epg.source import Span
 
-#: types of variables that have a number, and what a port of that type is called (FMI 2.0.4, 2.2.7)
+#: types of variables that are numbers (FMI 2.0.4, section 2.2.7), with the type of a port for each
 TYPES_2 = {"Real": "real", "Integer": "integer", "Enumeration": "integer", "Boolean": "boolean"}
 TYPES_3 = {
     "Float64": "real",
@@ -22,7 +22,7 @@ TYPES_3 = {
     "Enumeration": "integer",
     "Boolean": "boolean",
 }
-_NUMBERED = {False: "Integer", True: "Int64"}  # how enumerations of FMI 2.0 and 3.0 are get and set
+_NUMBERED = {False: "Integer", True: "Int64"}  # types whose functions get and set enumerations, in FMI 2.0 and 3.0
 _TEXT = ("String", "Binary")
 _NO_NUMBERS = (*_TEXT, "Clock")
 _LARGEST_ARRAY = 256
@@ -31,10 +31,10 @@ _LARGEST_VARIABLES = 100_000
 
 @dataclass(frozen=True)
 class Variable:
-    """A scalar, or an array of FMI 3.0 with its ``dimensions``, which are constant as EPG sets none of them.
+    """A scalar, or an array of FMI 3.0.  Its ``dimensions`` are constant, because EPG never changes them.
 
-    ``type`` is the standard's name: "Real", "Float64", ...; ``state`` tells that the FMU integrates it.  ``limits`` are
-    the lowest and the highest item of an enumeration.
+    ``type`` is the name in the standard: "Real", "Float64", ...  ``state`` is True for a continuous state, which the
+    FMU integrates.  ``limits`` are the lowest and the highest item of an enumeration.
     """
 
     name: str
@@ -55,7 +55,7 @@ class Variable:
         return math.prod(self.dimensions)
 
     def element_names(self) -> list[str]:
-        """``x``; of an array ``x[1]``, ``x[2]``, or ``x[1,1]``, ... in the order of its values: row by row."""
+        """The names of the values, in their order: ``x``, or ``x[1]``, ``x[2]``, ..., or row by row ``x[1,1]``, ..."""
         names = [""]
         for size in self.dimensions:
             names = [f"{before},{index}" if before else str(index) for before in names for index in range(1, size + 1)]
@@ -63,12 +63,12 @@ class Variable:
 
 
 def read_variables(root: Element, standard: int, diagnostics: Diagnostics) -> tuple[Variable, ...]:
-    """All that are numbers; reports those among the ports that cannot be."""
+    """All variables that are numbers.  Reports inputs and outputs that cannot be ports."""
     return _variables_2(root, diagnostics) if standard == 2 else _variables_3(root, diagnostics)
 
 
 def _units_of_types(root: Element, standard: int) -> dict[str, str]:
-    """Units of the types that variables may refer to by name: ``<TypeDefinitions>``."""
+    """The units of the types in ``<TypeDefinitions>``, by the names with which variables refer to them."""
     definitions = root.find("TypeDefinitions")
     units: dict[str, str] = {}
     for item in definitions.children if definitions is not None else ():
@@ -79,7 +79,7 @@ def _units_of_types(root: Element, standard: int) -> dict[str, str]:
 
 
 def _limits_of_types(root: Element, standard: int) -> dict[str, tuple[int, int]]:
-    """The lowest and the highest item of each enumeration, by its name."""
+    """The lowest and the highest item of each enumeration in ``<TypeDefinitions>``, by its name."""
     definitions = root.find("TypeDefinitions")
     limits: dict[str, tuple[int, int]] = {}
     for item in definitions.children if definitions is not None else ():
@@ -141,7 +141,10 @@ def _listed(root: Element, diagnostics: Diagnostics) -> list[Element]:
 
 
 def _sizes(elements: Iterable[Element]) -> dict[str, str]:
-    """What arrays may take their sizes from: structural parameters, which keep their start values, and constants."""
+    """The variables that can give an array its size, with their start values: structural parameters and constants.
+
+    Both keep their start values.
+    """
     return {
         element.attributes.get("valueReference", ""): element.attributes.get("start", "").strip()
         for element in elements
@@ -154,7 +157,7 @@ def _sizes(elements: Iterable[Element]) -> dict[str, str]:
 
 
 def _dimensions(element: Element, known: Mapping[str, str], diagnostics: Diagnostics) -> tuple[int, ...] | None:
-    """The sizes of an array; None after reporting one that is not constant, or too large, where it is a port."""
+    """The sizes of an array.  None if one is not constant or the array is too large; for a port, this is reported."""
     sizes = []
     for dimension in element.children:
         if dimension.name == "Dimension":
@@ -181,7 +184,7 @@ def _variable(
     state: bool,
     diagnostics: Diagnostics,
 ) -> Variable | None:
-    """A variable that is a number, or None: then it was reported if it is a port."""
+    """A variable that is a number.  None for other variables; if they are inputs or outputs, this is reported."""
     attributes = element.attributes
     name = one_line(attributes.get("name", ""))
     causality = attributes.get("causality", "local")

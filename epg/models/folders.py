@@ -1,21 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where the files of a model are looked for."""
+"""The folders in which EPG searches the files of a model."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
 
-#: levels below a model's folder that are searched
+#: levels of folders below a model's folder that are searched
 DEPTH = 2
 _SKIPPED = frozenset(("project", "build", "cmakefiles", "binaries"))
 _BUILD_MARKS = ("CMakeCache.txt", ".epg-outputs.json")
 
 
 def searched_folders(directory: Path, depth: int = DEPTH) -> list[Path]:
-    """``directory`` and those of its folders, ``depth`` levels down, that may hold sources of a model.
+    """``directory`` and the folders up to ``depth`` levels below it that can hold sources of a model.
 
-    Left out: links, hidden folders, project files of IDEs and build folders.
+    Links, hidden folders, folders of IDEs and build folders are not searched.
     """
     found = [directory]
     if depth:
@@ -30,7 +30,7 @@ def searched_folders(directory: Path, depth: int = DEPTH) -> list[Path]:
 
 
 def source_files(directory: Path, suffixes: Iterable[str], depth: int = DEPTH) -> list[Path]:
-    """Files with one of ``suffixes`` in the :func:`searched_folders`."""
+    """The files with one of ``suffixes`` in the :func:`searched_folders`."""
     wanted = {suffix.lower() for suffix in suffixes}
     found: list[Path] = []
     for folder in searched_folders(directory, depth):
@@ -43,7 +43,7 @@ def source_files(directory: Path, suffixes: Iterable[str], depth: int = DEPTH) -
 
 
 def may_hold_sources(entry: Path) -> bool:
-    """Whether a folder is searched: no link, no hidden folder, none of an IDE or a build."""
+    """True if ``entry`` is a folder that is searched: not a link, not hidden, and not a folder of an IDE or a build."""
     if entry.name.startswith(".") or entry.name.lower() in _SKIPPED or entry.is_symlink() or not entry.is_dir():
         return False
     return not any((entry / mark).exists() for mark in _BUILD_MARKS)

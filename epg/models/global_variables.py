@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Global variables of an export that a start must put back to their first values."""
+"""The global variables of an export that each start must reset to their initial values."""
 
 from __future__ import annotations
 
@@ -15,7 +15,10 @@ _BASE_TYPES = {"double", "float", "int", "char", "short", "long", "unsigned", "s
 
 
 def base_type(name: str, types: Mapping[str, str]) -> str:
-    """The type of C behind a name such as ``XXDouble``; empty if there is none.  ``types`` are the typedefs."""
+    """The type of C that a typedef such as ``XXDouble`` names; empty if it is not a plain type.
+
+    ``types`` are the typedefs: name to type.
+    """
     for _ in range(4):
         if name in _BASE_TYPES:
             return name
@@ -26,7 +29,11 @@ def base_type(name: str, types: Mapping[str, str]) -> str:
 def global_variables(
     variables: Iterable[Variable], types: Mapping[str, str], macros: dict[str, str]
 ) -> tuple[GlobalVariable, ...]:
-    """Those of plain types with a first value that is a number, and arrays of zeros, by name."""
+    """The variables that a start can reset, sorted by name.
+
+    They are scalars of a plain type whose initial value is a number, and arrays of a plain type without initial values.
+    Constants and pointers are left out.
+    """
     result = []
     for variable in sorted(variables, key=lambda variable: variable.name):
         base = base_type(variable.type, types)

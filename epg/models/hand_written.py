@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``model.yaml`` of a controller written by hand: its ports, step size and functions.
+"""Reads the ``model.yaml`` of a controller written by hand: its ports, step size and functions.
 
-The whole file is checked here, by the same rules as ``schemas/model.schema.json`` states for editors.
+The whole file is checked here.  ``schemas/model.schema.json`` has the same rules for editors; both must agree.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ _SUFFIXES = {"c": (".c",), "c++": (".cpp", ".cc", ".cxx")}
 
 
 def load_hand_written(path: Path, diagnostics: Diagnostics) -> Model | None:
-    """The model that ``path`` describes, or None after reporting everything that is wrong with it."""
+    """The model that ``path`` describes.  None if the file has mistakes; all of them are reported."""
     before = diagnostics.error_count
     node = load_yaml(path, diagnostics)
     if node is None:
@@ -64,7 +64,7 @@ def load_hand_written(path: Path, diagnostics: Diagnostics) -> Model | None:
 
 def _load(path: Path, node: YamlNode, diagnostics: Diagnostics) -> Model | None:
     if "fmu" in node:
-        from epg.models.fmu_settings import FmuSettings  # as rare as it is large
+        from epg.models.fmu_settings import FmuSettings  # a large import, which few models need
 
         return FmuSettings(path, node, diagnostics).load()
     return _Reader(path, node, diagnostics).load()
@@ -281,7 +281,7 @@ class _Reader(ModelYaml):
         return one_line(found.value)
 
     def _check_names(self, names: Names, instance: str, members: tuple[str, ...]) -> None:
-        """Reports names of functions, types, parameters and ports that the sources do not have."""
+        """Reports names of functions, types, parameters and ports that do not exist in the sources."""
         for _, node in self.node["functions"].items():
             names.check_function(str(node.value), node.span, self.diagnostics)
         if instance:

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whether the names in a ``model.yaml`` are those of its sources: a misspelt one must not end in the linker.
+"""Checks that the names in a ``model.yaml`` exist in its sources.
 
-What cannot be known is not judged: where an include is not found, or macros paste names together, there may be more
-names than can be seen.
+Without this check, the user would see a misspelt name only as an error of the compiler or of the linker.
+
+The check is skipped if the sources can have more names than EPG sees: if an include is not found, or if macros paste
+names together.
 """
 
 from __future__ import annotations
@@ -37,14 +39,17 @@ _MEMBER = re.compile(r"([A-Za-z_]\w{0,255})\s{0,80}(?:\[[^\]]{0,200}\]\s{0,80}){
 
 @dataclass(frozen=True)
 class Struct:
-    """A struct or class; ``members`` by name, with the struct that a member is, if that is known."""
+    """A struct or class.  ``members`` maps the name of a member to its struct, or to None if that is not known."""
 
     members: dict[str, Struct | None] = field(default_factory=dict)
-    open: bool = False  # there may be more: those of a base
+    open: bool = False  # True if there can be more members, for example those of a base class
 
 
 class Names:
-    """What the sources of a hand-written controller declare and define."""
+    """The names that the sources of a controller written by hand declare and define.
+
+    ``certain`` is False if there can be more names than were found; then nothing must be reported as missing.
+    """
 
     def __init__(
         self, folder: Path, header: str, directories: Sequence[Path], sources: Sequence[Path], cpp: bool
@@ -60,7 +65,7 @@ class Names:
         self.units = self._read(sources)
 
     def _read(self, paths: Iterable[Path]) -> list[Code]:
-        """The files and all that they include."""
+        """Parses ``paths`` and all files that they include."""
         found: dict[Path, Code] = {}
         waiting = list(paths)
         while waiting:
@@ -89,7 +94,7 @@ class Names:
 
     @property
     def seen(self) -> list[Code]:
-        """What generated code sees: C++ sources stand in the same file."""
+        """The files whose names generated code can use.  Generated code includes C++ sources, but not C sources."""
         return [*self.headers, *self.units] if self.cpp else self.headers
 
     @property
@@ -119,7 +124,7 @@ class Names:
             diagnostics.error("wrong-value", span, f"there is no type '{name}' in '{self.header}'", hint=hint)
 
     def check_member(self, type: str, member: str, span: Span, diagnostics: Diagnostics) -> None:
-        """``member``, such as ``gains.kp[2]``, of the struct ``type``."""
+        """Reports a ``member``, such as ``gains.kp[2]``, that the struct ``type`` does not have."""
         struct = self.structs.get(type.rpartition("::")[2].removeprefix("struct "))
         for part in member.split("."):
             if struct is None or struct.open:
@@ -132,7 +137,7 @@ class Names:
             struct = struct.members[name]
 
     def check_variable(self, member: str, span: Span, diagnostics: Diagnostics) -> None:
-        """``member``, such as ``gains.kp``, of a global variable."""
+        """Reports a ``member``, such as ``gains.kp``, whose global variable is not declared or not defined."""
         name = re.split(r"[.\[]", member)[0]
         if self._is_known(name):
             if name not in self._variables and name not in self._macros:
@@ -154,7 +159,7 @@ class Names:
         return {variable.name for code in self.all for variable in code.variables}
 
     def _is_in_body(self, name: str) -> bool:
-        """Whether a class has a function of that name with its body inside."""
+        """True if a class contains a function called ``name`` with its body."""
         pattern = re.compile(rf"\b{re.escape(name)}\s{{0,80}}\([^();{{}}]{{0,1000}}\)[^;{{}}()]{{0,80}}\{{")
         return any(pattern.search(code.file.code) for code in self.all)
 
@@ -164,7 +169,7 @@ class Names:
 
     @cached_property
     def _members_of_macros(self) -> set[str]:
-        """Macros that may declare members."""
+        """The macros that can declare members of a struct."""
         return {m.name for code in self.all for m in code.macros if m.parameters or ";" in m.value}
 
     def _undefined(self, name: str, span: Span, diagnostics: Diagnostics) -> None:
@@ -174,7 +179,7 @@ class Names:
         diagnostics.error("model-incomplete", span, message, hint=hint, notes=notes)
 
     def _defined_in(self, name: str) -> list[Note]:
-        """Files of the folder, among the sources or not, that define a function or variable."""
+        """Notes of the files in the folder that define a function or variable, also of files that are not sources."""
         notes = []
         for path in source_files(self.folder, (".c", ".cpp", ".cc", ".cxx"))[:MAX_FILES]:
             file = read_source(path, Diagnostics())
@@ -208,7 +213,7 @@ class Names:
 
 
 def _structs(text: str) -> Iterator[tuple[str, str, int, bool]]:
-    """Name, body, the place behind it, and whether it has a base, of each struct outside of others."""
+    """Each struct that is not inside another one: its name, its body, the offset behind it, True if it has a base."""
     at = 0
     for match in _STRUCT.finditer(text):
         if match.start() >= at:
@@ -226,7 +231,7 @@ def _end(text: str, start: int) -> int:
 
 
 def _struct(body: str, derived: bool, depth: int = 0) -> Struct:
-    """The members in ``body``; a struct inside that has a name is one of them."""
+    """The members in ``body``, including members whose type is a struct that is declared inside ``body``."""
     if depth > 8 or "#" in body or re.search(r"\b(?:template|using|union)\b", body):
         return Struct(open=True)
     members: dict[str, Struct | None] = {}
@@ -249,12 +254,12 @@ def _struct(body: str, derived: bool, depth: int = 0) -> Struct:
             if name:
                 members[name[1]] = _struct(body[match.end() : end], False, depth + 1)
             elif not re.match(r"\s{0,80}\w", head.strip()[6:] or ""):
-                return Struct(open=True)  # its members are those of the struct around it
+                return Struct(open=True)  # an anonymous struct, whose members count as those of the outer struct
             start = position = end + 1
-        elif "(" in head:  # a function with its body
+        elif "(" in head:  # a function with a body
             start = position = end + 1
         else:
-            position = end + 1  # a member with its value
+            position = end + 1  # a member with an initial value
             named = _MEMBER.search(head.partition("=")[0].strip()[-300:])
             if named:
                 members.setdefault(named[1], None)

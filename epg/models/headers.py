@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The headers of a model: what its files include, where that is found, and what is said if it is not."""
+"""Finds the headers that the files of a model include, and reports headers that are missing."""
 
 from __future__ import annotations
 
@@ -16,20 +16,27 @@ from epg.models.c_code import Code, Include, parse_code
 from epg.models.neighbours import Neighbours, all_alike
 from epg.source import Span
 
-#: headers of an export that declare nothing a model needs unless it calls their functions
+#: headers of an export that a model needs only if it calls their functions
 _OPTIONAL = re.compile(r"motionprofiles|eulerangles|\w*(table2d|matrix|inverse|funcs)\w*", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
 class Shim:
-    """A header that the export includes as ``name`` and that has another case, ``target``, or does not exist."""
+    """A header that the export includes as ``name``, but whose file ``target`` has another name.
+
+    The names can differ in case or in their folder.  ``target`` is None if the header does not exist.
+    """
 
     name: str
     target: Path | None
 
 
 class Headers:
-    """Collects what files include.  ``search`` are the model's own folders; ``near`` are asked last."""
+    """Collects the headers that files include.
+
+    ``search`` are the model's own folders.  The neighbours ``near`` are searched last.  ``good`` is False after an
+    error.
+    """
 
     def __init__(self, search: Sequence[Path], near: Neighbours, diagnostics: Diagnostics) -> None:
         self.search = search
@@ -37,14 +44,14 @@ class Headers:
         self.diagnostics = diagnostics
         self.found: dict[Path, Code] = {}
         self.shims: dict[str, Shim] = {}
-        self.taken: list[Path] = []  # those that lie beside the model's folder, and are not included by their place
-        self.twins: set[Path] = set()  # files that say the same as one of these
+        self.taken: list[Path] = []  # headers from folders beside the model's, which no include names with its folder
+        self.twins: set[Path] = set()  # files with the same text as one of these
         self.good = True
         self._bases: dict[Path, None] = {}
         self._told: set[str] = set()
 
     def follow(self, unit: Code) -> None:
-        """Finds what ``unit`` includes, and what that includes; reports what is missing."""
+        """Finds the headers that ``unit`` includes, directly or through other headers.  Reports missing ones."""
         waiting = [unit]
         while waiting:
             code = waiting.pop()
@@ -61,18 +68,18 @@ class Headers:
                 waiting.append(self.found[path])
 
     def folders(self) -> list[Path]:
-        """The include path: as it was searched."""
+        """The folders of the include path, in the order in which they are searched."""
         used = dict.fromkeys([*self._bases, *(path.parent for path in self.found)])
         order = {folder: number for number, folder in enumerate(self.search)}
         return sorted(used, key=lambda folder: order.get(folder, len(order)))
 
     def named(self, directory: Path) -> list[Path]:
-        """Folders outside of ``directory`` that an ``#include`` names, as ``"../common/xxinteg.h"`` does."""
+        """The folders outside ``directory`` with headers that were found, such as that of ``"../common/xxinteg.h"``."""
         folders = dict.fromkeys(path.parent for path in self.found)
         return [folder for folder in folders if not folder.is_relative_to(directory)]
 
     def _find(self, include: Include, file: SourceFile) -> Path | None:
-        """The file that is meant; None after saying that there is none, or that it is open which."""
+        """The file that ``include`` means.  None if there is none, or if several fit; both are reported."""
         name = include.name
         if is_file(file.path.parent / name):
             return _plain(file.path.parent / name)
@@ -84,7 +91,10 @@ class Headers:
         return self._find_near(include, file) if other is None else self._shimmed(name, other)
 
     def _find_near(self, include: Include, file: SourceFile) -> Path | None:
-        """As :meth:`_find`, beside the model's folder: by name, in another spelling, without the folder before it."""
+        """As :meth:`_find`, in the folders beside the model's.
+
+        Searches the name as it is, then in another case, then without the folder in it.
+        """
         name = include.name
         candidates = self.near.files(name)
         exact = bool(candidates)
@@ -126,7 +136,7 @@ class Headers:
         )
 
     def _report_missing(self, include: Include, file: SourceFile) -> None:
-        """Reports a header that does not exist, once; a model can do without some."""
+        """Reports a header that does not exist, only once.  For an optional header, this is a warning."""
         span = file.span(include.start, include.start + len(include.name))
         if _is_optional(include.name):
             self.diagnostics.warning(
@@ -160,7 +170,7 @@ def _base(name: str) -> str:
 
 
 def _plain(path: Path) -> Path:
-    """A path without ``..``, where that leads to the same file."""
+    """``path`` without ``..``, if this is the same file; else ``path``."""
     plain = Path(os.path.normpath(path))
     return plain if ".." in path.parts and os.path.realpath(plain) == os.path.realpath(path) else path
 

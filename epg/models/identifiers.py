@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""C identifiers for names of a model.
+"""Makes C identifiers from the names in a model.
 
 >>> to_identifier("PID1\\\\kp"), to_identifier("p.e"), to_identifier("double"), to_identifier("2nd stage")
 ('PID1_kp', 'p_e', 'double_', '_2nd_stage')
@@ -12,7 +12,7 @@ from collections.abc import Iterable
 
 
 def words(text: str) -> frozenset[str]:
-    """The words of a text: a readable way to write a set of many."""
+    """The set of words in ``text``: a readable way to write a large set."""
     return frozenset(text.split())
 
 
@@ -34,32 +34,36 @@ _CPP = words(
 _MACROS = words("NULL EOF errno stdin stdout stderr assert unix linux i386 INFINITY NAN HUGE_VAL RAND_MAX")
 
 RESERVED = _C11 | _CPP | _MACROS
-"""Words that are no member of a struct in C11 or C++20, or macros of C libraries and common compilers."""
+"""Words that cannot name a member of a struct: keywords of C11 and C++20, macros of C libraries and compilers."""
 
 _LIMITS = re.compile(
     r"(?:U?INT(?:_LEAST|_FAST)?(?:8|16|32|64|PTR|MAX)|PTRDIFF|SIZE|SIG_ATOMIC|WCHAR|WINT|(?:S?CHAR|U?SHRT|U?INT|U?LONG|U?LLONG))"
     r"_(?:MAX|MIN|WIDTH)|UCHAR_MAX|CHAR_BIT"
 )
-"""Macros of <stdint.h> and <limits.h>, which generated files or those of a user include."""
+"""Macros of <stdint.h> and <limits.h>, which generated files or files of the user include."""
 
 
 def is_reserved(name: str) -> bool:
-    """Whether an identifier is a word or a macro that cannot name a member of a struct in generated code."""
+    """True if ``name`` is a keyword or a macro, which cannot name a member of a struct in generated code."""
     return name in RESERVED or _LIMITS.fullmatch(name) is not None or name.startswith("EPG_")
 
 
 def to_identifier(name: str) -> str:
-    """The C identifier for a name: other characters become ``_``, a reserved word gets ``_`` at its end."""
+    """The C identifier for a name.
+
+    Characters that C does not allow become ``_``.  A reserved word gets ``_`` at its end.  A name that is reserved for
+    the compiler, or that begins with ``EPG_``, gets ``x`` at its start.
+    """
     identifier = re.sub(r"_+", "_", re.sub(r"[^A-Za-z0-9_]", "_", name)) if not _is_identifier(name) else name
     if not identifier or identifier[0].isdigit():
         identifier = f"_{identifier}"
-    if re.match(r"__|_[A-Z]|EPG_", identifier):  # reserved for the compiler, macros of EPG's headers
+    if re.match(r"__|_[A-Z]|EPG_", identifier):  # the compiler reserves the first two; EPG's headers define EPG_ macros
         identifier = "x" + identifier
     return f"{identifier}_" if is_reserved(identifier) else identifier
 
 
 def unique_identifiers(names: Iterable[str]) -> list[str]:
-    """Identifiers for ``names`` in order; the second and later ones of a collision get a number."""
+    """The identifiers for ``names``, in order.  If several are equal, all but the first one get a number."""
     used: set[str] = set()
     counts: dict[str, int] = {}
     result: list[str] = []

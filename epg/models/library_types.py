@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Classes of the C++ library that cannot be used on a target, and names before a parenthesis that are not called.
+"""Finds classes of the C++ library that targets cannot use, and names before a parenthesis that are not calls.
 
-Somebody lets a controller read its parameters with ``std::ifstream file("gains.txt");``.  What follows there, such as
-``std::getline`` and ``std::stod``, has the same cause.
+For example, a controller can read its parameters with ``std::ifstream file("gains.txt");``.  EPG reports the class.
+It does not report the following ``std::getline`` and ``std::stod``, because they have the same cause.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _BEFORE_CALLS = words("return else do case throw new delete goto and or not xor 
 
 @dataclass(frozen=True)
 class Use:
-    """Where a class of the library is used: an object of it is made."""
+    """A place where an object of a class of the library is made."""
 
     name: str
     start: int
@@ -41,7 +41,7 @@ class Use:
 
 
 def library_uses(code: Code, function: Function) -> Iterator[Use]:
-    """Objects of classes that read files or take memory from the heap, in the body of ``function``."""
+    """The objects in the body of ``function`` whose classes use files or take memory from the heap."""
     if code.file.path.suffix.lower() == ".c":
         return
     text = code.file.code
@@ -52,7 +52,7 @@ def library_uses(code: Code, function: Function) -> Iterator[Use]:
 
 
 def is_declaration(code: Code, start: int) -> bool:
-    """Whether the name before a parenthesis is that of an object that is made: ``Gains gains("file");``."""
+    """True if the name at ``start``, before a parenthesis, declares an object: ``Gains gains("file");``."""
     before = code.file.code[max(0, start - 300) : start].rstrip(" \t")
     if before.endswith(">"):
         return re.search(r"\w\s{0,9}<[^<>;(){}]{0,200}>$", before) is not None
@@ -63,7 +63,7 @@ def is_declaration(code: Code, start: int) -> bool:
 
 
 def is_of_std(code: Code, start: int) -> bool:
-    """Whether a name stands behind ``std::``."""
+    """True if ``std::`` is before the name at ``start``."""
     return re.search(r"\bstd\s{0,9}::\s{0,9}$", code.file.code[max(0, start - 30) : start]) is not None
 
 

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which files belong to one model: those that its functions need, found as a linker does.
+"""Finds the files that belong to one model: as a linker does, by the names that its functions use.
 
-They are looked for in the model's folder first.  What is not there may lie beside it: see ``neighbours.py``.
-Exports carry demo programs, FMI functions and unused helpers, developers put drivers and a second model beside them:
-following the names that are used leaves all of that out without knowing what it is called.
+EPG searches the model's folder first, then the folders beside it (see ``neighbours.py``).
+
+An export also contains demo programs, FMI functions and helpers that the model does not use.  Users put drivers and
+other models beside it.  Because EPG follows only the names that are used, it leaves all these files out, without a list
+of their names.
 """
 
 from __future__ import annotations
@@ -32,20 +34,20 @@ _INCLUDE_FOLDERS = ("include", "includes", "inc")
 
 @dataclass(frozen=True)
 class Linked:
-    """The files of one model.  ``units`` are compiled, the one with the model's entry points first."""
+    """The files of one model.  ``units`` are compiled; the first one has the model's entry points."""
 
     units: tuple[Code, ...]
     headers: tuple[Code, ...]
     include_dirs: tuple[Path, ...]
     shims: tuple[Shim, ...]
     searched: tuple[Path, ...] = ()
-    """Folders outside of the model's, of which the list of files matters."""
+    """The folders outside the model's that were searched: a new or removed file in them can change the model."""
     twins: tuple[Path, ...] = ()
-    """Files that would make another model, or none, if they changed, though they are no part of it."""
+    """Files with the same text as a file of the model.  They are not part of it, but a change of them can change it."""
     looked: str = ""
-    """Where was looked for functions that no file defines; empty if there are none."""
+    """The places that were searched for functions that no file defines, as text; empty if no function is missing."""
     elsewhere: Mapping[str, Span] = field(default_factory=dict)
-    """Where folders of other models define them."""
+    """The places in folders of other models that define these functions."""
 
     @property
     def main(self) -> Code:
@@ -56,7 +58,7 @@ class Linked:
         return self.units + self.headers
 
     def macros(self) -> dict[str, str]:
-        """Object-like macros of all files."""
+        """The macros without parameters in all files: name to value."""
         return {macro.name: macro.value for code in self.all for macro in code.macros if not macro.parameters}
 
     def macro_names(self) -> set[str]:
@@ -68,7 +70,7 @@ class Linked:
                 yield code, function
 
     def reachable(self, roots: Iterable[Function]) -> list[tuple[Code, Function]]:
-        """Functions that run when those of ``roots`` are called, in the order of the files."""
+        """The functions that can run when the functions ``roots`` are called, in the order of the files."""
         by_name: dict[str, list[tuple[Code, Function]]] = {}
         for code, function in self.functions():
             by_name.setdefault(function.name, []).append((code, function))
@@ -90,12 +92,12 @@ class Linked:
 
 
 def is_program(path: Path) -> bool:
-    """Whether a file is one of the demo programs or FMI glue files that 20-sim writes beside a model."""
+    """True if a file is a demo program, or a file of FMI functions, that 20-sim writes beside a model."""
     return bool(_FMI_FILE.fullmatch(path.name) or _DEMO_FILE.fullmatch(path.name))
 
 
 def link(main: Code, suffixes: Iterable[str], diagnostics: Diagnostics) -> Linked | None:
-    """The files that ``main`` needs; None after reporting an ambiguous definition or a missing file."""
+    """The files that ``main`` needs.  None if a file is missing or a definition is ambiguous; both are reported."""
     return _Linker(main, tuple(suffixes), diagnostics).link()
 
 
@@ -140,7 +142,7 @@ class _Linker:
         )
 
     def _follow(self, unit: Code) -> None:
-        """Adds the headers of ``unit``, and the files of the model's folder that define what it uses."""
+        """Adds the headers of ``unit``, and the files of the model's folder that define the names that it uses."""
         self.headers.follow(unit)
         for name in sorted(self._used(unit) - self.done):
             self.done.add(name)
@@ -156,7 +158,7 @@ class _Linker:
                 word for macro in header.macros if macro.name in names for word in _IDENTIFIER.findall(macro.value)
             }
             if header.file.path.stem == unit.file.path.stem and unit.file.path.suffix != ".c":
-                names |= header.identifiers  # types of a class's members
+                names |= header.identifiers  # the header of a C++ class names the types of its members
         return names
 
     def _add(self, name: str, holders: list[Code], chosen: Code | None) -> None:
@@ -174,7 +176,7 @@ class _Linker:
         )
 
     def _take_sources(self) -> None:
-        """Adds files beside the model's folder that define what its headers declare and no file of it defines."""
+        """Adds files from folders beside the model's, for names that the model's files declare but do not define."""
         missing = self._missing()
         if not missing:
             return
@@ -201,7 +203,7 @@ class _Linker:
             self.taken += [chosen.file.path] if chosen is not None else []
 
     def _elsewhere(self, names: set[str]) -> Mapping[str, Span]:
-        """Where other models define ``names``."""
+        """The places in folders of other models that define ``names``."""
         found: dict[str, Span] = {}
         for folder in self.near.models:
             for file in self.near.sources(folder, self.suffixes, names):
@@ -212,7 +214,7 @@ class _Linker:
         return found
 
     def _missing(self) -> set[str]:
-        """Functions, classes and variables that headers declare, that the model uses, and that no file defines."""
+        """The functions, classes and variables that are declared and used, but that no file defines."""
         codes = [*self.units, *self.headers.found.values()]
         declared = {name for code in codes for name in declared_names(code)}
         used = {name for unit in self.units for name in self._used(unit)}
@@ -222,7 +224,7 @@ class _Linker:
         return (declared & used) - defined
 
     def _all_classes(self) -> bool:
-        """Reports a class that the model uses and whose functions no file defines."""
+        """True if the functions of each used class are defined.  Reports classes whose functions no file defines."""
         if ".c" in self.suffixes:
             return True
         owners = {function.owner for unit in self.units for function in unit.functions}
@@ -242,7 +244,10 @@ class _Linker:
 
 
 def _pool(main: Code, directory: Path, suffixes: Iterable[str], diagnostics: Diagnostics) -> list[Code]:
-    """The files that may belong to the model.  One that cannot be read is named: what it defines may be missing."""
+    """The files that can belong to the model.
+
+    Warns of a file that cannot be read, because its definitions may be missing later.
+    """
     codes = [main]
     for path in source_files(directory, suffixes):
         if path == main.file.path or is_program(path):
@@ -281,7 +286,10 @@ def _definition_span(code: Code, name: str) -> Span:
 
 
 def _choose(holders: list[Code], main: Path) -> Code | None:
-    """The file meant: the only one, the one beside ``main``, or the one renamed in the same way."""
+    """The file that belongs to the model: the only one, the only one beside ``main``, or the one with the same suffix.
+
+    None if this does not decide.  Users add the same suffix to the names of all files of a model.
+    """
     if len(holders) == 1:
         return holders[0]
     beside = [code for code in holders if code.file.path.parent == main.parent]
@@ -293,7 +301,7 @@ def _choose(holders: list[Code], main: Path) -> Code | None:
 
 
 def _include_directories(directory: Path) -> list[Path]:
-    """Where headers are looked for: beside the sources, below them, and in the ``include`` beside a ``src``."""
+    """The folders that are searched for headers: ``directory``, those below it, and an ``include`` beside a ``src``."""
     result = [directory]
     for parent in (directory, directory.parent if directory.name.lower() in SOURCE_FOLDERS else None):
         if parent is None:

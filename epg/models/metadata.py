@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Metadata beside the sources, and what it says differently.
+"""Reads metadata beside the sources of a model, and compares it with the sources.
 
-The sources are the truth, as developers rename prefixes in them and export again without these files.  A difference is
-a warning that names both.
+EPG uses the sources if both differ: users rename prefixes in the sources, or export again without the metadata.  A
+difference is reported as a warning that names both values.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ from epg.models.ports import make_parameters
 from epg.models.tokens import Tokens, is_tokens_file, load_tokens
 from epg.source import Span
 
-_MOST_NOTES = 10  # parameters with another value that are named, of what may be hundreds
+_MOST_NOTES = 10  # parameters with another value that a warning names; there can be hundreds
 
 
 @dataclass(frozen=True)
 class Metadata:
-    """What was found beside a model's sources."""
+    """The metadata that was found beside a model's sources."""
 
     tokens: Tokens | None
     configuration: Configuration | None
@@ -48,13 +48,16 @@ class Metadata:
 
     @property
     def finish(self) -> Fraction | None:
-        """The end of the experiment, from whatever states it."""
+        """The end of the experiment in seconds, from the first file that states it."""
         texts = [item.finish for item in (self.configuration, self.description) if item]
         texts += [self.tokens.trimmed("FINISH_TIME")] if self.tokens else []
         return next((value for value in map(exact_number, texts) if value is not None), None)
 
     def port_elements(self, memory: str) -> tuple[list[PortLine], list[PortLine]] | None:
-        """For an FMU: the array element of each port.  ``memory`` is the array that value references count in."""
+        """The array elements of the inputs and of the outputs, for sources of an FMU.  None if no file states them.
+
+        ``memory`` is the name of the array in which a value reference is an index.
+        """
         if self.tokens and {"INPUT_TO_VARIABLE_EQUATIONS", "VARIABLE_TO_OUTPUT_EQUATIONS"} <= self.tokens.values.keys():
             return (
                 input_lines(self.tokens.code("INPUT_TO_VARIABLE_EQUATIONS"), "u"),
@@ -73,7 +76,7 @@ class Metadata:
 
 
 def find_metadata(main: Path, name: str, diagnostics: Diagnostics) -> Metadata:
-    """The metadata beside the source file ``main`` of the model called ``name``; unreadable files give a warning."""
+    """The metadata beside the source file ``main`` of the model ``name``.  Warns of files that cannot be read."""
     directory = main.parent
     folders = [directory, directory.parent] if directory.name.lower() in SOURCE_FOLDERS else [directory]
     tokens = next((found for folder in folders if (found := _find_tokens(folder, main, name, diagnostics))), None)
@@ -87,7 +90,7 @@ def find_metadata(main: Path, name: str, diagnostics: Diagnostics) -> Metadata:
 
 
 def _find_tokens(folder: Path, main: Path, name: str, diagnostics: Diagnostics) -> Tokens | None:
-    """The tokens in a folder: those named after the source file, else those of the model called ``name``, else any."""
+    """The tokens in a folder: those with the name of the source file, else those of the model ``name``, else any."""
     files = [entry for entry in _entries(folder) if is_tokens_file(entry)]
     own = [file for file in files if file.stem.casefold() == f"{main.stem}_tokens".casefold()]
     candidates = own or [file for file in files if file.stem.casefold() == "tokens"] or files
@@ -104,7 +107,10 @@ def _entries(folder: Path) -> list[Path]:
 
 
 def cross_check(model: Model, prefix: str, metadata: Metadata, diagnostics: Diagnostics) -> bool:
-    """Warns of every difference between ``model`` and its metadata; whether the tokens are of this very model."""
+    """Warns of each difference between ``model`` and its metadata.
+
+    Returns True if the tokens belong to this export of the model: names of ports and parameters, method and step agree.
+    """
     same = True
     tokens, configuration = metadata.tokens, metadata.configuration
     if tokens:
@@ -163,7 +169,7 @@ def _check_names(model: Model, tokens: Tokens, diagnostics: Diagnostics) -> bool
 
 
 def _check_values(model: Model, tokens: Tokens, diagnostics: Diagnostics) -> None:
-    """Warns once of parameters that have other values in the tokens."""
+    """Warns, with one warning, of parameters that have other values in the tokens."""
     lines = list(assignments(tokens.code("INITIALIZE_PARAMETERS")))
     told = [(item.name, item.value, item.span) for item in make_parameters(lines, tokens.names("PARAMETER"), ())[0]]
     for name, (text, span) in zip(tokens.names("PARAMETER"), tokens.lines("PARAMETER_VALUES")):
@@ -181,9 +187,10 @@ def _check_values(model: Model, tokens: Tokens, diagnostics: Diagnostics) -> Non
 def warn_of_values(
     file: str, different: Sequence[tuple[Span, float, float, str, Span]], diagnostics: Diagnostics
 ) -> None:
-    """Warns once of parameters that have another value in ``file`` than in the sources, if there are any.
+    """Warns, with one warning, of parameters that have another value in ``file`` than in the sources.
 
-    Each is given by its place and value in the file, then by its value, name and place in the sources.
+    Each item of ``different`` is one parameter: its place and value in ``file``, then its value, name and place in the
+    sources.
     """
     if not different:
         return

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A controller or plant as the rest of EPG sees it, whatever tool it came from."""
+"""A controller or plant, in the same form for all tools and formats."""
 
 from __future__ import annotations
 
@@ -14,9 +14,11 @@ from epg.source import Span
 class Port:
     """An input or output of a model.
 
-    ``name`` is the name in the model (20-sim allows ``\\`` and ``.`` in it), ``identifier`` the C identifier used for
-    it in generated code.  ``unit`` is empty when the model states none.  ``index`` is the position in the
-    export's ``u[]`` or ``y[]``: an implementation detail, as adding a port renumbers the others.
+    ``name`` is the name in the model, in which 20-sim allows ``\\`` and ``.``.  ``identifier`` is the C identifier in
+    generated code.  ``unit`` is empty if the model does not state one.
+
+    ``index`` is the position in the ``u[]`` or ``y[]`` of the export.  It must not be used to identify a port, because
+    a new port changes the positions of the others.
     """
 
     name: str
@@ -31,9 +33,9 @@ class Port:
 
 @dataclass(frozen=True)
 class Parameter:
-    """A parameter with its exported value; ``name`` as in 20-sim, hierarchical with ``\\``: ``PID1\\kp``.
+    """A parameter with its exported value.  ``name`` is the name in 20-sim, with ``\\`` between levels: ``PID1\\kp``.
 
-    One that is not ``tunable`` has its value from the start on; those that are come first in a model.
+    A parameter that is not ``tunable`` cannot change after the start.  Tunable parameters come first in a model.
     """
 
     name: str
@@ -47,17 +49,17 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Model:
-    """One model.  ``step`` is exact, in seconds.
+    """One model.  ``step`` is the exact time between two steps, in seconds.
 
-    ``directory`` holds the files, ``files`` lists every file that was read (a change of one of them makes the model
-    another model).  ``span`` is where the model begins, for messages about it as a whole.
+    ``directory`` is the folder of the model.  ``files`` are all files that were read; the model can change if one of
+    them changes.  ``span`` is the begin of the model, for messages about the whole model.
     """
 
     name: str
-    origin: str  # "20-sim C function", "20-sim C++ class", "20-sim tokens", "hand-written"
+    origin: str  # "20-sim C function", "20-sim C++ class", "20-sim tokens", "FMI 2.0 FMU", "hand-written"
     language: str  # "c" or "c++"
-    version: str  # of 20-sim, "5.1.4.13773"; empty when unknown
-    method: str  # integration method: "Discrete", "Euler", "RungeKutta4", ...; empty for hand-written models
+    version: str  # of 20-sim, for example "5.1.4.13773"; empty if unknown
+    method: str  # integration method: "Discrete", "Euler", "RungeKutta4", ...; empty for FMUs and hand-written models
     step: Fraction
     inputs: tuple[Port, ...]
     outputs: tuple[Port, ...]
@@ -66,15 +68,18 @@ class Model:
     files: tuple[Path, ...]
     span: Span
     details: object = field(default=None, repr=False)
-    """What only the importer's own emitter needs: sources, prefixes, class name; see ``details.py``."""
+    """Data that only the emitter for this origin needs: sources, prefixes, name of the class.  See ``details.py``."""
     finish_time: float | None = None
-    """Where the experiment in 20-sim ends, in seconds.  Nothing ends there on a target."""
+    """The end of the experiment in 20-sim, in seconds.  It has no effect on a target."""
     searched: tuple[Path, ...] = ()
-    """Folders beside ``directory`` in which files were looked for: others in them may make another model."""
+    """The folders beside ``directory`` that were searched: a new or removed file in them can change the model."""
     twins: tuple[Path, ...] = ()
-    """Files that are no part of the model as long as they say the same as one that is."""
+    """Files that are not part of the model, because they have the same text as one that is.  A change can matter."""
 
     @property
     def instantiable(self) -> bool:
-        """Whether there can be several instances: exports as C functions keep their state in global variables."""
+        """True if a program can have several instances.
+
+        Most exports of the C function target cannot: they keep their state in global variables.
+        """
         return bool(getattr(self.details, "instantiable", False))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What all kinds of ``model.yaml`` share: version, step, keys that are known, and how mistakes are reported."""
+"""The common part of all kinds of ``model.yaml``: version, step, check of keys, reports of mistakes."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class ModelYaml:
         self.diagnostics = diagnostics
 
     def _begin(self, keys: tuple[str, ...], required: tuple[str, ...]) -> bool:
-        """Whether the file is a map of this version; reports keys that are unknown or missing."""
+        """True if the file is a map of this version.  Also reports keys that are unknown or missing."""
         if not self.node.is_mapping:
             hint = "it begins with 'version: 1'"
             self._error("wrong-type", self.node.span, "a model.yaml is a map (key: value)", hint)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The folders beside a model's folder, where people put files that several models share.
+"""Searches the folders beside a model's folder, where users put files that several models share.
 
 ::
 
@@ -8,8 +8,9 @@
         pan/     xxsubmod.c ...
         tilt/    xxsubmod.c ...
 
-Only one level is searched, and nothing in a home directory, in a folder that everybody may write, or in one with very
-many entries.  Files of another model's folder never count: its ``xxmodel.c`` would link, with arrays of other sizes.
+Only one level is searched.  EPG does not search a home directory, a folder to which all users can write, or a folder
+with very many entries.  It never uses files in the folder of another model: the ``xxmodel.c`` of that model would link,
+but its arrays have other sizes.
 """
 
 from __future__ import annotations
@@ -27,14 +28,14 @@ from epg.documents.text_file import is_file
 from epg.models.folders import may_hold_sources
 from epg.source import Span
 
-MAX_ENTRIES = 1000  # of a folder that is searched
-MAX_FOLDERS = 100  # beside a model's
-MAX_SOURCES = 200  # of a folder
-MAX_BYTES = 1 << 20  # of a source in it
+MAX_ENTRIES = 1000  # entries of a folder that is searched
+MAX_FOLDERS = 100  # folders beside a model's
+MAX_SOURCES = 200  # sources in a folder
+MAX_BYTES = 1 << 20  # bytes of a source
 SOURCE_FOLDERS = ("src", "source", "sources")
-"""Names of folders that hold a model's sources only: its folder is the one above."""
+"""Names of folders that hold only the sources of a model.  The model's folder is then the one above."""
 
-_SHARED = "common"  # what 20-sim calls the folder of a C++ export that does not depend on the model
+_SHARED = "common"  # the folder of a C++ export with files that do not depend on the model
 _SOURCES = (".c", ".cpp", ".cc", ".cxx")
 _ENTRY_POINT = re.compile(
     r"CalculateSubmodel\w{0,80}\s{0,80}\([^();{]{0,500}\)\s{0,80}\{|::\s{0,80}CopyInputsToVariables\s{0,80}\("
@@ -44,9 +45,10 @@ _NOT_IN_LISTS = re.compile(r"[\[\]$;\"\\|]")  # of CMake
 
 
 class Neighbours:
-    """Folders beside ``directory``; nothing is read before somebody asks.
+    """The folders beside ``directory``.  They are read when they are first needed.
 
-    ``cpp`` models of 20-sim share a ``common/`` that does not depend on the model: that of another one will do.
+    In C++ exports (``cpp``), the files in ``common/`` do not depend on the model.  The ``common/`` in the folder of
+    another model can therefore be used.
     """
 
     def __init__(self, directory: Path, cpp: bool) -> None:
@@ -58,7 +60,7 @@ class Neighbours:
 
     @cached_property
     def _found(self) -> tuple[tuple[Path, ...], tuple[Path, ...], str]:
-        """The folders that are searched, the folders of other models, and why there are none."""
+        """The folders that are searched, the folders of other models, and the reason if no folder is searched."""
         self.looked = True
         searched: dict[Path, None] = {}
         models: dict[Path, None] = {}
@@ -83,18 +85,18 @@ class Neighbours:
 
     @property
     def models(self) -> tuple[Path, ...]:
-        """Folders of other models, of which nothing is used."""
+        """The folders of other models.  Their files are not used."""
         return self._found[1]
 
     @property
     def watched(self) -> tuple[Path, ...]:
-        """Folders of which the list of files matters; none if nobody asked."""
+        """The folders in which a new or removed file can change the model.  Empty if no folder was searched."""
         if not self.looked:
             return ()
         return tuple(dict.fromkeys([*map(above, self._homes), *self.folders, *self.models]))
 
     def files(self, name: str) -> list[Path]:
-        """The files that ``#include "name"`` may mean."""
+        """The files that ``#include "name"`` can mean."""
         found: dict[str, Path] = {}
         for folder in self.folders:
             path = folder / name
@@ -103,7 +105,7 @@ class Neighbours:
         return list(found.values())
 
     def sources(self, folder: Path, suffixes: Iterable[str], names: Iterable[str]) -> list[SourceFile]:
-        """The sources in ``folder`` in whose text one of ``names`` stands."""
+        """The sources in ``folder`` whose text contains one of ``names``."""
         wanted = tuple(suffixes)
         word = re.compile(rf"\b(?:{'|'.join(re.escape(name) for name in sorted(names))})\b")
         paths = [path for path in entries_of(folder) or () if path.suffix.lower() in wanted]
@@ -111,7 +113,7 @@ class Neighbours:
         return [file for file in files if file is not None and word.search(file.text)]
 
     def elsewhere(self, name: str) -> list[Path]:
-        """Where else a file of that name lies, for the message that it was not found: two levels, and no further."""
+        """Other files with the same name, for the message that the file was not found.  Searches two levels."""
         base = name.replace("\\", "/").rsplit("/", 1)[-1]
         found: dict[str, Path] = {}
         for folder in (*self._homes, *self.models, *self.folders):
@@ -122,7 +124,7 @@ class Neighbours:
         return list(found.values())[:6]
 
     def notes(self, name: str) -> list[Note]:
-        """For the same message: each of those files."""
+        """A note for each file of :meth:`elsewhere`."""
         other = {os.path.realpath(folder) for folder in self.models}
         return [
             Note(
@@ -133,7 +135,7 @@ class Neighbours:
         ]
 
     def description(self) -> str:
-        """Where was looked, for people: ``'pan' and below it, and beside it in 'common'``."""
+        """The places that were searched, as text: ``looked in 'pan' and below it, and beside it in 'common'``."""
         names = [os.path.relpath(folder, above(self.directory)) for folder in self.folders]
         names = [f"'{Path(name).as_posix()}'" for name in names if name not in (".", "..")]
         text = f"looked in '{os.path.basename(os.path.abspath(self.directory))}' and below it"
@@ -145,7 +147,7 @@ class Neighbours:
 
 
 def report_taken(paths: Iterable[Path], main: Path, near: Neighbours, diagnostics: Diagnostics) -> None:
-    """Says which files of the model lie beside its folder: once for each folder."""
+    """Reports the files of the model that are beside its folder, with one note for each folder."""
     folders: dict[Path, list[str]] = {}
     for path in dict.fromkeys(paths):
         folders.setdefault(path.parent, []).append(path.name)
@@ -159,12 +161,12 @@ def report_taken(paths: Iterable[Path], main: Path, near: Neighbours, diagnostic
 
 
 def above(folder: Path) -> Path:
-    """The folder that holds ``folder``, by its name: what a link leads to lies somewhere else."""
+    """The folder above ``folder``, by its name.  A link is not followed, because its target is elsewhere."""
     return folder.parent if folder.name not in ("", "..") else folder / os.pardir
 
 
 def entries_of(folder: Path) -> list[Path] | None:
-    """What lies in a folder, sorted; None if that cannot be read or is very much."""
+    """The entries of a folder, sorted.  None if it cannot be read or has more than :data:`MAX_ENTRIES`."""
     found: list[str] = []
     try:
         with os.scandir(folder) as entries:
@@ -178,7 +180,10 @@ def entries_of(folder: Path) -> list[Path] | None:
 
 
 def holds_model(folder: Path) -> bool:
-    """Whether a folder is that of a model by itself: it holds entry points, an FMU, a model.yaml, or tokens alone."""
+    """True if ``folder`` is the folder of a model.
+
+    It then holds an unpacked FMU, a model.yaml, sources with entry points, or tokens without sources.
+    """
     entries = entries_of(folder) or []
     names = {entry.name.lower() for entry in entries}
     if not names.isdisjoint(("model.yaml", "modeldescription.xml")):
@@ -191,7 +196,7 @@ def holds_model(folder: Path) -> bool:
 
 
 def all_alike(paths: Sequence[Path]) -> bool:
-    """Whether files say the same: comments, blanks and line ends do not count."""
+    """True if all files have the same text, apart from comments, blanks and line ends."""
     files = [_read(path) for path in paths]
     return all(files) and len({_BLANK.sub(" ", file.without_comments).strip() for file in files if file}) == 1
 
@@ -211,7 +216,7 @@ def _read(path: Path) -> SourceFile | None:
 
 
 def _siblings(parent: Path) -> tuple[list[Path], str]:
-    """The folders in ``parent`` that may hold sources, or why they are not searched."""
+    """The folders in ``parent`` that can hold sources, and the reason if they are not searched."""
     try:
         whole = Path(os.path.realpath(parent))
         mode = whole.stat().st_mode
@@ -230,5 +235,5 @@ def _siblings(parent: Path) -> tuple[list[Path], str]:
 
 
 def _is_nameable(name: str) -> bool:
-    """Whether CMake can have a folder of that name in a list."""
+    """True if a list of CMake can hold a folder of this name."""
     return name.isprintable() and not _NOT_IN_LISTS.search(name)

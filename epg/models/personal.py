@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What 20-sim writes about people and their computers into ``ModelConfiguration.xml``.
+"""Removes personal data from the ``ModelConfiguration.xml`` of 20-sim.
 
-Its ``<general>`` names the model file with its whole path, the folder, the license and the person it is registered
-to.  EPG reads nothing of it, and whoever publishes the export need not publish that.
+Its ``<general>`` contains the full path of the model file, the folder, the license and the person to whom it is
+registered.  EPG does not need these data, and a user who publishes the export need not publish them.
 """
 
 from __future__ import annotations
@@ -16,7 +16,9 @@ _ABOUT_PEOPLE = re.compile(
 
 
 def without_personal_data(configuration: bytes) -> bytes:
-    """A ``ModelConfiguration.xml`` without the folder, the model file, the license and the date; else byte for byte.
+    """A ``ModelConfiguration.xml`` without personal data: folder, model file, license, author, company and date.
+
+    All other bytes stay the same.
 
     >>> without_personal_data(b"<general><name>Pan</name><additional>A. Person</additional></general>")
     b'<general><name>Pan</name></general>'

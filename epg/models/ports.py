@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Ports and parameters as :class:`~epg.models.model.Model` wants them, from what sources and metadata say."""
+"""Makes the ports and parameters of a :class:`~epg.models.model.Model` from its sources and metadata."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from epg.models.model import Parameter, Port
 from epg.source import Span
 
 _VECTORS = {"input": "u", "output": "y"}
-"""What 20-sim calls the vector of all ports of a direction."""
+"""The name that 20-sim gives to the vector of all ports of a direction."""
 
 
 def make_ports(
@@ -26,9 +26,10 @@ def make_ports(
     whole: Span,
     expected: int | None = None,
 ) -> tuple[Port, ...]:
-    """The ports in the order of their index, after checking that none is missing or twice.
+    """The ports in the order of their indices.  Empty, after an error, if a port is missing or there are too many.
 
-    ``names`` are used for lines without a comment (by index); ``expected`` is the number the sources state.
+    ``names`` are the names, by index, for lines without a comment.  ``expected`` is the number of ports that the
+    sources state, or None.  ``whole`` is the place of the model.
     """
     by_index: dict[int, PortLine] = {}
     for line in lines:
@@ -43,9 +44,9 @@ def make_ports(
 def _are_complete(
     lines: Mapping[int, PortLine], count: int, direction: str, whole: Span, diagnostics: Diagnostics
 ) -> bool:
-    """Whether the lines connect the first ``count`` elements of the vector and no others; reports it if not."""
+    """True if the lines connect the first ``count`` elements of the vector and no others.  Reports an error if not."""
     vector = _VECTORS[direction]
-    most = min(count, len(lines) + 8)  # a count can be anything; eight missing ones are enough to tell
+    most = min(count, len(lines) + 8)  # a wrong count can be very large: the message names at most eight elements
     missing = [index for index in range(most) if index not in lines]
     surplus = sorted(index for index in lines if index >= count)
     if not missing and not surplus:
@@ -69,7 +70,7 @@ def _port(
     configuration: Configuration | None,
     diagnostics: Diagnostics,
 ) -> Port:
-    """The port of one line; ``given`` is its name if the line has none."""
+    """The port of one line.  ``given`` is the name of a line without a comment."""
     name = line.name or given
     if not name:
         vector = _VECTORS[direction]
@@ -95,7 +96,7 @@ def _port(
 
 
 def check_identifiers(ports: Sequence[Port], diagnostics: Diagnostics) -> None:
-    """Reports two ports of one direction whose names become the same C identifier, or that are named alike."""
+    """Reports two ports of one direction that have the same name, or whose names become the same C identifier."""
     first: dict[str, Port] = {}
     for port in ports:
         other = first.setdefault(port.identifier, port)
@@ -116,9 +117,9 @@ def check_identifiers(ports: Sequence[Port], diagnostics: Diagnostics) -> None:
 def make_parameters(
     lines: Sequence[Assignment], names: Sequence[str], units: Sequence[str]
 ) -> tuple[tuple[Parameter, ...], tuple[tuple[Assignment, ...], ...]]:
-    """The parameters with a number, by index, and for each all lines that set it.
+    """The parameters in the order of their indices, and for each parameter all lines that set it.
 
-    Parameters that hold a string (names of files and dynamic libraries) are left out.
+    Parameters that hold a string, such as the name of a file or of a dynamic library, are left out.
     """
     by_index: dict[int, list[Assignment]] = {}
     for line in lines:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which kind of model lies in a folder, and where."""
+"""Finds the model in a folder, and recognises its kind."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ LOOKED_FOR = (
     "or tokens.xml), with an FMU, or with a model.yaml"
 )
 SUBMODEL = "functions ...InitializeSubmodel() and ...CalculateSubmodel()"
-EQUATIONS = "CalculateDynamic"  # part of the name of a function that every C export has
+EQUATIONS = "CalculateDynamic"  # part of the name of a function that is in every C export
 EXPORT_AGAIN = (
     "generate the code of the submodel in 20-sim again (Tools > Real Time Toolbox > C-Code Generation, 'C function') "
     "into a folder of its own, and name that"
@@ -39,17 +39,17 @@ _Loader = Callable[[Diagnostics], "Model | None"]
 
 @dataclass(frozen=True)
 class Candidate:
-    """A model that was found; ``file`` is what to name to choose it."""
+    """A model that was found.  The user can name ``file`` to choose it among several."""
 
     file: Path
     load: _Loader
 
 
 def load_model(path: Path, diagnostics: Diagnostics, wanted_by: Span | None = None) -> Model | None:
-    """The model in the folder (or file) ``path``, or None after reporting why there is none.
+    """The model in the folder or file ``path``.  None if there is none; the reasons are reported.
 
-    ``wanted_by`` is where the path is written; problems with the path as a whole are reported there.  Looks one folder
-    further down where ``path`` itself holds none.
+    If the folder does not hold a model, the folders directly below it are searched.  ``wanted_by`` is the place where
+    the path is written; problems with the whole path are reported there.
     """
     whole = wanted_by or Span(str(path))
     try:
@@ -94,7 +94,7 @@ def _is_searched(entry: Path) -> bool:
 
 
 def _candidates(folders: list[Path]) -> list[Candidate]:
-    """Models in ``folders``, of the first kind of which there is any: written by hand, FMUs, sources, tokens."""
+    """The models in ``folders`` of one kind: the first of written by hand, FMU, sources, tokens that exists there."""
     for find in (_hand_written, _fmus, _sources, _tokens):
         found = [candidate for folder in folders for candidate in find(folder)]
         if found:
@@ -122,7 +122,7 @@ def _fmu_candidate(path: Path, file: Path) -> Candidate:
 
 
 def _load_fmu(path: Path, diagnostics: Diagnostics) -> Model | None:
-    from epg.models.fmu import load_fmu  # a quarter of what loading a model imports, and few models are FMUs
+    from epg.models.fmu import load_fmu  # a large import, which few models need
 
     return load_fmu(path, diagnostics)
 
@@ -152,7 +152,10 @@ def _source_candidate(path: Path, diagnostics: Diagnostics) -> Candidate | None:
 
 
 def _broken(file: SourceFile) -> Candidate | None:
-    """The submodel's file if it is not whole: else a ``tokens.xml`` beside it would be taken in its place."""
+    """A candidate for the file of a submodel that is not whole, which reports that when it is loaded.
+
+    Without this candidate, EPG would silently use a ``tokens.xml`` beside the file instead.
+    """
 
     def load(diagnostics: Diagnostics) -> None:
         is_whole(file, diagnostics)
@@ -211,7 +214,10 @@ def _near(path: Path) -> str:
 
 
 def _part_of_export(files: list[Path]) -> str:
-    """The first of ``files`` with the equations of a C export, which people take out of its frame; empty if none."""
+    """The name of the first file that has equations of a C export, for example because a user copied only these.
+
+    Empty if there is none.
+    """
     for path in files[:_MAX_FILES]:
         file = read_source(path, Diagnostics()) if path.suffix.lower() in c_function.SUFFIXES else None
         if file and EQUATIONS in file.text and any(EQUATIONS in code.name for code in parse_code(file).functions):

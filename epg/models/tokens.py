@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``tokens.xml``: every value and equation 20-sim fills into its templates, by name.
+"""Reads ``tokens.xml``: all values and equations that 20-sim fills into its templates, by name.
 
-Lists (``INPUT_NAMES3``, ``INPUT_UNITS``) hold one entry per line, an empty line where there is none.  ``*_NAMES3`` are
-the bare names; ``*_NAMES`` are C strings and serve as a second source where an old version lacks the former.
+Lists such as ``INPUT_NAMES3`` and ``INPUT_UNITS`` have one entry on each line; a missing entry is an empty line.
+``*_NAMES3`` are plain names.  ``*_NAMES`` are C strings; they are used for old versions that do not write plain names.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class Tokens:
         return self.get(name).strip()
 
     def count(self, name: str) -> int:
-        """The number in token ``name``; 0 when there is none."""
+        """The number in token ``name``; 0 if it does not exist or is not a number."""
         text = self.trimmed(name)
         return int(text) if re.fullmatch(r"[0-9]{1,9}", text) else 0
 
@@ -49,18 +49,18 @@ class Tokens:
         return token.span if token else Span(str(self.path), 1, 1, 2)
 
     def names(self, kind: str) -> list[str]:
-        """Names of ``kind`` ("INPUT", "PARAMETER", ...) in the order of their array."""
+        """The names of ``kind`` ("INPUT", "PARAMETER", ...) in the order of their array."""
         if f"{kind}_NAMES3" in self.values:
             return [name.strip() for name in self._lines(f"{kind}_NAMES3")]
         return [re.sub(r"\\(.)", r"\1", match[1]) for match in STRING.finditer(self.get(f"{kind}_NAMES"))]
 
     def units(self, kind: str, count: int) -> list[str]:
-        """Units of ``kind``, empty strings where there are none; always ``count`` of them."""
+        """The units of ``kind``, always ``count`` of them.  A missing unit is empty."""
         units = [unit.strip() for unit in self._lines(f"{kind}_UNITS")]
         return (units + [""] * count)[:count]
 
     def lines(self, name: str) -> list[tuple[str, Span]]:
-        """The lines of a token with one value on each, and where they stand."""
+        """The lines of a token that has one value on each line, with their places."""
         first = self.span(name)
         spans = (first, *(Span(first.file, first.line + at, 1, 2) for at in range(1, len(self._lines(name)))))
         return list(zip(self._lines(name), spans))
@@ -74,7 +74,7 @@ class Tokens:
         return text.split("\n")
 
     def code(self, name: str) -> SourceFile:
-        """A token that holds code, padded so that positions in it are positions in ``tokens.xml``."""
+        """The code in a token, padded so that lines and columns in it are those in ``tokens.xml``."""
         token = self.values.get(name)
         if token is None:
             return SourceFile(self.path, "")
@@ -83,12 +83,12 @@ class Tokens:
 
 
 def is_tokens_file(path: Path) -> bool:
-    """Whether a file is named as 20-sim names tokens files: ``tokens.xml``, ``Controller_tokens.xml``."""
+    """True if a file has a name that 20-sim gives to tokens files: ``tokens.xml``, ``Controller_tokens.xml``."""
     return path.suffix.lower() == ".xml" and path.stem.lower().endswith("tokens")
 
 
 def load_tokens(path: Path, diagnostics: Diagnostics, *, required: bool) -> Tokens | None:
-    """The tokens in ``path``, or None after reporting what is wrong (as a warning unless ``required``)."""
+    """The tokens in ``path``.  None if the file is wrong; this is an error if ``required``, else a warning."""
     root = load_xml(path, diagnostics, required=required)
     if root is None:
         return None

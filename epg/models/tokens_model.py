@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Import of ``tokens.xml`` alone: it holds all equations, so EPG's own template can make the model's code of it."""
+"""Imports a ``tokens.xml`` without exported C files.
+
+It contains all equations of the model.  EPG's own template makes C code of them.
+"""
 
 from __future__ import annotations
 
@@ -35,7 +38,7 @@ CODE = (
     *EQUATIONS,
 )
 
-#: values without which the frame around the equations is another one
+#: tokens whose values the C code around the equations depends on
 NEEDED = (
     "TIME_STEP_SIZE",
     "INTEGRATION_METHOD_NAME",
@@ -48,7 +51,7 @@ NEEDED = (
     "NUMBER_STATES",
 )
 
-#: arrays by the token with their name: what it is by default, and the token with the number of elements
+#: arrays, by the token with their name: the default name, and the token with the number of elements
 ARRAYS = {
     "XX_VARIABLE_ARRAY_NAME": ("V", "NUMBER_VARIABLES"),
     "XX_PARAMETER_ARRAY_NAME": ("P", "NUMBER_PARAMETERS"),
@@ -61,14 +64,14 @@ ARRAYS = {
     "XX_FAVORITE_VARS_ARRAY_NAME": ("f", "NUMBER_FAVORITE_VARIABLES"),
 }
 
-#: functions of <math.h> that equations call directly
+#: functions of <math.h> that equations can call directly
 MATH = words(
     """
     acos asin atan atan2 ceil cos cosh exp fabs floor fmod log log10 pow sin sinh sqrt tan tanh
     """
 )
 
-#: helper functions that EPG's template provides, by their name without prefix
+#: helper functions that EPG's template provides, by their names without prefix
 HELPERS = words(
     """
     Absolute ArcCosineHyperbolic ArcSineHyperbolic ArcTangentHyperbolic BitAnd BitClear BitCmp BitGet BitInv
@@ -82,7 +85,7 @@ _EXPORT_HINT = "export the model with the C function or the C++ class target, an
 
 
 def load_tokens_model(tokens: Tokens, diagnostics: Diagnostics) -> Model | None:
-    """The model that ``tokens`` hold, or None after reporting why it cannot be used."""
+    """The model in ``tokens``.  None if it cannot be used; the reasons are reported."""
     before = diagnostics.error_count
     whole = tokens.span("SUBMODEL_NAME")
     if not _is_complete(tokens, diagnostics):
@@ -139,7 +142,10 @@ def load_tokens_model(tokens: Tokens, diagnostics: Diagnostics) -> Model | None:
 
 
 def _is_complete(tokens: Tokens, diagnostics: Diagnostics) -> bool:
-    """Reports tokens that are missing, all at once, and arrays that are smaller than the equations take them for."""
+    """True if no token is missing and no equation uses an element beyond the end of its array.
+
+    All missing tokens are reported by one error.
+    """
     missing = [name for name in (*CODE, *NEEDED) if name not in tokens.values]
     if missing:
         span = Span(str(tokens.path), 1, 1, 2)
@@ -179,7 +185,7 @@ def _check_method(tokens: Tokens, diagnostics: Diagnostics) -> None:
 
 
 def _balanced(code: str) -> bool:
-    """Whether every brace of a token closes one of the same token: no equation ends the function it stands in."""
+    """True if the braces of a token are balanced, so that its code cannot end the function into which it is written."""
     depth = 0
     for brace in re.findall(r"[{}]", code):
         depth += 1 if brace == "{" else -1
@@ -189,13 +195,13 @@ def _balanced(code: str) -> bool:
 
 
 def _comments_closed(text: str) -> bool:
-    """Whether no comment of a token runs on into the code behind it."""
+    """True if each comment in a token ends in it, so that the code behind the token does not become a comment."""
     last_line = text[text.rfind("\n") + 1 :]
     return all(match[1] for match in re.finditer(r"/\*.*?(\*/|\Z)", text, re.DOTALL)) and "//" not in last_line
 
 
 def _check_calls(tokens: Tokens, diagnostics: Diagnostics) -> tuple[str, ...]:
-    """The helper functions the equations call; reports those that are stubs, clocks, ``dll()`` or unknown."""
+    """The helper functions that the equations call.  Reports stubs, clocks, ``dll()`` and unknown functions."""
     prefix = tokens.trimmed("FUNCTIONPREFIX") or "XX"
     helpers: set[str] = set()
     judged = {*KEYWORDS, *MATH}

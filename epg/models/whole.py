@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sources that are not whole: cut off by a copy that failed, or with the marks of an unfinished merge."""
+"""Detects sources that are not whole: cut off by a failed copy, or with the marks of an unfinished merge."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _OTHER_BRANCH = re.compile(r"^[ \t]*#[ \t]*(?:else|elif)", re.MULTILINE)
 
 
 def is_whole(file: SourceFile, diagnostics: Diagnostics) -> bool:
-    """Reports a file that ends inside of braces, or that git has left with both versions of a line."""
+    """True if a file is whole.  Reports a file that ends inside braces, or that has the marks of a merge by git."""
     name = file.path.name
     mark = _MARK.search(file.text)
     if mark:
@@ -21,7 +21,7 @@ def is_whole(file: SourceFile, diagnostics: Diagnostics) -> bool:
         hint = "take one of the two versions that stand between the marks, or export again"
         diagnostics.error("model-incomplete", file.span(mark.start(), mark.end()), message, hint=hint)
         return False
-    # branches of the preprocessor may open a brace each, of which one is closed
+    # With #else, each branch can open a brace, and one closing brace can belong to all of them: do not count braces.
     if file.code.count("{") > file.code.count("}") and not _OTHER_BRANCH.search(file.without_comments):
         end = len(file.text.rstrip())
         message = f"'{name}' ends where a '}}' is still missing: the file is cut off"

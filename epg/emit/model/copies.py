@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Copies of a model's files with other parameter values, and headers under the names by which the model includes them.
-"""
+"""Copies of a model's files with other parameter values, and headers under the names that the model includes."""
 
 from __future__ import annotations
 
