@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command line: the only part of EPG that prints or exits.
+"""The command line, which is the only part of EPG that prints or exits.
 
-One module per subcommand, each with ``add_arguments(parser)`` and ``run(arguments, diagnostics) -> int | None``.
-Mistakes of the user are collected in ``diagnostics`` and printed at the end, all of them.
+Each subcommand is one module with ``add_arguments(parser)`` and ``run(arguments, diagnostics) -> int | None``.  It
+collects the user's mistakes in ``diagnostics``; ``main.py`` prints all of them at the end.
 """

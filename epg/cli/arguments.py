@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Arguments that several subcommands share, and what they mean."""
+"""Arguments that several subcommands share."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def add_target_arguments(parser: argparse.ArgumentParser, *, required: bool) -> None:
-    """The files that make a target, and what is set on top of them."""
+    """Adds the arguments for the files of a target, and for the values that replace those in the files."""
     parser.add_argument(
         "--tcf", required=required, metavar="FILE", help="target configuration: a file, or one of EPG's by name"
     )
@@ -45,7 +45,7 @@ def user_roots() -> list[Path]:
 
 
 def request_of(arguments: argparse.Namespace, name: str) -> Request:
-    """The request that the arguments of :func:`add_target_arguments` make."""
+    """The request from the arguments of :func:`add_target_arguments`."""
     from epg.project import Request
 
     settings = list(arguments.settings)

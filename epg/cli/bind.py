@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg bind``: bindings for the ports whose names match, and what a re-export changed."""
+"""``epg bind``: writes bindings for ports whose names match, and updates bindings after a new export of the model."""
 
 from __future__ import annotations
 

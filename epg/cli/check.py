@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg check``: everything that can be checked of the files that are given."""
+"""``epg check``: checks the given files as far as possible, without generating files."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         sys.stderr.write("epg check: name a .tcf, or give --tcf, --model and --bindings\n")
         return 2
     if diagnostics.has_errors or options.format == "sarif":
-        return 0  # the caller prints what there is
+        return 0  # main.py prints the diagnostics
     if not options.json:
         _print_hardware(hardware if options.hardware else {})
         together = f" in each of them by itself; to check them together, add {missing}" if missing else ""
@@ -71,7 +71,10 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
 
 
 def _missing(options: argparse.Namespace) -> str:
-    """The options that are missing to check a model, bindings or a plant with their target; empty if none was given."""
+    """The options that are missing to check a model, bindings or a plant together with their target.
+
+    Empty if no such file is given, or if all options are given.
+    """
     target = {"--tcf": options.tcf, "--model": options.model, "--bindings": options.bindings}
     plant = {"--plant": options.plant, "--plant-bindings": options.plant_bindings}
     if not any((options.model, options.bindings, *plant.values())):

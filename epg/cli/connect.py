@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg connect``: connect a model's ports with a target's components, in the browser or in the terminal."""
+"""``epg connect``: connects a model's ports with a target's components, in the browser or in the terminal."""
 
 from __future__ import annotations
 
@@ -81,10 +81,12 @@ def _serve(session: Session, options: argparse.Namespace) -> int:
         sys.stdout.flush()
 
     server = Server(session, options.port, announce=announce)
-    if not options.no_browser:  # with an address of its own: others can see which programs run with which arguments
+    if not options.no_browser:
+        # A second address: other users can see the arguments of the browser, and must not learn the printed address.
         address = server.new_address()
-        threading.Thread(target=_open_browser, args=(address,), daemon=True).start()  # some wait for its end
-    for name in ("SIGTERM", "SIGHUP"):  # whoever ends this, a build ends with it
+        # In a thread: some browsers return only when they are closed.
+        threading.Thread(target=_open_browser, args=(address,), daemon=True).start()
+    for name in ("SIGTERM", "SIGHUP"):  # end as after Ctrl-C, so that a running build is also ended
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), signal.default_int_handler)
     try:
@@ -97,7 +99,7 @@ def _serve(session: Session, options: argparse.Namespace) -> int:
 
 
 def _job(options: argparse.Namespace) -> Job:
-    """The target that options name, its files by absolute names: a build may run in another folder."""
+    """The target that the options name.  Its paths are absolute, because a build can run in another folder."""
     from dataclasses import replace
 
     from epg.connect.projects import Job, find_jobs
@@ -114,7 +116,8 @@ def _job(options: argparse.Namespace) -> Job:
     )
     source, build = _absolute(options.source_dir), _absolute(options.build_dir)
     found = find_jobs(source, Diagnostics()) if source is not None else []
-    known = next((job for job in found if job.request.name == request.name), Job(absolute))  # its executables
+    # The project's own record of the target also names its executables.
+    known = next((job for job in found if job.request.name == request.name), Job(absolute))
     build = build or known.build_dir
     return replace(known, request=absolute, source_dir=source, build_dir=build, built_by=options.built_by)
 
@@ -124,7 +127,10 @@ def _absolute(path: Path | None) -> Path | None:
 
 
 def _jobs(folder: Path, name: str | None, diagnostics: Diagnostics) -> list[Job]:
-    """The targets of the project in ``folder``, or around the model in it, the one called ``name`` first."""
+    """The targets of the project in ``folder``, or of the project around the model in it.
+
+    The target ``name`` comes first.  If there is no such target, this is reported.
+    """
     from epg.connect.projects import find_jobs, jobs_of_model
     from epg.diagnostics import did_you_mean
     from epg.source import Span
@@ -133,7 +139,7 @@ def _jobs(folder: Path, name: str | None, diagnostics: Diagnostics) -> list[Job]
     jobs = find_jobs(folder, found)
     if found.has_errors:
         diagnostics.items.extend(found)
-    else:  # now, not after hours with the page
+    else:  # print warnings before the page opens: the session can last for hours
         sys.stderr.write(format_diagnostics(found))
     if not jobs and not diagnostics.has_errors:
         jobs = jobs_of_model(folder)
@@ -148,7 +154,7 @@ def _jobs(folder: Path, name: str | None, diagnostics: Diagnostics) -> list[Job]
 
 
 def _check_model(folder: Path, diagnostics: Diagnostics) -> None:
-    """Says what is wrong with a folder that holds neither a target nor a model."""
+    """Reports the problems of a folder that holds neither a target nor a model that can be used."""
     from epg.connect.projects import report_no_target
     from epg.models import load_model
 
@@ -161,7 +167,7 @@ def _check_model(folder: Path, diagnostics: Diagnostics) -> None:
 
 
 def _open_browser(address: str) -> None:
-    """Opens the page where there is a browser with windows; one in the terminal would hide the address."""
+    """Opens the page in a graphical browser, if there is one.  A browser in the terminal would hide the address."""
     if sys.platform.startswith("linux") and not any(
         os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
     ):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg doctor``: what this computer has of what EPG and its targets need, and the command that gets what is missing.
+"""``epg doctor``: lists the tools and packages that EPG and its targets need, and commands that install missing ones.
 
-Works with nothing but Python's standard library, because missing packages are among the things it reports.
+Uses only Python's standard library, because it must also run if packages are missing.
 """
 
 from __future__ import annotations
@@ -31,10 +31,11 @@ HOST = "host"
 
 @dataclass(frozen=True)
 class Item:
-    """One thing that was looked for.
+    """One tool or package in the report.
 
-    ``status``: "found"; "later" for a Python package that EPG installs into its cache when it is first needed;
-    "missing"; "old"; "wrong" when a variable leads to something else.  ``remedy`` is the command that gets it.
+    ``status`` is "found", "missing", "old" if a newer version is needed, "wrong" if a variable names something else, or
+    "later" for a Python package that EPG installs into its cache when it is first needed.  ``remedy`` is the command
+    that installs it, or the correction of a wrong variable.
     """
 
     name: str
@@ -95,14 +96,14 @@ def _wanted(tools: Mapping[str, Tool], project: Path | None) -> Mapping[str, Too
     """All tools, or those that the targets of a project need."""
     if project is None:
         return tools
-    bootstrap.ensure()  # the project's files are YAML
+    bootstrap.ensure()  # reading the project's files needs the package for YAML
     from epg.connect.build.tools import tools_of_project
 
     return {name: tools[name] for name in tools_of_project(project) if name in tools}
 
 
 def _report_project(items: list[Item], as_json: bool) -> int:
-    """What one project needs; a tool that is missing there is no bar to other projects."""
+    """Prints the tools that one project needs.  The exit status depends only on these."""
     if as_json:
         sys.stdout.write(to_json({"items": [asdict(item) for item in items]}))
     elif items:
@@ -117,7 +118,7 @@ def _home() -> str:
 
 
 def _cache_note(cache: Path) -> str:
-    """What is special about EPG's cache; its folder is made when it is first needed."""
+    """A remark about EPG's cache: not used, not writable, or not yet there.  It is made when it is first needed."""
     problem = bootstrap.cache_problem(cache)
     if problem:
         return f" (which EPG does not use: {problem})"
@@ -131,11 +132,11 @@ _USES = {
     "plot": "for the plots of 'epg simulate' and 'epg plot'",
     "ros": "for 'epg record', where ROS 2 is not sourced",
 }
-"""What optional packages are for."""
+"""The purposes of optional packages, by group."""
 
 
 def _package(group: str, name: str, oldest: tuple[int, ...], *, required: bool) -> Item:
-    """A Python package: the interpreter's own, or the one in EPG's cache."""
+    """The report on a Python package, which can be installed in the interpreter or in EPG's cache."""
     note = _USES.get(group, "")
     old = ""
     for source, places in (("", sys.path), ("EPG's cache", [str(bootstrap.package_folder(group))])):
@@ -147,7 +148,7 @@ def _package(group: str, name: str, oldest: tuple[int, ...], *, required: bool) 
     remedy = f"{sys.executable} -m pip install {name}"
     if importlib.util.find_spec("pip") is not None and not os.environ.get("EPG_NO_INSTALL"):
         return Item(name.lower(), name, HOST, required, "later", old, note=note, remedy=remedy)
-    if package_manager() == "apt" and group != "ros":  # Debian has no package of it
+    if package_manager() == "apt" and group != "ros":  # Debian has no packages of the group "ros"
         remedy = f"{privileged('apt')}apt install python3-{'yaml' if name == 'PyYAML' else name.lower()}"
     return Item(name.lower(), name, HOST, required, "old" if old else "missing", old, note=note, remedy=remedy)
 
@@ -183,7 +184,7 @@ def _item(finding: Finding, where: Surroundings, tools: Mapping[str, Tool]) -> I
 
 
 def _lines(items: Sequence[Item]) -> Iterable[str]:
-    """The report: what is needed for the same thing together, the host first."""
+    """The lines of the report.  Items for the same purpose are together; those for the host come first."""
     width = max(len(f"{item.title} {item.version}") for item in items)
     for group in sorted({item.needed_for for item in items}, key=lambda name: (name != HOST, name)):
         yield f"\n{group}"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg explain``: the whole way of a port: model, conversion, component, pin or peripheral, C symbol."""
+"""``epg explain``: shows the wire of a port: model, conversion, component, peripheral, pins, C symbols."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def _from_files(options: argparse.Namespace, diagnostics: Diagnostics) -> dict[s
 
 
 def _from_build(path: Path, diagnostics: Diagnostics) -> list[dict[str, Any]]:
-    """The descriptions of the generated targets below ``path``."""
+    """The descriptions of the generated targets below ``path``, or the one in the file ``path``."""
     files = (
         [path]
         if path.is_file()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg exported``: what follows an export by EPG's target for 20-sim, which starts this command."""
+"""``epg exported``: checks an export and names the next steps.  EPG's target for 20-sim starts it after an export."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     if _forget_people(folder / "ModelConfiguration.xml") and not options.json:
         print("ModelConfiguration.xml: the path of the model file and the license were taken out.\n")
     options.model = folder
-    status = ports.run(options, diagnostics)  # ends here where the model cannot be used: there is nothing to connect
+    status = ports.run(options, diagnostics)  # raises UserError if the model cannot be used: then nothing can follow
     if options.connect and not options.json:
         return _connect(folder, diagnostics)
     if not options.json:
@@ -36,18 +36,21 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
 
 
 def _connect(folder: Path, diagnostics: Diagnostics) -> int:
-    """``epg connect``: of the project that has this folder as its model, or of one that begins with it."""
+    """Runs ``epg connect`` for the project that uses the model in ``folder``, or for a new project with this model."""
     from epg.cli import connect
 
     print("\nNext: connect its ports, in the page that the browser opens, or at this address:", flush=True)
     parser = argparse.ArgumentParser()
-    parser.add_argument("--json", action="store_true")  # as epg.cli.main gives it to every command
+    parser.add_argument("--json", action="store_true")  # epg.cli.main adds this option to all commands
     connect.add_arguments(parser)
     return connect.run(parser.parse_args(["--until-closed", "--", str(folder)]), diagnostics)
 
 
 def _forget_people(configuration: Path) -> bool:
-    """Takes the path of the model file and the license out of a file, at once or not at all; whether they were in."""
+    """Removes personal data, such as the path of the model file and the license, from a file.
+
+    The file is replaced atomically.  Returns True if it contained such data.
+    """
     from epg.models.personal import without_personal_data
 
     try:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg generate``: the sources of one target into a build folder; CMake calls this while it configures."""
+"""``epg generate``: writes the sources of one target into a build folder.  CMake calls it while it configures."""
 
 from __future__ import annotations
 
@@ -20,7 +20,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def report_mistake_in_template(error: Exception, user_roots: Sequence[Path], diagnostics: Diagnostics) -> None:
-    """Reports a mistake in a template of the user's own kinds and platforms and stops; EPG's own are bugs."""
+    """Reports a mistake in a template of the user's own kinds and platforms, and raises UserError.
+
+    Returns for an error in one of EPG's own templates, which is a bug.
+    """
     from epg.emit.template import NOT_UTF_8, mistake_in_template
     from epg.source import Span
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg generate-model``: the library of one model into a build folder; CMake calls this while it configures."""
+"""``epg generate-model``: writes the library of one model into a build folder.  CMake calls it while it configures."""
 
 from __future__ import annotations
 

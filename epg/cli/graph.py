@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg graph``: pictures of a target."""
+"""``epg graph``: draws pictures of a target."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
 
 
 def _wiring(request: Request, title: str, diagnostics: Diagnostics) -> str:
-    """The wiring, which the ``.tcf`` alone decides."""
+    """The picture of the wiring.  It depends only on the ``.tcf``, so that no model is needed."""
     from epg.graph.wiring import draw_wiring
     from epg.project import load_configuration
     from epg.resolve.resolve import allocate_hardware

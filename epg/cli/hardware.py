@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What components got of the hardware, as a table."""
+"""The assignments of hardware to components, as a table."""
 
 from __future__ import annotations
 
@@ -12,5 +12,5 @@ from epg.resolve.claims import ClaimKey
 
 
 def hardware_table(assignments: Mapping[ClaimKey, Assignment]) -> str:
-    """One line per claim."""
+    """A table with one line for each claim."""
     return table(("used by", "hardware", "pins", "frequency", "resolution"), hardware_rows(assignments))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg launch``: writes a launch file, and systemd units, for the agents that targets need."""
+"""``epg launch``: writes a ROS 2 launch file, and systemd units, for the agents that targets need."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
 
 
 def _write(folder: Path, files: Mapping[str, str], force: bool, diagnostics: Diagnostics) -> None:
-    """Writes all files, or none if one of them would be changed without ``force``."""
+    """Writes all files.  Without ``force``, writes none and reports an error if an existing file would change."""
     for name, text in files.items():
         path = folder / name
         if not force and path.exists() and (not path.is_file() or path.read_bytes() != text.encode("utf-8")):
@@ -99,7 +99,7 @@ def _write(folder: Path, files: Mapping[str, str], force: bool, diagnostics: Dia
 
 
 def _assignments(option: str, texts: list[str], diagnostics: Diagnostics) -> dict[str, list[str]]:
-    """``NAME=VALUE`` arguments: the values of each name, in the order given."""
+    """The values of each name in arguments ``NAME=VALUE``, in the order in which they are given."""
     result: dict[str, list[str]] = {}
     for text in texts:
         name, equals, value = text.partition("=")

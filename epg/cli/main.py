@@ -1,8 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg``: parses the command line, runs a subcommand, prints what is wrong and says so in the exit status.
+"""``epg``: parses the command line, runs a subcommand, prints the diagnostics and returns an exit status.
 
-Exit status: 0 success; 1 mistakes in the user's files; 2 wrong command line; 3 a bug in EPG; 4 something the computer
-lacks (Python packages, a program, a folder that can be written); 5 a limit that does not hold (``simulate``).
+The exit status is:
+
+- 0: success
+- 1: mistakes in the user's files
+- 2: wrong command line
+- 3: a bug in EPG
+- 4: something is missing on the computer: a Python package, a program, a folder that can be written
+- 5: ``simulate``: a limit does not hold, or the run did not end in the expected state
 """
 
 from __future__ import annotations
@@ -40,13 +46,13 @@ EXIT_OK, EXIT_MISTAKES, EXIT_USAGE, EXIT_BUG, EXIT_MISSING = range(5)
 
 
 class MissingTool(Exception):
-    """Something the computer lacks; the message says how to get it."""
+    """Something is missing on the computer.  The message says how to install it."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Runs ``epg``; returns the exit status."""
+    """Runs ``epg`` with ``arguments``, or with those of the process.  Returns the exit status."""
     words = sys.argv[1:] if arguments is None else arguments
-    if _command(words) != "doctor":  # which says what is missing instead
+    if _command(words) != "doctor":  # doctor must run without packages: it reports the missing ones
         try:
             bootstrap.ensure()
         except bootstrap.MissingPackages as problem:
@@ -72,12 +78,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _command(arguments: Sequence[str]) -> str | None:
-    """The subcommand: the first word that is no option."""
+    """The subcommand: the first word that is not an option."""
     return next((word for word in arguments if not word.startswith("-")), None)
 
 
 def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
-    """The parser; only the module of the chosen subcommand is imported."""
+    """The parser.  Only the module of the chosen subcommand is imported, to save time."""
     parser = argparse.ArgumentParser(prog="epg", description="Turns a controller modelled in 20-sim into firmware.")
     parser.add_argument("--version", action="version", version=f"epg {epg.__version__}")
     parser.add_argument("--cmake-dir", action="store_true", help="print the folder of EPGConfig.cmake and exit")
@@ -96,7 +102,7 @@ def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
 
 
 def _refuse(unknown: Sequence[str], parser: argparse.ArgumentParser) -> None:
-    """Ends with the usage of the command that has no such options."""
+    """Exits with the usage of the command, because it does not have the ``unknown`` options."""
     from epg.diagnostics import did_you_mean
 
     option = unknown[0].partition("=")[0]

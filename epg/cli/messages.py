@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page ``docs/errors.md`` as data: what each kind of message means.
+"""The page ``docs/errors.md`` as data: the meaning of each kind of message.
 
 >>> entry = find_entry("unknown-key")
 >>> entry.anchor, entry.summary
@@ -23,20 +23,24 @@ _EXAMPLE = re.compile(r"^```\n(.*?)\n```$", re.MULTILINE | re.DOTALL)
 
 @dataclass(frozen=True)
 class Entry:
-    """One entry.  Words in capitals in ``id`` stand for any name: messages about peripherals carry theirs."""
+    """One entry of the page.
+
+    A word in capital letters in ``id`` matches any name, because the ids of some messages contain the name of a
+    peripheral.
+    """
 
     id: str
-    text: str  # Markdown without the example; what it means, why it is refused, what to do
-    example: str  # the first line of a message, or ""
+    text: str  # Markdown, without the example: meaning, reason, remedy
+    example: str  # the first line of an example of the message, or ""
 
     @property
     def summary(self) -> str:
-        """The first sentence."""
+        """The first sentence of the text."""
         return re.split(r"(?<=\.) ", self.text, maxsplit=1)[0]
 
     @property
     def anchor(self) -> str:
-        """The anchor of the heading, as GitHub and most renderers of Markdown make it."""
+        """The anchor of the heading, in the form that GitHub and most renderers of Markdown use."""
         return re.sub(r"[^\w-]", "", self.id).lower()
 
     def covers(self, id: str) -> bool:
@@ -46,14 +50,14 @@ class Entry:
 
 @cache
 def read_page() -> tuple[Entry, ...]:
-    """All entries of the page, in its order."""
+    """All entries, in the order of the page."""
     text = (data_folder("docs") / PAGE).read_text(encoding="utf-8")
     parts = _HEADING.split(text)
     return tuple(_entry(id, body) for id, body in zip(parts[1::2], parts[2::2]))
 
 
 def find_entry(id: str) -> Entry | None:
-    """The entry of a kind of message: the one of that name, else the one whose form it has."""
+    """The entry for the kind of message ``id``: the one with this id, else the one whose pattern matches, or None."""
     fitting = [entry for entry in read_page() if entry.covers(id)]
     return next((entry for entry in fitting if entry.id == id), fitting[0] if fitting else None)
 

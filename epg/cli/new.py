@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg new``: a complete project for a model and a target, which builds as it is."""
+"""``epg new``: writes a complete project for a model and a target, which can be built without changes."""
 
 from __future__ import annotations
 

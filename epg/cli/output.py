@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Brings an output folder up to date and remembers what EPG put there."""
+"""Updates an output folder, and keeps a list of the files that EPG wrote into it."""
 
 from __future__ import annotations
 
@@ -23,7 +23,10 @@ def add_output_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def write_warnings(file: Path | None, diagnostics: Diagnostics) -> None:
-    """Leaves the text of the warnings, for CMake to say again when it need not run EPG; no file if there are none."""
+    """Writes the warnings into ``file``, or deletes it if there are none.
+
+    CMake prints them again in later runs that do not need to run EPG.
+    """
     if file is not None and diagnostics.items:
         write_outputs(file.parent, {file.name: format_diagnostics(diagnostics)})
     elif file is not None:
@@ -31,7 +34,10 @@ def write_warnings(file: Path | None, diagnostics: Diagnostics) -> None:
 
 
 def update_folder(folder: Path, files: Mapping[str, str], report: TextIO | None) -> None:
-    """Writes what changed, deletes what an earlier run wrote and this one did not; the list of files comes last."""
+    """Writes the files that changed, and deletes files that an earlier run wrote but this one did not.
+
+    The list of files is written last.  ``report`` gets a summary as JSON.
+    """
     try:
         owned = [str(name) for name in json.loads((folder / MANIFEST).read_text(encoding="utf-8"))]
     except (OSError, ValueError, TypeError, RecursionError):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg plot``: recordings as pictures, a real run beside its simulation."""
+"""``epg plot``: plots a recording, or compares it with another one, for example a real run with its simulation."""
 
 from __future__ import annotations
 
@@ -119,7 +119,10 @@ def _compare(
 
 
 def _pairs(recording: Recording, other: Recording, wanted: list[str], diagnostics: Diagnostics) -> dict[str, str]:
-    """What is compared with what: as asked for, or all that have one name in both runs."""
+    """The signals to compare, each with its name in the other run.
+
+    They are those that the user named, or else all signals that have the same name in both runs.
+    """
     if not wanted:
         common = {name: name for name in recording.signals if name in other.signals}
         if not common:
@@ -138,7 +141,7 @@ def _pairs(recording: Recording, other: Recording, wanted: list[str], diagnostic
 def _aligning(
     recording: Recording, other: Recording, pairs: dict[str, str], wanted: list[str], diagnostics: Diagnostics
 ) -> dict[str, str]:
-    """The signals that align the runs: as asked for, else setpoints of both, else all that are compared."""
+    """The signals that align the runs: those that the user named, else setpoints in both runs, else all ``pairs``."""
     for name in wanted:
         if name not in pairs:
             hint = did_you_mean(name, pairs, "compared")
@@ -161,7 +164,10 @@ def _span(option: str, name: str) -> Span:
 
 
 def _title(path: Path) -> str:
-    """What the legend calls a run: a folder by its name, a file by its folder and name if that says more."""
+    """The name of a run in the legend: the name of its folder or file.
+
+    A file with a name that every run has, such as topics.csv, is shown with its folder.
+    """
     resolved = path.resolve()
     plain = resolved.stem in ("topics", "setpoints", "trace", "tracking")
     return f"{resolved.parent.name}/{resolved.name}" if plain else resolved.name
@@ -187,5 +193,5 @@ def _table(comparison: Comparison) -> str:
 
 
 def _milli(seconds: float) -> str:
-    """Signed, in ms; "+0.0" also for what is a little less than nothing."""
+    """A time in ms as text with its sign.  Small negative values become "+0.0", not "-0.0"."""
     return f"{round(1000.0 * seconds, 1) + 0.0:+.1f}"

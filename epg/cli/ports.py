@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg ports``: what a model consists of."""
+"""``epg ports``: lists the ports and parameters of a model."""
 
 from __future__ import annotations
 

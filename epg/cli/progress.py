@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How far a command has come, for whoever watches it in a terminal."""
+"""Shows the progress of a command in the terminal."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import sys
 
 
 class Progress:
-    """A line on a terminal that is written over; nothing where the output goes to a file."""
+    """One line on the terminal that each message overwrites.  Prints nothing if the output goes to a file."""
 
     def __init__(self, quiet: bool) -> None:
         self.active = not quiet and sys.stderr.isatty()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg record``: what a target says and hears on ROS 2, as CSV files."""
+"""``epg record``: records the topics that a target publishes and subscribes to on ROS 2, as CSV files."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         source.close()
         progress.done()
     for one in heard:
-        if one.messages == 0 and one.channel.file == TOPICS:  # setpoints need not come
+        if one.messages == 0 and one.channel.file == TOPICS:  # setpoints need not be sent during a recording
             message = f"nothing was heard on {one.channel.name}: {_reason(one)}"
             diagnostics.warning("nothing-heard", Span(str(robot.file)), message)
     if options.json:
@@ -78,7 +78,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
 
 
 def _robot(options: argparse.Namespace, diagnostics: Diagnostics) -> Robot | None:
-    """The one target to record, under the names it has."""
+    """The target to record, with the node and namespace that it has on the network.  None after an error."""
     from epg.ros.robot import load_robots
 
     robots = load_robots([options.target], diagnostics)
@@ -89,7 +89,7 @@ def _robot(options: argparse.Namespace, diagnostics: Diagnostics) -> Robot | Non
         return None
     robot = robots[0]
     if options.board:
-        pico = re.fullmatch("[0-9A-Fa-f]{16}", options.board)  # which says it in capitals
+        pico = re.fullmatch("[0-9A-Fa-f]{16}", options.board)  # a Pico has capital letters in its serial number
         robot = robot.with_serial(options.board.upper() if pico else options.board)
     if options.namespace is not None:
         robot = replace(robot, namespace=f"/{options.namespace.strip('/')}" if options.namespace.strip("/") else "")
@@ -102,7 +102,7 @@ def _robot(options: argparse.Namespace, diagnostics: Diagnostics) -> Robot | Non
 
 
 def _domain(options: argparse.Namespace, robot: Robot) -> int:
-    """The domain asked for, that of the target, or that of the environment, as ROS 2 nodes take it."""
+    """The ROS domain: that of ``--domain``, else that of the target, else ROS_DOMAIN_ID, else 0."""
     if options.domain is not None:
         return int(options.domain)
     if robot.domain is not None:
@@ -130,7 +130,7 @@ def _table(heard: list[Heard]) -> str:
 
 
 class _Stop:
-    """True once Ctrl-C was pressed or the process was asked to end: the files are complete either way."""
+    """Returns True when called after Ctrl-C or SIGTERM.  The recording then ends normally, with complete files."""
 
     def __init__(self) -> None:
         self.asked = False

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Diagnostics as text, as compilers print them, or as JSON.
+"""Diagnostics as text in the form that compilers use, or as JSON.
 
 ::
 
@@ -22,7 +22,7 @@ from epg.source import Span
 
 
 class _Lines:
-    """Lines of source files, each file read once per report."""
+    """The lines of source files.  Each file is read only once."""
 
     def __init__(self) -> None:
         self.files: dict[str, list[str]] = {}
@@ -43,14 +43,14 @@ class _Lines:
 
 
 def format_diagnostics(diagnostics: Diagnostics) -> str:
-    """All diagnostics, in the order of files and lines, errors and warnings mixed as they stand."""
+    """The text of all diagnostics, sorted by file and line.  Errors and warnings are mixed."""
     ordered = sorted(diagnostics, key=lambda d: (d.span.file, d.span.line, d.span.column, d.id, d.message))
     lines = _Lines()
     return "".join(_format(diagnostic, lines) for diagnostic in ordered)
 
 
 def diagnostics_json(diagnostics: Iterable[Diagnostic]) -> list[dict[str, Any]]:
-    """Diagnostics as plain data for programs."""
+    """Diagnostics as data for programs."""
     return [
         {
             "id": d.id,
@@ -69,7 +69,10 @@ def to_json(data: object) -> str:
 
 
 def shown_path(file: str) -> str:
-    """A path relative to the current folder where that is shorter, for people; absolute paths stay clickable."""
+    """The path to show to the user: relative to the current folder if the file is inside it, else unchanged.
+
+    If EPG_ABSOLUTE_PATHS is set, absolute paths stay absolute, so that editors can open them.
+    """
     path = Path(file)
     if path.is_absolute() and not os.environ.get("EPG_ABSOLUTE_PATHS"):
         try:
@@ -93,9 +96,9 @@ def _format(d: Diagnostic, source: _Lines) -> str:
 
 
 def _printable(text: str, instead: str = "") -> str:
-    """Text of a user on one line of a terminal: no line ends, escape sequences or other controls.
+    """Text of the user for one line of a terminal, without line ends, escape sequences and other control characters.
 
-    They are replaced by ``instead``, or shown as Python would write them: ``\\n``, ``\\x1b``.
+    Each of them is replaced by ``instead`` or, if that is empty, by its escape in Python: ``\\n``, ``\\x1b``.
     """
     if text.isprintable():
         return text
@@ -112,7 +115,7 @@ def _place(span: Span) -> str:
 
 
 def _excerpt(span: Span, source: _Lines) -> list[str]:
-    """The line a span stands on, with a caret below it."""
+    """The line of the source that contains ``span``, and a line below with a caret under it."""
     if not span.line or not span.column:
         return []
     text = _printable(span.text, "?") if span.text is not None else source.line(span.file, span.line)
@@ -123,7 +126,7 @@ def _excerpt(span: Span, source: _Lines) -> list[str]:
     if start > len(text):
         return []
     first = 0
-    if len(text) > 160:  # show the part around the caret
+    if len(text) > 160:  # show only the part around the caret
         first = max(0, start - 60)
         text = text[first : first + 160]
     margin = f"{span.line:5d} | "

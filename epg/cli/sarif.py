@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Diagnostics as SARIF 2.1.0, which GitHub, GitLab, Azure DevOps and editors show beside the lines they are about.
+"""Diagnostics as SARIF 2.1.0.  GitHub, GitLab, Azure DevOps and editors show them beside the lines of the source.
 
-https://docs.oasis-open.org/sarif/sarif/v2.1.0/sarif-v2.1.0.html; section numbers below are those of that document.
+Section numbers in this file are those of https://docs.oasis-open.org/sarif/sarif/v2.1.0/sarif-v2.1.0.html.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from epg.source import Span
 
 SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 HOME_PAGE = "https://epg.dev"
-"""Where the documentation is published; the schemas' ``$id`` begin with it too."""
+"""The address of the published documentation.  The ``$id`` of each schema also begins with it."""
 
 COMMAND_LINE = "command line"
 
 
 def to_sarif(diagnostics: Iterable[Diagnostic], folder: Path) -> str:
-    """A SARIF log with one run; files below ``folder`` are named relative to it, others absolutely."""
+    """A SARIF log with one run.  Paths of files below ``folder`` are relative to it; other paths are absolute."""
     ordered = sorted(diagnostics, key=lambda d: (d.span.file, d.span.line, d.span.column, d.id, d.message))
     rules = {id: index for index, id in enumerate(sorted({diagnostic.id for diagnostic in ordered}))}
     run = {
@@ -74,7 +74,7 @@ def _result(diagnostic: Diagnostic, rule: int, folder: Path) -> dict[str, Any]:
 
 
 def _location(span: Span, folder: Path) -> dict[str, Any]:
-    if span.file == COMMAND_LINE:  # no file: a logical location (3.33)
+    if span.file == COMMAND_LINE:  # not a file, therefore a logical location (3.33)
         return {"logicalLocations": [{"fullyQualifiedName": span.text or COMMAND_LINE, "kind": "parameter"}]}
     physical: dict[str, Any] = {"artifactLocation": {"uri": _uri(span.file, folder)}}
     if span.line:
@@ -83,7 +83,7 @@ def _location(span: Span, folder: Path) -> dict[str, Any]:
 
 
 def _region(span: Span) -> dict[str, int]:
-    """``endColumn`` is one past the last character (3.30.8), as ``Span.end`` is."""
+    """The region of a span.  ``endColumn`` is one past the last character (3.30.8), as ``Span.end`` is."""
     region = {"startLine": span.line}
     if span.column:
         region |= {"startColumn": span.column, "endColumn": max(span.end, span.column + 1)}
@@ -91,7 +91,7 @@ def _region(span: Span) -> dict[str, int]:
 
 
 def _uri(file: str, folder: Path) -> str:
-    """A relative reference with ``/`` between names (3.4.3), or ``file://`` for a file elsewhere."""
+    """A relative reference with ``/`` between names (3.4.3), or a URI ``file://`` for a file outside ``folder``."""
     path = Path(file)
     if path.is_absolute():
         try:

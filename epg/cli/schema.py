@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg schema``: the JSON Schemas of EPG's files, complete, for editors."""
+"""``epg schema``: writes the complete JSON Schemas of EPG's files, for editors."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg simulate``: runs a host executable through a scenario, prints how it went, leaves the numbers and a plot."""
+"""``epg simulate``: runs a host executable through a scenario, prints the result, writes the values and a plot."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pathlib import Path
 from epg.diagnostics import Diagnostics
 
 EXIT_LIMITS = 5
-"""Exit status when a limit of the scenario does not hold, or the run did not end in the state that it expects."""
+"""The exit status if a limit of the scenario does not hold, or if the run did not end in the expected state."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Plain text tables."""
+"""Tables as plain text."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 
 
 def table(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    """Columns as wide as their longest cell, the header underlined.
+    """A table whose columns are as wide as their longest cells, with an underlined header.
 
     >>> print(table(("a", "b"), [("x", 1)]))
     a  b

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg targets``: what EPG can generate for, with the user's own folders."""
+"""``epg targets``: lists targets, component kinds and predefined ``.tcf`` files, including those of the user."""
 
 from __future__ import annotations
 
