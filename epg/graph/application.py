@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The application: what comes in by topics and pins, its way to the model, and what goes out again.
+"""Draws the application: the inputs from topics and pins to the model, and the outputs from the model.
 
-Every port of the model has a line of its own: topic or pins, component, conversion, port.  Components without a port
-stand below, with what they look after.
+Each port of the model has one line: topic or pins, component, conversion, port.  Components that are not bound to a
+port are below, with the components that they use.
 """
 
 from __future__ import annotations
@@ -25,7 +25,10 @@ _SMALL = 10.0
 
 @dataclass(frozen=True)
 class _Line:
-    """One port of the model and what stands on its side: each box has a first and a second row of text."""
+    """One port of the model, with the boxes of its component and of its topic or pins.
+
+    ``component`` and ``outside`` are the first and the second row of text in these boxes.
+    """
 
     port: Port
     wire: Wire | None
@@ -35,7 +38,7 @@ class _Line:
 
 
 def draw_application(app: Application, topics: Topics, title: str) -> str:
-    """The picture as SVG."""
+    """The picture as the text of an SVG file."""
     views = {
         view.topic.component.name: view.ros_type
         for view in (*topics.subscriptions, *topics.publications)
@@ -72,12 +75,12 @@ def _line(port: Port, wire: Wire | None, types: dict[str, str], app: Application
     main = component.kind.main_port(wire.component_port.direction)
     name = component.name if wire.component_port == main else f"{component.name}.{wire.component_port.name}"
     reaches = port.direction == "input" or not any(p.direction == "source" for p in component.kind.ports)
-    beyond = outside(component, types, app) if reaches else ("", "")  # a reset of a sensor leaves the board alone
+    beyond = outside(component, types, app) if reaches else ("", "")  # an output that resets a sensor does not use pins
     return _Line(port, wire, (name, component.kind.name), beyond, conversion(wire.steps))
 
 
 def outside(component: ResolvedComponent, types: dict[str, str], app: Application) -> tuple[str, str]:
-    """What a component has to do with the world: its topic and message, or its pins and peripheral."""
+    """The connection of a component to the outside: its topic and message, or its pins and peripherals."""
     for topic in (*app.subscriptions, *app.publications):
         if topic.component is not None and topic.component.name == component.name:
             return topic.name, types.get(component.name, "")
@@ -88,12 +91,12 @@ def outside(component: ResolvedComponent, types: dict[str, str], app: Applicatio
 
 
 def pin_texts(component: ResolvedComponent, app: Application) -> list[str]:
-    """``a GP10``: what each wire of a component is connected to; empty where the target has no pins."""
+    """The pin of each signal of a component, such as ``a GP10``.  Empty if the target has no pins."""
     return wire_texts(component.kind, component.claims, app.target)
 
 
 def conversion(steps: Sequence[Step]) -> str:
-    """What happens on a wire, in its order: ``×0.5 +1 in -1…1``; empty when nothing does."""
+    """The conversion of a wire as text, in the order of its steps: ``×0.5 +1 in -1…1``.  Empty if there is none."""
     parts = []
     for step in steps:
         scale, offset = float(step.scale), step.offset
@@ -112,7 +115,7 @@ def _widest(texts: Sequence[str], size: float = 11) -> float:
 
 
 def _side(picture: Picture, lines: Sequence[_Line], sign: int, x: float) -> None:
-    """The lines of one side; ``x`` is the edge of the model, ``sign`` where it looks to."""
+    """Draws the lines of one side.  ``x`` is the edge of the model; ``sign`` is -1 on the left and 1 on the right."""
     wide = 16 + max(
         _widest([line.component[0] for line in lines]), _widest([line.component[1] for line in lines], _SMALL)
     )
@@ -152,7 +155,7 @@ def _box(
 
 
 def _others(picture: Picture, app: Application, y: float) -> None:
-    """Components that no port is bound to: what they use."""
+    """Draws the components that are not bound to a port, with the components and pins that they use."""
     bound = {wire.component.name for wire in (*app.inputs, *app.outputs)}
     x = 0.0
     for component in app.components:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The schedule of one control cycle, as the generated code runs it, and what the communication does beside it.
+"""Draws the schedule of one control cycle, in the order of the generated code, with the communication beside it.
 
-The boxes follow each other in time; their width says nothing of how long they take, which only the board knows.
+The boxes are in the order of time.  Their widths do not show durations, because EPG cannot know these.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _PAD = 10.0
 
 @dataclass(frozen=True)
 class Stage:
-    """One stage of a cycle: what it is called and what it does, one line each."""
+    """One stage of a cycle: its name, and lines of text that describe its actions."""
 
     name: str
     lines: tuple[str, ...]
@@ -29,7 +29,7 @@ class Stage:
 
 
 def control_stages(app: Application) -> tuple[Stage, ...]:
-    """What the control loop does between two ticks, in order."""
+    """The stages of the control loop between two ticks, in order."""
     sampled = [
         c for c in app.components if any(p.direction == "source" for p in c.kind.ports) and not c.kind.communication
     ]
@@ -60,7 +60,7 @@ def _source(wire: Wire) -> str:
 
 
 def draw_schedule(app: Application, title: str) -> str:
-    """The picture as SVG."""
+    """The picture as the text of an SVG file."""
     stages = control_stages(app)
     period = show(app.period, "time")
     words = "; then ".join(f"{stage.name}: {', '.join(stage.lines)}" for stage in stages)
@@ -111,7 +111,10 @@ def _communication(
     centres: dict[str, float],
     high: float,
 ) -> None:
-    """The other core, or the task of lower priority: it takes and gives whole sets of values, and nobody waits."""
+    """Draws the communication side, which runs on the other core or in a context of lower priority.
+
+    The two sides exchange complete sets of values.  Neither side waits for the other.
+    """
     top = high + 60
     middleware = app.communication.middleware.name
     lines = (("receive", receive, "commands", -1), ("send", send, "hand over", 1))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A small writer of SVG: rectangles, lines and text, which is measured so that nothing overlaps.
+"""A small writer of SVG files with rectangles, lines and text.  The size of text is known, so that nothing overlaps.
 
 >>> picture = Picture("Pan", "One box.")
 >>> picture.box(0, 0, 80, 24, "box")
@@ -7,7 +7,7 @@
 >>> picture.render().startswith('<svg xmlns="http://www.w3.org/2000/svg"')
 True
 
-All text is of one width per character: a browser's monospaced fonts are at most 0.62 of their size wide.
+All text is in a monospaced font.  In browsers, the characters of these fonts are at most 0.62 times the font size wide.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from collections.abc import Sequence
 from xml.sax.saxutils import escape
 
 CHARACTER = 0.62
-"""Width of a character, of the font's size."""
+"""The width of a character, divided by the font size."""
 
 _MARGIN = 16
-_COLOURS = (  # light, dark: of Okabe and Ito (2008), darkened or lightened to a contrast of 4.5 to the background
+_COLOURS = (  # light mode, dark mode: colours after Okabe and Ito (2008), with a contrast of 4.5 to the background
     ("#0060a0", "#6cb8f0"),
     ("#b04a00", "#f0a060"),
     ("#007050", "#40c8a0"),
@@ -30,7 +30,7 @@ _COLOURS = (  # light, dark: of Okabe and Ito (2008), darkened or lightened to a
     ("#006878", "#50c8d8"),
 )
 WIRES = len(_COLOURS)
-"""How many colours there are: classes ``w0``, ``w1``, ..."""
+"""The number of colours of wires, which are the CSS classes ``w0``, ``w1``, ..."""
 
 _STYLE = """
 text { font-family: ui-monospace, 'DejaVu Sans Mono', Menlo, Consolas, monospace; fill: #1f2328; }
@@ -65,12 +65,12 @@ text { fill: #f0f6fc; }
 
 
 def width(text: str, size: float = 12) -> float:
-    """The most room that ``text`` takes, in pixels."""
+    """The largest width of ``text``, in pixels.  ``size`` is the font size in pixels."""
     return len(text) * CHARACTER * size
 
 
 class Picture:
-    """Shapes in pixels, from wherever they are: the picture is as large as they need."""
+    """A picture with shapes at any positions, in pixels.  Its size is the size of its shapes, with a margin."""
 
     def __init__(self, title: str, description: str) -> None:
         self.title = title
@@ -80,7 +80,7 @@ class Picture:
         self._right = self._bottom = float("-inf")
 
     def box(self, x: float, y: float, wide: float, high: float, style: str, title: str = "", round: float = 4) -> None:
-        """A rectangle; ``title`` is what a pointer over it shows."""
+        """Adds a rectangle.  A browser shows ``title`` when the mouse pointer is over it."""
         self._reach(x, y, x + wide, y + high)
         self._shapes.append(
             f'<rect x="{_n(x)}" y="{_n(y)}" width="{_n(wide)}" height="{_n(high)}" rx="{_n(round)}" class="{style}"'
@@ -88,7 +88,7 @@ class Picture:
         )
 
     def line(self, points: Sequence[tuple[float, float]], style: str = "line", title: str = "") -> None:
-        """A line through ``points``."""
+        """Adds a line through ``points``."""
         for x, y in points:
             self._reach(x, y, x, y)
         path = " ".join(f"{_n(x)},{_n(y)}" for x, y in points)
@@ -98,7 +98,7 @@ class Picture:
         )
 
     def arrow(self, points: Sequence[tuple[float, float]], style: str = "line", title: str = "") -> None:
-        """A line with a head at its end; its last part is horizontal or vertical."""
+        """Adds a line with an arrow head at its end.  Its last part must be horizontal or vertical."""
         self.line(points, style, title)
         (x0, y0), (x, y) = points[-2:]
         dx, dy = (x > x0) - (x < x0), (y > y0) - (y < y0)
@@ -106,7 +106,7 @@ class Picture:
         self.line(wings, style.replace("earth", "line"))
 
     def text(self, x: float, y: float, text: str, anchor: str = "start", size: float = 12, style: str = "") -> None:
-        """``text`` with its base line at ``y``; ``anchor`` says what of it is at ``x``: start, middle or end."""
+        """Adds ``text`` with its base line at ``y``.  ``anchor`` is the part of it at ``x``: start, middle or end."""
         if not text:
             return
         wide = width(text, size)
@@ -117,7 +117,7 @@ class Picture:
         self._shapes.append(f'<text x="{_n(x)}" y="{_n(y)}" font-size="{_n(size)}"{attributes}>{escape(text)}</text>')
 
     def render(self) -> str:
-        """The whole file."""
+        """The text of the SVG file."""
         x, y = self._left - _MARGIN, self._top - _MARGIN
         wide, high = self._right - x + _MARGIN, self._bottom - y + _MARGIN
         lines = [
@@ -134,7 +134,7 @@ class Picture:
 
     @property
     def bottom(self) -> float:
-        """The lowest edge of what is drawn so far."""
+        """The lowest edge of the shapes that were added so far."""
         return self._bottom
 
     def _reach(self, left: float, top: float, right: float, bottom: float) -> None:
@@ -143,7 +143,11 @@ class Picture:
 
 
 def style_sheet() -> str:
-    """What stands in <style>: the same in every picture, so that a page's policy can allow just that by its hash."""
+    """The text of ``<style>``.
+
+    It is the same in every picture, so that the content security policy of a page can allow exactly this text by its
+    hash.
+    """
     style, dark = _STYLE, _DARK
     for index, (light, night) in enumerate(_COLOURS):
         style += f".w{index} {{ fill: none; stroke: {light}; stroke-width: 2.2; }}\n.t{index} {{ fill: {light}; }}\n"
@@ -152,5 +156,5 @@ def style_sheet() -> str:
 
 
 def _n(value: float) -> str:
-    """A coordinate: at most one digit behind the point, the same on every computer."""
+    """A coordinate with at most one decimal, so that the text is the same on every computer."""
     return f"{value:.1f}".removesuffix(".0")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The wiring of a board: its contacts where they are on the table, and what is soldered to them.
+"""Draws the wiring of a board: its contacts at their real positions, and the components that are soldered to them.
 
-A wire leaves its contact, changes its height in a lane of its own and arrives at its component.  Contacts stand on a
-grid, the terminals of components between its lines: wires cross, but never lie on each other.
+A wire starts at its contact, goes up or down in a separate lane, and ends at its component.  Contacts are on the lines
+of a grid, and terminals of components are between these lines.  Wires therefore can cross, but never overlap.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _RESISTOR = "10 kΩ to ground"
 
 @dataclass(frozen=True)
 class Terminal:
-    """A wire of a component: to ``contact``, the ``row_index``-th of a side from the top."""
+    """A connection of a component to ``contact``.  ``place`` is its line of the grid, from the top."""
 
     component: str
     signal: str
@@ -39,7 +39,10 @@ class Terminal:
 
 @dataclass(frozen=True)
 class _Part:
-    """What is drawn of a component on one side of the board."""
+    """The part of a component that is drawn on one side of the board.
+
+    ``divided`` is True if the component also has terminals on the other side.
+    """
 
     component: Component
     terminals: tuple[Terminal, ...]
@@ -54,7 +57,7 @@ class _Part:
 def terminals(
     target: Target, components: Mapping[str, Component], assignments: Mapping[ClaimKey, Assignment]
 ) -> dict[str, list[Terminal]]:
-    """The wires on each side of the board, from the top down."""
+    """The terminals on each side of the board, "left" and "right", from the top down."""
     layout = target.board.layout
     assert layout is not None
     places = {side: _places(layout, side) for side in ("left", "right")}
@@ -80,7 +83,7 @@ def terminals(
 def elsewhere(
     target: Target, components: Mapping[str, Component], assignments: Mapping[ClaimKey, Assignment]
 ) -> list[str]:
-    """What nobody solders: wires to pins that are on the board itself, or that the layout does not show."""
+    """Texts about connections without a contact: their pins are used on the board, or not shown by its layout."""
     layout = target.board.layout
     assert layout is not None
     shown = {contact.pin for row in layout.rows for contact in row.contacts}
@@ -98,13 +101,13 @@ def elsewhere(
 
 
 def pin_title(target: Target, pin: str) -> str:
-    """How the board calls a pin of its chip: ``GP10``."""
+    """The name of a SoC's pin on the board: ``GP10``."""
     prefix = target.board.prefixes[0] if target.board.prefixes and pin.isdigit() else ""
     return prefix + pin
 
 
 def wire_texts(kind: Kind, claims: Mapping[str, Assignment], target: Target) -> list[str]:
-    """``a GP10``: where each wire of a component with these ``claims`` goes; empty where there are no pins."""
+    """The pin of each signal, such as ``a GP10``, of a component with these ``claims``.  Empty if there are no pins."""
     texts = []
     for claim in kind.claims:
         found = claims.get(claim.name)
@@ -116,7 +119,7 @@ def wire_texts(kind: Kind, claims: Mapping[str, Assignment], target: Target) -> 
 
 
 def _places(layout: Layout, side: str) -> dict[int, Contact]:
-    """The contacts of a side by their line of the grid; rows follow each other with a gap for their title."""
+    """The contacts of a side by their lines of the grid.  Between two rows of contacts, there is space for a title."""
     result: dict[int, Contact] = {}
     line = 0
     for row in layout.rows:
@@ -129,7 +132,7 @@ def _places(layout: Layout, side: str) -> dict[int, Contact]:
 def draw_wiring(
     target: Target, components: Mapping[str, Component], assignments: Mapping[ClaimKey, Assignment], title: str
 ) -> str:
-    """The picture as SVG.  ``target`` has a board with a layout."""
+    """The picture as the text of an SVG file.  The board of ``target`` must have a layout."""
     board = target.board
     layout = board.layout
     assert layout is not None
@@ -175,7 +178,10 @@ def _contacts(picture: Picture, target: Target, layout: Layout, side: str, used:
 
 
 def _parts(components: Mapping[str, Component], found: Sequence[Terminal], other: set[str]) -> list[_Part]:
-    """The components of a side, ordered by the middle of their wires; those in ``other`` have more opposite."""
+    """The components of a side, sorted by the middle of their contacts.
+
+    The components in ``other`` also have terminals on the opposite side.
+    """
     groups: dict[str, list[Terminal]] = {}
     for terminal in found:
         groups.setdefault(terminal.component, []).append(terminal)
@@ -190,7 +196,10 @@ def _parts(components: Mapping[str, Component], found: Sequence[Terminal], other
 
 
 def drives(component: Component) -> bool:
-    """Whether the board drives the wires of a component: they then need a resistor for the time before it does."""
+    """True if the board drives the wires of a component.
+
+    Such a wire needs a resistor, because it floats until the firmware runs.
+    """
     return any(port.actuator for port in component.kind.ports)
 
 
@@ -202,8 +211,8 @@ def _side(picture: Picture, layout: Layout, side: str, parts: Sequence[_Part]) -
     grounds = _grounds([place for place, contact in places.items() if layout.role(contact) == "ground"], parts)
     labels = max(width(f"{t.component} {t.signal}", _SMALL) for part in parts for t in part.terminals)
     count = sum(len(part.terminals) + 1 for part in parts)
-    near = _INSIDE + 14 + labels + 10  # the first lane
-    edge = near + count * _LANE + 10  # where components begin
+    near = _INSIDE + 14 + labels + 10  # the position of the first lane
+    edge = near + count * _LANE + 10  # the inner edge of the components
     wide = 24 + max(
         max(width(part.component.name), width(part.kind, _SMALL), width(_RESISTOR, _SMALL)) for part in parts
     )
@@ -233,7 +242,10 @@ def _side(picture: Picture, layout: Layout, side: str, parts: Sequence[_Part]) -
 
 
 def _lines(parts: Sequence[_Part], last: int) -> list[int]:
-    """The line of the grid below which each component's first terminal is: near its contacts, one below the other."""
+    """For each component, the line of the grid just above its first terminal.
+
+    Components are as near to their contacts as possible, one below the other.
+    """
     firsts: list[int] = []
     free = -len(parts) * 8
     for part in parts:
@@ -242,12 +254,16 @@ def _lines(parts: Sequence[_Part], last: int) -> list[int]:
         first = max(free + 2, round(middle - rows / 2))
         firsts.append(first)
         free = first + rows + 1
-    below = max(0, free - 1 - last)  # lines that stick out below the board: half of them shall do so above it
+    below = max(0, free - 1 - last)  # lines below the end of the board; move all up by half of them
     return [first - below // 2 for first in firsts]
 
 
 def _grounds(grounds: Sequence[int], parts: Sequence[_Part]) -> list[int | None]:
-    """A ground for each component: one of its own from the top down if there are enough, else the nearest."""
+    """The ground contact of each component, as a line of the grid; None if the side has none.
+
+    If there are enough ground contacts, each component gets a different one, from the top down.  If not, each component
+    gets the nearest one.
+    """
     result: list[int | None] = []
     own = len(grounds) >= len(parts)
     start = 0
@@ -263,7 +279,7 @@ def _grounds(grounds: Sequence[int], parts: Sequence[_Part]) -> list[int | None]
 
 @dataclass(frozen=True)
 class _Wire:
-    """From the contact at line ``place`` of the grid to the height ``y`` of a terminal."""
+    """A wire from the contact at line ``place`` of the grid to the terminal at height ``y``, in pixels."""
 
     place: int
     y: float
@@ -273,7 +289,11 @@ class _Wire:
 
 
 def _wires(picture: Picture, sign: int, near: float, edge: float, wires: Sequence[_Wire]) -> None:
-    """Lanes in the order in which the fewest wires cross: of those that go down, the topmost is the farthest."""
+    """Draws the wires, with lanes in the order in which the fewest wires cross.
+
+    Wires that go down have the inner lanes, the lowest contact first.  Wires that go up have the outer lanes, the
+    topmost contact first.
+    """
     down = sorted((wire for wire in wires if wire.y > wire.place * PITCH), key=lambda wire: (-wire.place, -wire.y))
     up = sorted((wire for wire in wires if wire.y <= wire.place * PITCH), key=lambda wire: (wire.place, wire.y))
     for lane, wire in enumerate([*down, *up]):
@@ -284,7 +304,7 @@ def _wires(picture: Picture, sign: int, near: float, edge: float, wires: Sequenc
 
 
 def _notes(picture: Picture, layout: Layout, others: Sequence[str], driven: bool) -> None:
-    """Below everything: what the board's supplies are, and what holds for all wires."""
+    """Writes the notes below the picture: the supplies of the board, and rules for all wires."""
     rows: dict[str, list[int]] = {}
     for contact in (contact for row in layout.rows for contact in row.contacts):
         if layout.role(contact) in ("supply", "ground"):
