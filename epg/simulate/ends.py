@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whether a run ended in the state that its scenario expects: enabled, unless it says otherwise."""
+"""Checks that a run ended in the state that its scenario expects.  The default is enabled."""
 
 from __future__ import annotations
 
@@ -11,14 +11,17 @@ from epg.simulate.executable import Statistics
 
 @dataclass(frozen=True)
 class Ending:
-    """``problem`` is empty when the run ended as expected."""
+    """The result of the check.  ``problem`` is empty if the run ended as expected."""
 
     problem: str = ""
     hint: str = ""
 
 
 def how_it_ended(expected: str, enabled: Sequence[float], statistics: Statistics) -> Ending:
-    """``expected``: as ``Scenario.ends``.  ``enabled``: column of the trace."""
+    """Compares the end of a run with ``expected``, which is ``Scenario.ends``.
+
+    ``enabled`` is the column of the trace: not zero in each cycle in which the target was enabled.
+    """
     ever = any(enabled)
     if expected == "never_enabled":
         return Ending("the target was enabled, and the scenario says 'ends: never_enabled'") if ever else Ending()

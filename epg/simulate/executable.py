@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs a host executable and reads what it wrote."""
+"""Runs a host executable and reads the files that it wrote."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Progress = Callable[[str], None]
 
 @dataclass(frozen=True)
 class Statistics:
-    """What the run counted (``docs/host.md``); times in s."""
+    """The statistics of a run (``docs/host.md``).  Times are in seconds."""
 
     name: str
     mode: str  # "simulated" or "realtime"
@@ -52,10 +52,11 @@ def run_executable(
 ) -> None:
     """Runs ``executable`` in ``folder``, where it writes ``trace.csv``, ``topics.csv`` and ``statistics.json``.
 
-    Raises UserError when it cannot be started, takes far too long, or fails.
+    ``duration`` is the duration of the run in seconds.  Raises UserError if the executable cannot be started, runs
+    longer than :func:`patience`, or ends with an error.
     """
     folder = folder.resolve()
-    # The form -option=value is the only one that native_sim understands; its simulated flash is a file where it runs.
+    # native_sim only accepts options in the form --option=value.  Its simulated flash is a file in the current folder.
     command = [str(executable.resolve()), "--quiet", f"--duration={duration!r}", f"--setpoints={setpoints.resolve()}"]
     command += [f"--{option}={folder / f'{option}.csv'}" for option in ("topics", "trace")]
     command.append(f"--statistics={folder / 'statistics.json'}")
@@ -82,7 +83,7 @@ def run_executable(
 
 
 def _said(text: str) -> tuple[str, str]:
-    """The first error that a program printed, and the hint that follows it; else what it said last."""
+    """The first error that a program printed, with the hint after it.  If there is no error, its last line."""
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     for number, line in enumerate(lines):
         _, found, message = line.rpartition("error: ")
@@ -104,25 +105,25 @@ def _wait(process: subprocess.Popen[bytes], duration: float, realtime: bool, pro
 
 
 def patience(duration: float) -> float:
-    """Time after which a run counts as hanging: three times real time, and a minute for slow starts."""
+    """The time in seconds after which a run is ended as hanging: three times its duration, and a minute to start."""
     return 60.0 + 3.0 * duration
 
 
 def fail(executable: Path, message: str, hint: str) -> NoReturn:
-    """Raises UserError: the program did not do what it should."""
+    """Raises UserError with an error about the program."""
     diagnostics = Diagnostics()
     diagnostics.error("simulation-failed", Span(executable.name), message, hint=hint)
     raise UserError(diagnostics)
 
 
 def read_statistics(path: Path) -> Statistics:
-    """Members that this version does not know are ignored."""
+    """Reads ``statistics.json``.  Members that this version of EPG does not know are ignored."""
     found = json.loads(path.read_text(encoding="utf-8"))
     return Statistics(**{name: found[name] for name in Statistics.__dataclass_fields__})
 
 
 def read_trace(path: Path, wanted: Iterable[str]) -> dict[str, array[float]]:
-    """The columns ``time`` and ``wanted`` (signals that the target has) of a trace."""
+    """The column ``time`` and the columns ``wanted`` of a trace.  These must be signals of the target."""
     with path.open(encoding="utf-8", newline="") as file:
         rows = csv.reader(file)
         header = next(rows)

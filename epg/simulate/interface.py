@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The names that a target has, and what a scenario may therefore say."""
+"""The names of a target's topics, signals and components, which a scenario can use."""
 
 from __future__ import annotations
 
@@ -12,11 +12,14 @@ from epg.simulate.executable import fail, patience
 from epg.simulate.scenario import Scenario
 
 Names = Mapping[str, Sequence[str]]
-"""Kind ("topic", "input", "component" or "signal") -> names."""
+"""The names of each kind: "topic", "input", "component" or "signal"."""
 
 
 def read_interface(executable: Path) -> Names:
-    """What ``executable --interface`` prints.  Raises UserError when it cannot be started or does not say that."""
+    """The names that ``executable --interface`` prints.
+
+    Raises UserError if the executable cannot be started, fails, or does not print signals.
+    """
     try:
         done = subprocess.run(
             [str(executable.resolve()), "--interface"],

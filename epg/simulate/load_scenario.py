@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Scenario files: reading, and every check that needs no run."""
+"""Reads scenario files, with all checks that do not need the executable."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from epg.quantity import QuantityError, dimension_of, normal_unit, parse_quantit
 from epg.simulate.scenario import Axis, Event, Homing, Part, Profile, Scenario, Window
 from epg.source import Span, YamlNode
 
-#: shape -> keys it needs beside shape and start
+#: the keys that each shape needs, beside ``shape`` and ``start``
 _SHAPES = {
     "raised_cosine": ("duration", "height"),
     "move": ("duration", "to"),
@@ -28,7 +28,7 @@ MAX_SETPOINTS = 2_000_000
 
 
 def load_scenario(path: Path, diagnostics: Diagnostics) -> Scenario | None:
-    """The scenario in ``path``, or None after reporting what is wrong with it."""
+    """The scenario in ``path``.  None if it has mistakes; all of them are reported."""
     before = diagnostics.error_count
     root = load_yaml(path, diagnostics)
     if root is None or not validate(root, load_schema("scenario"), diagnostics):
@@ -38,7 +38,10 @@ def load_scenario(path: Path, diagnostics: Diagnostics) -> Scenario | None:
 
 
 class _Reader:
-    """Turns a validated tree into data.  After a problem it goes on with a harmless value, so that all are found."""
+    """Turns a validated tree into data.
+
+    After a mistake, it goes on with a harmless value, so that all mistakes are found in one run.
+    """
 
     def __init__(self, diagnostics: Diagnostics) -> None:
         self.diagnostics = diagnostics
@@ -205,7 +208,7 @@ class _Reader:
             return Fraction(1)
 
     def value(self, node: YamlNode, *, finite: bool = True) -> float:
-        """A number as it is, or a quantity of any dimension in its base unit (rad for deg)."""
+        """The value of a number, or of a quantity in the base unit of its dimension (rad for deg)."""
         if isinstance(node.value, (int, float)) and not isinstance(node.value, bool):
             value = float(node.value)
             if finite and value - value != 0:

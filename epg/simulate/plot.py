@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The plot of a run: setpoint, reference and position of each axis over time, and the error below."""
+"""Plots a run: setpoint, reference and position of each axis over time, with the error below."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from epg.diagnostics import Diagnostics
 from epg.simulate.tracking import Tracking
 from epg.source import Span
 
-# M. Okabe, K. Ito, "Color Universal Design", 2008: told apart by people with any common colour vision
+# M. Okabe, K. Ito, "Color Universal Design", 2008: users with any common colour vision can distinguish these colours
 BLACK, BLUE, ORANGE, GREY = "#000000", "#0072B2", "#D55E00", "#999999"
 
 
 def plot(trackings: Sequence[Tracking], path: Path, diagnostics: Diagnostics) -> bool:
-    """Draws ``path``; False, with a warning that says what to install, without matplotlib."""
+    """Writes the plot into ``path``.  Returns False, after a warning with a remedy, if matplotlib is not installed."""
     try:
-        from matplotlib.figure import Figure  # not pyplot: no window system, no global state
+        from matplotlib.figure import Figure  # not pyplot, which needs a window system and has global state
     except ImportError as error:
         diagnostics.warning(
             "matplotlib-missing",

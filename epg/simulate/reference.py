@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The ideal loop that a scenario names: a Python file with one function, written independently of the model.
+"""Loads the ideal control loop that a scenario names.  It is a Python file with one function, independent of the model.
 
-``reference(axis: str, time: Sequence[float], setpoint: Sequence[float]) -> list[float]`` gets the profile over time
-(s) and returns the position an ideal loop would have; it starts at rest at the first setpoint.
+``reference(axis: str, time: Sequence[float], setpoint: Sequence[float]) -> list[float]`` gets the setpoint over time,
+in seconds, and returns the position of an ideal control loop.  This loop starts at rest at the first setpoint.
 """
 
 from __future__ import annotations
@@ -21,16 +21,20 @@ Reference = Callable[[str, Sequence[float], Sequence[float]], list[float]]
 
 
 def load_reference(path: Path) -> Reference:
-    """The function ``reference`` of a Python file.  Raises UserError when there is none."""
-    # Executed rather than imported: an import would leave a __pycache__ beside the user's file.  The module is
-    # registered all the same, because dataclasses look their annotations up there.
+    """The function ``reference`` of a Python file.
+
+    Raises UserError if the file cannot be loaded or does not define it.  The function that is returned raises UserError
+    if ``reference`` fails, or if it does not return one finite value for each time.
+    """
+    # The file is executed instead of imported, because an import would write a __pycache__ beside the user's file.
+    # The module must be in sys.modules nevertheless, because dataclasses look up their annotations there.
     module = ModuleType(f"epg_reference_{path.stem}")
     module.__file__ = str(path)
     sys.modules[module.__name__] = module
     try:
         exec(compile(path.read_bytes(), str(path), "exec"), module.__dict__)
         function: Reference = module.reference
-    except Exception as error:  # the file is the user's: whatever it raises is about the file
+    except Exception as error:  # any exception is a mistake in the user's file
         _fail(path, f"cannot load the reference: {type(error).__name__}: {error}")
 
     def checked(axis: str, time: Sequence[float], setpoint: Sequence[float]) -> list[float]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a simulation gives."""
+"""The result of a simulation."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from epg.simulate.tracking import Check, WindowResult
 
 @dataclass(frozen=True)
 class Result:
-    """``files`` lists what was written, ``diagnostics`` holds warnings only."""
+    """The result of one run.  ``files`` are the files that were written.  ``diagnostics`` contains only warnings."""
 
     statistics: Statistics
     ending: Ending
@@ -25,5 +25,5 @@ class Result:
 
     @property
     def passed(self) -> bool:
-        """Whether the run ended in the state that the scenario expects, and every limit holds."""
+        """True if the run ended in the state that the scenario expects, and all its limits hold."""
         return not self.ending.problem and all(check.passed for check in self.checks)

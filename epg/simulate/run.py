@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One run of a host executable under a scenario, from setpoints to plot."""
+"""Runs a host executable through a scenario: writes setpoints, runs, evaluates and plots."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ def simulate(
     realtime: bool = False,
     progress: Callable[[str], None] = lambda message: None,
 ) -> Result:
-    """Runs ``executable`` under ``scenario`` and evaluates it.
+    """Runs ``executable`` through ``scenario`` and evaluates the run.
 
-    Writes into the folder ``output`` (made if missing): ``setpoints.csv``, ``topics.csv``, ``trace.csv``,
-    ``statistics.json``, ``tracking.csv`` and, with matplotlib, ``tracking.png``.  Files of an earlier run are
-    replaced.  ``progress`` gets short messages, about one per second.
+    Writes into the folder ``output``, which is made if it is missing: ``setpoints.csv``, ``topics.csv``, ``trace.csv``,
+    ``statistics.json``, ``tracking.csv`` and, if matplotlib is installed, ``tracking.png``.  Files of an earlier run
+    are replaced.  ``progress`` gets short messages, about one each second.
 
-    Raises UserError for a wrong scenario, an executable that fails, or a name it does not have.  Limits that do not
-    hold and a run that ends disabled are not errors: see ``Result.passed``.
+    Raises UserError for a wrong scenario, an executable that fails, or a name that the executable does not have.  A
+    limit that does not hold and a run that ends in the wrong state are not errors: see ``Result.passed``.
     """
     diagnostics = Diagnostics()
     read = load_scenario(scenario, diagnostics)

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A scenario as data: setpoint profiles, events, and what is evaluated.  Times in s, values in the topic's unit.
+"""A scenario as data: setpoint profiles, events, and signals to evaluate.
+
+Times are in seconds, values in the unit of their topic.
 
 >>> profile = Profile(0.0, (Part("move", start=1.0, duration=2.0, target=1.0),))
 >>> [round(profile.value(t), 3) for t in (0.0, 1.0, 2.0, 3.0, 9.0)]
@@ -18,7 +20,11 @@ from epg.source import Span
 
 @dataclass(frozen=True)
 class Part:
-    """One part of a profile.  ``target`` is absolute for move, ramp and step, relative for raised_cosine and sine."""
+    """One part of a profile.
+
+    ``target`` is an absolute value for move, ramp and step.  It is relative to the value before the part for
+    raised_cosine and sine.
+    """
 
     shape: str
     start: float
@@ -31,7 +37,7 @@ class Part:
         return self.start + self.duration
 
     def value(self, time: float, before: float) -> float:
-        """Value at ``time`` (at or after the start) of a part that began at the value ``before``."""
+        """The value at ``time``, which must not be before the start.  ``before`` is the value at the start."""
         if time >= self.end:
             return before if self.shape in ("raised_cosine", "sine") else self.target
         share = (time - self.start) / self.duration
@@ -45,14 +51,14 @@ class Part:
 
 @dataclass(frozen=True)
 class Profile:
-    """A setpoint over time: parts in order, held in between."""
+    """A setpoint over time.  The parts are in order; between them the setpoint keeps its value."""
 
     initial: float
     parts: tuple[Part, ...]
 
     @property
     def span(self) -> tuple[float, float] | None:
-        """Start of the first and end of the last part."""
+        """The start of the first part and the end of the last part, or None if there are no parts."""
         return (self.parts[0].start, self.parts[-1].end) if self.parts else None
 
     def value(self, time: float) -> float:
@@ -66,9 +72,10 @@ class Profile:
 
 @dataclass(frozen=True)
 class Event:
-    """``kind``: enable, disable, setpoint, lost, stall or component.
+    """An event.  ``kind`` is enable, disable, setpoint, lost, stall or component.
 
-    ``topic`` empty: all.  ``duration`` of lost and stall.  ``level`` of ``component``: "0", "1", "open" or "plant".
+    ``topic`` is the topic of setpoint and lost; for lost, empty means all topics.  ``value`` is the value of setpoint.
+    ``duration`` belongs to lost and stall.  ``level`` belongs to component: "0", "1", "open" or "plant".
     """
 
     at: Fraction
@@ -82,7 +89,7 @@ class Event:
 
 @dataclass(frozen=True)
 class Window:
-    """A stretch of time in which the tracking error is evaluated; a limit of None holds always."""
+    """A time window in which the tracking error is evaluated.  ``rms`` and ``largest`` are limits; None is no limit."""
 
     start: float
     end: float
@@ -99,9 +106,9 @@ class Homing:
 
 @dataclass(frozen=True)
 class Axis:
-    """What is evaluated: signal ``position`` against the profile of topic ``setpoint``.
+    """An axis to evaluate: the signal ``position`` is compared with the profile of the topic ``setpoint``.
 
-    ``signals`` are all signals of the axis.
+    ``duty`` is the signal that drives the motor, or None.  ``signals`` are all signals of the axis.
     """
 
     name: str
@@ -116,8 +123,10 @@ class Axis:
 
 @dataclass(frozen=True)
 class Scenario:
-    """``ends``: enabled, disabled or never_enabled.  ``names`` are all that only the target can know: what is named,
-    and where: a "topic", an "input" or a "signal".
+    """A scenario.  ``ends`` is the expected end of the run: enabled, disabled or never_enabled.
+
+    ``interval`` is the time between two setpoints.  ``names`` are the names that must be compared with those of the
+    target: the kind ("topic", "input" or "signal"), the name, and its place in the file.
     """
 
     path: Path

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A scenario as the rows of the file a host executable reads: time, topic, value."""
+"""Turns a scenario into the file of setpoints that a host executable reads, with rows of time, topic and value."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Row = tuple[Fraction, str, "float | str"]
 
 
 def setpoint_rows(scenario: Scenario, *, realtime: bool = False) -> list[Row]:
-    """All rows in order of time.  ``realtime`` leaves out stalls, which only simulated time can make."""
+    """All rows, in the order of time.  With ``realtime``, stalls are left out: they need simulated time."""
     rows: list[Row] = []
     for topic, profile in sorted(scenario.profiles.items()):
         gaps = [event for event in scenario.events if event.kind == "lost" and event.topic in ("", topic)]
@@ -38,7 +38,7 @@ def _event_rows(event: Event, realtime: bool) -> list[Row]:
 
 
 def write_setpoints(rows: list[Row], path: Path) -> None:
-    """Numbers are written with as few digits as give the same double again."""
+    """Writes the rows into ``path``.  Numbers have as few digits as possible for reading the same double again."""
     shown = ((time, topic, value if isinstance(value, str) else repr(value)) for time, topic, value in rows)
     lines = ["time,topic,value\n", *(f"{float(time)!r},{topic},{value}\n" for time, topic, value in shown)]
     path.write_text("".join(lines), encoding="utf-8", newline="\n")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The short table a run ends with."""
+"""The table with the result of a run, for the user."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from epg.simulate.tracking import WindowResult
 
 
 def format_table(result: Result) -> str:
-    """Counts, times, and per axis the errors; then every limit that did not hold."""
+    """The table as text: counts, times and the errors of each axis, then each limit that did not hold."""
     rows = _run(result.statistics)
     lines = [f"{name:<22}{value}" for name, value in rows]
     if result.windows:

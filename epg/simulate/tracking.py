@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How well each axis followed its setpoint."""
+"""Evaluates how well each axis followed its setpoint."""
 
 from __future__ import annotations
 
@@ -16,7 +16,10 @@ from epg.simulate.scenario import Axis, Profile, Window
 
 @dataclass(frozen=True)
 class Tracking:
-    """The signals of one axis, one value per control cycle.  ``reference`` is NaN where there is none."""
+    """The signals of one axis, with one value for each control cycle.
+
+    ``time`` is in seconds.  ``reference`` is NaN during homing.  It is None if the scenario does not have a reference.
+    """
 
     axis: Axis
     time: Sequence[float]
@@ -28,7 +31,10 @@ class Tracking:
 
 @dataclass(frozen=True)
 class WindowResult:
-    """Errors are position - setpoint; ``deviation`` is the RMS of position - reference.  In the axis' unit."""
+    """The errors in one window, in the unit of the axis.
+
+    ``rms`` and ``largest`` are of position - setpoint.  ``deviation`` is the RMS of position - reference, or None.
+    """
 
     axis: str
     unit: str
@@ -40,7 +46,7 @@ class WindowResult:
 
 @dataclass(frozen=True)
 class Check:
-    """A limit of the scenario and what was measured; a value that is not finite has not passed."""
+    """A limit of the scenario and the measured value.  A value that is not finite does not pass."""
 
     text: str
     value: float
@@ -53,7 +59,10 @@ class Check:
 
 
 def track(axis: Axis, profile: Profile, columns: Mapping[str, array[float]], reference: Reference | None) -> Tracking:
-    """The signals of ``axis`` from a trace.  The setpoint is the continuous profile, not what had been sent so far."""
+    """The signals of ``axis`` from a trace.
+
+    The setpoint is the continuous profile, not the last value that was sent.
+    """
     time = columns["time"]
     setpoint = array("d", (profile.value(t) for t in time))
     ideal: array[float] | None = None
@@ -65,7 +74,7 @@ def track(axis: Axis, profile: Profile, columns: Mapping[str, array[float]], ref
 
 
 def evaluate(tracking: Tracking) -> list[WindowResult]:
-    """RMS and largest error in each window of the axis; NaN for a window in which no cycle ran."""
+    """The RMS and the largest error in each window of the axis.  Both are NaN for a window without a control cycle."""
     results = []
     for window in tracking.axis.windows:
         inside = slice(bisect_left(tracking.time, window.start), bisect_right(tracking.time, window.end))
@@ -81,7 +90,7 @@ def evaluate(tracking: Tracking) -> list[WindowResult]:
 
 
 def check(tracking: Tracking, results: Sequence[WindowResult]) -> list[Check]:
-    """All limits of one axis."""
+    """The checks of all limits of one axis."""
     axis = tracking.axis
     checks = []
     for result in results:
@@ -111,7 +120,7 @@ def _rms(values: Sequence[float]) -> float:
 
 
 def write_tracking(trackings: Sequence[Tracking], path: Path) -> None:
-    """A table for people and spreadsheets: time, then setpoint, reference, position and duty of each axis."""
+    """Writes a CSV file for spreadsheets: time, then setpoint, reference, position and duty of each axis."""
     header = ["time"]
     columns: list[Sequence[float]] = [trackings[0].time]
     for tracking in trackings:
