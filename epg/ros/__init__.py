@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A generated target as ROS 2 sees it: its topics, the agents it needs, recordings of what it does.
+"""Tools for a generated target on a ROS 2 network: its topics, the agents that it needs, and recordings of its runs.
 
-Works on descriptions (``<name>.json``), not on the files they were generated from: a robot in the field is recorded and
-launched by whoever has its description.
+The tools read the description of a target (``<name>.json``) and not its source files.  A user who has only the
+description can therefore record a robot and start its agents.
 """

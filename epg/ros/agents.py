@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which micro-ROS agents a set of targets needs: one per board, one for all targets that come by UDP.
+"""Plans the micro-ROS agents for a set of targets: one for each board, and one for all targets that use UDP.
 
-A board on USB is known by its serial number, because ``/dev/ttyACM0`` is whichever board was plugged in first::
+A board on USB is identified by its serial number, because ``/dev/ttyACM0`` is the board that was plugged in first::
 
     /dev/serial/by-id/usb-Raspberry_Pi_Pico_E6614103E72B8C2F-if00
 """
@@ -19,15 +19,22 @@ from epg.source import Span
 
 AGENT_MIDDLEWARES = ("xrce", "micro_ros")
 DEFAULT_BAUD_RATE = 115200
-"""What the agent sets a tty to.  A board on USB takes whatever rate it is told."""
+"""The default baud rate of a tty.  A board on USB ignores the rate."""
 
 _BY_ID = "/dev/serial/by-id/usb-{name}_{serial}-if00"
-"""udev's name of a Pico's first port: manufacturer, product and serial number of its descriptors, interface 0."""
+"""The name that udev gives to the first port of a Pico.
+
+It has the manufacturer, the product and the serial number of the USB descriptors, and the number of the interface, 0.
+"""
 
 
 @dataclass(frozen=True)
 class Agent:
-    """One process.  ``device`` is the tty it opens, None for UDP; ``serves`` are the targets behind it."""
+    """One process of the agent.
+
+    ``device`` is the tty that it opens, or None for UDP.  ``serial`` is the serial number of a board on USB, else None.
+    ``serves`` are the targets that it connects.
+    """
 
     name: str
     arguments: tuple[str, ...]
@@ -38,7 +45,7 @@ class Agent:
 
 @dataclass(frozen=True)
 class Wiring:
-    """What a description cannot know: serial numbers of the boards and ttys, by name of the target; the UDP port."""
+    """Facts that are not in a description: serial numbers of boards, and ttys, by name of the target; the UDP port."""
 
     boards: Mapping[str, Sequence[str]]
     devices: Mapping[str, Sequence[str]]
@@ -46,7 +53,7 @@ class Wiring:
 
 
 def plan_agents(robots: Sequence[Robot], wiring: Wiring, diagnostics: Diagnostics) -> list[Agent]:
-    """The agents that ``robots`` need, in the order of the robots; those for UDP last."""
+    """The agents that ``robots`` need, in the order of the robots.  The agent for UDP is the last one."""
     names = {robot.name for robot in robots}
     for option, given in (("--board", wiring.boards), ("--device", wiring.devices)):
         for name in given:
@@ -117,7 +124,7 @@ def _on_usb(robot: Robot, serials: Sequence[str], diagnostics: Diagnostics) -> l
 
 
 def _on_device(robot: Robot, text: str, diagnostics: Diagnostics) -> Agent:
-    """``text`` is "/dev/ttyAMA0" or "/dev/ttyAMA0:921600"."""
+    """The agent for a tty.  ``text`` is for example "/dev/ttyAMA0" or "/dev/ttyAMA0:921600"."""
     device, _, rate = text.partition(":")
     if not device.startswith("/dev/") or not device.isprintable() or not re.fullmatch("([1-9][0-9]{2,6})?", rate):
         span = _argument("--device", f"{robot.name}={text}")
@@ -144,7 +151,10 @@ def _refuse_one_device_twice(agents: Sequence[Agent], diagnostics: Diagnostics) 
 
 
 def _warn_of_equal_nodes(agents: Sequence[Agent], diagnostics: Diagnostics) -> None:
-    """Two robots of one name would listen to the same setpoints, and their positions could not be told apart."""
+    """Warns of robots whose nodes have the same name.
+
+    They would receive the same setpoints, and a subscriber could not distinguish their positions.
+    """
     nodes = Counter(robot.full_node for agent in agents for robot in agent.serves if not robot.has_serial_in_names)
     for node, count in nodes.items():
         if count > 1:

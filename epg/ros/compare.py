@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Two recordings of the same motion: how much later one is than the other, and how far apart they are after that.
+"""Compares two recordings of the same motion: the time by which one is later, and the remaining differences.
 
-One shift in time aligns all signals of the runs, because each run has one clock.  It is sought on a grid as the shift
-with the least mean square difference, which is where the cross-correlation is largest, but does not favour shifts at
-which the runs overlap long.
+All signals of a run are shifted by the same time, because each run has one clock.  The best shift is the one with the
+least mean square difference, searched on a grid.  The maximum of the cross-correlation is similar, but it prefers
+shifts at which the runs overlap for a long time.
 """
 
 from __future__ import annotations
@@ -16,22 +16,26 @@ from typing import Any
 from epg.ros.recording import Recording, Signal
 
 GRID = 20_000
-"""Most points of a run that are compared: an hour at 5 Hz, 20 s at 1 kHz."""
+"""The largest number of points of the grid: an hour at 5 Hz, 20 s at 1 kHz."""
 LEAST_STEP = 0.001
+"""The smallest step of the grid, in seconds."""
 LEAST_OVERLAP = 0.5
-"""Of the shorter run."""
+"""The smallest overlap of the runs, as a part of the shorter run."""
 MOTION = 0.02
-"""Of a signal's range: beyond this it has left where it began."""
+"""A signal has moved if it differs from its first value by more than this part of its range."""
 _LAG_REACH = 1.0
-"""Longest lag of one signal behind the others that is looked for, s."""
+"""The longest lag of one signal behind the others, in seconds."""
 
 
 @dataclass(frozen=True)
 class Pair:
-    """One signal of both runs on a common grid, after the runs were aligned.  ``time`` is the reference's, s.
+    """One signal of both runs on a common grid, after the runs were aligned.
 
-    ``lag`` is how much later the run's signal is than the reference's once the runs are aligned, s; ``rms`` and
-    ``largest`` are of run - reference as they stand, ``rms_without_lag`` after shifting by ``lag`` too.
+    ``name`` is its name in the run and ``against`` its name in the reference.  ``time`` is the time of the reference,
+    in seconds.  ``lag`` is the time in seconds by which the run's signal is still later than the reference's.
+
+    ``rms`` and ``largest`` are those of run - reference.  ``rms_without_lag`` is the RMS after the run's signal was
+    also shifted by ``lag``.  ``range`` is the range of the reference's values.
     """
 
     name: str
@@ -48,7 +52,7 @@ class Pair:
 
 @dataclass(frozen=True)
 class Comparison:
-    """``shift`` was added to the times of the run, s."""
+    """The result of a comparison.  ``shift``, in seconds, was added to the times of the run."""
 
     shift: float
     pairs: tuple[Pair, ...]
@@ -62,9 +66,11 @@ def compare(
     by: Mapping[str, str],
     window: tuple[float, float] = (-math.inf, math.inf),
 ) -> Comparison:
-    """``pairs``: signals of ``run`` and what they are called in ``reference``; ``by``: likewise, those that align the
-    runs; ``align`` is "correlation", "motion" or "none".  ``window`` of the reference's time is compared; all that was
-    recorded aligns the runs.  Needs numpy.
+    """Aligns ``run`` with ``reference`` and compares their signals.  Needs numpy.
+
+    ``pairs`` are the signals to compare, and ``by`` those that align the runs: the name in ``run``, and the name in
+    ``reference``.  ``align`` is "correlation", "motion" or "none".  Only ``window``, in seconds of the reference's
+    time, is compared, but the whole recordings are used to align the runs.
     """
     import numpy as np
 
@@ -87,21 +93,21 @@ def _length(recording: Recording) -> float:
 
 
 def _motion(signal: Signal) -> float:
-    """When the signal first leaves the neighbourhood of its first value."""
+    """The time in seconds at which the signal first differs from its first value by more than :data:`MOTION`."""
     low, high = min(signal.value), max(signal.value)
     first, reach = signal.value[0], MOTION * (high - low)
     return next((t for t, v in zip(signal.time, signal.value) if abs(v - first) > reach), signal.time[0])
 
 
 def _sampled(signal: Signal, times: Any) -> Any:
-    """The signal at ``times``, straight between its points."""
+    """The signal at ``times``, by linear interpolation."""
     import numpy as np
 
     return np.interp(times, np.asarray(signal.time), np.asarray(signal.value))
 
 
 def _best_shift(signals: Sequence[tuple[Signal, Signal]], step: float) -> float:
-    """What to add to the run's time; all signals count the same, whatever their units and ranges."""
+    """The time in seconds to add to the run's times.  Signals are scaled, so that all have the same weight."""
     import numpy as np
 
     run_begin = min(run.time[0] for run, _ in signals)
@@ -117,19 +123,20 @@ def _best_shift(signals: Sequence[tuple[Signal, Signal]], step: float) -> float:
 
 
 def _mean_squares(a: Any, b: Any) -> Any:
-    """Mean of (a[i] - b[i + k])^2 over what overlaps, for k = 1 - len(a) ... len(b) - 1; infinite where that is short.
+    """The mean of (a[i] - b[i + k])^2 over the overlap, for k = 1 - len(a) ... len(b) - 1.
 
-    The products are a cross-correlation (by FFT), the squares are sums of what lies under the overlap.
+    Infinite if the overlap is shorter than :data:`LEAST_OVERLAP`.  The products are a cross-correlation, computed by
+    FFT.  The sums of squares over the overlap are differences of cumulative sums.
     """
     import numpy as np
 
-    offset = float(np.mean(b))  # smaller numbers, smaller errors
+    offset = float(np.mean(b))  # smaller numbers have smaller rounding errors
     a, b = a - offset, b - offset
     size = len(a) + len(b) - 1
     spectrum = np.fft.rfft(b, size) * np.conj(np.fft.rfft(a, size))
     products = np.roll(np.fft.irfft(spectrum, size), len(a) - 1)
     k = np.arange(1 - len(a), len(b))
-    first, last = np.maximum(0, -k), np.minimum(len(a), len(b) - k)  # of a
+    first, last = np.maximum(0, -k), np.minimum(len(a), len(b) - k)  # the overlap, as indices of a
     squares_a, squares_b = (np.concatenate(([0.0], np.cumsum(x * x))) for x in (a, b))
     squares = squares_a[last] - squares_a[first] + squares_b[last + k] - squares_b[first + k]
     count = last - first
@@ -140,7 +147,7 @@ def _mean_squares(a: Any, b: Any) -> Any:
 
 
 def _between(values: Any, index: int) -> float:
-    """Where between grid points the least value lies: the vertex of the parabola through three of them."""
+    """The position of the minimum relative to ``index``: the vertex of the parabola through three points there."""
     if not 0 < index < len(values) - 1:
         return 0.0
     before, here, after = (float(v) for v in values[index - 1 : index + 2])
@@ -157,7 +164,7 @@ def _pair(
     step: float,
     window: tuple[float, float],
 ) -> Pair:
-    """Both signals where both were recorded; nothing but NaN if that is nowhere."""
+    """Compares two signals over the time in which both were recorded.  All results are NaN if there is no such time."""
     import numpy as np
 
     begin = max(run.time[0] + shift, reference.time[0], window[0])
@@ -185,7 +192,7 @@ def _pair(
 
 
 def _lag(a: Any, b: Any, step: float) -> float:
-    """How much later ``a`` is than ``b``, s; 0 where nothing moves."""
+    """The time in seconds by which ``a`` is later than ``b``; 0 if one of them is constant."""
     import numpy as np
 
     if np.ptp(a) == 0.0 or np.ptp(b) == 0.0:

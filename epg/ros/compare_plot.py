@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The plot of a comparison: both runs over each other, and their difference below, for each signal."""
+"""Plots a comparison: for each signal, both runs in one panel and their difference below."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from epg.simulate.plot import BLUE, GREY, ORANGE
 
 
 def plot_comparison(comparison: Comparison, run: str, reference: str, path: Path) -> None:
-    """Draws ``path``; ``run`` and ``reference`` are what the legend calls them."""
-    from matplotlib.figure import Figure  # not pyplot: no window system, no global state
+    """Writes the plot into ``path``.  ``run`` and ``reference`` are the names of the runs in the legend."""
+    from matplotlib.figure import Figure  # not pyplot, which needs a window system and has global state
 
     pairs = [pair for pair in comparison.pairs if not math.isnan(pair.rms)]
     figure = Figure(figsize=(8.0, 3.7 * len(pairs)), layout="constrained")
@@ -44,7 +44,7 @@ def _draw(pair: Pair, run: str, reference: str, upper, lower) -> None:  # type: 
 
 
 def plot_recording(recording: Recording, names: Sequence[str], path: Path) -> None:
-    """Draws the signals ``names`` of one recording, one below the other."""
+    """Writes a plot of the signals ``names`` of one recording into ``path``, one below the other."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(8.0, 2.6 * len(names)), layout="constrained")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Messages by CycloneDDS: no ROS 2 needs to be installed.  The peers may use any DDS that ROS 2 does."""
+"""Receives messages by CycloneDDS, without an installed ROS 2.  Other nodes can use any DDS that ROS 2 supports."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from cyclonedds.util import duration
 from epg.ros.dds_types import TYPES
 from epg.ros.source import Sample, Subscription
 
-_TAKE = 256  # samples at once
+_TAKE = 256  # the largest number of samples that are taken at once
 
 
 class DdsSource:
@@ -28,7 +28,7 @@ class DdsSource:
         self._readers = []
         every = SampleState.Any | ViewState.Any | InstanceState.Any
         for subscription, listener in zip(subscriptions, self._listeners):
-            # ROS 2 topics stand below "rt" on DDS
+            # In DDS, the names of ROS 2 topics begin with "rt".
             topic = Topic(self._participant, f"rt{subscription.name}", TYPES[subscription.type])
             reader = DataReader(self._participant, topic, qos=_qos(subscription.reliable), listener=listener)
             self._waitset.attach(ReadCondition(reader, every))
@@ -55,8 +55,8 @@ class DdsSource:
         del self._waitset, self._participant
 
 
-class _Listener(Listener):  # type: ignore[misc]  # cyclonedds brings no types
-    """Remembers that a publisher was found whose QoS does not fit."""
+class _Listener(Listener):  # type: ignore[misc]  # cyclonedds has no types
+    """Records that a publisher with an incompatible QoS was found."""
 
     def __init__(self) -> None:
         self.incompatible = False
@@ -72,6 +72,6 @@ def _qos(reliable: bool) -> Qos:
         reliability,
         Policy.Durability.Volatile,
         Policy.History.KeepLast(_TAKE),
-        # plain CDR, as ROS 2 sends it
+        # ROS 2 sends plain CDR.
         Policy.DataRepresentation(use_cdrv0_representation=True, use_xcdrv2_representation=False),
     )

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The ROS 2 messages that targets use, as CycloneDDS types under the names that ROS 2 gives them on DDS."""
+"""The ROS 2 messages that targets use, as types of CycloneDDS with the names that ROS 2 gives them in DDS."""
 
 # mypy: disable-error-code="misc,call-arg,valid-type,no-any-unimported"
-# cyclonedds brings no types.  No "from __future__ import annotations": CycloneDDS reads the annotations as types.
+# cyclonedds has no types for mypy.  This file must not have "from __future__ import annotations", because CycloneDDS
+# needs the annotations as types and not as text.
 
 from dataclasses import dataclass
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The ROS 2 launch file of a set of agents."""
+"""Writes the ROS 2 launch file for a set of agents."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ _TAIL = """\
 
 
 def launch_file(agents: Sequence[Agent], file: str = FILE_NAME) -> str:
-    """The text of the launch file; the same agents give the same text."""
+    """The text of the launch file.  The same agents always give the same text."""
     names = dict.fromkeys(robot.name for agent in agents for robot in agent.serves)
     parts = [_HEAD.format(what=", ".join(names), file=file)]
     for agent in agents:
@@ -65,7 +65,7 @@ def launch_file(agents: Sequence[Agent], file: str = FILE_NAME) -> str:
 
 
 def describe(agent: Agent) -> list[str]:
-    """Lines that say for people which robots the agent serves."""
+    """Lines for the user that name the robots of the agent and their topics."""
     return [f"{robot.full_node}: {_topics(robot)}" for robot in agent.serves]
 
 
@@ -76,5 +76,5 @@ def _topics(robot: Robot) -> str:
 
 
 def _quoted(text: str) -> str:
-    """A literal of Python; JSON's are all of them."""
+    """A string literal of Python.  Each string literal of JSON is one."""
     return json.dumps(text, ensure_ascii=False)

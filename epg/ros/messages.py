@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Messages as numbers: the values a target's topic carries, in the order of its ports.
+"""Turns messages into numbers: the values of a target's topic, in the order of its ports.
 
-Works on any object with the fields of the message, so on those of CycloneDDS and of rclpy alike.
+The messages can be objects of CycloneDDS, of rclpy, or any other objects with the fields of the message.
 
 >>> from types import SimpleNamespace as Message
 >>> topic = Topic("joints", "sensor_msgs/msg/JointState", "reliable", "values", ("joints/pan.position",), ())
@@ -23,11 +23,11 @@ TYPES = (
     "geometry_msgs/msg/Twist",
     "geometry_msgs/msg/TwistStamped",
 )
-"""The types that can be recorded."""
+"""The types of messages that can be recorded."""
 
 
 def numbers(topic: Topic, message: Any) -> list[float | None]:
-    """One number for each of ``topic.values``; None where the message has none."""
+    """One number for each item of ``topic.values``; None if the message does not contain that value."""
     if topic.type in SCALARS:
         return [float(message.data)]
     fields = fields_of(topic)
@@ -40,7 +40,7 @@ def numbers(topic: Topic, message: Any) -> list[float | None]:
 
 
 def fields_of(topic: Topic) -> list[str]:
-    """What ``topic.values`` name within the message: ``joints/pan.position`` is ``pan.position`` of ``joints``."""
+    """The names of ``topic.values`` inside the message: ``pan.position`` for ``joints/pan.position``."""
     return [value.removeprefix(topic.name).removeprefix("/") for value in topic.values]
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where messages come from: DDS itself, or rclpy where ROS 2 is sourced."""
+"""Chooses the library that receives messages: CycloneDDS, or rclpy in a shell in which ROS 2 is sourced."""
 
 from __future__ import annotations
 
@@ -10,9 +10,11 @@ from epg.ros.source import Source, Subscription
 
 
 def open_source(way: str | None, subscriptions: Sequence[Subscription], domain: int) -> Source:
-    """``way`` is "dds", "rclpy" or None: CycloneDDS where it is installed, else rclpy where ROS 2 is sourced.
+    """Subscribes to topics in the ROS ``domain``.
 
-    Raises :class:`epg.bootstrap.MissingPackages`.
+    ``way`` is "dds", "rclpy" or None.  With None, CycloneDDS is used if it is installed.  If it is not, rclpy is used
+    if ROS 2 is sourced; otherwise EPG installs CycloneDDS into its cache.  Raises
+    :class:`epg.bootstrap.MissingPackages` if that is not possible.
     """
     from epg import bootstrap
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Messages by rclpy, where ROS 2 is sourced: through whichever middleware ROS 2 is set to."""
+"""Receives messages by rclpy, in a shell in which ROS 2 is sourced, through the middleware that ROS 2 is set to."""
 
 from __future__ import annotations
 

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Records what a target says and hears, in the form in which the host platform reads and writes it.
+"""Records the topics of a target, in the format of the host platform's files.
 
-``setpoints.csv`` can be given to a host executable (``--setpoints``) or compared like ``topics.csv``, which is what the
-target published.  Times are seconds since the recording began, by the clock of the computer that records.
+``topics.csv`` holds the values that the target published, and ``setpoints.csv`` those that were sent to it.  A host
+executable can read ``setpoints.csv`` (``--setpoints``).  Times are in seconds since the start of the recording, by the
+clock of the computer that records.
 """
 
 from __future__ import annotations
@@ -19,12 +20,12 @@ from epg.ros.source import Sample, Source, Subscription
 
 SETPOINTS, TOPICS = "setpoints.csv", "topics.csv"
 
-_TURN = 0.1  # s, until the recorder looks whether it should end
+_TURN = 0.1  # seconds between two checks whether the recording must end
 
 
 @dataclass(frozen=True)
 class Channel:
-    """A topic to record, and the file its values go to."""
+    """A topic to record, its full name, and the file for its values."""
 
     topic: Topic
     name: str
@@ -32,13 +33,21 @@ class Channel:
 
     @property
     def subscription(self) -> Subscription:
-        """A setpoint's publisher is anybody, so nothing is asked of it; of the target's own QoS the best is made."""
+        """The subscription for this topic.
+
+        For setpoints it is best effort, because any node can publish them, with any QoS.  For topics of the target it
+        is reliable if the target publishes reliably.
+        """
         return Subscription(self.name, self.topic.type, self.file == TOPICS and self.topic.qos == "reliable")
 
 
 @dataclass(frozen=True)
 class Heard:
-    """How a channel fared: messages, s from first to last, publishers found (-1: one whose QoS does not fit)."""
+    """The result of recording one channel.
+
+    ``messages`` is the number of messages, ``span`` the time in seconds from the first to the last one.  ``publishers``
+    is the number of publishers that were found, or -1 if one has an incompatible QoS.
+    """
 
     channel: Channel
     messages: int
@@ -47,12 +56,12 @@ class Heard:
 
     @property
     def rate(self) -> float:
-        """Messages per second; 0 for fewer than two."""
+        """Messages per second; 0 if there are fewer than two messages."""
         return (self.messages - 1) / self.span if self.messages > 1 and self.span > 0.0 else 0.0
 
 
 def channels_of(robot: Robot) -> tuple[list[Channel], list[Topic]]:
-    """What can be recorded of a target, and topics whose type is a stranger's."""
+    """The channels that can be recorded of a target, and its topics whose type EPG does not know."""
     channels, unknown = [], []
     for topics, file in ((robot.subscriptions, SETPOINTS), (robot.publications, TOPICS)):
         for topic in topics:
@@ -73,7 +82,10 @@ def record(
     stopped: Callable[[], bool],
     progress: Callable[[str], None] = lambda text: None,
 ) -> list[Heard]:
-    """Writes both files in ``folder`` until ``duration`` (s) is over or ``stopped()`` says so."""
+    """Writes both files in ``folder`` until ``duration`` seconds are over, or until ``stopped()`` returns True.
+
+    If ``duration`` is None, only ``stopped()`` ends the recording.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     begin = time.monotonic_ns()
     counts = [_Count() for _ in channels]

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Recordings of runs, real or simulated, as signals over time.
+"""Reads recordings of real or simulated runs as signals over time.
 
-Reads what EPG writes: ``time,topic,value`` rows (topics, setpoints) and tables with a column ``time`` and one for each
-signal (``trace.csv``, ``tracking.csv``); from a folder, its ``topics.csv`` and ``setpoints.csv``.
+Two formats are supported: rows of ``time,topic,value`` (``topics.csv``, ``setpoints.csv``), and tables with a column
+``time`` and one column for each signal (``trace.csv``, ``tracking.csv``).  In a folder, ``topics.csv`` and
+``setpoints.csv`` are read.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ _FOLDER_FILES = (_SETPOINTS, "topics.csv")
 
 @dataclass(frozen=True)
 class Signal:
-    """Values over time (s, never falling)."""
+    """The values of a signal.  ``time`` is in seconds and never decreases."""
 
     time: Sequence[float]
     value: Sequence[float]
@@ -31,9 +32,10 @@ class Signal:
 
 @dataclass(frozen=True)
 class Recording:
-    """All signals of a run by name, and which of them are setpoints as far as is known.
+    """All signals of a run by name.
 
-    What begins with ``$`` (events of the host platform) is not among them.
+    ``setpoints`` are the names of those that are known to be setpoints.  Events of the host platform, whose names begin
+    with ``$``, are left out.
     """
 
     path: Path
@@ -42,7 +44,7 @@ class Recording:
 
 
 def load_recording(path: Path, diagnostics: Diagnostics) -> Recording | None:
-    """The recording in ``path``, a file or a folder; None after reporting what is wrong with it."""
+    """The recording in the file or folder ``path``.  None if it is wrong; the reason is reported."""
     files = [path]
     if path.is_dir():
         files = [path / name for name in _FOLDER_FILES if (path / name).is_file()]
@@ -70,7 +72,10 @@ def load_recording(path: Path, diagnostics: Diagnostics) -> Recording | None:
 
 
 def _rows(file: Path, diagnostics: Diagnostics) -> Iterator[tuple[float, str, float]]:
-    """Time, signal and value of everything in ``file``; cells that are empty or not finite are left out."""
+    """The time, the signal and the value of each cell in ``file``.
+
+    Cells that are empty, or whose values are not finite, are left out.
+    """
     try:
         with file.open(encoding="utf-8", newline="") as text:
             rows = csv.reader(text)

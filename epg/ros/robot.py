@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Descriptions of generated targets (``<build>/epg/<name>/<name>.json``) as the ROS tools need them.
+"""Reads the descriptions of generated targets (``<build>/epg/<name>/<name>.json``) for the tools for ROS 2.
 
 >>> full_name("pan_subscriber", "/robot1", "JIWY_node")
 '/robot1/pan_subscriber'
@@ -23,16 +23,17 @@ from epg.source import Span
 SERIAL = "$serial"
 
 RASPBERRY_PI = 0x2E8A
-"""Vendor of a Pico's USB device without ``communication.usb``."""
+"""The USB vendor number of a Pico whose ``.tcf`` does not set ``communication.usb``."""
 
 USB_NAMES = {"manufacturer": "Raspberry Pi", "product": "Pico"}
-"""Texts of a Pico's USB device without ``communication.usb``: targets/families/rp2/usb/descriptors.c."""
+"""The texts of the USB device of a Pico without ``communication.usb``, from targets/families/rp2/usb/descriptors.c."""
 
 
 @dataclass(frozen=True)
 class Topic:
-    """A topic: ``name`` as written in the ``.tcf``, ``values`` the names of its numbers in CSV files, ``elements`` all
-    that its message has.
+    """A topic.  ``name`` is the name in the ``.tcf``.
+
+    ``values`` are the names of its values in CSV files.  ``elements`` are the names of all elements of its message.
     """
 
     name: str
@@ -45,7 +46,7 @@ class Topic:
 
 @dataclass(frozen=True)
 class Robot:
-    """One target.  ``node`` and ``namespace`` may still contain ``$serial``; ``domain`` is None for the default one."""
+    """One target.  ``node`` and ``namespace`` can contain ``$serial``.  ``domain`` is None for the default domain."""
 
     file: Path
     name: str
@@ -57,16 +58,16 @@ class Robot:
     middleware: str
     transport: str | None
     usb_name: str
-    """How udev calls the maker and the product of its USB device, such as ``Raspberry_Pi_Pico``."""
+    """The manufacturer and the product of its USB device in the names of udev, such as ``Raspberry_Pi_Pico``."""
     usb_vendor: str
-    """The vendor of its USB device: four hexadecimal digits, in lower case as in sysfs."""
+    """The vendor number of its USB device: four hexadecimal digits in lower case, as in sysfs."""
     usb_serial: str | None
-    """The serial number that its ``.tcf`` gives to its USB device; None: each board has its own."""
+    """The serial number that its ``.tcf`` gives to its USB device.  None if the device has the number of the board."""
     subscriptions: tuple[Topic, ...]
     publications: tuple[Topic, ...]
 
     def with_serial(self, serial: str) -> Robot:
-        """The same with the board's serial number in its names."""
+        """The same target, with the board's serial number in the names of its node and namespace."""
         return replace(self, node=self.node.replace(SERIAL, serial), namespace=self.namespace.replace(SERIAL, serial))
 
     @property
@@ -74,7 +75,7 @@ class Robot:
         return SERIAL in self.node + self.namespace
 
     def topic(self, topic: Topic) -> str:
-        """The full ROS name of one of its topics."""
+        """The full name in ROS of one of its topics."""
         return full_name(topic.name, self.namespace, self.node)
 
     @property
@@ -83,7 +84,10 @@ class Robot:
 
 
 def full_name(name: str, namespace: str, node: str) -> str:
-    """A topic as ``ros2 topic list`` shows it: ``name`` is absolute, private (``~/``) or relative to the namespace."""
+    """The full name of a topic, as ``ros2 topic list`` shows it.
+
+    ``name`` is absolute, private (``~/``) or relative to the namespace.
+    """
     if name.startswith("/"):
         return name
     if name.startswith("~"):
@@ -92,7 +96,10 @@ def full_name(name: str, namespace: str, node: str) -> str:
 
 
 def load_robots(paths: list[Path], diagnostics: Diagnostics) -> list[Robot]:
-    """The targets described by files, or found in build folders; sorted by name within a folder."""
+    """The targets of the descriptions ``paths``, which are files or build folders.
+
+    Targets in one folder are sorted by name.  Paths without a target are reported.
+    """
     robots = []
     for path in paths:
         if path.is_dir():
@@ -113,12 +120,12 @@ def load_robots(paths: list[Path], diagnostics: Diagnostics) -> list[Robot]:
 
 
 def _descriptions(folder: Path) -> list[Path]:
-    """Where CMake leaves descriptions: below the build folder, or below those of its subprojects."""
+    """The JSON files at the places where CMake writes descriptions: in the build folder or those of subprojects."""
     return sorted({*folder.glob("epg/*/*.json"), *folder.glob("*/epg/*/*.json"), *folder.glob("*/*/epg/*/*.json")})
 
 
 def _read(file: Path) -> Robot | None:
-    """The target that ``file`` describes; None if it is something else."""
+    """The target that ``file`` describes.  None if it is not a description."""
     try:
         data = json.loads(file.read_text(encoding="utf-8"))
         return _robot(file, data)
@@ -152,9 +159,9 @@ def _robot(file: Path, data: dict[str, Any]) -> Robot:
 
 
 def udev_name(text: str) -> str:
-    """A text of a USB device as it stands in ``/dev/serial/by-id``.
+    """A text of a USB device in the form that ``/dev/serial/by-id`` uses.
 
-    udev puts "_" in the place of blanks and of characters that are neither letters nor digits nor one of ``#+-.:=@_``
+    udev replaces by "_" blanks and all characters other than letters, digits and ``#+-.:=@_``
     (systemd, src/shared/device-nodes.c, allow_listed_char_for_devnode()).
 
     >>> udev_name("Robots & Sons (Ltd)")
@@ -169,9 +176,10 @@ def _topic(data: dict[str, Any]) -> Topic:
 
 
 def _checked(text: object, problem: Callable[[str], str | None]) -> str:
-    """A text that EPG has checked before it wrote it; raises ValueError where somebody else has written another.
+    """Returns ``text`` if ``problem`` accepts it.  Raises ValueError otherwise.
 
-    Names reach launch files and systemd units, where a line more is a command more.
+    EPG checks names before it writes a description, but other programs can change the file.  Names are written into
+    launch files and systemd units, where a line end in a name would add a command.
     """
     if not isinstance(text, str) or (text and problem(text) is not None):
         raise ValueError(f"{text!r} is not a name")

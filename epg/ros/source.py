@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What delivers messages of ROS 2, whichever library they come by."""
+"""The interface of the libraries that receive messages of ROS 2."""
 
 from __future__ import annotations
 
@@ -9,7 +9,11 @@ from typing import Any, Protocol
 
 @dataclass(frozen=True)
 class Subscription:
-    """A topic to listen to: its full ROS name, its type as in ``ros2 topic list -t``, whether reliably."""
+    """A topic to subscribe to.
+
+    ``name`` is the full name in ROS, ``type`` the type as in ``ros2 topic list -t``.  ``reliable`` is True for the QoS
+    reliable, False for best effort.
+    """
 
     name: str
     type: str
@@ -18,7 +22,10 @@ class Subscription:
 
 @dataclass(frozen=True)
 class Sample:
-    """A message of subscription number ``subscription`` that arrived at ``time_ns`` of the monotonic clock."""
+    """A received message.
+
+    ``subscription`` is the index of its subscription.  ``time_ns`` is its arrival by the monotonic clock.
+    """
 
     time_ns: int
     subscription: int
@@ -26,12 +33,12 @@ class Sample:
 
 
 class Source(Protocol):
-    """Something that is subscribed to topics."""
+    """A set of subscriptions that receives messages."""
 
     def take(self, seconds: float) -> list[Sample]:
-        """What has arrived since the last call, waiting up to ``seconds`` for something to arrive."""
+        """The messages that arrived since the last call.  Waits up to ``seconds`` for the first one."""
 
     def publishers(self) -> list[int]:
-        """How many publishers each subscription has found; -1 if there is one whose QoS does not fit."""
+        """The number of publishers that each subscription found; -1 if one of them has an incompatible QoS."""
 
     def close(self) -> None: ...

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""systemd units that keep agents running from boot on: started when a board is plugged in, stopped when it goes.
+"""Writes systemd units for agents, which start when a board is plugged in and stop when it is unplugged.
 
-A unit that is wanted by, and bound to, a device's own unit needs no udev rule to be started: systemd makes device units
-of all ttys and of their names in ``/dev/serial/by-id``.
+systemd has a device unit for each tty, and for its name in ``/dev/serial/by-id``.  The unit of an agent is wanted by
+the device unit and bound to it.  It therefore starts and stops without a rule for udev.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ RULES = "70-epg-boards.rules"
 
 @dataclass(frozen=True)
 class Installation:
-    """The computer the units are for: its user, ROS 2 distribution, workspace of the agent, and ROS domain."""
+    """The computer that runs the units: its user, ROS 2 distribution, workspace of the agent, and ROS domain."""
 
     user: str = "ubuntu"
     distribution: str = "jazzy"
@@ -29,7 +29,7 @@ class Installation:
 
 
 def unit_files(agents: Sequence[Agent], installation: Installation) -> dict[str, str]:
-    """All files to install, by name: units, udev rules where boards are on USB, and a README that says how."""
+    """All files to install, by name: units, rules for udev if boards are on USB, and a README with instructions."""
     files = {unit_name(agent): unit(agent, installation) for agent in agents}
     boards = [(agent.serves[0].usb_vendor, agent.serial) for agent in agents if agent.serial is not None]
     if boards:
@@ -43,7 +43,7 @@ def unit_name(agent: Agent) -> str:
 
 
 def unit(agent: Agent, installation: Installation) -> str:
-    """The text of one agent's unit."""
+    """The text of the unit of one agent."""
     setup = [f"/opt/ros/{installation.distribution}/setup.bash", f"{installation.workspace}/install/local_setup.bash"]
     steps = [f". {shlex.quote(file)}" for file in setup]
     steps.append("exec " + shlex.join(["ros2", "run", "micro_ros_agent", "micro_ros_agent", *agent.arguments]))
@@ -73,7 +73,7 @@ WantedBy={wanted}
 
 
 def device_unit(path: str) -> str:
-    """The name of a device's unit, as ``systemd-escape --path --suffix=device`` gives it.
+    """The name of the unit of a device, equal to the output of ``systemd-escape --path --suffix=device``.
 
     >>> device_unit("/dev/serial/by-id/usb-Pico_E66-if00")
     'dev-serial-by\\\\x2did-usb\\\\x2dPico_E66\\\\x2dif00.device'
@@ -92,9 +92,10 @@ def device_unit(path: str) -> str:
 
 
 def udev_rules(boards: Sequence[tuple[str, str]]) -> str:
-    """Rules for boards, by the vendor of their USB device (four hexadecimal digits) and their serial number.
+    """Rules for udev that give boards to the group ``dialout``, and keep ModemManager away from them.
 
-    The group may read them, and ModemManager, which takes any tty for a modem, leaves them alone.
+    ModemManager would send commands for modems to any tty.  ``boards`` are the vendor numbers of the USB devices (four
+    hexadecimal digits) and the serial numbers.
     """
     lines = ["# Boards with an EPG target: for the group dialout, and no modems."]
     for vendor, serial in boards:
@@ -106,9 +107,9 @@ def udev_rules(boards: Sequence[tuple[str, str]]) -> str:
 
 
 def _quoted(text: str) -> str:
-    """One word of ``ExecStart=``: systemd unquotes it, and takes ``%`` and ``$`` for something of its own.
+    """One quoted word of ``ExecStart=``.  ``%`` and ``$`` are escaped, because systemd would expand them.
 
-    Raises ValueError for what would end the line.
+    Raises ValueError for text with a line end or another control character.
     """
     if not text.isprintable():
         raise ValueError(f"{text!r} is not one line of text")
