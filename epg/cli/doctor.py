@@ -93,7 +93,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
 
 
 def _wanted(tools: Mapping[str, Tool], project: Path | None) -> Mapping[str, Tool]:
-    """All tools, or those that the targets of a project need."""
+    """All tools, or only those that the targets of ``project`` need."""
     if project is None:
         return tools
     bootstrap.ensure()  # reading the project's files needs the package for YAML

@@ -44,6 +44,7 @@ class Entry:
         return re.sub(r"[^\w-]", "", self.id).lower()
 
     def covers(self, id: str) -> bool:
+        """True if the entry is about messages with this id."""
         pattern = "".join("[a-z0-9_]+" if part.isupper() else re.escape(part) for part in re.split("([A-Z]+)", self.id))
         return re.fullmatch(pattern, id) is not None
 

@@ -65,6 +65,7 @@ def diagnostics_json(diagnostics: Iterable[Diagnostic]) -> list[dict[str, Any]]:
 
 
 def to_json(data: object) -> str:
+    """The text of ``data`` as JSON, in the form that all commands print with ``--json``."""
     return json.dumps(data, indent=2, sort_keys=False, ensure_ascii=False) + "\n"
 
 

@@ -50,9 +50,11 @@ class Macros:
             raise UserError(problems) from None
 
     def expression(self, component: ResolvedComponent, macro: str, *arguments: object) -> Code:
+        """The text of a macro that is an expression, on one line.  Raises UserError if it is empty."""
         return Code(" ".join(str(self.statement(component, macro, *arguments)).split()))
 
     def statement(self, component: ResolvedComponent, macro: str, *arguments: object) -> Code:
+        """The text of a macro that the kind must have.  Raises UserError if it is missing or empty."""
         code = self.macro(component, macro, *arguments)
         if not code.strip():
             port = f", which port '{arguments[0]}' needs" if arguments else ""
@@ -99,4 +101,5 @@ class Macros:
         return self.modules[kind]
 
     def safe_level(self, component: ResolvedComponent, claim: str) -> Code:
+        """A C expression, true if the safe level of the claim's pins is high.  The default is ``false``."""
         return self.macro(component, "safe_level", claim).strip() or Code("false")

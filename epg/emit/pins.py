@@ -12,6 +12,7 @@ from epg.resolve.application import Application
 
 
 def output_pins(macros: Macros) -> list[OutputPin]:
+    """The pins that components drive, in the order of components and of their claims."""
     return [
         OutputPin(component.name, signal, pin, macros.safe_level(component, claim.name))
         for component in macros.app.components
@@ -22,6 +23,7 @@ def output_pins(macros: Macros) -> list[OutputPin]:
 
 
 def input_pins(app: Application) -> list[InputPin]:
+    """The pins of digital inputs."""
     return [
         InputPin(component.name, pin, bool(component.parameters.get("invert", False)))
         for component in app.components
@@ -32,6 +34,10 @@ def input_pins(app: Application) -> list[InputPin]:
 
 
 def output_groups(macros: Macros) -> list[OutputGroup]:
+    """The pins of :func:`output_pins`, grouped by component, with the safe states of each component.
+
+    A kind without ``safe_states`` has one: each pin at its safe level.
+    """
     groups = []
     first = 0
     for component in macros.app.components:

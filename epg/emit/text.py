@@ -44,23 +44,23 @@ class Escaped(Markup):
 
 
 class Code(Escaped):
-    """C or C++."""
+    """Text of C or C++."""
 
 
 class CMakeCode(Escaped):
-    """CMake."""
+    """Text of CMake."""
 
 
 class DevicetreeCode(Escaped):
-    """Devicetree source."""
+    """Text of devicetree source."""
 
 
 class KconfigCode(Escaped):
-    """A Kconfig fragment."""
+    """Text of a Kconfig fragment."""
 
 
 class ProjectText(Escaped):
-    """A file of a new project: CMake, YAML, JSON or Markdown, with a filter for each."""
+    """Text of a file of a new project: CMake, YAML, JSON or Markdown.  Each of them has its filters."""
 
 
 class NotFinite(ArithmeticError, ValueError):
@@ -123,6 +123,7 @@ def double(value: object) -> Code:
 
 
 def boolean(value: object) -> Code:
+    """The C literal ``true`` or ``false``."""
     return Code("true" if value else "false")
 
 
@@ -165,6 +166,7 @@ def kconfig_symbol(value: object) -> KconfigCode:
 
 
 def kconfig_bool(value: object) -> KconfigCode:
+    """The value of a bool symbol: ``y`` or ``n``."""
     return KconfigCode("y" if value else "n")
 
 

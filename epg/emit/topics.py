@@ -73,7 +73,7 @@ _FIXED = {
 
 
 def topics_of(app: Application, macro: Macro) -> Topics:
-    """The topics of ``app``."""
+    """The topics of ``app`` with their messages.  ``macro`` gives the texts of the kinds' macros."""
     subscriptions = tuple(_view(topic, macro) for topic in app.subscriptions)
     publications = tuple(_view(topic, macro) for topic in app.publications)
     return Topics(

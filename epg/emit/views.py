@@ -82,7 +82,7 @@ class Arrival:
     """Statements of a component that run when a setpoint has arrived, or before a publication is sent."""
 
     component: str
-    index: int  # of the topic's first setpoint, or of the publication
+    index: int  # the value index of the topic's first setpoint, or the index of the publication
     statement: Code
 
 

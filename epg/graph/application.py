@@ -19,7 +19,7 @@ from epg.resolve.application import Application, ResolvedComponent, Step, Wire
 
 _ROW = 40.0
 _HIGH = 30.0
-_GAP = 34.0  # between columns, for an arrow
+_GAP = 34.0  # the width between two columns, for an arrow
 _SMALL = 10.0
 
 

@@ -81,6 +81,8 @@ class Variable:
 
 @dataclass(frozen=True)
 class Macro:
+    """A ``#define``.  ``parameters`` is for example "(a, b)", or empty.  ``start`` is the offset of the name."""
+
     name: str
     parameters: str
     value: str
@@ -89,6 +91,8 @@ class Macro:
 
 @dataclass(frozen=True)
 class Include:
+    """An ``#include``.  ``system`` is True if the name is in angle brackets.  ``start`` is the offset of the name."""
+
     name: str
     system: bool
     start: int

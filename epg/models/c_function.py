@@ -64,6 +64,7 @@ def entry_points(code: Code) -> dict[str, Function]:
 
 
 def is_c_function(code: Code) -> bool:
+    """True if ``code`` defines the entry points of a submodel."""
     return {"Initialize", "Calculate"} <= entry_points(code).keys()
 
 
@@ -77,6 +78,8 @@ def load_c_function(main: Code, diagnostics: Diagnostics) -> Model | None:
 
 
 class _Importer:
+    """Reads the model from the linked files of one export."""
+
     def __init__(self, linked: Linked, diagnostics: Diagnostics) -> None:
         self.linked = linked
         self.diagnostics = diagnostics
@@ -265,11 +268,16 @@ class _Importer:
     # entry points ---------------------------------------------------------------------------------------------------
 
     def _instance_type(self) -> str:
+        """The typedef of the model's memory, which Calculate takes by a pointer; empty for global variables."""
         parameters = self.entries["Calculate"].parameters
         match = re.match(r"(?:struct\s+)?(\w*ModelInstance\w*)\s*\*", parameters, re.ASCII)
         return match[1] if match else ""
 
     def _entry(self, function: Function) -> details.EntryPoint:
+        """The function as an entry point.
+
+        The meaning of each argument is derived from its type, and from its use in the body of the function.
+        """
         body = self.main.body(function) if function in self.main.functions else ""
         arguments: list[str] = []
         for parameter in function.parameters.split(",")[:_MOST_PARAMETERS]:
@@ -355,6 +363,7 @@ class _Importer:
         return None
 
     def _fmi_files(self) -> list[SourceFile]:
+        """The files with FMI functions beside the model, which are not linked, but set some of its values."""
         paths = [p for p in source_files(self.file.path.parent, SUFFIXES, 0) if p.name.lower().startswith("fmi")]
         files = [read_source(path, Diagnostics()) for path in paths]
         return [file for file in files if file is not None]
@@ -415,6 +424,7 @@ class _Importer:
     # ports ----------------------------------------------------------------------------------------------------------
 
     def _vectorless(self) -> bool:
+        """True if the entry points do not take the vectors ``u`` and ``y``, as in sources of an FMU."""
         return not {"u", "y"} & {a for f in self.entries.values() for a in self._entry(f).arguments}
 
     def _port_lines(self, roots: Iterable[Function]) -> tuple[list[PortLine], list[PortLine]]:

@@ -37,6 +37,8 @@ class ConfiguredPort:
 
 @dataclass(frozen=True)
 class Configuration:
+    """The data of one file.  ``step`` and ``finish`` are texts in seconds, or empty."""
+
     path: Path
     name: str
     step: str
@@ -49,6 +51,7 @@ class Configuration:
         return {(port.direction, port.name): port for port in reversed(self.ports)}
 
     def port(self, direction: str, name: str) -> ConfiguredPort | None:
+        """The port called ``name``, or None."""
         return self._by_name.get((direction, name))
 
 

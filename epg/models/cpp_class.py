@@ -61,6 +61,8 @@ def load_cpp_class(main: Code, diagnostics: Diagnostics) -> Model | None:
 
 
 class _Importer:
+    """Reads the model from the linked files of one export."""
+
     def __init__(self, linked: Linked, class_name: str, diagnostics: Diagnostics) -> None:
         self.linked = linked
         self.class_name = class_name
@@ -143,6 +145,7 @@ class _Importer:
         return self._prefix() + "P"
 
     def _place_of(self, word: str) -> tuple[Span, str] | None:
+        """The place and the text of the first value that is assigned to the member ``<prefix><word>``."""
         match = re.search(rf"\b{re.escape(self._prefix())}{word}\s*=\s*([^=;]+);", self.file.code)
         return (self.file.span(match.start(), match.end()), match[1].strip()) if match else None
 

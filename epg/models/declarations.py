@@ -76,6 +76,7 @@ def _level(body: str) -> Iterator[str]:
 
 
 def outside_bodies(code: Code) -> Iterator[str]:
+    """The parts of the code between the bodies of functions."""
     at = 0
     for function in code.functions:
         yield code.file.code[at : function.body_start]

@@ -38,7 +38,7 @@ MAX_DEPTH = 8  # levels of folders below sources/
 _STORED, _DEFLATED = 0, 8  # methods of compression: APPNOTE.TXT, 4.4.5; FMI 2.0.4, 2.3, allows only deflate
 _METHODS = {9: "deflate64", 12: "bzip2", 14: "LZMA", 20: "Zstandard", 93: "Zstandard", 95: "XZ", 98: "PPMd"}
 _END = struct.Struct("<4s4H2LH")  # end of central directory record: APPNOTE.TXT 6.3.10, section 4.3.16
-_END64_LOCATOR = b"PK\x06\x07"  # section 4.3.15
+_END64_LOCATOR = b"PK\x06\x07"  # zip64 end of central directory locator: section 4.3.15
 _BAD_NAME = re.compile(r'[\\:*?"<>|;$\[\]]')  # not allowed in names of files on Windows, or in lists of CMake
 _RESERVED = re.compile(r"(?i)(con|prn|aux|nul|com\d|lpt\d)(\..*)?$")
 
@@ -66,6 +66,8 @@ class FmuFiles:
 
 
 class _Refused(Exception):
+    """The FMU cannot be read; the message says why."""
+
     def __init__(self, message: str, hint: str = "export the FMU again") -> None:
         super().__init__(message)
         self.hint = hint

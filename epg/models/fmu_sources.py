@@ -67,6 +67,8 @@ class FmuSources:
 
 @dataclass(frozen=True)
 class _Listed:
+    """The sources that the FMU lists, relative to ``sources``, with their folders of headers and definitions."""
+
     files: tuple[tuple[str, Span], ...]
     include_dirs: tuple[str, ...] = ()
     definitions: tuple[tuple[str, str], ...] = ()
@@ -236,6 +238,7 @@ class _Reader:
         return found
 
     def read(self, name: str) -> bool:
+        """Parses a file.  Returns False, after an error, if it is not a text file."""
         if name in self.codes:
             return True
         data = self.files.contents[name]
@@ -248,6 +251,7 @@ class _Reader:
         return True
 
     def follow(self, units: list[str]) -> None:
+        """Parses the files that ``units`` include, directly or through other files."""
         waiting = list(units)
         while waiting:
             name = waiting.pop()

@@ -71,6 +71,8 @@ def _load(path: Path, node: YamlNode, diagnostics: Diagnostics) -> Model | None:
 
 
 class _Reader(ModelYaml):
+    """Reads the ``model.yaml`` of a controller written by hand."""
+
     def load(self) -> Model | None:
         self.before = self.diagnostics.error_count
         if not self._begin(tuple(_KEYS), _REQUIRED):

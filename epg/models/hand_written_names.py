@@ -102,6 +102,7 @@ class Names:
         return list(self._codes.values())
 
     def check_function(self, name: str, span: Span, diagnostics: Diagnostics) -> None:
+        """Reports a function that the header does not declare, or that no source defines."""
         last = name.rpartition("::")[2]
         if self._is_known(last):
             defined = {function.name for code in self.all for function in code.functions}
@@ -117,6 +118,7 @@ class Names:
         diagnostics.error("wrong-value", span, message, hint=hint, notes=notes)
 
     def check_type(self, name: str, span: Span, diagnostics: Diagnostics) -> None:
+        """Reports a type that does not exist in the header."""
         last = name.rpartition("::")[2].removeprefix("struct ")
         if not self._is_known(last):
             types = {a or b for code in self.seen for a, b in _TYPE_NAME.findall(code.file.code)}

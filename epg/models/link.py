@@ -102,6 +102,8 @@ def link(main: Code, suffixes: Iterable[str], diagnostics: Diagnostics) -> Linke
 
 
 class _Linker:
+    """Adds files to a model until all names that it uses are defined, or until no file defines the missing ones."""
+
     def __init__(self, main: Code, suffixes: tuple[str, ...], diagnostics: Diagnostics) -> None:
         self.main = main
         self.suffixes = suffixes
@@ -270,6 +272,7 @@ def _not_a_program(file: SourceFile) -> Code | None:
 
 
 def _definitions(pool: Iterable[Code]) -> Mapping[str, list[Code]]:
+    """The files that define each function, class and variable that is not static."""
     result: dict[str, list[Code]] = {}
     for code in pool:
         names = {function.owner or function.name for function in code.functions if not function.static}

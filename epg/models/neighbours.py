@@ -41,7 +41,7 @@ _ENTRY_POINT = re.compile(
     r"CalculateSubmodel\w{0,80}\s{0,80}\([^();{]{0,500}\)\s{0,80}\{|::\s{0,80}CopyInputsToVariables\s{0,80}\("
 )
 _BLANK = re.compile(r"\s+")
-_NOT_IN_LISTS = re.compile(r"[\[\]$;\"\\|]")  # of CMake
+_NOT_IN_LISTS = re.compile(r"[\[\]$;\"\\|]")  # characters that a list of CMake cannot hold
 
 
 class Neighbours:

@@ -21,6 +21,8 @@ _CDATA = "<![CDATA["
 
 @dataclass(frozen=True)
 class Token:
+    """One token.  ``span`` is the place where its value begins."""
+
     value: str
     span: Span
 

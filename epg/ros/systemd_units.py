@@ -39,6 +39,7 @@ def unit_files(agents: Sequence[Agent], installation: Installation) -> dict[str,
 
 
 def unit_name(agent: Agent) -> str:
+    """The name of the unit of one agent."""
     return f"epg-{agent.name.replace('_', '-')}.service"
 
 

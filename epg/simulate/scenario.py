@@ -62,6 +62,7 @@ class Profile:
         return (self.parts[0].start, self.parts[-1].end) if self.parts else None
 
     def value(self, time: float) -> float:
+        """The setpoint at ``time``."""
         value = self.initial
         for part in self.parts:
             if time < part.start:
@@ -99,6 +100,11 @@ class Window:
 
 @dataclass(frozen=True)
 class Homing:
+    """The limits of homing, which must end at the time ``until``.
+
+    ``duty`` limits the duty during homing, ``position`` the distance from the setpoint at its end; None is no limit.
+    """
+
     until: float
     duty: float | None = None
     position: float | None = None
