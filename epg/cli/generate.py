@@ -22,7 +22,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def report_mistake_in_template(error: Exception, user_roots: Sequence[Path], diagnostics: Diagnostics) -> None:
     """Reports a mistake in a template of the user's own kinds and platforms, and raises UserError.
 
-    Returns for an error in one of EPG's own templates, which is a bug.
+    Returns for any other error, which is a bug in EPG.
     """
     from epg.emit.template import NOT_UTF_8, mistake_in_template
     from epg.source import Span

@@ -78,7 +78,10 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
 
 
 def _robot(options: argparse.Namespace, diagnostics: Diagnostics) -> Robot | None:
-    """The target to record, with the node and namespace that it has on the network.  None after an error."""
+    """The target to record, with the node and namespace that it has on the network.
+
+    None, after an error, if there are several targets.
+    """
     from epg.ros.robot import load_robots
 
     robots = load_robots([options.target], diagnostics)

@@ -36,7 +36,7 @@ class StandIn:
 class Axis:
     """An axis that a scenario moves.
 
-    ``setpoint`` is the topic with its setpoint, ``position`` the signal that must follow the setpoint, and ``duty`` the
+    ``setpoint`` is the topic with its setpoint, ``position`` the signal that follows the setpoint, and ``duty`` the
     signal that drives the motor, or empty.  ``unit`` is the unit of the topic and of the position: ``none`` for numbers
     without a unit, empty for the default unit of scenarios.
     """

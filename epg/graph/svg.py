@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A small writer of SVG files with rectangles, lines and text.  The size of text is known, so that nothing overlaps.
+"""A small writer of SVG files with rectangles, lines and text.  The width of text is computed: nothing overlaps.
 
 >>> picture = Picture("Pan", "One box.")
 >>> picture.box(0, 0, 80, 24, "box")

@@ -74,7 +74,7 @@ class Model:
     searched: tuple[Path, ...] = ()
     """The folders beside ``directory`` that were searched: a new or removed file in them can change the model."""
     twins: tuple[Path, ...] = ()
-    """Files that are not part of the model, because they have the same text as one that is.  A change can matter."""
+    """Files that are not used, because a file of the model has the same text.  A change of them can change the model."""
 
     @property
     def instantiable(self) -> bool:

@@ -19,7 +19,7 @@ from epg.source import Span
 
 AGENT_MIDDLEWARES = ("xrce", "micro_ros")
 DEFAULT_BAUD_RATE = 115200
-"""The default baud rate of a tty.  A board on USB ignores the rate."""
+"""The default baud rate of a tty.  A board on USB accepts any rate."""
 
 _BY_ID = "/dev/serial/by-id/usb-{name}_{serial}-if00"
 """The name that udev gives to the first port of a Pico.
