@@ -105,7 +105,7 @@ def _target(app: Application, names: PathNames) -> list[str]:
 
 
 def _read(app: Application) -> tuple[list[Path], set[Path], list[Path]]:
-    """Returns the files that EPG read, the folders that it searched, and the files that it looked for in vain."""
+    """Returns the files read, the folders searched, and the files that would also be read if they existed."""
     platform = app.target.platform
     folders = set(platform.folders)
     files = [*app.files, *app.target.files]

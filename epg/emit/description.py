@@ -99,7 +99,7 @@ def _component(component: ResolvedComponent, names: PathNames) -> dict[str, Any]
 def describe_divider(found: Assignment) -> dict[str, Any] | None:
     """The requested frequency and the frequency that the divider reaches, in Hz, and the steps in one period.
 
-    ``error`` is the relative error of the frequency.  None if the assignment has no frequency.
+    ``error`` is the relative error of the frequency.  Returns None if the assignment has no frequency.
     """
     if found.frequency is None or found.asked is None:
         return None

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A hash that identifies the behaviour of an application: equal hashes mean equal behaviour.
 
-The hash covers the generated files and the sources that are compiled with them, not the files that the user writes.
+The hash covers the generated files and the sources that are compiled with them, but not the ``.tcf`` and the bindings.
 A comment in a ``.tcf``, the folder of the project and the line ends of files therefore do not change it.  The hash does
 not cover EPG's own runtime and port layers; EPG's version, which is reported beside the hash, identifies them.
 """

@@ -133,6 +133,7 @@ def _own_step(description: Description, sources: FmuSources) -> Fraction | None:
     """The step of the integration method of an FMU of 20-sim, in seconds.  None for other FMUs.
 
     The sources set it: ``xx_step_size = 0.001`` in version 4.5, ``model_instance->step_size = 0.001`` in later ones.
+    If they do not set exactly one value, it is the step of the description.
     """
     names = {function.name for _, function in sources.linked.functions()}
     if description.standard != 2 or not (

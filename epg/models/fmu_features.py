@@ -17,7 +17,7 @@ from epg.models.features import HEAP, check_features
 from epg.models.link import Linked
 from epg.source import Span
 
-#: functions of the heap that EPG supplies to FMUs; the callbacks for memory (FMI 2.0.4, section 2.1.5) use it, too
+#: functions of the heap that EPG supplies to FMUs; the callbacks for memory (FMI 2.0.4, section 2.1.5) call them, too
 PROVIDED = frozenset(("malloc", "calloc", "realloc", "free", "strdup"))
 _TAKES = re.compile(r"\b(malloc|calloc|realloc|strdup|allocateMemory)\s*\)?\s*\(")
 _GIVES_BACK = re.compile(r"\b(?:free|freeMemory)\s*\)?\s*\(")

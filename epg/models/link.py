@@ -4,8 +4,7 @@
 EPG searches the model's folder first, then the folders beside it (see ``neighbours.py``).
 
 An export also contains demo programs, FMI functions and helpers that the model does not use.  Users put drivers and
-other models beside it.  Because EPG follows only the names that are used, it leaves all these files out, without a list
-of their names.
+other models beside it.  EPG leaves these files out, because it only follows the names that are used.
 """
 
 from __future__ import annotations

@@ -52,7 +52,7 @@ class Model:
     """One model.  ``step`` is the exact time between two steps, in seconds.
 
     ``directory`` is the folder of the model.  ``files`` are all files that were read; the model can change if one of
-    them changes.  ``span`` is the begin of the model, for messages about the whole model.
+    them changes.  ``span`` is the place of messages about the whole model.
     """
 
     name: str
@@ -74,7 +74,7 @@ class Model:
     searched: tuple[Path, ...] = ()
     """The folders beside ``directory`` that were searched: a new or removed file in them can change the model."""
     twins: tuple[Path, ...] = ()
-    """Files that are not used, because a file of the model has the same text.  A change of them can change the model."""
+    """Files that are not used, because a file of the model has the same text.  If they change, the model can change."""
 
     @property
     def instantiable(self) -> bool:
