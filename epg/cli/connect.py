@@ -64,6 +64,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
 
 
 def _serve(session: Session, options: argparse.Namespace) -> int:
+    """Serves the page until it ends, and prints an address for each page that can be opened."""
     from epg.connect.server import Server
 
     shown = 0

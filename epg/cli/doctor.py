@@ -154,6 +154,7 @@ def _package(group: str, name: str, oldest: tuple[int, ...], *, required: bool) 
 
 
 def _item(finding: Finding, where: Surroundings, tools: Mapping[str, Tool]) -> Item:
+    """The report on a tool: its place and version, or the command that installs it."""
     tool = finding.tool
     if finding.status == "wrong":
         wanted = f"no {tool.holds}" if tool.holds else f"no {' or '.join(tool.programs)}"

@@ -49,6 +49,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
 
 
 def _from_files(options: argparse.Namespace, diagnostics: Diagnostics) -> dict[str, Any]:
+    """The description of a target that is made from its files, without a build."""
     from epg.cli.generate import report_mistake_in_template
     from epg.emit.application import application_topics
     from epg.emit.cmake import PathNames
@@ -109,6 +110,7 @@ def _hardware(description: dict[str, Any], wire: dict[str, Any]) -> dict[str, An
 
 
 def _text(description: dict[str, Any], wire: dict[str, Any]) -> str:
+    """The wire of one port as a table for the user."""
     model, component = description["model"], description["components"][wire["component"]]
     unit = f" [{wire['unit']}]" if wire["unit"] else ""
     component_unit = f" [{wire['component_unit']}]" if wire["component_unit"] else ""

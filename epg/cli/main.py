@@ -112,6 +112,7 @@ def _refuse(unknown: Sequence[str], parser: argparse.ArgumentParser) -> None:
 
 
 def _run(options: argparse.Namespace) -> int:
+    """Runs the chosen subcommand, prints its diagnostics and returns the exit status."""
     from epg.cli.report import diagnostics_json, format_diagnostics, to_json
     from epg.diagnostics import Diagnostics, UserError
 

@@ -74,6 +74,7 @@ class Emitter:
         return self.env if language is Code else environment([TEMPLATES, *self.roots], language)
 
     def _context(self) -> dict[str, Any]:
+        """The variables that all templates of the application and its platform can use."""
         app = self.app
         parts = [self._part(number, component) for number, component in enumerate(app.components)]
         publishers = {c.name for c in app.components if c.kind.communication == "publish"}

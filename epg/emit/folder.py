@@ -58,6 +58,7 @@ def write_folder(folder: Path, files: Mapping[str, bytes]) -> None:
 
 
 def _move(staging: Path, folder: Path, names: list[str]) -> None:
+    """Moves the files ``names`` into ``folder``, or none of them if one cannot be moved."""
     moved: list[Path] = []
     made: list[Path] = []
     try:

@@ -57,6 +57,7 @@ def remove_leftovers(path: Path) -> None:
 
 
 def _remove_unless_held(entry: os.DirEntry[str]) -> None:
+    """Removes a temporary file or folder, unless a running process has locked it."""
     with suppress(OSError):  # it is in use: Windows refuses to remove it, other systems refuse the lock
         if os.name != "nt":
             handle = os.open(entry.path, os.O_RDONLY)

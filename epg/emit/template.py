@@ -167,6 +167,7 @@ class _Environment(jinja2.Environment):
 
 
 def _problem(node: nodes.Node) -> str:
+    """The reason why a template must not contain ``node``; empty if it can."""
     if isinstance(node, nodes.Concat):
         return "'~' joins text without a filter: print the parts one after the other"
     if isinstance(node, nodes.ScopedEvalContextModifier):

@@ -113,6 +113,7 @@ def message_of(component: ResolvedComponent, macro: Macro) -> tuple[Code, str, C
 
 
 def _largest(topics: Iterable[TopicView]) -> Code:
+    """A C expression for the size of the largest message of ``topics``, in bytes; 8 if there are none."""
     sizes = [view.size for view in topics]
     largest = max((int(str(size)) for size in sizes if str(size).isdecimal()), default=8)
     others = {size for size in sizes if not str(size).isdecimal()}

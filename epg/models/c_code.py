@@ -241,6 +241,8 @@ def integer_value(expression: str, macros: Mapping[str, str]) -> int | None:
 
 
 def _sum(tokens: list[str]) -> int:
+    """The value of integers with ``+``, ``-``, ``*`` and parentheses.  Raises ValueError or IndexError for others."""
+
     def atom() -> int:
         token = tokens.pop(0)
         if token == "(":
@@ -330,6 +332,7 @@ def _function(head: str, found: Head, start: int, body_start: int, end: int) -> 
 
 
 def _variables(text: str, offset: int) -> Iterator[Variable]:
+    """The variables that one declaration defines.  ``offset`` is the offset of ``text`` in the file."""
     lead = len(text) - len(text.lstrip())
     text, offset = text[lead:], offset + lead
     matched = _TYPE.match(text)
@@ -358,6 +361,7 @@ def _variables(text: str, offset: int) -> Iterator[Variable]:
 
 
 def _split_commas(text: str, offset: int) -> Iterator[tuple[str, int]]:
+    """The parts of ``text`` between commas that are not in parentheses, brackets or braces, with their offsets."""
     depth, start = 0, 0
     for index, character in enumerate(text):
         depth += (character in "([{") - (character in ")]}")

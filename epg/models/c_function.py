@@ -351,6 +351,7 @@ class _Importer:
         return exact_number(place[1]) if place else None
 
     def _scalar_place(self, word: str) -> tuple[Span, str] | None:
+        """The place and the text of the value of :meth:`_scalar`."""
         name = self._variable_name(word)
         if name:
             code, variable = self.variables[name]
@@ -400,6 +401,7 @@ class _Importer:
         return "", self.main, self.entries["Calculate"].start
 
     def _state_count(self) -> int:
+        """The number of continuous or discrete states, from the size of their array, else from macros or the tokens."""
         found = self.variables.get(self._array("s"))
         if found and found[1].dimensions:
             return integer_value(found[1].dimensions.strip("[] "), self.macros) or 0
@@ -428,6 +430,7 @@ class _Importer:
         return not {"u", "y"} & {a for f in self.entries.values() for a in self._entry(f).arguments}
 
     def _port_lines(self, roots: Iterable[Function]) -> tuple[list[PortLine], list[PortLine]]:
+        """The lines that connect inputs and outputs with the model.  Without vectors, they are in the metadata."""
         inputs: list[PortLine] = []
         outputs: list[PortLine] = []
         if self._vectorless():

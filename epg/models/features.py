@@ -229,6 +229,7 @@ class _Causes:
         return True
 
     def report(self, diagnostics: Diagnostics) -> None:
+        """Reports one error for the uses of files, and one for the uses of the heap."""
         hint = "replace tables in files by equations or parameters in 20-sim"
         if self._foreign or any(text.startswith("uses") for text, _ in self._files):
             hint = "let the model have what it reads as parameters, or as constants in its code"
@@ -263,6 +264,7 @@ def _check_call(
     declared: frozenset[str],
     linked: Linked,
 ) -> None:
+    """Reports one call of a function that a target does not have, or whose effect differs there."""
     span = code.file.span(start, start + len(name))
     if name in stubs:
         holder, stub = stubs[name]

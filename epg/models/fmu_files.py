@@ -101,6 +101,7 @@ def read_fmu_files(path: Path, diagnostics: Diagnostics) -> FmuFiles | None:
 
 
 def _folder(root: Path) -> FmuFiles:
+    """The description and the sources in the folder of an unpacked FMU."""
     names = [DESCRIPTION]
     for folder, folders, files in os.walk(root / SOURCES):
         inside = Path(folder).relative_to(root)
@@ -129,6 +130,7 @@ def _folder(root: Path) -> FmuFiles:
 
 
 def _archive(path: Path) -> FmuFiles:
+    """The description and the sources in an archive."""
     import zipfile  # not at the top: the import would slow down every run
     import zlib
 

@@ -133,6 +133,7 @@ def _no_sources(files: FmuFiles, present: list[str], description: Description, d
 
 
 def _listed(files: FmuFiles, description: Description, diagnostics: Diagnostics) -> _Listed | None:
+    """The sources that the description or the build description names, or else all C files in ``sources``."""
     if description.standard == 3 and BUILD in files.contents:
         whole = Span(str(files.path(BUILD)))
         root = parse_xml(files.contents[BUILD], whole, diagnostics, hint="export the FMU again", shown=files.archive)

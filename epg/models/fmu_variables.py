@@ -131,6 +131,7 @@ def _variables_3(root: Element, diagnostics: Diagnostics) -> tuple[Variable, ...
 
 
 def _listed(root: Element, diagnostics: Diagnostics) -> list[Element]:
+    """The elements of all variables.  Empty, after an error, if there are too many."""
     listed = root.find("ModelVariables")
     elements = listed.children if listed is not None else []
     if len(elements) > _LARGEST_VARIABLES:

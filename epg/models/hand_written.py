@@ -149,6 +149,7 @@ class _Reader(ModelYaml):
         return node.value
 
     def _types(self, style: str) -> tuple[str, str]:
+        """The types of the structs with the inputs and the outputs.  Empty with ``style: arrays``."""
         node = self.node.get("types")
         if not style:
             return "", ""
@@ -307,6 +308,7 @@ class _Reader(ModelYaml):
     # files ----------------------------------------------------------------------------------------------------------
 
     def _files(self, key: str, suffixes: tuple[str, ...]) -> tuple[Path, ...]:
+        """The files or folders in the list ``key``.  Without ``suffixes``, they are folders."""
         node = self.node.get(key)
         if node is None:
             return ()
@@ -351,6 +353,7 @@ class _Reader(ModelYaml):
         return name
 
     def _renames(self, sources: tuple[Path, ...]) -> tuple[str, ...]:
+        """The global symbols of C sources, which generated macros rename."""
         names: set[str] = set()
         macros: set[str] = set()
         for path in sources:

@@ -176,6 +176,7 @@ def _plain(path: Path) -> Path:
 
 
 def _other_case(name: str, search: Sequence[Path]) -> Path | None:
+    """The file in one of the folders ``search`` whose name differs from ``name`` only in case."""
     for directory in search:
         path: Path | None = directory
         for part in name.replace("\\", "/").split("/"):

@@ -117,6 +117,7 @@ class _Linker:
         self.good = True
 
     def link(self) -> Linked | None:
+        """Adds files until no more are found.  Returns None after an error."""
         position = 0
         while position < len(self.units):
             self._follow(self.units[position])
@@ -153,6 +154,7 @@ class _Linker:
             self._add(name, holders, _choose(holders, self.main.file.path))
 
     def _used(self, unit: Code) -> set[str]:
+        """The names that ``unit`` uses, also those inside the macros of headers."""
         names = set(unit.used)
         for header in self.headers.found.values():
             names |= {
@@ -163,6 +165,7 @@ class _Linker:
         return names
 
     def _add(self, name: str, holders: list[Code], chosen: Code | None) -> None:
+        """Adds the file ``chosen``.  Reports an error if it is None, because several files define ``name``."""
         if chosen is not None:
             self.units.append(chosen)
             return

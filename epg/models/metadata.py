@@ -141,6 +141,7 @@ def cross_check(model: Model, prefix: str, metadata: Metadata, diagnostics: Diag
 
 
 def _check_names(model: Model, tokens: Tokens, diagnostics: Diagnostics) -> bool:
+    """Warns of names of ports and parameters that differ in the tokens.  Returns True if all agree."""
     same = True
     for kind, names in (
         ("INPUT", [port.name for port in model.inputs]),
@@ -207,6 +208,7 @@ def warn_of_values(
 def _check_configured(
     configuration: Configuration, direction: str, ports: Sequence[Port], sources: Span, diagnostics: Diagnostics
 ) -> None:
+    """Warns of ports that are only in the configuration or only in the sources."""
     told = {port.name: port for port in configuration.ports if port.direction == direction}
     names = {port.name for port in ports}
     for name in sorted(names - told.keys()):

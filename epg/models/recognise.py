@@ -138,6 +138,7 @@ def _sources(folder: Path) -> list[Candidate]:
 
 
 def _source_candidate(path: Path, diagnostics: Diagnostics) -> Candidate | None:
+    """The model whose entry points or class a source file defines, also if the file is not whole.  Else None."""
     file = read_source(path, diagnostics)
     if file is None or "Calculate" not in file.text:
         return None
@@ -177,6 +178,7 @@ def _tokens_candidate(path: Path) -> Candidate:
 
 
 def _load_file(path: Path, whole: Span, diagnostics: Diagnostics) -> Model | None:
+    """The model of which ``path`` is the main file.  None if it is not one; the reasons are reported."""
     suffix = path.suffix.lower()
     if suffix == SUFFIX:
         return _load_fmu(path, diagnostics)

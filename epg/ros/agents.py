@@ -93,6 +93,7 @@ def plan_agents(robots: Sequence[Robot], wiring: Wiring, diagnostics: Diagnostic
 
 
 def _on_usb(robot: Robot, serials: Sequence[str], diagnostics: Diagnostics) -> list[Agent]:
+    """The agents for the boards with these serial numbers, which all run the target ``robot``."""
     if not serials:
         message = f"'{robot.name}' is on USB: what is the serial number of its board?"
         hint = f"'ls /dev/serial/by-id' shows it while the board is plugged in; then --board {robot.name}=<number>"

@@ -134,6 +134,7 @@ def _read(file: Path) -> Robot | None:
 
 
 def _robot(file: Path, data: dict[str, Any]) -> Robot:
+    """The target in a description.  Raises ValueError, KeyError or TypeError if it is not one."""
     communication = data["communication"]
     domain = communication.get("domain")
     if domain is not None and (type(domain) is not int or not 0 <= domain <= 232):

@@ -94,6 +94,7 @@ def _said(text: str) -> tuple[str, str]:
 
 
 def _wait(process: subprocess.Popen[bytes], duration: float, realtime: bool, progress: Progress) -> bool:
+    """Waits for the end of a process.  Returns False if it takes longer than :func:`patience`."""
     begin = time.monotonic()
     while (elapsed := time.monotonic() - begin) < patience(duration):
         try:

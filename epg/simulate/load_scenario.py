@@ -109,6 +109,7 @@ class _Reader:
         )
 
     def event(self, node: YamlNode, duration: Fraction, profiles: Mapping[str, Profile]) -> Event:
+        """One event.  After a mistake, an event that does nothing."""
         at = self.time(node["at"])
         actions = [key for key, _ in node.items() if key in _ACTIONS]
         if len(actions) != 1:

@@ -26,6 +26,7 @@ def setpoint_rows(scenario: Scenario, *, realtime: bool = False) -> list[Row]:
 
 
 def _event_rows(event: Event, realtime: bool) -> list[Row]:
+    """The rows of one event.  Names that begin with ``$`` are commands to the host platform."""
     if event.kind in ("enable", "disable"):
         return [(event.at, "$enable", float(event.kind == "enable"))]
     if event.kind == "setpoint":

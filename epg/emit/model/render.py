@@ -124,6 +124,7 @@ def _told(item: Port | Parameter) -> Code:
 
 
 def _c_function(model: Model, details: CFunctionExport) -> dict[str, Any]:
+    """The template variables of ``c_function.c.j2``."""
     declared = {variable.name for variable in details.variables}
     states = [array for array in (details.states, details.rates) if array] if details.state_count else []
     elements = [element.array for element in (*details.inputs, *details.outputs)]
