@@ -14,7 +14,7 @@ from epg.simulate.plot import BLUE, GREY, ORANGE
 
 def plot_comparison(comparison: Comparison, run: str, reference: str, path: Path) -> None:
     """Writes the plot into ``path``.  ``run`` and ``reference`` are the names of the runs in the legend."""
-    from matplotlib.figure import Figure  # not pyplot, which needs a window system and has global state
+    from matplotlib.figure import Figure  # not pyplot, which can use a window system and has global state
 
     pairs = [pair for pair in comparison.pairs if not math.isnan(pair.rms)]
     figure = Figure(figsize=(8.0, 3.7 * len(pairs)), layout="constrained")

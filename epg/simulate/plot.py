@@ -17,7 +17,7 @@ BLACK, BLUE, ORANGE, GREY = "#000000", "#0072B2", "#D55E00", "#999999"
 def plot(trackings: Sequence[Tracking], path: Path, diagnostics: Diagnostics) -> bool:
     """Writes the plot into ``path``.  Returns False, after a warning with a remedy, if matplotlib is not installed."""
     try:
-        from matplotlib.figure import Figure  # not pyplot, which needs a window system and has global state
+        from matplotlib.figure import Figure  # not pyplot, which can use a window system and has global state
     except ImportError as error:
         diagnostics.warning(
             "matplotlib-missing",
