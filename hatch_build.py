@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Hooks of the build: what a wheel holds besides the Python package, and which packages it needs.
+"""Hooks of the build: they add files other than the Python package to a wheel, and list the packages that EPG needs.
 
-A wheel carries copies of ``cmake/``, ``targets/``, ``schemas/``, Zephyr's module and the page about messages in
-``epg/_data``; an editable install reads those of the checkout, so that an edit there is seen at once.  Both get
-``share/EPG/cmake/EPGConfig.cmake``, where CMake looks.
+A wheel has copies of ``cmake/``, ``targets/``, ``schemas/``, Zephyr's module and the page about messages in
+``epg/_data``.  An editable install uses the files of the checkout, so a change there has an effect at once.  Both
+install ``share/EPG/cmake/EPGConfig.cmake``, where CMake searches for packages.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ DATA = ("cmake", "targets", "schemas", "integration", "zephyr", "zephyr_module",
 
 
 EXTRAS = {"zephyr": "zephyr", "plot": "plot", "ros": "ros", "test": "test_all"}
-"""The optional dependencies that pip knows, and the file of ``epg/lock`` that lists each."""
+"""The optional dependencies ("extras" of pip), and the file of ``epg/lock`` that lists the packages of each."""
 
 
 class EpgMetadataHook(MetadataHookInterface):
-    """``epg/lock/*.in`` is the one place that names packages and their oldest versions."""
+    """Reads the dependencies from ``epg/lock/*.in``, the only files that name packages and their oldest versions."""
 
     PLUGIN_NAME = "custom"
 

@@ -4,16 +4,16 @@
 The data pass four layers, none of which prints, exits or keeps global state:
 
 load
-    Files as their authors wrote them: ``epg.documents`` (YAML with positions and its schemas), ``epg.models`` (20-sim
-    exports and other models), ``epg.catalog`` (the folders below ``targets/``).
+    Reads the files: ``epg.documents`` (YAML with positions, and its schemas), ``epg.models`` (20-sim exports and other
+    models), ``epg.catalog`` (the folders below ``targets/``).
 ``epg.check``
-    What a target says: names, units, the merge of ``.tcf`` files that extend each other.
+    Merges the ``.tcf`` files that extend each other and checks names, units and schemas.
 ``epg.resolve``
-    One :class:`~epg.resolve.application.Application`: every wire typed, every pin and peripheral assigned.
+    Makes an :class:`~epg.resolve.application.Application`: every wire has a type, every pin and peripheral is assigned.
 ``epg.emit``
-    The application as C, CMake and JSON text, and the writer that touches only what changed.
+    Makes C, CMake and JSON text of the application, and writes only the files that changed.
 
-docs/architecture.md lists all parts of the package and which may import which.
+docs/architecture.md lists all parts of the package, and which part may import which.
 ``epg.cli`` is the only caller that prints or exits.
 """
 

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``python -m epg``, and ``python <folder>/epg/__main__.py``, which works where PYTHONPATH is ignored."""
+"""Starts EPG: ``python -m epg``, or ``python <folder>/epg/__main__.py`` where Python ignores PYTHONPATH."""
 
 import sys
 
 if sys.version_info < (3, 10):
     sys.exit("EPG needs Python 3.10 or newer; this is %d.%d: %s" % (*sys.version_info[:2], sys.executable))
 
-if not __package__:  # started by its path: the package's parent takes the place of the package's own folder
+if not __package__:  # Started by its path: Python has put the package's folder into sys.path, not the folder above it.
     from os.path import abspath, dirname
 
     sys.path[0] = dirname(dirname(abspath(__file__)))

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Makes EPG's Python packages importable in whatever Python was found.
+"""Makes the Python packages that EPG needs importable in any Python.
 
-CMake selects a Python that may lack jinja2, PyYAML or jsonschema, and that may refuse ``pip install`` (Debian's
-externally managed one has no ensurepip either).  So packages are installed, once, with ``pip install --target`` into
-a folder of EPG's cache that is named after the interpreter and the lock file.  ``epg/lock/*.in`` name the packages and
-their oldest versions; the lock files (``epg/lock/*.txt``) pin every file by hash.  The folder is prepared under a
-temporary name and renamed when it is complete, so an interrupted or concurrent installation never leaves half of it.
+The Python that CMake selects may lack jinja2, PyYAML or jsonschema, and it may refuse ``pip install``.  (Debian's
+externally managed Python has no ensurepip either.)  Therefore EPG installs the packages once, with
+``pip install --target``, into a folder of its cache.  The name of this folder contains the interpreter and the hash of
+the lock file.  ``epg/lock/*.in`` name the packages and their oldest versions; the lock files (``epg/lock/*.txt``) pin
+every file by its hash.  The folder is prepared under a temporary name and renamed when it is complete.  Thus an
+interrupted or concurrent installation never leaves an incomplete folder.
 
-Uses only the standard library.  To renew a lock file::
+This module uses only the standard library.  To renew a lock file::
 
     uv pip compile --universal --generate-hashes --python-version 3.10 --no-header --no-annotate X.in -o X.txt
 """
@@ -21,16 +22,16 @@ import sys
 from importlib.machinery import ModuleSpec
 from pathlib import Path
 
-# Every run pays for what is imported here: what only an installation needs is imported there.
+# Every run of EPG imports the modules above.  Modules that only an installation needs are imported in its functions.
 
 LOCKS = Path(__file__).resolve().parent / "lock"
 
 Requirements = dict[str, tuple[str, tuple[int, ...]]]
-"""For each module that must be there: its distribution, and the oldest version that will do."""
+"""For each module that EPG needs: its distribution, and the oldest version that EPG accepts."""
 
 
 def requirements(group: str) -> Requirements:
-    """The packages of ``epg/lock/<group>.in``, from which the lock file and the extras of EPG's wheel are made, too.
+    """The packages of ``epg/lock/<group>.in``.  The lock file and the extras of EPG's wheel are made of the same file.
 
     A line is ``-r <other>.in`` or ``<distribution>>=<version>``.
     """
@@ -46,11 +47,11 @@ def requirements(group: str) -> Requirements:
 
 
 class MissingPackages(Exception):
-    """Packages are missing and were not installed; the message says what to do."""
+    """Packages are missing and were not installed.  The message says how the user can get them."""
 
 
 def cache_folder() -> Path:
-    """``$EPG_CACHE``, else ``~/.cache/epg`` (``%LOCALAPPDATA%\\epg`` on Windows)."""
+    """The folder of EPG's cache: ``$EPG_CACHE``, else ``~/.cache/epg`` (``%LOCALAPPDATA%\\epg`` on Windows)."""
     if os.environ.get("EPG_CACHE"):
         return Path(os.environ["EPG_CACHE"])
     if os.name == "nt" and os.environ.get("LOCALAPPDATA"):
@@ -59,16 +60,17 @@ def cache_folder() -> Path:
 
 
 def cache_problem(folder: Path) -> str:
-    """What is wrong with EPG's cache in ``folder``; empty if others cannot change what is in it, and EPG runs.
+    """The reason why EPG must not use the cache in ``folder``; empty if only the user can change its files.
 
-    A folder that is not there yet is made for its owner alone.  On Windows a folder of the user is private anyway.
+    EPG runs programs of its cache, so other users must not be able to change them.  A folder that does not exist yet
+    is not a problem: EPG makes it with access for its owner only.  On Windows a folder of the user is always private.
     """
     if os.name == "nt":
         return ""
     try:
         found = folder.stat()
     except OSError:
-        return ""  # whoever needs it says what is wrong
+        return ""  # The function that uses the folder reports the problem.
     own = {0, os.geteuid()}
     if os.geteuid() == 0 and os.environ.get("SUDO_UID", "").isdecimal():
         own.add(int(os.environ["SUDO_UID"][:10]))
@@ -80,7 +82,10 @@ def cache_problem(folder: Path) -> str:
 
 
 def _is_own_group(group: int) -> bool:
-    """Whether a group has one member, the user: systems that make one for each user let it write by default."""
+    """True if the user is the only member of a group.
+
+    Many systems make such a group for each user, and by default they allow it to write into the user's folders.
+    """
     import grp
     import pwd
 
@@ -103,10 +108,10 @@ def _check_cache() -> None:
 
 
 def ensure(group: str = "generator", *, install: bool | None = None) -> None:
-    """Makes the packages of ``group`` importable, installing them into EPG's cache if need be.
+    """Makes the packages of ``group`` importable.  Installs them into EPG's cache if they are missing.
 
-    ``install`` None: allowed unless the environment variable ``EPG_NO_INSTALL`` is set.  Raises
-    :class:`MissingPackages`.
+    ``install`` allows this installation.  With None it is allowed unless the environment variable ``EPG_NO_INSTALL``
+    is set.  Raises :class:`MissingPackages`.
     """
     _check_cache()
     missing = _missing(group)
@@ -126,7 +131,10 @@ def ensure(group: str = "generator", *, install: bool | None = None) -> None:
 
 
 def main(arguments: list[str]) -> int:
-    """``python epg/bootstrap.py GROUP``: prints the folder to add to the module path, or nothing if none is needed."""
+    """``python epg/bootstrap.py GROUP``: prints the folder that must be added to the module path.
+
+    Prints an empty line if this Python has all packages already.  Returns 4 if packages are missing.
+    """
     try:
         missing = bool(_missing(arguments[0]))
         ensure(arguments[0])
@@ -151,9 +159,9 @@ def _missing(group: str) -> list[str]:
 
 
 def _version(distribution: str, spec: ModuleSpec) -> str | None:
-    """The version of an installed module, by the folder that an installer leaves beside it; None if there is none.
+    """The version of an installed module, read from the name of its ``dist-info`` or ``egg-info``; None without one.
 
-    ``importlib.metadata`` knows more and takes twice as long to import as ``python -c pass`` takes to run.
+    ``importlib.metadata`` would handle more cases, but its import alone takes twice as long as ``python -c pass``.
     """
     if spec.origin is None:
         return None
@@ -169,7 +177,7 @@ def _version(distribution: str, spec: ModuleSpec) -> str | None:
 
 
 def version_numbers(version: str) -> tuple[int, ...]:
-    """The numbers of a version that are compared: ``6.0.1`` gives (6, 0, 1)."""
+    """The first three numbers of a version, to compare it with others: ``6.0.1`` gives (6, 0, 1)."""
     numbers = []
     for part in version.split(".")[:3]:
         digits = "".join(char for char in part if char.isdigit())
@@ -178,7 +186,7 @@ def version_numbers(version: str) -> tuple[int, ...]:
 
 
 def package_folder(group: str) -> Path:
-    """The folder of EPG's cache that holds the packages of ``group`` for this interpreter, once they are installed."""
+    """The folder of EPG's cache for the packages of ``group`` and this interpreter.  It may not exist yet."""
     import hashlib
 
     lock = hashlib.sha256((LOCKS / f"{group}.txt").read_bytes()).hexdigest()[:12]
@@ -221,14 +229,14 @@ def _install(group: str, folder: Path, missing: list[str]) -> None:
         try:
             os.rename(temporary, folder)
         except OSError:
-            if not folder.is_dir():  # somebody else may have been faster; then theirs will do
+            if not folder.is_dir():  # Else another process has installed the same packages in the meantime: use those.
                 raise
     finally:
         shutil.rmtree(temporary, ignore_errors=True)
 
 
 def _show_progress(line: str) -> None:
-    """Repeats a line of pip's output in a few words, so that a download of a minute is not a minute of silence."""
+    """Prints a short form of a line of pip's output.  A download can take a minute, and the user must see progress."""
     words = line.split()
     if line.startswith(("Collecting ", "Processing ")) and len(words) > 1:
         # "Collecting jinja2==3.1.6", or "Processing /a/folder/jinja2-3.1.6-py3-none-any.whl"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where EPG's own files are, in a checkout, an editable install and a wheel alike."""
+"""The places of EPG's own files.  They are found in a checkout, in an editable install and in a wheel."""
 
 from __future__ import annotations
 
@@ -10,7 +10,10 @@ from pathlib import Path
 
 @cache
 def data_folder(name: str) -> Path:
-    """The folder ``cmake``, ``targets`` or ``schemas``: beside the package in a checkout, inside it in a wheel."""
+    """A folder of EPG such as ``cmake``, ``targets`` or ``schemas``.
+
+    In a checkout it is beside the Python package, in a wheel it is inside the package.
+    """
     package = Path(__file__).resolve().parent
     for candidate in (package / "_data" / name, package.parent / name):
         if candidate.is_dir():
@@ -19,5 +22,5 @@ def data_folder(name: str) -> Path:
 
 
 def targets_roots(user_folders: Iterable[str | Path] = ()) -> tuple[Path, ...]:
-    """The folders searched for boards, platforms, kinds and robots: the user's first, then EPG's own."""
+    """The folders of targets in the order in which EPG searches them: the user's folders, then EPG's own folder."""
     return (*(Path(folder) for folder in user_folders if str(folder)), data_folder("targets"))

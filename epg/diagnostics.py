@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What EPG tells a user about their files: problems with position, caret and hint, as compilers do.
+"""Diagnostics: mistakes in a user's files, each with a position, an id and a hint, as compilers report them.
 
 >>> problems = Diagnostics()
 >>> problems.error("unknown-key", Span("a.tcf", 2, 1, 5), "unknown key 'nod'", hint="did you mean 'node'?")
@@ -18,7 +18,7 @@ from epg.source import Span
 
 @dataclass(frozen=True)
 class Note:
-    """A second place that belongs to a problem: the other user of a pin, the file that extends this one."""
+    """A second position that belongs to a diagnostic: the other user of a pin, or the file that extends this one."""
 
     message: str
     span: Span
@@ -26,13 +26,13 @@ class Note:
 
 @dataclass(frozen=True)
 class Diagnostic:
-    """One problem. ``id`` is stable: documentation, tests and programs refer to it.
+    """One error, warning or note.  ``id`` must not change: documentation, tests and programs refer to it.
 
-    ``about`` names what it is about where the position does not: ``inputs.position_pan`` for a port that no line binds.
+    ``about`` names the subject if the position cannot show it: ``inputs.position_pan`` for a port that no line binds.
     """
 
     id: str
-    severity: str  # "error", "warning" or "note": something to know that is right as it is
+    severity: str  # "error", "warning" or "note".  A note is information: the user need not change anything.
     span: Span
     message: str
     hint: str = ""
@@ -42,7 +42,7 @@ class Diagnostic:
 
 @dataclass
 class Diagnostics:
-    """Collects the problems of one run, so that all are reported at once."""
+    """Collects the diagnostics of one run, so that the user sees all of them at once.  Each is kept once."""
 
     items: list[Diagnostic] = field(default_factory=list)
     _known: set[Diagnostic] = field(default_factory=set, repr=False, compare=False)
@@ -63,13 +63,13 @@ class Diagnostics:
         self._add(Diagnostic(id, "note", span, message, hint))
 
     def add_all(self, others: Iterable[Diagnostic]) -> None:
-        """Adds what was said elsewhere, each once."""
+        """Adds diagnostics that another collection holds, except those that this one has already."""
         for diagnostic in others:
             self._add(diagnostic)
 
     @property
     def wants_hints(self) -> bool:
-        """Whether a hint that is searched among many names is worth its time: not for the thousandth problem."""
+        """True while there are fewer than 50 diagnostics.  To find the nearest of many names takes time for each."""
         return len(self.items) < 50
 
     def _add(self, diagnostic: Diagnostic) -> None:
@@ -79,7 +79,7 @@ class Diagnostics:
 
     @property
     def error_count(self) -> int:
-        for item in self.items[self._counted :]:  # asked for at every step of the way
+        for item in self.items[self._counted :]:  # Count new items only: every check reads this property.
             self._errors += item.severity == "error"
         self._counted = len(self.items)
         return self._errors
@@ -92,13 +92,13 @@ class Diagnostics:
         return iter(self.items)
 
     def stop_if_errors(self) -> None:
-        """Raise :class:`UserError` if there is any error: called between layers."""
+        """Raises :class:`UserError` if there is an error.  Callers do this between two layers."""
         if self.has_errors:
             raise UserError(self)
 
 
 class UserError(Exception):
-    """A user's files hold mistakes, and all of them are in ``diagnostics``.  Any other exception is a bug in EPG."""
+    """A user's files have mistakes; ``diagnostics`` holds all of them.  Any other exception is a bug in EPG."""
 
     def __init__(self, diagnostics: Diagnostics) -> None:
         super().__init__(f"{len(diagnostics.items)} problem(s)")
@@ -106,7 +106,10 @@ class UserError(Exception):
 
 
 def did_you_mean(word: str, choices: Iterable[str], otherwise: str = "") -> str:
-    """A hint that names the choice nearest to ``word``, or ``otherwise`` with all choices when none is near."""
+    """A hint that names the choice nearest to ``word``.
+
+    If no choice is near, the hint is ``otherwise`` and a list of the choices, at most 24.  Empty without choices.
+    """
     known = sorted(choices)
     folded = {choice.casefold(): choice for choice in known}
     near = difflib.get_close_matches(word.casefold(), folded, n=1, cutoff=0.6)

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How EPG is installed: the one text for messages and generated projects.  CMake's files, the README and
-``docs/installing.md`` repeat it; ``tests/docs/test_installing.py`` compares them.
+"""The command that installs EPG, for messages and generated projects.
+
+CMake's files, the README and ``docs/installing.md`` repeat it; ``tests/docs/test_installing.py`` compares them.
 """
 
 from __future__ import annotations
 
 ACTIVATE = ". ~/epg-environment/bin/activate"
-"""What makes the program ``epg`` available in a terminal."""
+"""The command that makes the program ``epg`` available in a terminal."""
 
 _MAKE = "python3 -m venv ~/epg-environment"
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A complete project for a model and a target: which files, with what in them.
+"""``epg new``: makes a complete project for a model and a target, with the contents of all its files.
 
 >>> # project = new_project(ProjectRequest("jiwy", Path("jiwy"), "rpi_pico_freertos_jiwy", Path("export")), diagnostics)
 >>> # project.files["jiwy.tcf"], project.open
@@ -37,21 +37,24 @@ from epg.source import Span
 from epg.tools.tools import load_tools
 
 MODEL = "model"
-"""Where a model goes that lies outside of the project."""
+"""The folder in the project that takes a copy of a model from outside of the project."""
 IMPORT = "epg_import.cmake"
 _EDITOR_SETTINGS = ".vscode/settings.json"
-"""Says which schema an editor uses for which files."""
+"""The file of the project that tells an editor which schema belongs to which files."""
 
 _SHOWN = 3
-"""Files that a message lists."""
+"""The number of files that a message lists."""
 
 UNBOUND = frozenset(("unbound-input", "unbound-output", "needs-bound"))
-"""Messages that come of ports without a component."""
+"""The ids of diagnostics about ports without a component."""
 
 
 @dataclass(frozen=True)
 class ProjectRequest:
-    """A project as it is asked for.  ``name`` None: that of ``folder``; ``middleware`` None: the one that will do."""
+    """The arguments of ``epg new``.
+
+    If ``name`` is None, the project has the name of ``folder``.  If ``middleware`` is None, EPG chooses one.
+    """
 
     name: str | None
     folder: Path
@@ -67,7 +70,10 @@ class ProjectRequest:
 
 @dataclass(frozen=True)
 class NewProject:
-    """Contents of all files by their names below the project's folder; ``open`` are ports that could not be bound."""
+    """A project that is not written yet.
+
+    ``files`` maps names below the project's folder to contents.  ``open`` lists the ports that could not be bound.
+    """
 
     plan: ProjectPlan
     files: Mapping[str, bytes]
@@ -77,10 +83,10 @@ class NewProject:
 
 @dataclass(frozen=True)
 class _Base:
-    """What a project begins with: a target, with the predefined configuration ``extends`` if one was named.
+    """The start of a project: a target, and the predefined configuration ``extends`` if the user named one.
 
-    ``middleware`` is the one to write into the project's ``.tcf``, empty where the configuration's own stays, when
-    ``written`` is None.
+    ``middleware`` is the name to write into the project's ``.tcf``, and ``written`` is this middleware.  If the
+    middleware of the predefined configuration stays, ``middleware`` is empty and ``written`` is None.
     """
 
     target: Target
@@ -92,7 +98,7 @@ class _Base:
 
 
 def new_project(request: ProjectRequest, diagnostics: Diagnostics) -> NewProject | None:
-    """The project, nothing of it written yet, or None after reporting why there is none."""
+    """Makes the project without writing its files.  Returns None after reporting mistakes in the request."""
     name = project_name(request.folder) if request.name is None else request.name
     check_name(name, _argument(name), diagnostics)
     problem = project_folder_problem(os.path.abspath(request.folder))
@@ -118,7 +124,10 @@ def new_project(request: ProjectRequest, diagnostics: Diagnostics) -> NewProject
 
 
 def write_project(request: ProjectRequest, diagnostics: Diagnostics) -> NewProject:
-    """Writes a new project, all of it or nothing, and replaces no file.  Raises UserError with nothing written."""
+    """Writes a new project: either all of its files or none.  Existing files are never replaced.
+
+    Raises :class:`~epg.diagnostics.UserError`; then nothing was written.
+    """
     project = new_project(request, diagnostics)
     diagnostics.stop_if_errors()
     assert project is not None
@@ -138,9 +147,10 @@ def write_project(request: ProjectRequest, diagnostics: Diagnostics) -> NewProje
 
 
 def check_project(project: NewProject, request: ProjectRequest, diagnostics: Diagnostics) -> None:
-    """What ``epg check`` says about a project that was written, but for the ports that nobody has bound.
+    """Adds the diagnostics of ``epg check`` about a project that was written.
 
-    What ``diagnostics`` says about the original of a copied model is left out where it is true of the copy too.
+    Diagnostics about ports without a component are left out: a new project may have them.  A diagnostic about the
+    original of a copied model is removed if the same one is reported for the copy.
     """
     problems = Diagnostics()
     load_application(_application_request(project.plan, request.folder, request), problems)
@@ -150,7 +160,7 @@ def check_project(project: NewProject, request: ProjectRequest, diagnostics: Dia
 
 
 def project_name(folder: Path) -> str:
-    """A C identifier after the name of a folder: ``my robot`` gives ``my_robot``."""
+    """A C identifier made of the name of a folder: ``my robot`` gives ``my_robot``."""
     name = re.sub(r"[^A-Za-z0-9]+", "_", Path(os.path.abspath(folder)).name).strip("_")
     return f"robot_{name}".rstrip("_") if not name or name[0].isdigit() else name
 
@@ -160,7 +170,7 @@ def _argument(text: str) -> Span:
 
 
 def _find_base(request: ProjectRequest, catalog: Catalog, diagnostics: Diagnostics) -> _Base | None:
-    """The target or the predefined configuration that was named, or None after reporting what is wrong with it."""
+    """The target or the predefined configuration that the request names, or None after reporting mistakes."""
     name = request.target
     targets, files = catalog.target_names(), predefined_tcf_names(request.roots)
     extends = "" if name in targets else f"{name.removesuffix('.tcf')}.tcf"
@@ -195,7 +205,11 @@ def _choose_middleware(
     catalog: Catalog,
     diagnostics: Diagnostics,
 ) -> str:
-    """The one ``wanted``; else "" where the configuration's own has code; else the platform's first that has."""
+    """The name of the middleware to write into the project's ``.tcf``; "" to keep the one of ``configuration``.
+
+    The middleware ``wanted`` by the user comes first.  The one of ``configuration`` stays if it can be built.
+    Otherwise it is the first middleware of the platform that can be built, or "none".
+    """
     offered = target.platform.middlewares
     if wanted is not None:
         if wanted not in offered:
@@ -210,7 +224,10 @@ def _choose_middleware(
 
 
 def _model_files(request: ProjectRequest, model: Model, diagnostics: Diagnostics) -> tuple[str, dict[str, bytes]]:
-    """Where the model will be, relative to the project, and the files to copy there: none if it is there already."""
+    """The place of the model relative to the project, and the files to copy there.
+
+    There are no files to copy if the model is inside of the project already.
+    """
     place, root = Path(os.path.realpath(request.model)), Path(os.path.realpath(request.folder))
     if place == root or root in place.parents:
         return place.relative_to(root).as_posix(), {}
@@ -257,7 +274,7 @@ def _plan(name: str, base: _Base, model: Model, place: str, request: ProjectRequ
 def _make(
     plan: ProjectPlan, base: _Base, copied: Mapping[str, bytes], model: Model, roots: Sequence[Path]
 ) -> NewProject:
-    """The project with its text; ``model`` as it will be there."""
+    """Makes the texts of the project; ``model`` is the model as it will be in the project."""
     ports = (*model.inputs, *model.outputs)
     model_copied = bool(copied)
     if base.configuration is not None:
@@ -286,13 +303,13 @@ def _make(
 
 
 def _editor_schemas(catalog: Catalog, built_in: bool) -> dict[str, bytes]:
-    """The schemas that the settings name, with the kinds and boards that this EPG knows."""
+    """The schemas that the editor's settings name, with the kinds and boards of the catalog."""
     schemas = {name: json.dumps(editor_schema(name, catalog, built_in=built_in)) for name in USER_FILES}
     return {f".vscode/schemas/{name}.schema.json": f"{text}\n".encode() for name, text in schemas.items()}
 
 
 def _copied_model(files: Mapping[str, bytes], place: str) -> Model:
-    """A model as it is after copying: one written by hand may be called after its folder."""
+    """Loads a model from its copied files.  The copy may have another name: a C model can be named after its folder."""
     with tempfile.TemporaryDirectory(prefix="epg-new-") as temporary:
         write_folder(Path(temporary) / "project", files)
         model = load_model(Path(temporary) / "project" / place, Diagnostics())
@@ -301,12 +318,12 @@ def _copied_model(files: Mapping[str, bytes], place: str) -> Model:
 
 
 def _component_name(port: str) -> str:
-    """The port's own name, unless a component may not be called so."""
+    """The name of the component for a port: the port's own name, if a component may have it."""
     return port if identifier_problem(port) is None else f"port_{port}"
 
 
 def _stand_ins(model: Model) -> dict[str, StandIn]:
-    """A topic for every port of the model, by the port's name."""
+    """For each port of the model, by its name, a component that makes the port a topic."""
     kinds = {"input": "ros_subscriber", "output": "ros_publisher"}
     types = {"real": "", "integer": "int32", "boolean": "bool"}
     return {
@@ -316,7 +333,7 @@ def _stand_ins(model: Model) -> dict[str, StandIn]:
 
 
 def _application_request(plan: ProjectPlan, folder: Path, request: ProjectRequest) -> Request:
-    """The project in ``folder`` as CMake will ask for it."""
+    """The request that CMake will make for the project in ``folder``."""
     inside = folder / plan.model
     return Request(
         plan.name,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a new project simulates: the robot's plant, where EPG has one, and a scenario that makes something move."""
+"""The simulation of a new project: the plant of the robot, if EPG has one, and the axes that its scenario moves."""
 
 from __future__ import annotations
 
@@ -22,7 +22,8 @@ _SIGNAL_PART = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 def robot_folder(extends: str, roots: Iterable[Path]) -> Path | None:
     """The example with a plant for the robot whose predefined ``.tcf`` is ``extends``; None if there is none.
 
-    The example has the name of the robot's folder: ``robots/jiwy/host_jiwy.tcf`` has ``examples/jiwy/plant``.
+    The example is named as the robot's folder: the plant for ``robots/jiwy/host_jiwy.tcf`` is in
+    ``examples/jiwy/plant``.
     """
     for root in roots:
         for file in root.glob(f"robots/*/{extends}"):
@@ -42,12 +43,17 @@ def plant_files(folder: Path) -> dict[str, bytes]:
         if path.is_file()
     }
     lines = (folder / BINDINGS).read_text(encoding="utf-8").splitlines(keepends=True)
-    text = "".join(line for line in lines if not line.startswith("# yaml-language-server"))  # a path of the example
+    # The comment for the YAML language server holds a path that exists in the example only.
+    text = "".join(line for line in lines if not line.startswith("# yaml-language-server"))
     return {**files, BINDINGS: text.encode()}
 
 
 def robot_axes(folder: Path, components: Mapping[str, Component], used: Collection[str]) -> list[Axis]:
-    """An axis for each subscriber among ``used``: a plant's output, and a duty, with words of the subscriber's name."""
+    """An axis for each subscriber among ``used`` that moves a plant output.
+
+    The signal that follows is the plant output, and the signal that drives the plant input, whose names share the most
+    words with the subscriber's name.
+    """
     bindings = load_yaml(folder / BINDINGS, Diagnostics())
     assert bindings is not None, "EPG's own file"
     ports = {
@@ -68,7 +74,10 @@ def robot_axes(folder: Path, components: Mapping[str, Component], used: Collecti
 
 
 def model_axes(model: Model, topics: Mapping[str, str]) -> list[Axis]:
-    """An axis for each real input that ``topics`` (port: topic) sets: what arrives, and the model's first output."""
+    """An axis for each real input to which ``topics`` (port -> topic) gives a topic.
+
+    The signal that follows is the input itself; the signal that drives is the first output of the model.
+    """
     outputs = [port.name for port in model.outputs if _SIGNAL_PART.fullmatch(port.name)]
     duty = f"outputs.{outputs[0]}" if outputs else ""
     real = [port for port in model.inputs if port.type == "real" and port.name in topics]
@@ -80,13 +89,13 @@ def model_axes(model: Model, topics: Mapping[str, str]) -> list[Axis]:
 
 
 def _unit(unit: str) -> str:
-    """How a scenario spells a port's unit; one that EPG does not know could be anything, so it is left out."""
+    """The unit of a port as a scenario writes it; "none" for a unit that EPG does not know."""
     known = dimension_of(unit) is not None and re.fullmatch(r"[A-Za-z][A-Za-z/.]*", normal_unit(unit))
     return normal_unit(unit) if known else "none"
 
 
 def _nearest(name: str, ports: Mapping[str, str]) -> str:
-    """The port with the most words of ``name``; empty if none has any."""
+    """The port whose name and component share the most words with ``name``; empty if no port shares one."""
     words = set(name.lower().split("_"))
     shared = {port: len(words & set(f"{port}_{component}".lower().split("_"))) for port, component in ports.items()}
     best = max(shared, key=lambda port: shared[port], default="")

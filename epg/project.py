@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""From file names to an application: load, check and resolve, for callers such as the command line and tests.
+"""Makes an application from the names of files: loads, checks and resolves.  For the command line and tests.
 
 >>> # request = Request("jiwy", tcf="host_jiwy.tcf", model=Path("model"), bindings=Path("jiwy.bindings.yaml"))
 >>> # application = load_application(request, diagnostics)
@@ -30,7 +30,7 @@ from epg.resolve.resolve import PlantFiles, allocate_hardware, resolve
 from epg.source import Span
 
 Hardware = Mapping[ClaimKey, Assignment]
-"""What each claim of a component, or of the control loop, got."""
+"""The assignment of each claim of a component or of the control loop."""
 
 
 ModelReader = Callable[[Path, Diagnostics], "Model | None"]
@@ -38,7 +38,11 @@ ModelReader = Callable[[Path, Diagnostics], "Model | None"]
 
 @dataclass(frozen=True)
 class Request:
-    """One target as it is asked for.  ``settings`` are ``key.key=value`` with the place they are written."""
+    """The files and settings of one target.  ``settings`` are texts ``key.key=value``, each with its position.
+
+    ``tcf`` is a path relative to ``beside``, or the name of a file in the folders of targets.  ``caller`` is the
+    position of the CMake call that makes the target.  ``drafts`` are texts of an editor that replace files.
+    """
 
     name: str
     tcf: str
@@ -59,9 +63,9 @@ class Request:
 
 @dataclass(frozen=True)
 class Parts:
-    """What the files of a request hold: each is None where there are mistakes.
+    """The contents of the files of a request.  A part is None if its file has mistakes.
 
-    ``application`` is also None where the others do not fit together.
+    ``application`` is also None if the parts do not fit together.
     """
 
     configuration: Configuration | None
@@ -71,7 +75,7 @@ class Parts:
 
 
 def load_configuration(request: Request, catalog: Catalog, diagnostics: Diagnostics) -> Configuration | None:
-    """The checked configuration of ``request.tcf`` with its settings."""
+    """The checked configuration of ``request.tcf`` with the settings, or None after reporting mistakes."""
     chain = load_tcf_chain(
         request.tcf,
         request.roots,
@@ -87,12 +91,12 @@ def load_configuration(request: Request, catalog: Catalog, diagnostics: Diagnost
 
 
 def load_application(request: Request, diagnostics: Diagnostics) -> Application | None:
-    """The application of ``request``, or None after reporting every problem of all its files."""
+    """The application of ``request``, or None after reporting the mistakes in all of its files."""
     return load_parts(request, diagnostics).application
 
 
 def load_parts(request: Request, diagnostics: Diagnostics, read_model: ModelReader = load_model) -> Parts:
-    """The application of ``request`` with what it is made of, after reporting every problem of all its files."""
+    """The application of ``request`` and the parts that it is made of.  Reports the mistakes in all files."""
     check_name(request.name, request.caller or Span("command line"), diagnostics)
     catalog = load_catalog(request.roots, diagnostics)
     configuration = load_configuration(request, catalog, diagnostics)
@@ -129,9 +133,10 @@ def hardware_of(application: Application) -> Hardware:
 
 
 def load_hardware(request: Request, catalog: Catalog, diagnostics: Diagnostics) -> Hardware | None:
-    """The hardware of components and control loop as a checked ``.tcf`` decides it by itself.
+    """The hardware of the components and the control loop, from the ``.tcf`` alone, without model and bindings.
 
-    Without a model the control period may be unknown, and the loop's timer then has no settings.
+    Without a model the control period may be unknown.  Then the timer of the control loop has no settings.
+    Returns None after reporting mistakes.
     """
     configuration = load_configuration(request, catalog, diagnostics)
     if configuration is None:

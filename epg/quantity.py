@@ -13,7 +13,7 @@ import math
 import re
 from fractions import Fraction
 
-#: unit -> (dimension, factor to the dimension's base unit); factors are exact wherever they can be
+#: unit -> (dimension, factor to the dimension's base unit).  Factors are exact fractions if the unit allows it.
 UNITS: dict[str, tuple[str, Fraction | float]] = {
     "s": ("time", Fraction(1)),
     "ms": ("time", Fraction(1, 1000)),
@@ -46,7 +46,7 @@ UNITS: dict[str, tuple[str, Fraction | float]] = {
     "": ("ratio", Fraction(1)),
 }
 
-#: other spellings of units, as 20-sim and people write them
+#: Other spellings of units, by 20-sim and by users.
 SPELLINGS = {
     "Nm": "N.m",
     "N m": "N.m",
@@ -69,7 +69,7 @@ _RATIO = re.compile(rf"({_NUMBER})\s*/\s*({_NUMBER})")
 
 
 class QuantityError(ValueError):
-    """The text is not a quantity of the wanted dimension; the message says what is wrong, ``hint`` what to write."""
+    """The text is not a quantity of the expected dimension.  ``hint`` says what the user must write instead."""
 
     def __init__(self, message: str, hint: str = "") -> None:
         super().__init__(message)
@@ -84,7 +84,7 @@ def decimal_comma(text: str) -> str:
 
 
 def number_hint(text: str) -> str:
-    """How a number must be written that someone wrote as ``text``: ``1,5``, ``80%``, ``"3"``; "" if it is unclear."""
+    """A hint for a number in a wrong form: ``1,5``, ``80%`` or ``"3"``; "" if the meaning of ``text`` is not clear."""
     if decimal_comma(text):
         return decimal_comma(text)
     percent = re.fullmatch(r"\s*([-+]?[0-9]{1,9}(?:\.[0-9]{0,9})?)\s*%\s*", text)
@@ -104,15 +104,16 @@ def units_of(dimension: str) -> list[str]:
 
 
 def show(value: Fraction | float, dimension: str, rounding: int = 0, digits: int = 6) -> str:
-    """A time in s or a frequency in Hz as people write it: ``20 kHz``, ``133.693 ms``.
+    """A time in s or a frequency in Hz with the unit that suits its size: ``20 kHz``, ``133.693 ms``.
 
-    ``digits`` is how many are shown; ``rounding`` -1 never shows more than ``value``, 1 never less.
+    ``digits`` is the number of significant digits.  With ``rounding`` -1 the text is never more than ``value``, with 1
+    never less, with 0 the nearest.
     """
     value = Fraction(value)
     units = [unit for unit in units_of(dimension) if unit != "min"]
     unit = next((unit for unit in reversed(units) if Fraction(UNITS[unit][1]) <= value), units[0])
     number = value / Fraction(UNITS[unit][1])
-    if number >= 10**9:  # absurd, and so many digits that nobody reads them
+    if number >= 10**9:  # Such a number is a mistake.  An exponent keeps the message readable.
         return f"{float(number):.{digits}g} {unit}"
     places = max(0, digits - len(str(math.floor(number))))
     scaled = number * 10**places
@@ -123,24 +124,27 @@ def show(value: Fraction | float, dimension: str, rounding: int = 0, digits: int
 
 
 def base_unit(dimension: str) -> str:
-    """The unit of a dimension that EPG computes in: "s", "Hz", "rad"."""
+    """The unit in which EPG computes values of a dimension: "s", "Hz", "rad"."""
     return next(unit for unit in units_of(dimension) if UNITS[unit][1] == 1)
 
 
 def normal_unit(unit: str) -> str:
-    """The spelling EPG uses for ``unit``; an unknown unit is returned as it is."""
+    """EPG's spelling of ``unit``.  An unknown unit is returned unchanged."""
     unit = unit.strip()
     return SPELLINGS.get(unit, unit)
 
 
 def dimension_of(unit: str) -> str | None:
-    """Dimension of a unit, or None for a unit EPG does not know."""
+    """The dimension of a unit, or None for a unit that EPG does not know."""
     entry = UNITS.get(normal_unit(unit))
     return entry[0] if entry else None
 
 
 def conversion_factor(source: str, target: str) -> float:
-    """What a number in ``source`` is multiplied with to be in ``target``.  Raises ValueError for other dimensions."""
+    """The factor that converts a number in the unit ``source`` to the unit ``target``.
+
+    Raises ValueError if the two units have different dimensions, and KeyError for a unit that EPG does not know.
+    """
     source_dimension, source_factor = UNITS[normal_unit(source)]
     target_dimension, target_factor = UNITS[normal_unit(target)]
     if source_dimension != target_dimension:
@@ -151,7 +155,7 @@ def conversion_factor(source: str, target: str) -> float:
 
 
 def parse_ratio(value: object) -> Fraction:
-    """A ratio written as a number or as ``5625/361``, exact.  Raises :class:`QuantityError`."""
+    """The exact value of a ratio that is written as a number or as ``5625/361``.  Raises :class:`QuantityError`."""
     problem = QuantityError("this is not a ratio", "write a number or a ratio such as 5625/361")
     if isinstance(value, bool):
         raise problem
@@ -168,9 +172,10 @@ def parse_ratio(value: object) -> Fraction:
 
 
 def parse_quantity(value: object, dimension: str) -> Fraction | float:
-    """A quantity in the base unit of its dimension (s, Hz, rad, m, V, A, ...), exact unless the unit is not.
+    """A quantity in the base unit of its dimension (s, Hz, rad, m, V, A, ...).
 
-    Raises :class:`QuantityError` for text that is not a quantity, a unit of another dimension, or a bare number.
+    The value is an exact fraction, or a float if the factor of the unit is not exact (``deg``).  Raises
+    :class:`QuantityError` for text that is not a quantity, a unit of another dimension, or a number without a unit.
     """
     units = units_of(dimension)
     wanted = f"{'an' if dimension[0] in 'aeiou' else 'a'} {dimension}"
@@ -204,7 +209,7 @@ def parse_quantity(value: object, dimension: str) -> Fraction | float:
 
 
 def _is_small(number: str) -> bool:
-    """Refuses exponents that would make an exact fraction of absurd size (``1e999999999``)."""
+    """True if the number and its exponent are short.  ``1e999999999`` would make an exact fraction of enormous size."""
     exponent = re.search(r"[eE][-+]?(\d+)$", number)
     return len(number) <= 64 and (exponent is None or (len(exponent[1]) <= 3 and int(exponent[1]) <= 300))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Positions in user files, and values that know theirs.
+"""Positions in the user's files, and values that know their position.
 
 >>> span = Span("jiwy.tcf", 3, 8, 12)
 >>> YamlNode("JIWY_node", span).plain()
@@ -15,15 +15,15 @@ from typing import Any, Union
 
 Scalar = Union[None, bool, int, float, str]
 Path = tuple[Union[str, int], ...]
-"""A way from the root of a document to one of its values: ``("components", "encoder_pan", "pins", "a")``."""
+"""The keys from the root of a document to one of its values: ``("components", "encoder_pan", "pins", "a")``."""
 
 
 @dataclass(frozen=True)
 class Span:
-    """A stretch of one line of a file; ``line`` and ``column`` count from 1, ``end`` is one past the last column.
+    """A part of one line of a file; ``line`` and ``column`` count from 1, ``end`` is one past the last column.
 
-    ``line`` 0 means the file as a whole (missing, unreadable, binary).  ``text`` replaces the line of the file in
-    messages about values that stand in no file, such as arguments of a CMake call.
+    ``line`` 0 means the file as a whole (missing, unreadable, binary).  Messages show ``text`` in place of the line of
+    the file, if the value is not written in a file: an argument of a command, or of a CMake call.
     """
 
     file: str
@@ -37,9 +37,9 @@ class Span:
 class YamlNode:
     """One value of a YAML document with its position.
 
-    ``value`` is a scalar, a tuple of nodes or a mapping of names to nodes; ``keys`` says, for a mapping, where each
-    key is written.  ``origins`` lists the files (innermost first) whose ``extends`` led to the file the value stands
-    in, so that a message about an inherited value can say who inherits it.
+    ``value`` is a scalar, a tuple of nodes or a mapping of names to nodes.  For a mapping, ``keys`` holds the position
+    of each key.  ``origins`` are the positions (innermost first) of the ``extends`` that lead to the file with this
+    value.  A message about an inherited value shows them.
     """
 
     value: Scalar | tuple[YamlNode, ...] | Mapping[str, YamlNode]
@@ -66,7 +66,7 @@ class YamlNode:
         raise KeyError(key)
 
     def get(self, *path: str | int) -> YamlNode | None:
-        """The value below this one at ``path``, or None when a step of it does not exist."""
+        """The value at ``path`` below this one, or None if a key of the path does not exist."""
         node: YamlNode = self
         for key in path:
             try:
@@ -76,7 +76,7 @@ class YamlNode:
         return node
 
     def items(self) -> Iterator[tuple[str, YamlNode]]:
-        """Keys and values of a mapping in the order they are written; nothing for any other value."""
+        """Keys and values of a mapping in the order of the file; nothing for any other value."""
         if isinstance(self.value, Mapping):
             yield from self.value.items()
 
@@ -85,11 +85,11 @@ class YamlNode:
         return self.value if isinstance(self.value, tuple) else ()
 
     def key_span(self, key: str) -> Span:
-        """Where ``key`` of this mapping is written."""
+        """The position of ``key`` in this mapping; the position of the mapping if the key does not exist."""
         return self.keys.get(key, self.span)
 
     def plain(self) -> Any:
-        """The value as dictionaries, lists and scalars, for libraries that know no positions."""
+        """The value as dictionaries, lists and scalars without positions, for other libraries."""
         if isinstance(self.value, Mapping):
             return {key: node.plain() for key, node in self.value.items()}
         if isinstance(self.value, tuple):
