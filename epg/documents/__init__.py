@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files as their authors wrote them, as trees and text with positions, compared with their schemas."""
+"""Reads the files of users and of EPG: as trees and text with positions, checked against their schemas."""

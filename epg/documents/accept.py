@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whether a value fits a schema, without the time that importing jsonschema takes.
+"""A fast check that a value fits a schema, which does not import jsonschema.
 
-jsonschema says what is wrong with a value; most values are right, and importing it takes longer than everything EPG
-checks.  :func:`accepts` knows the keywords of EPG's own schemas, with the meaning that JSON Schema draft 2020-12 gives
-them, and says False to whatever it does not know: then jsonschema is asked.
+jsonschema explains why a value does not fit, but its import takes longer than all checks of EPG together, and most
+values fit.  :func:`accepts` implements the keywords of EPG's own schemas, with their meaning in JSON Schema draft
+2020-12.  It returns False for every keyword that it does not know.  The caller asks jsonschema only after False.
 """
 
 from __future__ import annotations
@@ -20,11 +20,14 @@ _ANNOTATIONS = frozenset(
 
 
 class _Unknown(Exception):
-    """A schema uses what this module does not know."""
+    """A schema uses a keyword, or a form of one, that this module does not implement."""
 
 
 def accepts(value: object, schema: Schema, *, partial: bool = False) -> bool:
-    """True if ``value`` certainly fits ``schema``; ``partial``: also where keys are missing or ``None``."""
+    """True if ``value`` certainly fits ``schema``.
+
+    With ``partial``, keys may be missing, and every value may be None.
+    """
     try:
         return _fits(value, schema, schema, partial)
     except _Unknown:
@@ -70,7 +73,7 @@ def _type(value: object, wanted: Any, schema: Schema, root: Schema, partial: boo
 
 
 def _same(one: object, other: object) -> bool:
-    """Equality of JSON values: ``True`` is not 1."""
+    """Compares two scalars as JSON does: ``True`` is not equal to 1."""
     structures = isinstance(one, (dict, list)), isinstance(other, (dict, list))
     if all(structures):
         raise _Unknown("equality of structures")

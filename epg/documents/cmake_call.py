@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Positions of EPG's calls in a CMakeLists.txt, for what CMake has passed on from there."""
+"""Positions of calls of EPG in a CMakeLists.txt, for messages about arguments that CMake has passed to EPG."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from epg.source import Span
 
 
 def caller_span(file: str, name: str) -> Span:
-    """Where a CMakeLists.txt asks for the target ``name``."""
+    """The position of the call that makes the target ``name``; the file as a whole if it cannot be found."""
     return _find(file, rf"epg_add_(?:target|model)\s*\(\s*({re.escape(name)})\b") or Span(file)
 
 
 def setting_span(file: str | None, name: str, setting: str) -> Span:
-    """Where a setting is written: its argument in the CMakeLists.txt, or the command line itself."""
+    """The position of a setting: its argument in the CMakeLists.txt ``file``, or the command line if that is None."""
     if file is None:
         return Span("command line", 1, 1, len(setting) + 1, text=setting)
     key, _, value = setting.partition("=")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reading aids for the folders of ``targets/``: values of nodes whose structure a schema has checked already."""
+"""Values of YAML nodes as Python types, for the files of ``targets/``.  A schema has checked their structure before."""
 
 from __future__ import annotations
 
@@ -12,25 +12,25 @@ _RANGE = re.compile(r"([A-Za-z_]*)([0-9]+)-([A-Za-z_]*)([0-9]+)")
 
 
 def text_of(node: YamlNode, key: str, otherwise: str = "") -> str:
-    """The text at ``key``."""
+    """The text at ``key``, or ``otherwise`` if the key is missing."""
     found = node.get(key)
     return otherwise if found is None else str(found.value)
 
 
 def flag_of(node: YamlNode, key: str) -> bool:
-    """The boolean at ``key``; false when there is none."""
+    """The boolean at ``key``; false if the key is missing."""
     found = node.get(key)
     return found is not None and found.value is True
 
 
 def texts_of(node: YamlNode, *path: str) -> tuple[str, ...]:
-    """The elements of the list at ``path`` as text."""
+    """The elements of the list at ``path`` as text; empty if it is missing."""
     found = node.get(*path)
     return () if found is None else tuple(str(element.value) for element in found.elements())
 
 
 def map_of(node: YamlNode, *path: str) -> dict[str, YamlNode]:
-    """The entries of the map at ``path``."""
+    """The entries of the map at ``path``; empty if it is missing."""
     found = node.get(*path)
     return {} if found is None else dict(found.items())
 
@@ -38,7 +38,7 @@ def map_of(node: YamlNode, *path: str) -> dict[str, YamlNode]:
 def pin_names(node: YamlNode | None) -> tuple[str, ...]:
     """All pins of a list of pins and ranges: ``[0-2, 7]`` gives 0, 1, 2 and 7, ``[PA0-PA15]`` sixteen.
 
-    Raises ValueError for a range that is none: backwards, between different ports, or absurdly long.
+    Raises ValueError for a wrong range: one that runs backwards, between different ports, or over more than 256 pins.
     """
     names: list[str] = []
     for element in node.elements() if node is not None else ():
@@ -55,7 +55,7 @@ def pin_names(node: YamlNode | None) -> tuple[str, ...]:
 
 
 def pin_list(pins: Iterable[str]) -> str:
-    """Pins for people, ranges shortened: ``0-3, 6, PA0-PA15``."""
+    """A list of pins for messages, with three or more successive pins as a range: ``0-3, 6, PA0-PA15``."""
     parts: list[list[str]] = []
     for pin in pins:
         if parts and _follows(parts[-1][-1], pin):
@@ -71,6 +71,6 @@ def _follows(one: str, other: str) -> bool:
 
 
 def integer_range(node: YamlNode) -> tuple[int, int]:
-    """First and last of ``1-255``."""
+    """The first and the last number of a range such as ``1-255``."""
     first, _, last = str(node.value).partition("-")
     return int(first), int(last)

@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-"""JSON Schema validation that speaks of files, lines and keys.
+"""Checks documents against a JSON Schema and reports violations as diagnostics with file, line and key.
 
-:func:`validate` runs jsonschema on the plain form of a :class:`~epg.source.Node` tree and turns every violation into
-a diagnostic at the value, or key, that is wrong.  Annotations of ours (ignored by other validators) steer it:
+:func:`validate` runs jsonschema on the plain form of a tree of :class:`~epg.source.YamlNode` and turns every violation
+into a diagnostic at the value, or key, that is wrong.  EPG's schemas have annotations for these diagnostics, which
+other validators ignore:
 
 ``x-quantity``
-    The dimension of a string such as ``20 kHz``: problems are explained by :mod:`epg.quantity`.
+    The dimension of a string such as ``20 kHz``.  :mod:`epg.quantity` explains what is wrong with the text.
 ``x-message``
-    What to say when the value does not match, for patterns and alternatives.
+    The message for a value that does not match a pattern or any of several alternatives.
+``x-hint``
+    The hint that goes with ``x-message``.
 ``x-instead``
-    Hints for keys that people are likely to write and that do not exist.
+    Hints for keys that do not exist but that users are likely to write.
 """
 
 from __future__ import annotations
@@ -47,9 +50,10 @@ def load_schema(name: str) -> dict[str, Any]:
 
 
 def validate(node: YamlNode, schema: Mapping[str, Any], diagnostics: Diagnostics, *, partial: bool = False) -> bool:
-    """Reports everything in ``node`` that ``schema`` does not allow; True when there is nothing.
+    """Reports all parts of ``node`` that ``schema`` does not allow.  Returns True if ``node`` fits the schema.
 
-    ``partial``: the file extends another one, so missing keys are not reported, and ``null`` deletes any key.
+    ``partial`` is for a file that extends another one: missing keys are not reported, and every value may be ``null``,
+    which deletes its key.
     """
     plain = node.plain()
     if accepts(plain, schema, partial=partial):
@@ -67,7 +71,7 @@ def validate(node: YamlNode, schema: Mapping[str, Any], diagnostics: Diagnostics
 
 
 def extended_from(node: YamlNode) -> list[Note]:
-    """A note for each file whose ``extends`` leads to the file that ``node`` stands in."""
+    """A note for each ``extends`` that leads to the file in which ``node`` is written."""
     return [Note("extended from here", span) for span in node.origins]
 
 
@@ -102,7 +106,8 @@ def _report(error: Any, root: YamlNode, diagnostics: Diagnostics) -> None:
     if keyword in ("required", "dependentRequired"):
         known = _known_keys(schema)
         unknown = [key for key, _ in node.items() if key not in schema.get("properties", {})]
-        misspelt = {did_you_mean(key, known) for key in unknown}  # the error about the key that is there says it
+        # A missing key whose misspelt form is reported as an unknown key needs no second error.
+        misspelt = {did_you_mean(key, known) for key in unknown}
         missing = [key for key in _required(error) if key not in node and f"did you mean '{key}'?" not in misspelt]
         span = _owner_span(root, path)
         for key in missing:
@@ -122,7 +127,7 @@ _BOUNDS = {
 
 
 def _explain(keyword: str, error: Any, schema: Mapping[str, Any]) -> tuple[str, str, str]:
-    """Id, message and hint for a value that is wrong in itself."""
+    """Id, message and hint for a wrong value; missing and unknown keys are reported elsewhere."""
     value, limit = error.instance, error.validator_value
     if "x-quantity" in schema and keyword in ("type", "pattern", "anyOf", "oneOf"):
         problem = _quantity_problem(value, schema["x-quantity"])
@@ -157,7 +162,7 @@ def _quantity_problem(value: object, dimension: str) -> QuantityError | None:
 
 
 def _explain_limit(keyword: str, value: object, limit: Any) -> tuple[str, str, str]:
-    """The same for a value of the right type that is none of those that are possible."""
+    """Id, message and hint for a value of the right type that is out of range or not among the possible values."""
     if keyword == "enum":
         return "wrong-value", f"{_shown(value)} is not possible here", did_you_mean(str(value), map(str, limit))
     if keyword == "const":
@@ -177,7 +182,7 @@ def _explain_limit(keyword: str, value: object, limit: Any) -> tuple[str, str, s
 
 
 def _fitting_alternative(error: Any) -> list[Any]:
-    """The violations of the alternative that is meant: the one whose type the value has."""
+    """The violations of the alternative that the user probably means: the first one that allows the value's type."""
     alternatives: dict[object, list[Any]] = {}
     for violation in error.context:
         alternatives.setdefault(violation.relative_schema_path[0], []).append(violation)
@@ -188,7 +193,7 @@ def _fitting_alternative(error: Any) -> list[Any]:
 
 
 def _form(schema: Mapping[str, Any]) -> str:
-    """The form of a text in words, for a pattern without ``x-message``: of parameters, which kinds describe."""
+    """The hint for a pattern without ``x-message``: the description and an example.  Parameters of kinds have both."""
     example = next((f", for example '{example}'" for example in schema.get("examples", ())), "")
     return f"{schema.get('description', '')}{example}"
 
@@ -248,7 +253,7 @@ def _where(path: Path) -> str:
 
 
 def _owner_span(root: YamlNode, path: Path) -> Span:
-    """Where the map at ``path`` is named: its key in the map above it."""
+    """The position of the key whose value is the map at ``path``."""
     if not path:
         return root.span
     above = root.get(*path[:-1])

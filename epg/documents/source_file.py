@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Source files of a model as text, with positions.
 
-Generated code is ASCII, but comments carry user and company names, units and port names, and editors save in many
-encodings: text is read as UTF-8 and, where that fails, as Latin-1, which maps every byte.
+The code that 20-sim generates is ASCII, but its comments hold names of users and companies, units and names of ports,
+and editors save files in many encodings.  Therefore text is decoded as UTF-8 and, if this fails, as Latin-1, which
+accepts every byte.
 """
 
 from __future__ import annotations
@@ -20,13 +21,13 @@ from epg.source import Span
 
 MAX_BYTES = 16 << 20
 
-# A string that is not closed ends with its line: going back from there would take quadratic time.
+# A string that is not closed ends with its line.  Otherwise the search would go back, which takes quadratic time.
 _BLANKED = re.compile(
     r"""//(?:\\\r?\n|[^\n])*|/\*.*?(?:\*/|\Z)|"(?:\\.|[^"\\\n])*(?:"|(?=\n)|\\?\Z)|'(?:\\.|[^'\\\n])*(?:'|(?=\n)|\\?\Z)""",
     re.DOTALL,
 )
 STRING = re.compile(r'"((?:\\.|[^"\\\n])*)(?:"|\\?(?=\n|\Z))')
-"""A string, or what stands between an opening quote and the end of its line."""
+"""A string; one without a closing quote ends with its line."""
 _DIRECTIVE = re.compile(r"^[ \t]*#(?:\\\r?\n|[^\n])*", re.MULTILINE)
 _LONGEST_SHOWN = 1000
 _NOT_NEWLINE = re.compile(r"[^\n]")
@@ -34,7 +35,10 @@ _NOT_NEWLINE = re.compile(r"[^\n]")
 
 @dataclass(frozen=True)
 class SourceFile:
-    """One file of C or C++.  ``inside`` an archive, its positions carry the text of their line."""
+    """One file of C or C++.
+
+    ``inside``: the file is in an archive.  Its positions hold the text of their line, because messages cannot read it.
+    """
 
     path: Path
     text: str
@@ -42,12 +46,12 @@ class SourceFile:
 
     @cached_property
     def without_comments(self) -> str:
-        """The text with comments and the contents of strings replaced by blanks: offsets stay."""
+        """The text with comments and the contents of strings replaced by blanks.  All offsets stay the same."""
         return _BLANKED.sub(_blank, self.text)
 
     @cached_property
     def code(self) -> str:
-        """As :attr:`without_comments`, and with preprocessor directives blanked."""
+        """As :attr:`without_comments`, with preprocessor directives replaced by blanks, too."""
         return _DIRECTIVE.sub(_blank, self.without_comments)
 
     @cached_property
@@ -55,7 +59,7 @@ class SourceFile:
         return [0, *(match.end() for match in re.finditer("\n", self.text))]
 
     def span(self, start: int, end: int | None = None) -> Span:
-        """The position of the text from offset ``start`` to ``end`` (on one line)."""
+        """The position of the text from offset ``start`` to ``end``, which must be on one line."""
         line = bisect.bisect_right(self._line_starts, start)
         column = start - self._line_starts[line - 1] + 1
         length = max(1, (end if end is not None else start + 1) - start)
@@ -73,7 +77,7 @@ def read_source(path: Path, diagnostics: Diagnostics, wanted_by: Span | None = N
 
 
 def read_any_text(path: Path, diagnostics: Diagnostics, wanted_by: Span | None = None) -> str | None:
-    """The text of ``path`` in whatever encoding, or None after reporting why there is none."""
+    """The text of ``path`` in UTF-8, UTF-16 or Latin-1, or None after reporting why it cannot be read."""
     whole = wanted_by or Span(str(path))
     data = read_bytes(path, lambda message, hint: diagnostics.error("model-unreadable", whole, message, hint=hint))
     if data is None:
@@ -100,12 +104,12 @@ def read_bytes(path: Path, report: Callable[[str, str], None]) -> bytes | None:
 
 
 def is_includable(name: str) -> bool:
-    """Whether a name can stand between the brackets of ``#include <...>``: C has no way to escape in it."""
+    """True if a name can be written in ``#include <...>``, where C has no escape sequences."""
     return bool(name) and name.isprintable() and re.search(r'[<>"\\]|//|/\*', name) is None
 
 
 def decode(data: bytes) -> str:
-    """Text of a file; line ends become ``\\n``."""
+    """The text of a file: UTF-16 with a byte order mark, UTF-8, or else Latin-1.  Line ends become ``\\n``."""
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         text = data.decode("utf-16", "replace")
     else:

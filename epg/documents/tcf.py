@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A ``.tcf`` with the files it extends, each still as it was written.
+"""A ``.tcf`` and the chain of files that it extends.  The files are read but not merged: ``epg.check.merge`` does that.
 
 >>> # chain = load_tcf_chain(Path("rpi_pico2_freertos_jiwy.tcf"), roots, diagnostics)
 >>> # [file.path.name for file in chain]  ->  target, wiring, robot
@@ -23,9 +23,10 @@ _MAX_CHAIN = 16
 
 @dataclass(frozen=True)
 class TcfFile:
-    """One file of a chain; ``extended_by`` is where the file before it in the chain names it.
+    """One file of a chain.
 
-    ``absent`` are files that would be read instead of this one if they existed.
+    ``extended_by`` is the position of the ``extends`` that names it.  ``absent`` are the paths of files that do not
+    exist, but that would be read instead of this one if they did.
     """
 
     path: Path
@@ -35,7 +36,10 @@ class TcfFile:
 
 
 def find_tcf(name: str, beside: Path, roots: Iterable[Path]) -> Path | None:
-    """The file ``name`` (with or without ``.tcf``): a path relative to ``beside``, or a robot's file in ``roots``."""
+    """The file ``name``, with or without ``.tcf``; None if it does not exist.
+
+    ``name`` is a path relative to ``beside``, or the name of a file in a folder ``robots/*`` of ``roots``.
+    """
     names = _file_names(name)
     for path in _candidates(name, beside):
         if is_file(path):
@@ -60,7 +64,7 @@ def _candidates(name: str, beside: Path) -> list[Path]:
 
 
 def predefined_tcf_names(roots: Iterable[Path]) -> list[str]:
-    """Names of all ``.tcf`` files that can be found by name."""
+    """The names of all ``.tcf`` files in the folders ``robots/*`` of ``roots``."""
     return sorted({path.name for root in roots for path in (root / "robots").glob("*/*.tcf")})
 
 
@@ -73,11 +77,14 @@ def load_tcf_chain(
     wanted_by: Span | None = None,
     drafts: Drafts = NO_DRAFTS,
 ) -> tuple[TcfFile, ...]:
-    """The file ``name`` and all that it extends, innermost first; empty after reporting why it cannot be read."""
+    """The file ``name`` and all files that it extends, ``name`` itself first.
+
+    Empty after reporting a file that cannot be read, or a chain that never ends.
+    """
     chain: list[TcfFile] = []
     beside = beside or Path()
     while True:
-        read = {file.path.resolve() for file in chain}  # a file must not extend itself
+        read = {file.path.resolve() for file in chain}  # A file must not extend itself.
         path = find_tcf(name, beside, roots)
         if path is None:
             others = [file.name for file in sorted(beside.glob("*.tcf")) if file.resolve() not in read]
@@ -85,7 +92,7 @@ def load_tcf_chain(
             span = wanted_by or Span(name)
             diagnostics.error("tcf-not-found", span, f"there is no file '{name}'", hint=did_you_mean(name, known))
             return ()
-        if path.resolve() in read:  # one of EPG's may have the same name
+        if path.resolve() in read:  # A user's file may extend a file of EPG that has the same name: search there only.
             path = find_tcf(name, beside / "nowhere", roots) or path
         if path.resolve() in read:
             assert wanted_by is not None
@@ -134,7 +141,10 @@ def _load(path: Path, diagnostics: Diagnostics, wanted_by: Span | None, drafts: 
 def settings_node(
     settings: Iterable[tuple[str, Span]], diagnostics: Diagnostics
 ) -> list[tuple[tuple[str, ...], YamlNode]]:
-    """Settings ``a.b=value`` from a command line or CMake, each with the place to name in messages."""
+    """The keys and the value of each setting ``a.b=value`` from a command line or CMake; mistakes are reported.
+
+    The position in ``settings`` becomes the position of the value.
+    """
     result: list[tuple[tuple[str, ...], YamlNode]] = []
     for text, span in settings:
         key, equals, value = text.partition("=")
@@ -157,7 +167,7 @@ def settings_node(
 
 
 def _moved(node: YamlNode, span: Span) -> YamlNode:
-    """The same value standing at ``span``."""
+    """The same value with the position ``span``."""
     if node.is_mapping:
         value = {key: _moved(child, span) for key, child in node.items()}
         return YamlNode(value, span, dict.fromkeys(value, span))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Text of user files, limited in size, with a diagnostic for everything that is no text."""
+"""Reads the text of the user's files.  Reports files that are too large or that are not UTF-8 text."""
 
 from __future__ import annotations
 
@@ -12,30 +12,31 @@ from epg.diagnostics import Diagnostics
 from epg.source import Span
 
 MAX_BYTES = 1 << 20
-# What YAML 1.2 calls not printable.  Two expressions: one for all characters takes 3 ms to compile.
+# The characters that are not in c-printable of YAML 1.2.  One expression for all of them takes 3 ms to compile.
 _CONTROL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x84\x86-\x9f]")
 _NO_CHARACTER = re.compile("[\ufffe\uffff]")
 
 Drafts = Mapping[Path, str]
-"""Texts that an editor holds, which are read instead of the files."""
+"""Texts that an editor has not saved yet.  They are read instead of the files."""
 NO_DRAFTS: Drafts = MappingProxyType({})
 
 
 ANOTHER_FILE = "is this the right file?"
-"""The hint for a file that is too large to be what is asked for."""
+"""The hint for a file that is too large: the user has probably named another file than intended."""
 
 
 def too_large(name: str, limit: int) -> str:
-    """The message for a file of more than ``limit`` bytes, which are whole MiB."""
+    """The message for a file of more than ``limit`` bytes.  ``limit`` must be a multiple of 1 MiB."""
     return f"'{name}' is larger than {limit >> 20} MiB"
 
 
 def read_text(
     path: Path, diagnostics: Diagnostics, wanted_by: Span | None = None, drafts: Drafts = NO_DRAFTS
 ) -> str | None:
-    """The UTF-8 text of ``path``, or None after reporting why there is none.
+    """The UTF-8 text of ``path``, or None after reporting why it cannot be read.
 
-    ``wanted_by`` is where the name of the file is written; problems with the file as a whole are reported there.
+    ``wanted_by`` is the position at which the name of the file is written.  Problems with the file as a whole are
+    reported there.
     """
     whole = wanted_by or Span(str(path))
     try:
@@ -71,7 +72,7 @@ def read_text(
 
 
 def is_file(path: Path) -> bool:
-    """Whether there is a file of that name; no name a user can write raises, however long it is."""
+    """True if the file exists.  Never raises: for a name that the system does not accept, the result is False."""
     try:
         return path.is_file()
     except (OSError, ValueError):
@@ -79,7 +80,7 @@ def is_file(path: Path) -> bool:
 
 
 def is_folder(path: Path) -> bool:
-    """Whether there is a folder of that name; see :func:`is_file`."""
+    """True if the folder exists.  Never raises, as :func:`is_file`."""
     try:
         return path.is_dir()
     except (OSError, ValueError):
@@ -87,7 +88,7 @@ def is_folder(path: Path) -> bool:
 
 
 def one_line(text: str) -> str:
-    """Names, units and descriptions as people see them: controls and line ends, which none should have, become ``?``.
+    """A name, unit or description that is safe to print: control characters and line ends become ``?``.
 
     >>> one_line("in\\x1b[2J")
     'in?[2J'
@@ -101,7 +102,7 @@ def _position(before: str) -> tuple[int, int]:
 
 
 def _neighbours(path: Path) -> str:
-    """The files of the same kind beside a missing one."""
+    """The hint for a missing file: the files with the same suffix in its folder, at most 12."""
     try:
         names = sorted(entry.name for entry in path.parent.iterdir() if entry.suffix == path.suffix)
     except OSError:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""XML files of an export as trees whose elements know their line.
+"""XML files of an export as trees of elements with positions.
 
-Document type declarations are refused, so entities cannot expand.
+Document type declarations are refused.  Thus a file cannot define entities that expand to enormous texts.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from epg.source import Span
 
 MAX_DEPTH = 64
 MAX_ELEMENTS = 250_000
-_ENDS = ("no element found", "unclosed token", "unclosed CDATA section", "partial character")  # expat's words
+_ENDS = ("no element found", "unclosed token", "unclosed CDATA section", "partial character")  # Messages of expat.
 _IGNORED = "it is ignored; export the model again"
 
 
 @dataclass
 class Element:
-    """One element; ``text`` is all text directly inside it."""
+    """One element; ``text`` is its text without the text of its children."""
 
     name: str
     attributes: dict[str, str]
@@ -32,14 +32,14 @@ class Element:
     children: list[Element] = field(default_factory=list)
 
     def find(self, *path: str) -> Element | None:
-        """The first element at ``path`` below this one."""
+        """The first element at ``path`` below this one, or None."""
         element: Element | None = self
         for name in path:
             element = next((child for child in element.children if child.name == name), None) if element else None
         return element
 
     def text_of(self, *path: str) -> str:
-        """The trimmed text at ``path``; empty when there is none."""
+        """The trimmed text of the element at ``path``; empty if there is no such element."""
         element = self.find(*path)
         return element.text.strip() if element else ""
 
@@ -51,7 +51,8 @@ class _Refused(Exception):
 def load_xml(path: Path, diagnostics: Diagnostics, *, required: bool = True) -> Element | None:
     """The root of the document at ``path``, or None after reporting what is wrong with it.
 
-    Files that only add to what the sources say (``required`` false) give warnings instead of errors.
+    ``required`` is False for files that EPG can do without, because the sources hold the same data.  Their mistakes are
+    reported as warnings.
     """
     report = diagnostics.error if required else diagnostics.warning
 
@@ -67,9 +68,10 @@ def load_xml(path: Path, diagnostics: Diagnostics, *, required: bool = True) -> 
 def parse_xml(
     data: bytes, whole: Span, diagnostics: Diagnostics, *, required: bool = True, hint: str = "", shown: bool = False
 ) -> Element | None:
-    """The root of the document ``data``, which ``whole`` names; as :func:`load_xml`.
+    """The root of the document ``data``, or None after reporting mistakes, as :func:`load_xml`.
 
-    With ``shown``, positions carry the text of their line: the document is inside an archive.
+    ``whole`` names the file in messages.  Set ``shown`` for a document in an archive: its positions then hold the text
+    of their line.  ``hint`` replaces the usual hint.
     """
     report = diagnostics.error if required else diagnostics.warning
     hint = hint or ("export the model again" if required else _IGNORED)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""YAML 1.2 files as trees of :class:`~epg.source.Node`, each value with its position.
+"""YAML 1.2 files as trees of :class:`~epg.source.YamlNode`, each value with its position.
 
-PyYAML's parser is used for its events only.  Building the tree here gives what its constructors do not: the scalar
-rules of YAML 1.2 (``on`` is a word, ``1e3`` a number), positions, duplicate keys as errors, a limit on depth that
-holds before anything recurses, and no anchors, aliases or tags.
+PyYAML delivers the events of the document, and this module builds the tree.  PyYAML's own constructors lack what EPG
+needs: the rules of YAML 1.2 for scalars (``on`` is text, ``1e3`` a number), positions, an error for duplicate keys, a
+limit of the depth that is checked before any recursion, and an error for anchors, aliases and tags.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ from epg.quantity import decimal_comma
 from epg.source import Scalar, Span, YamlNode
 
 VERSION = 1
-"""Of all formats: each file states it as ``version``, those in folders of ``targets`` as ``api``."""
+"""The version of all file formats.  The key is ``version`` in users' files, and ``api`` in folders of targets."""
 
 MAX_DEPTH = 32
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-"""libyaml's parser where there is one.  The two differ: PyYAML's own takes no tab before a comment."""
+"""libyaml's parser if it is installed, else PyYAML's own.  They differ: PyYAML's refuses a tab before a comment."""
 
 _NULL = {"", "~", "null", "Null", "NULL"}
 _BOOL = {"true": True, "True": True, "TRUE": True, "false": False, "False": False, "FALSE": False}
@@ -49,7 +49,7 @@ def load_yaml(
 
 
 def newer_version(node: YamlNode, key: str, diagnostics: Diagnostics) -> bool:
-    """Whether a file states, at ``key``, a format that is newer than this EPG; reports it."""
+    """True after reporting that the version of a file's format, at ``key``, is newer than this EPG."""
     stated = node.get(key)
     if stated is None or type(stated.value) is not int or stated.value <= VERSION:
         return False
@@ -59,7 +59,10 @@ def newer_version(node: YamlNode, key: str, diagnostics: Diagnostics) -> bool:
 
 
 def parse_yaml(text: str, file: str, diagnostics: Diagnostics) -> YamlNode | None:
-    """The one document in ``text``; ``file`` is the name its positions carry."""
+    """The only document in ``text``, or None after reporting mistakes.  ``file`` is the file name in its positions.
+
+    For a text that is not YAML, :func:`~epg.documents.yaml_mistakes.find_mistake` explains the mistake if it can.
+    """
     builder = _Builder(file, text, diagnostics)
     try:
         for event in yaml.parse(text, Loader=LOADER):
@@ -101,8 +104,8 @@ class _Collection:
     entries: dict[str, YamlNode] = field(default_factory=dict)
     keys: dict[str, Span] = field(default_factory=dict)
     key: str | None = None
-    key_mark: yaml.Mark | None = None  # where the key ends
-    skip: bool = False  # the value of a refused key
+    key_mark: yaml.Mark | None = None  # the end of the key
+    skip: bool = False  # True while the next value belongs to a refused key
 
 
 class _Builder:
@@ -114,14 +117,14 @@ class _Builder:
         self.root: YamlNode | None = None
         self.documents = 0
         self.failed = False
-        self.mistaken = False  # an error was reported that may be why the parser cannot go on
+        self.mistaken = False  # True after an error that may also be the reason for a later error of the parser
 
     @cached_property
     def lines(self) -> list[str]:
         return LINE_END.split(self.text)
 
     def feed(self, event: yaml.Event) -> bool:
-        """Takes one event; False when reading on makes no sense."""
+        """Adds one event to the tree.  False if the rest of the document cannot be read after an error."""
         if isinstance(event, yaml.DocumentStartEvent):
             self.documents += 1
             if self.documents > 1:
@@ -175,7 +178,7 @@ class _Builder:
         self._add(YamlNode(value, span))
 
     def _foreign_comment(self, event: yaml.ScalarEvent) -> bool:
-        """Reports ``//`` in plain text, which a person meant as a comment; True if there is one."""
+        """Reports a comment that begins with ``//`` or ``/*``, which YAML reads as text; True if there is one."""
         if "/" not in event.value:
             return False
         start, end = _marks(event)
@@ -189,7 +192,10 @@ class _Builder:
         return False
 
     def _key_without_colon(self, event: yaml.ScalarEvent, top: _Collection | None) -> bool:
-        """Reports ``{period 1 ms}``, where all is a key, and the decimal comma in ``{period: 1,5 ms}``; True if so."""
+        """Reports two mistakes in braces, in which YAML sees a key without a value; True if there is one of them.
+
+        In ``{period 1 ms}`` all of the text is a key.  In ``{period: 1,5 ms}`` the decimal comma begins a key ``5 ms``.
+        """
         start, end = _marks(event)
         if event.value or top is None or not top.flow or top.key is None or top.key_mark is None or top.skip:
             return False
@@ -264,5 +270,5 @@ class _Builder:
 
 
 def _marks(event: yaml.Event) -> tuple[yaml.Mark, yaml.Mark]:
-    """Where an event of the parser begins and ends; every event that is parsed has both."""
+    """The begin and the end of an event in the text.  Every event of the parser has both."""
     return cast("tuple[yaml.Mark, yaml.Mark]", (event.start_mark, event.end_mark))

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Mistakes in YAML that people make, in words: ``key value``, a tab, wrong indentation, ``//``.
+"""Explains frequent mistakes in YAML: ``key value``, a tab, wrong indentation, a comment with ``//``.
 
-A parser says where it could not go on, which is often a line too late, and in terms of its own grammar.
-:func:`find_mistake` reads the lines as a person does.  It is asked only about text that the parser has refused, so
-it may be wrong about rare forms of YAML: then the parser's own message is used.
+A parser reports the position at which it could not continue, often a line too late, and in terms of its grammar.
+:func:`find_mistake` reads the lines as a person does.  It is called only for text that the parser has refused.
+Therefore it does not need to know rare forms of YAML: if it finds no mistake, the parser's own message is used.
 
 >>> find_mistake("version: 1\\ntarget host\\nnode: a", 3)
 Mistake(line=2, column=1, end=12, message="'target host' has no ':'", hint="write 'target: host'")
@@ -20,7 +20,7 @@ LINE_END = re.compile("\r\n|\r|\n|\x85|\u2028|\u2029")
 _ENTRY = re.compile(r"""(?P<key>"(?:[^"\\]|\\.)*"|'[^']*'|[^\s'"{\[#](?:(?! \#).)*?)\s*:(?:\s+(?P<value>.*)|$)""")
 _WITHOUT_COLON = re.compile(r"(?P<key>[A-Za-z_][\w.]*)(?P<between>\s*=\s*|\s*:|\s+|$)(?P<value>.*)")
 _COMMENT = re.compile(r"(?:^|(?<=\s))(?://+|/\*)")
-_LONGEST = 1000  # a longer line was not written by a person; searching it would take time
+_LONGEST = 1000  # A longer line was not written by a person, and its search would take too much time.
 _QUOTES = "\"'"
 _CLOSING = {"{": "}", "[": "]", '"': '"', "'": "'"}
 _WHAT_OPENS_TEXT = "{[,:"
@@ -28,7 +28,7 @@ _WHAT_OPENS_TEXT = "{[,:"
 
 @dataclass(frozen=True)
 class Mistake:
-    """A mistake, on one line; numbers count from 1, ``end`` is one past the last column."""
+    """A mistake on one line.  Lines and columns count from 1; ``end`` is one past the last column."""
 
     line: int
     column: int
@@ -51,7 +51,7 @@ def missing_colon(text: str) -> tuple[str, str] | None:
 
 
 def foreign_comment(text: str) -> tuple[int, str, str] | None:
-    """Where in one line of text ``//`` or ``/*`` begins a comment, message and hint; None if there is none."""
+    """A comment in one line that begins with ``//`` or ``/*``: its index, message and hint; None without one."""
     match = _COMMENT.search(text)
     if match is None:
         return None
@@ -60,26 +60,29 @@ def foreign_comment(text: str) -> tuple[int, str, str] | None:
 
 
 def find_mistake(text: str, last: int) -> Mistake | None:
-    """The first mistake in ``text``, which the parser has refused at line number ``last``; None if it is another."""
+    """The first mistake in ``text``, which the parser has refused at line number ``last``.
+
+    None if this module does not know the mistake.
+    """
     return _Reader(LINE_END.split(text)).read(last)
 
 
 @dataclass
 class _Level:
-    """Entries that are indented alike."""
+    """Successive entries with the same indentation."""
 
     indent: int
-    line: int  # of its first entry
-    kind: str  # "map", "list" or "text": lines without ':', which may be a value of several lines
+    line: int  # the line of the first entry
+    kind: str  # "map", "list" or "text" (lines without ':', which can be a value of several lines)
     count: int = 0
-    wants: bool = False  # the last entry has no value yet: deeper lines may follow
+    wants: bool = False  # True if the last entry has no value yet: then deeper lines can follow
 
 
 class _Reader:
     def __init__(self, lines: list[str]) -> None:
         self.lines = lines
         self.levels: list[_Level] = []
-        self.open: list[tuple[str, int, int]] = []  # brackets and quotes: character, line, column from 0
+        self.open: list[tuple[str, int, int]] = []  # open brackets and quotes: character, line, column from 0
         self.block: int | None = None  # the indentation of the key whose value is a block of text
 
     def read(self, last: int) -> Mistake | None:
@@ -99,7 +102,7 @@ class _Reader:
         return self._never_closed(last) if self.open else None
 
     def _is_text(self, line: str, content: str) -> bool:
-        """Whether a line belongs to a block of text, or begins the document."""
+        """True if a line belongs to a block of text, or is the ``---`` that begins the document."""
         in_block = self.block is not None and len(line) - len(content) > self.block
         return in_block or (content.startswith("---") and not self.levels)
 
@@ -134,7 +137,7 @@ class _Reader:
         return self._value(number, line, indent + entry.start("value")) if value else None
 
     def _place(self, number: int, indent: int, content: str) -> Mistake | None:
-        """Finds the level of a line by its indentation."""
+        """Finds the level of a line by its indentation, or begins a new one.  Returns a mistake in the indentation."""
         entry = _ENTRY.match(content)
         kind = "list" if re.match(r"-(\s|$)", content) else "map" if entry else "text"
         left: list[_Level] = []
@@ -154,7 +157,7 @@ class _Reader:
                     return self._indented(number, _write_spaces(top.indent, top.line))
                 return None
         elif kind == "list" and top.kind == "map" and top.wants:
-            pass  # a list may be indented as its key is
+            pass  # A list may have the same indentation as its key.
         else:
             if kind == "map" and top.kind == "list" and len(self.levels) > 1 and self.levels[-2].indent == indent:
                 top = self.levels.pop() and self.levels[-1]
@@ -168,7 +171,11 @@ class _Reader:
         return None
 
     def _between(self, number: int, indent: int, above: _Level, left: _Level) -> Mistake:
-        """The line is indented more than ``above``, less than ``left``: it or the first line of ``left`` is wrong."""
+        """The mistake of a line that is indented more than ``above`` but less than ``left``.
+
+        Either this line or the first line of ``left`` is wrong.  The first line of ``left`` is, if it is the only line
+        of its level, and other lines, or the usual step of the file, agree with this line.
+        """
         alike = 0
         for line in self.lines[number - 1 :]:
             content = line.lstrip(" ")
@@ -204,7 +211,7 @@ class _Reader:
         return Mistake(number, column, column + len(content), *found) if found else None
 
     def _value(self, number: int, line: str, start: int) -> Mistake | None:
-        """Reads on at ``start``, where a value begins or, with brackets or quotes open, goes on."""
+        """Reads a line from ``start``: a value begins there, or continues if brackets or quotes are open."""
         if not self.open:
             if line[start : start + 1] not in ("{", "[", '"', "'"):
                 return self._plain(number, line, start)
@@ -241,7 +248,7 @@ class _Reader:
         return None
 
     def _close(self, number: int, line: str, start: int) -> int | None:
-        """Where in the line the value ends that is open, or None if it goes on in the next line."""
+        """The index in the line at which the open value ends, or None if it continues in the next line."""
         at = start
         while at < len(line):
             character, opened = line[at], self.open[-1][0]
@@ -262,7 +269,10 @@ class _Reader:
         return None
 
     def _unclosed(self, number: int, line: str) -> Mistake | None:
-        """A key that is indented as the line in which a bracket is open: the bracket was to end before."""
+        """The mistake of a bracket or quote that is still open when a key follows.
+
+        The key must not be indented deeper than the line of the bracket: then it cannot be a part of its value.
+        """
         _, opened, _ = self.open[0]
         first = self.lines[opened - 1]
         entry = _ENTRY.match(line.lstrip(" "))
