@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The catalog: what the ``targets`` folders hold, from chips to component kinds, read on demand.
+"""The catalog: the chips, boards, platforms, families, middlewares and component kinds in the folders of targets.
+
+An item is read and checked when it is used for the first time.
 
 >>> # catalog = load_catalog(targets_roots(), diagnostics)
 >>> # catalog.target("rpi_pico2_freertos", span, diagnostics).soc.name
@@ -33,14 +35,14 @@ FOLDERS = {
     "middleware": "middlewares",
     "component": "components",
 }
-"""The folder of each category of items: an item is a folder with one file, such as ``boards/x/board.yaml``."""
+"""The folder of each category of items.  An item is a folder with one YAML file, such as ``boards/x/board.yaml``."""
 
 
 Item = TypeVar("Item", Soc, Board, Platform, Family, Middleware, Kind)
 
 
 class Catalog:
-    """Everything in the ``targets`` folders ``roots``, of which the first wins where names meet."""
+    """All items in the folders of targets ``roots``.  If two folders have the same item, the first one is used."""
 
     def __init__(self, roots: Sequence[Path], diagnostics: Diagnostics) -> None:
         self.roots = tuple(roots)
@@ -49,14 +51,14 @@ class Catalog:
         self._items: dict[tuple[str, str], Soc | Board | Platform | Family | Middleware | Kind | None] = {}
 
     def names(self, category: str) -> list[str]:
-        """Names of all items of a category: the keys of :data:`FOLDERS`."""
+        """The names of all items of a category, which is a key of :data:`FOLDERS`."""
         return sorted(self._paths(category))
 
     def kind_names(self) -> list[str]:
         return self.names("component")
 
     def target_names(self) -> list[str]:
-        """Names of all targets: each platform with each board whose chip it serves."""
+        """The names of all targets: each platform with each board whose chip the platform supports."""
         found = set()
         for platform_name in self.names("platform"):
             platform = self._item("platform", platform_name, make_platform)
@@ -73,30 +75,30 @@ class Catalog:
         return sorted(found)
 
     def find_kind(self, name: str) -> Kind | None:
-        """The kind called ``name``, or None."""
+        """The kind ``name``, or None if it does not exist or has mistakes."""
         return self._item("component", name, make_kind)
 
     def find_target(self, name: str) -> Target | None:
-        """The target called ``name``, or None."""
+        """The target ``name``, or None if it does not exist or has mistakes."""
         return self._target(name)[0]
 
     def find_family(self, name: str) -> Family | None:
-        """The family of chips called ``name``, or None if it has no port layer of its own."""
+        """The family of chips ``name``, or None if there is no folder with a port layer for it."""
         return self._item("family", name, make_family)
 
     def find_middleware(self, name: str) -> Middleware | None:
-        """The middleware called ``name``, or None."""
+        """The middleware ``name``, or None if it does not exist or has mistakes."""
         return self._item("middleware", name, make_middleware)
 
     def kind(self, name: str, span: Span, diagnostics: Diagnostics) -> Kind | None:
-        """The kind that ``span`` names, or None after reporting that there is none."""
+        """The kind ``name``, or None after reporting at ``span`` that it does not exist."""
         if name not in self._paths("component"):
             hint = not_found_hint(name, self.kind_names(), "kinds")
             diagnostics.error("unknown-kind", span, f"there is no kind '{name}'", hint=hint)
         return self.find_kind(name)
 
     def target(self, name: str, span: Span, diagnostics: Diagnostics) -> Target | None:
-        """The target that ``span`` names, or None after reporting that there is none."""
+        """The target ``name``, or None after reporting at ``span`` that it does not exist."""
         target, exists = self._target(name)
         if not exists:
             hint = target_hint(name, self.target_names(), "targets")
@@ -104,7 +106,10 @@ class Catalog:
         return target
 
     def _target(self, name: str) -> tuple[Target | None, bool]:
-        """The target, and whether there is one of that name at all: what is wrong with its files is reported."""
+        """The target, and True if a target of that name exists.
+
+        The target is None if it does not exist, or after reporting mistakes in its files.
+        """
         for board_name, platform_name in self._splits(name):
             platform = self._item("platform", platform_name, make_platform)
             if platform is None:
@@ -126,21 +131,21 @@ class Catalog:
         return None, False
 
     def _check_target(self, target: Target) -> bool:
-        """Whether board, chip, platform and middlewares fit together; reports why not."""
+        """True if board, chip, platform and middlewares fit together.  Reports the mistakes otherwise."""
         errors = self._diagnostics.error_count
         check_offers(target, self.names("middleware"), self._diagnostics)
         check_target(target, self._diagnostics)
         return self._diagnostics.error_count == errors
 
     def _on(self, platform: Platform, soc: Soc) -> Platform | None:
-        """The platform as it is on a chip, or None if it does not serve the chip's family."""
+        """The platform with the parts that the family of a chip adds, or None if it does not support the family."""
         if not platform.by_family:
             return platform if platform.board is not None or soc.family in platform.families else None
         family = self.find_family(soc.family)
         return platform_for(platform, family) if family is not None and platform.name in family.platforms else None
 
     def _splits(self, name: str) -> list[tuple[str, str]]:
-        """The boards and platforms whose names could make ``name``."""
+        """The pairs of board and platform whose names together are ``name``; ("", platform) for a platform alone."""
         platforms, boards = self._paths("platform"), self._paths("board")
         ends = [platform for platform in platforms if name.endswith(f"_{platform}")]
         pairs = [(name.removesuffix(f"_{platform}"), platform) for platform in ends]
@@ -148,7 +153,7 @@ class Catalog:
         return alone + sorted(pair for pair in pairs if pair[0] in boards)
 
     def _report_missing(self, platform: Platform, board: Board | None) -> None:
-        """Reports a board that a platform names, or a chip that a board names, when there is no such folder."""
+        """Reports a platform whose board, or a board whose chip, has no folder."""
         category, node = ("soc", board.node["soc"]) if board else ("board", platform.node.get("board"))
         if node is not None and str(node.value) not in self._paths(category):
             hint = not_found_hint(str(node.value), self.names(category), f"in {FOLDERS[category]}/")
@@ -157,7 +162,7 @@ class Catalog:
             )
 
     def _paths(self, category: str) -> dict[str, list[Path]]:
-        """The files of all items of a category, by name; several where roots have the same name."""
+        """The files of all items of a category, by name; several files if several roots have the same item."""
         if category not in self._files:
             files: dict[str, list[Path]] = {}
             for root in self.roots:
@@ -191,21 +196,24 @@ _NAME_KEYS = {category: "kind" if category == "component" else category for cate
 
 
 def not_found_hint(name: str, known: Sequence[str], otherwise: str) -> str:
-    """The hint for a name that is in no ``targets`` folder: it may be one of the user's, whose folder is not known."""
+    """The hint for a name that is in none of the folders of targets.
+
+    The item may be in a folder of the user that EPG does not search yet.
+    """
     meant = did_you_mean(name, known, otherwise)
     return f"{meant}{'' if meant.endswith('?') else '.'} EPG finds your own in the folders that EPG_TARGETS_PATH names"
 
 
 def target_hint(name: str, known: Sequence[str], otherwise: str) -> str:
-    """The same for a target, whose board may be one that nobody has described yet."""
+    """The hint for a target that does not exist.  Its board may be one that the user must describe first."""
     return f"{not_found_hint(name, known, otherwise)}; docs/adding-a-board.md says how to describe a board"
 
 
 def load_catalog(roots: Sequence[Path], diagnostics: Diagnostics) -> Catalog:
-    """The catalog of ``roots``, the user's first.
+    """The catalog of ``roots``, the user's folders first.
 
-    Nothing is read until it is asked for; problems of files are reported to ``diagnostics`` then.  A folder that is
-    missing is reported at once.
+    An item is read when it is used for the first time, and its mistakes are reported to ``diagnostics`` then.  A
+    missing folder is reported at once.
     """
     for root in roots:
         if not root.is_dir():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The files of ``targets`` folders, checked: structure by schema, then what a schema cannot say."""
+"""Checks the files of the folders of targets: first against their schema, then the rules that a schema cannot hold."""
 
 from __future__ import annotations
 
@@ -19,7 +19,10 @@ from epg.source import Span, YamlNode
 
 
 def check_file(category: str, node: YamlNode, name: str, platforms: Sequence[str], diagnostics: Diagnostics) -> bool:
-    """Whether the file of the item ``name`` is right; reports its mistakes.  ``platforms`` are all that there are."""
+    """True if the file of the item ``name`` has no mistakes.  Reports them otherwise.
+
+    ``platforms`` are the names of all platforms of the catalog.
+    """
     key = "kind" if category == "component" else category
     if not node.is_mapping:
         span = Span(node.span.file, 1, 1, 2)
@@ -65,11 +68,11 @@ def _names_in(node: YamlNode, path: tuple[str, ...]) -> list[YamlNode]:
 
 
 _FILE = re.compile(r"(?:[A-Za-z0-9_+-][A-Za-z0-9_+.-]*/)*[A-Za-z0-9_+-][A-Za-z0-9_+.-]*")
-"""Names that can stand in ``#include`` and in CMake, and that lead nowhere else."""
+"""Names that are possible in ``#include`` and in CMake, and that do not lead out of the folder."""
 
 
 def _files_exist(node: YamlNode, path: tuple[str, ...], names: Collection[YamlNode], diagnostics: Diagnostics) -> None:
-    """Reports names in ``node`` that are no files in its folder."""
+    """Reports ``names``, at ``path`` in ``node``, that are not files in the folder of ``node``."""
     folder = Path(node.span.file).parent
     for name in names:
         if not _FILE.fullmatch(str(name.value)):
@@ -84,7 +87,7 @@ def _files_exist(node: YamlNode, path: tuple[str, ...], names: Collection[YamlNo
 
 
 def _check_templates(names: Collection[YamlNode], diagnostics: Diagnostics) -> None:
-    """Templates of a platform make files of their own."""
+    """Reports names of a platform's templates that have a wrong form, or that would replace a file of every target."""
     for name in names:
         if not _TEMPLATE.fullmatch(str(name.value)) or str(name.value) in _TAKEN:
             message = f"templates: '{name.value}' makes no file of the platform"
@@ -98,11 +101,11 @@ _TAKEN = {
     for of in ("model", "plant")
     for part in (f"{of}.h", f"{of}.c", f"{of}_names.h", *(f"{of}_export.{suffix}" for suffix in ("h", "c", "cpp")))
 } | {"NAME_app.c.j2", "NAME.h.j2", "NAME.cmake.j2", "NAME.json.j2"}
-"""Names of files that every target has."""
+"""The templates of files that every target has."""
 
 
 def _beside(node: YamlNode, name: str, page: str, diagnostics: Diagnostics) -> None:
-    """Reports that the file ``name`` is not in the folder in which ``node`` makes it necessary."""
+    """Reports that the folder of ``node`` lacks the file ``name``, which it needs because of ``node``."""
     folder = Path(node.span.file).parent
     if not (folder / name).is_file():
         hint = f"{page} says what it holds"

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the schemas of chips, boards and platforms cannot say: that the names in them belong to each other."""
+"""Checks that the names in the files of chips, boards, platforms and families fit together.
+
+A schema cannot check this.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +17,7 @@ from epg.source import Span, YamlNode
 
 
 def check_soc(node: YamlNode, diagnostics: Diagnostics) -> None:
-    """A chip in itself: pins, slots, instances and dividers that exist."""
+    """Checks a chip alone: all pins, slots, instances and dividers that it names must exist."""
     _clock(node["clock"], diagnostics)
     pins = _pins(node.get("pins"), diagnostics)
     for name, peripheral in map_of(node, "peripherals").items():
@@ -25,7 +28,7 @@ def check_soc(node: YamlNode, diagnostics: Diagnostics) -> None:
 
 
 def check_board(node: YamlNode, diagnostics: Diagnostics) -> None:
-    """A board in itself: each pin has one meaning."""
+    """Checks a board alone: each pin must have one meaning only."""
     seen: dict[str, tuple[str, Span]] = {}
     listed = node.get("pins")
     groups = [("pins", name, listed.span) for name in _pins(listed, diagnostics)] if listed else []
@@ -42,7 +45,7 @@ def check_board(node: YamlNode, diagnostics: Diagnostics) -> None:
 
 
 def _layout(layout: YamlNode, pins: set[str], diagnostics: Diagnostics) -> None:
-    """Each contact is a pin of the board, once, or a supply."""
+    """Checks the layout: each contact must be a pin of the board, which has one contact only, or a supply."""
     supplies = map_of(layout, "supplies")
     seen: dict[str, Span] = {}
     for contact in (child for row in layout["rows"].elements() for child in row["contacts"].elements()):
@@ -56,7 +59,10 @@ def _layout(layout: YamlNode, pins: set[str], diagnostics: Diagnostics) -> None:
 
 
 def check_platform(node: YamlNode, diagnostics: Diagnostics) -> None:
-    """A platform serves families of chips, one board, or what folders of families serve; its tick is of its classes."""
+    """Checks a platform alone.
+
+    It must name families of chips, one board, or ``by_family``.  Its tick must be one of its resource classes.
+    """
     if sum(key in node for key in ("board", "families", "by_family")) != 1:
         message = "a platform states either 'families', 'board' or 'by_family'"
         hint = (
@@ -77,7 +83,7 @@ def check_platform(node: YamlNode, diagnostics: Diagnostics) -> None:
 
 
 def _left_to_families(node: YamlNode, diagnostics: Diagnostics) -> None:
-    """Reports what a platform says in the place of the families that bring its port layer."""
+    """Reports keys of a platform with ``by_family`` that belong into the files of the families."""
     for key in ("classes", "middlewares", "usb_names", "templates", "shared", "sdk", "products"):
         if key in node:
             message = f"'{key}' depends on the family of chips, so a platform with 'by_family' cannot state it"
@@ -85,7 +91,7 @@ def _left_to_families(node: YamlNode, diagnostics: Diagnostics) -> None:
 
 
 def check_family(node: YamlNode, platforms: Sequence[str], diagnostics: Diagnostics) -> None:
-    """All platforms that a family names are among ``platforms``."""
+    """Checks a family alone: all platforms that it names must be among ``platforms``."""
     for platform in node["platforms"].elements():
         if platform.value not in platforms:
             hint = did_you_mean(str(platform.value), platforms, "in platforms/")
@@ -93,7 +99,10 @@ def check_family(node: YamlNode, platforms: Sequence[str], diagnostics: Diagnost
 
 
 def check_target(target: Target, diagnostics: Diagnostics) -> None:
-    """Board, chip and platform go together: pins that the chip has, a tick that it can give."""
+    """Checks that board, chip and platform fit together.
+
+    The chip must have all pins and resource classes that the board names, and a class for the platform's tick.
+    """
     board, soc = target.board, target.soc
     node = board.node
     for section in ("onboard", "reserved"):
@@ -199,7 +208,7 @@ def _clock(node: YamlNode, diagnostics: Diagnostics) -> None:
 
 
 def _pins(node: YamlNode | None, diagnostics: Diagnostics) -> tuple[str, ...]:
-    """The pins of a list, empty after reporting a range that is none or a pin that is there twice."""
+    """The pins of a list.  Reports a pin that is listed twice, and a wrong range: then the result is empty."""
     try:
         names = pin_names(node)
     except ValueError as problem:

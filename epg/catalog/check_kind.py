@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the schema of component kinds cannot say: that names, ranges and defaults in them make sense."""
+"""Checks names, ranges and defaults in the files of component kinds, which their schema cannot check."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _DIMENSIONS = {"frequency": "frequency", "period": "time"}
 
 
 def check_kind(node: YamlNode, diagnostics: Diagnostics) -> None:
-    """A kind in itself."""
+    """Reports the mistakes in the file of a kind."""
     parameters = map_of(node, "parameters")
     for name, parameter in parameters.items():
         span = node["parameters"].key_span(name)
@@ -51,7 +51,7 @@ def check_kind(node: YamlNode, diagnostics: Diagnostics) -> None:
 
 
 def _communication(node: YamlNode, parameters: Mapping[str, YamlNode], diagnostics: Diagnostics) -> None:
-    """What EPG itself reads of a topic's parameters has the types it expects."""
+    """Checks the parameters of a kind with ``communication`` that EPG itself reads: they must have certain types."""
     direction = str(node["communication"].value)
     topics = {"from": "type: string", "to": "type: string"} if direction == "echo" else {"topic": "type: string"}
     for name in (*topics, "qos"):
@@ -101,7 +101,7 @@ def _relations(node: YamlNode, parameters: Iterable[str], uses: Iterable[str], d
 
 
 def _ports(node: YamlNode, parameters: Mapping[str, YamlNode], diagnostics: Diagnostics) -> None:
-    """At most one port of a direction is meant by the component's name alone, and none of several."""
+    """Checks ports.  In each direction, at most one port can be the default, and not one of ports with ``each``."""
     defaults: dict[str, tuple[str, Span]] = {}
     for name, port in map_of(node, "ports").items():
         span = node["ports"].key_span(name)
@@ -129,7 +129,7 @@ def _ports(node: YamlNode, parameters: Mapping[str, YamlNode], diagnostics: Diag
 
 
 def _each(port: YamlNode, parameters: Mapping[str, YamlNode], diagnostics: Diagnostics) -> None:
-    """A port for each of a list of names, which every component has."""
+    """Checks a port with ``each``: this must name a required parameter of the type ``names``."""
     named = port["each"]
     _known("parameter", named, parameters, diagnostics)
     parameter = parameters.get(str(named.value))
@@ -163,7 +163,10 @@ def _claims(node: YamlNode, parameters: Mapping[str, YamlNode], diagnostics: Dia
 
 
 def _safe_states(node: YamlNode, diagnostics: Diagnostics) -> None:
-    """States are levels of outputs, of which targets/runtime/include/epg/outputs.h has 8 for a component."""
+    """Checks ``safe_states``: they must name outputs that the kind claims.
+
+    targets/runtime/include/epg/outputs.h has room for 8 outputs of a component.
+    """
     outputs = [name for name, claim in map_of(node, "claims").items() if claim["class"].value in OUTPUT_CLASSES]
     if len(outputs) > _OUTPUTS:
         message = f"a kind can claim {_OUTPUTS} outputs at most, not {len(outputs)}"
@@ -177,8 +180,11 @@ def _safe_states(node: YamlNode, diagnostics: Diagnostics) -> None:
 
 
 def _attribute(attribute: str, named: YamlNode, parameter: YamlNode | None, diagnostics: Diagnostics) -> None:
-    """Dividers are set from numbers with a unit, or from rates per second, such as a baud rate, that are whole
-    numbers; other attributes are compared, so they are single values."""
+    """Checks the parameter that gives a claim its ``attribute``.
+
+    An attribute that sets a divider needs a parameter with a unit.  For a frequency, a whole number is possible, too: a
+    rate per second, such as a baud rate.  Other attributes are compared with each other, so they cannot be objects.
+    """
     if parameter is None:
         return
     wanted = _DIMENSIONS.get(attribute)

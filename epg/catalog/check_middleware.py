@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the schema of middlewares cannot say: that their options make sense, and that platforms can carry them."""
+"""Checks the options of middlewares and the lists of middlewares in platforms, which their schemas cannot check."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ COMMON_OPTIONS = ("middleware", "transport", "period", "domain", "diagnostics", 
 
 
 def check_middleware(node: YamlNode, diagnostics: Diagnostics) -> None:
-    """A middleware in itself."""
+    """Reports the mistakes in the file of a middleware."""
     options = map_of(node, "options")
     for name, option in options.items():
         span = node["options"].key_span(name)
@@ -37,7 +37,7 @@ def check_middleware(node: YamlNode, diagnostics: Diagnostics) -> None:
 
 
 def check_offers(target: Target, known: Sequence[str], diagnostics: Diagnostics) -> None:
-    """Whatever a platform offers in ``middlewares`` is among the ``known`` ones."""
+    """Reports names in ``middlewares`` of a platform that are not among the ``known`` middlewares."""
     offered = target.platform.offers["middlewares"]
     for name in target.platform.middlewares:
         if name not in known:

@@ -1,10 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Chips and boards as data: ``socs/`` and ``boards/`` below the ``targets`` folders; targets of these.
+"""Chips, boards and targets as data: the folders ``socs/`` and ``boards/`` in the folders of targets.
 
-The relations that a chip's peripherals can have are few, and all are here: an instance is exclusive or has *slots*;
-its users *agree* on attributes; it is reached through enumerated *pins*, through any pins, or through *neighbours*;
-a *divider* makes its frequency of a clock; single values of attributes can be *unsupported*.  A chip that needs another
-relation needs another line of Python, in :mod:`epg.resolve`; any other chip is a folder.
+A chip's file can describe these relations between claims and peripherals, and no others:
+
+- an instance has one user, or it has *slots* for several users;
+- the users of an instance must *agree* on attributes;
+- a signal can have certain *pins*, any pin, or must have a pin next to another one (*neighbours*);
+- a *divider* makes the frequency of an instance from a clock;
+- single values of attributes can be *unsupported*.
+
+A chip with another relation needs new Python code in :mod:`epg.resolve`.  Any other new chip is a new folder.
 """
 
 from __future__ import annotations
@@ -25,7 +30,10 @@ from epg.source import Span, YamlNode
 
 @dataclass(frozen=True)
 class Divider:
-    """A frequency is ``clock / (prescaler * counter)``; both are whole numbers from a range, ends included."""
+    """A divider, whose frequency is ``clock / (prescaler * counter)``.
+
+    ``prescaler`` and ``counter`` are the first and the last whole number of the possible range.
+    """
 
     prescaler: tuple[int, int]
     counter: tuple[int, int]
@@ -33,16 +41,19 @@ class Divider:
 
 @dataclass(frozen=True)
 class Peripheral:
-    """Equal units of a chip.  ``pins`` says what a slot reaches: (instance, slot) -> pins, both counted from 0."""
+    """One kind of hardware in a chip, with all its instances.
+
+    ``pins`` holds the pins that each slot can reach: (instance, slot) -> pins, both counted from 0.
+    """
 
     name: str
     title: str
     instances: tuple[str, ...]
-    slots: tuple[str, ...]  # one nameless slot when instances are not divided
+    slots: tuple[str, ...]  # one slot without a name if instances have no slots
     slot_title: str
-    agree: tuple[str, ...]
+    agree: tuple[str, ...]  # attributes that must be the same for all users of an instance
     divider: Divider | None
-    clock: Fraction  # Hz, what the divider divides
+    clock: Fraction  # Hz, the input of the divider
     pins: Mapping[tuple[int, int], tuple[str, ...]]
     span: Span
 
@@ -51,11 +62,11 @@ class Peripheral:
         return _with_article(self.title)
 
     def instance_title(self, instance: int) -> str:
-        """What messages call an instance: ``PWM slice 1``."""
+        """The name of an instance in messages: ``PWM slice 1``."""
         return self.title if len(self.instances) == 1 else f"{self.title} {self.instances[instance]}"
 
     def slot_name(self, instance: int, slot: int) -> str:
-        """What messages call a slot: ``PWM slice 1, channel A``."""
+        """The name of a slot in messages: ``PWM slice 1, channel A``."""
         if len(self.slots) == 1:
             return self.instance_title(instance)
         return f"{self.instance_title(instance)}, {self.slot_title} {self.slots[slot]}"
@@ -63,7 +74,7 @@ class Peripheral:
 
 @dataclass(frozen=True)
 class Unsupported:
-    """Why a chip cannot do what an attribute asks for, and what a user can do instead."""
+    """A value of an attribute that a chip cannot provide: the reason, and the alternative for the user."""
 
     because: str
     instead: str
@@ -71,17 +82,18 @@ class Unsupported:
 
 @dataclass(frozen=True)
 class ResourceClass:
-    """What kinds and platforms claim, and how this chip implements it.
+    """A resource class, which kinds and platforms claim, as this chip implements it.
 
-    ``signals`` says how the pin of a signal is found: "any" pin, one of the "slot" that is taken, or one of a slot
-    that is named.  ``unsupported`` maps an attribute and a value of it to why claims must not have it.
+    ``signals`` maps each signal to the pins that it can have: "any" pin, the pins of the "slot" that the claim gets, or
+    the pins of a slot with this name.  ``unsupported`` maps (attribute, value) to the reason why claims must not have
+    this value.
     """
 
     name: str
     title: str
-    peripheral: str | None  # None: pins alone
-    whole: bool  # takes all slots of an instance
-    instances: tuple[str, ...]  # only these; empty: all
+    peripheral: str | None  # None: the class uses pins only
+    whole: bool  # True if a claim takes all slots of an instance
+    instances: tuple[str, ...]  # the possible instances; empty: all
     signals: Mapping[str, str]
     neighbours: tuple[str, ...]
     fixed: Mapping[str, object]
@@ -98,9 +110,10 @@ class ResourceClass:
 
 @dataclass(frozen=True)
 class Soc:
-    """A chip.  A pin's number in C is its place in ``pins``; ``automatic_pins`` are numbered by EPG instead.
+    """A chip.  The number of a pin in C is its index in ``pins``.
 
-    ``clock`` in Hz drives all dividers that state no other.
+    A chip with ``automatic_pins`` has no real pins: EPG gives signals numbers, at most so many.  ``clock`` in Hz is the
+    clock of all dividers that do not name another one.
     """
 
     name: str
@@ -116,13 +129,13 @@ class Soc:
 
     @cached_property
     def numbers(self) -> Mapping[str, int]:
-        """The number in C of each pin."""
+        """The number of each pin in C."""
         return MappingProxyType({pin: number for number, pin in enumerate(self.pins)})
 
 
 @dataclass(frozen=True)
 class OnboardPin:
-    """A pin that is not broken out but wired to something on the board."""
+    """A pin that is wired to a device on the board, such as an LED, and is not broken out."""
 
     title: str
     classes: tuple[str, ...]
@@ -130,12 +143,12 @@ class OnboardPin:
 
 @dataclass(frozen=True)
 class Board:
-    """A chip on a circuit board; ``names`` and ``prefixes`` are other ways to write its pins.
+    """A printed circuit board with a chip; ``names`` and ``prefixes`` are other ways to write its pins.
 
-    ``sdks`` says what SDKs call the board: "pico_sdk" -> "pico2".  ``lacks`` are transports of
-    platforms that it has not, and why.  ``devicetree`` are the nodes that the board's
-    devicetree in Zephyr enables, with the pins they have; ``console`` is the one of its console, or empty.
-    ``layout`` says where its pins are.
+    ``sdks`` maps each SDK to its name of the board: "pico_sdk" -> "pico2".  ``lacks`` maps the transports that this
+    board does not have, although platforms offer them, to the reason.  ``devicetree`` maps each node that the board's
+    devicetree in Zephyr enables to its pins; ``console`` is the node of the console, or empty.  ``layout`` describes
+    the places of the pins.
     """
 
     name: str
@@ -156,10 +169,10 @@ class Board:
     span: Span
 
     def pin_name(self, written: str) -> str:
-        """The chip's name of a pin that is written as people do: ``GP10`` is ``10``, ``LED`` is ``25``."""
+        """The chip's name of a pin that a user has written: ``GP10`` is ``10``, ``LED`` is ``25``."""
         if written in self.names:
             return self.names[written]
-        for prefix in sorted(self.prefixes, key=len, reverse=True):  # GPIO before GP
+        for prefix in sorted(self.prefixes, key=len, reverse=True):  # The longest first: GPIO before GP.
             if written.startswith(prefix) and written != prefix:
                 return written[len(prefix) :]
         return written
@@ -167,7 +180,7 @@ class Board:
 
 @dataclass(frozen=True)
 class Target:
-    """A board with a platform: what ``target:`` in a ``.tcf`` names."""
+    """A board with a platform, which the key ``target`` of a ``.tcf`` names."""
 
     name: str
     board: Board
@@ -176,7 +189,7 @@ class Target:
 
     @property
     def files(self) -> tuple[Path, ...]:
-        """The files that say all this."""
+        """The files that describe the board, the platform, the chip and the family."""
         return (
             self.board.folder / "board.yaml",
             self.platform.folder / "platform.yaml",
@@ -186,17 +199,17 @@ class Target:
 
     @property
     def has_pins(self) -> bool:
-        """Whether users name pins; else EPG numbers them."""
+        """True if the chip has pins that users name.  Otherwise EPG numbers signals."""
         return self.soc.automatic_pins == 0
 
     @property
     def tick(self) -> str | None:
-        """The class of the peripheral that times the control loop, None where the system software does."""
+        """The resource class that times the control loop, None if the system software times it."""
         name = self.platform.tick
         return None if self.platform.tick_is_optional and name not in self.soc.classes else name
 
     def resource_class(self, name: str) -> ResourceClass | None:
-        """How this target implements a class, or None if it does not."""
+        """The resource class ``name`` as this target implements it, or None if it does not."""
         return self.soc.classes.get(name) if name in self.platform.classes else None
 
 
@@ -307,7 +320,7 @@ def _clock(node: YamlNode) -> Fraction:
 
 
 def _names(node: YamlNode | None) -> tuple[str, ...]:
-    """``[TIM1, TIM2]`` as it is, ``8`` as 0 ... 7, nothing as one nameless."""
+    """The names in a list; "0" to "7" for the number 8; one empty name if ``node`` is None."""
     if node is None:
         return ("",)
     if isinstance(node.value, int):

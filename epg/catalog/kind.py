@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Component kinds as data: ``components/<kind>/component.yaml`` below the ``targets`` folders."""
+"""Component kinds as data: ``components/<kind>/component.yaml`` in the folders of targets."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from epg.documents.items import flag_of, map_of, text_of, texts_of
 from epg.source import Span, YamlNode
 
 TEMPLATE = "code.c.j2"
-"""The file of a kind, and of a middleware that has one, with what it adds to generated code."""
+"""The template of the code that a kind adds to generated files.  Middlewares can have such a template, too."""
 
 OUTPUT_CLASSES = ("digital_output", "pwm")
-"""Classes of peripherals whose pins a component drives."""
+"""Resource classes whose pins are outputs."""
 
 _BOUNDS = ("minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum")
 
 
 @dataclass(frozen=True)
 class KindParameter:
-    """A parameter of a kind.  ``type`` is "quantity" when ``dimension`` says of what, else a name of a type.
+    """A parameter of a kind.  If ``type`` is "quantity", ``dimension`` is its dimension, such as "time"; else empty.
 
-    ``default`` and ``bounds`` are as written, in units: ``20 kHz``; ``default`` is None when there is none.
+    ``default`` and ``bounds`` are kept as they are written, with units: ``20 kHz``.
     """
 
     name: str
@@ -35,22 +35,24 @@ class KindParameter:
     required: bool
     default: YamlNode | None
     bounds: Mapping[str, YamlNode]
-    keywords: Mapping[str, Any]  # enum, pattern, minLength, examples: as in JSON Schema
-    aliases: Mapping[str, str]  # other ways to write values of enum, and those values
+    keywords: Mapping[str, Any]  # enum, pattern, minLength, examples, as in JSON Schema
+    aliases: Mapping[str, str]  # another way to write a value of enum -> that value
     properties: tuple[KindParameter, ...]
     span: Span
 
 
 @dataclass(frozen=True)
 class KindPort:
-    """What a model's port can be bound to.  A "source" gives values to the model, a "sink" takes them.
+    """A port of a component.  A "source" gives values to the model, a "sink" takes values of the model.
 
-    ``default``: meant when only the component is named.  ``actuator``: made safe while the target is disabled.
-    ``drive``: its value drives a motor, and the template's macro ``applied`` gives what it is at present.
-    ``boolean_with``: values of parameters with which a component's port is boolean, though the kind's is not.
-    ``integer_with``: the same for whole numbers, which inputs that are integers take.
-    ``each``: in a kind, the parameter whose names say how many such ports a component has; in a component's own kind
-    (:meth:`Kind.of_component`) there is one for each ``element`` of it, and ``part`` is what the kind calls it.
+    ``default``: a binding that names only the component means this port.
+    ``actuator``: the port is made safe while the target is disabled.
+    ``drive``: the value drives a motor.  The macro ``applied`` of the kind's template gives the present duty.
+    ``boolean_with``: the port is boolean if the component's parameters have these values; else it has ``type``.
+    ``integer_with``: the port gives whole numbers if the parameters have these values, so integer inputs can take it.
+    ``each``: the parameter with a list of names; a component has one such port for each name.  A component's own kind
+    (:meth:`Kind.of_component`) has a port for each ``element`` of the list instead, and ``part`` is the name of the
+    port in the original kind.
     """
 
     name: str
@@ -70,9 +72,9 @@ class KindPort:
 
 @dataclass(frozen=True)
 class KindUse:
-    """Another component that components of a kind name: by a port of it, or a ``topic``.
+    """A reference of a component to a port of another component, or to a component that is a ``topic``.
 
-    ``direction``, ``unit`` and ``drive`` say which ports are possible; an empty text, or false, is any.
+    ``direction``, ``unit`` and ``drive`` restrict the possible ports; an empty text, or False, allows any port.
     """
 
     name: str
@@ -87,7 +89,7 @@ class KindUse:
 
 @dataclass(frozen=True)
 class NeedsBound:
-    """A parameter ``key`` that makes sense only if a model drives ``port`` of the component that ``use`` names."""
+    """A rule: the parameter ``key`` is allowed only if a model drives ``port`` of the component that ``use`` names."""
 
     key: str
     use: str
@@ -96,7 +98,10 @@ class NeedsBound:
 
 @dataclass(frozen=True)
 class KindClaim:
-    """Hardware that each component of a kind needs: signal -> name of a pin, attribute -> name of a parameter."""
+    """A claim of each component of a kind.
+
+    ``signals`` maps signals of the resource class to names of pins, ``attributes`` maps attributes to parameters.
+    """
 
     name: str
     resource_class: str
@@ -112,18 +117,18 @@ class Kind:
     name: str
     summary: str
     communication: str | None  # "subscribe", "publish", "echo" or None
-    transport: bool  # ``communication: {transport: ...}`` can name its components
+    transport: bool  # True if ``communication: {transport: ...}`` can name components of this kind
     pins: tuple[str, ...]
     parameters: tuple[KindParameter, ...]
     uses: tuple[KindUse, ...]
     exactly_one: tuple[tuple[str, ...], ...]
     at_least_one: tuple[tuple[str, ...], ...]
     at_most_one: tuple[tuple[str, ...], ...]
-    only_with: tuple[tuple[str, str], ...]  # (key, what it needs)
+    only_with: tuple[tuple[str, str], ...]  # (key, the key that it needs)
     needs_bound: tuple[NeedsBound, ...]
     ports: tuple[KindPort, ...]
     claims: tuple[KindClaim, ...]
-    safe_states: tuple[Mapping[str, str], ...]  # claim -> "low" or "high": safe whatever the other claims' pins do
+    safe_states: tuple[Mapping[str, str], ...]  # claim -> "low" or "high"; safe for any level of the other claims
     headers: tuple[str, ...]
     sources: tuple[str, ...]
     node: YamlNode
@@ -131,15 +136,15 @@ class Kind:
     span: Span
 
     def main_port(self, direction: str) -> KindPort | None:
-        """The port that is meant when a binding names a component only: the default one, or the only one."""
+        """The port that a binding means if it names the component only: the default port, or the only port."""
         found = [port for port in self.ports if port.direction == direction and (port.default or len(self.ports) == 1)]
         return found[0] if found else None
 
     def of_component(self, parameters: Mapping[str, object]) -> Kind:
-        """The kind with the ports that a component with these ``parameters`` has.
+        """The kind with the ports of a component that has these ``parameters``.
 
-        Where one port stands for each name of a list, that name is the port's; where several do, the port of the first
-        joint is ``pan.position``.
+        A port with ``each`` becomes one port for each name of the list.  If the kind has one such port, the name of the
+        element is the name of the port: ``pan``.  If it has several, the names are such as ``pan.position``.
         """
         if not any(port.each or port.boolean_with for port in self.ports):
             return self
@@ -158,7 +163,7 @@ class Kind:
         return replace(self, ports=tuple(ports))
 
     def shown_port(self, port: KindPort) -> str:
-        """How people are told of a port: ``position``, or ``<joints>.position`` where there is one for each joint."""
+        """The name of a kind's port in messages: ``position``, or ``<joints>.position`` if each joint has this port."""
         if not port.each:
             return port.name
         alone = sum(other.each == port.each for other in self.ports) == 1
@@ -179,7 +184,7 @@ class Kind:
 
     @property
     def files(self) -> tuple[Path, ...]:
-        """The files that describe and implement the kind, with those that its shared parameters come from."""
+        """The files that describe and implement the kind, and the files of its shared parameters."""
         names = ("component.yaml", TEMPLATE, *self.headers, *self.sources)
         shared = (Path(parameter.span.file) for parameter in self.parameters)
         return tuple(dict.fromkeys([*(self.folder / name for name in names), *shared]))
@@ -232,7 +237,7 @@ def make_kind(node: YamlNode, folder: Path) -> Kind:
 
 
 def make_parameters(section: YamlNode | None) -> tuple[KindParameter, ...]:
-    """The parameters of a checked map of them, or none."""
+    """The parameters that a checked map describes; empty if ``section`` is None."""
     return (
         ()
         if section is None

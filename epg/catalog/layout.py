@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where the pins of a board are: its rows of contacts, for pictures of its wiring."""
+"""The places of the pins of a board, as rows of contacts.  Pictures of its wiring are drawn from them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from epg.source import YamlNode
 
 @dataclass(frozen=True)
 class Contact:
-    """One contact of a row.  ``pin`` is the chip's name, empty for ground, supplies and the like."""
+    """One contact of a row.  ``pin`` is the chip's name of the pin; empty for ground, supplies and other contacts."""
 
     number: int
     name: str
@@ -31,7 +31,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Supply:
-    """What contacts that are no pins have in common: ``role`` is "ground", "supply" or "other"."""
+    """The description of contacts that are not pins: ``role`` is "ground", "supply" or "other"."""
 
     role: str
     title: str
@@ -39,20 +39,20 @@ class Supply:
 
 @dataclass(frozen=True)
 class Layout:
-    """A board as it lies on the table, seen from above: ``top`` is what is at its upper edge."""
+    """The contacts of a board, seen from above.  ``top`` names the part of the board at its upper edge."""
 
     top: str
     rows: tuple[Row, ...]
     supplies: Mapping[str, Supply]
-    notes: tuple[str, ...]  # what holds for all pins
+    notes: tuple[str, ...]  # notes that apply to all pins
 
     def role(self, contact: Contact) -> str:
-        """ "pin", or what the contact is instead."""
+        """ "pin", or the role of a contact that is not a pin."""
         return "pin" if contact.pin else self.supplies[contact.name].role
 
 
 def make_layout(node: YamlNode, pins: tuple[str, ...]) -> Layout | None:
-    """The layout in a checked ``board.yaml``; None when it tells none."""
+    """The layout in a checked ``board.yaml``; None if it has none."""
     layout = node.get("layout")
     if layout is None:
         return None

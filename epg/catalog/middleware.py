@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Middlewares as data: ``middlewares/<name>/middleware.yaml`` below the ``targets`` folders."""
+"""Middlewares as data: ``middlewares/<name>/middleware.yaml`` in the folders of targets."""
 
 from __future__ import annotations
 
@@ -13,18 +13,19 @@ from epg.documents.items import flag_of, map_of, text_of, texts_of
 from epg.source import Span, YamlNode
 
 STACK = 2048
-"""Bytes of stack for middlewares that do not say how much they take."""
+"""The size of the stack in bytes for middlewares that do not state it."""
 
 
 @dataclass(frozen=True)
 class Middleware:
-    """How values reach a target and leave it.
+    """A way in which topics travel between a target and the outside.
 
-    ``platforms`` are those that it offers itself to, with transports, besides those that name it.
-    ``connection`` is "stream" (bytes, by a transport that the platform has), "own" or "none".  ``uses`` names what the
-    generator makes for it: "node", "signals", "parameters", "capture", "jog".  ``needs`` are tools by name, besides
-    those of the platform.  ``symbol`` is its ``epg_middleware_t``
-    in C, empty when nothing runs.  ``headers`` and ``sources`` are files in ``folder``.  ``stack`` in bytes.
+    ``platforms`` maps platforms on which the middleware runs, although their own files do not name it, to transports.
+    ``connection`` is "stream" (bytes, carried by a transport of the platform), "own" or "none".  ``uses`` names the
+    parts that the generator must add to a target: "node", "signals", "parameters", "capture", "jog".  ``needs`` are
+    names of tools, in addition to those of the platform.  ``symbol`` is the name of its ``epg_middleware_t`` in C,
+    empty if no code runs.  ``headers`` and ``sources`` are files in ``folder``.  ``stack`` is a size in bytes.
+    ``builds`` is False if targets with it can be checked but not built.
     """
 
     name: str
@@ -45,7 +46,7 @@ class Middleware:
 
     @property
     def is_node(self) -> bool:
-        """Whether it is a ROS 2 node (epg/node.h): topics have messages and quality of service."""
+        """True if the target becomes a ROS 2 node (epg/node.h), whose topics have messages and quality of service."""
         return "node" in self.uses
 
     @property

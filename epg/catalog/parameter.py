@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A parameter of a kind or a middleware: its JSON Schema, its typed values, and mistakes in its description."""
+"""Parameters of kinds and middlewares: their JSON Schema, their typed values, and mistakes in their descriptions."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from epg.quantity import QuantityError, number_hint, parse_quantity, parse_ratio
 from epg.source import Span, YamlNode
 
 COMMON_PARAMETERS = ("kind", "node", "scale", "offset", "unit", "limits")
-"""Keys that every component has besides ``pins`` and the parameters of its kind."""
+"""Keys that every component can have, in addition to ``pins`` and the parameters of its kind."""
 
 _BOUND_WORDS = {
     "minimum": "at least",
@@ -31,11 +31,11 @@ _NAME = {
     "x-message": "is no name: use letters, digits and '_', at most 63, no digit first",
 }
 MOST_NAMES = 32
-"""Most names of a list; epg/message.h has room for as many joints."""
+"""The largest number of names in a list.  epg/message.h has room for as many joints."""
 
 
 def parameter_problems(name: str, node: YamlNode, span: Span, diagnostics: Diagnostics) -> None:
-    """Reports what is wrong with the description of a parameter in a kind: its type, bounds and default."""
+    """Reports mistakes in the description of a parameter: in its type, bounds, aliases and default."""
     if ("type" in node) == ("quantity" in node):
         hint = "'quantity' is for numbers with a unit"
         diagnostics.error("exactly-one", span, f"parameter '{name}' states either 'type' or 'quantity'", hint=hint)
@@ -68,7 +68,7 @@ def parameter_problems(name: str, node: YamlNode, span: Span, diagnostics: Diagn
 
 
 def _alias_problems(node: YamlNode, diagnostics: Diagnostics) -> None:
-    """Each alias is another way to write one value of the parameter's enum, which has texts."""
+    """Reports wrong aliases.  An alias is another way to write one text of the parameter's ``enum``."""
     values = texts_of(node, "enum") if "type" in node and node["type"].value == "string" else ()
     for alias, meant in map_of(node, "aliases").items():
         if alias in values:
@@ -103,7 +103,7 @@ def parameter_schema(parameter: KindParameter) -> dict[str, Any]:
         schema |= {"type": "array", "items": _NAME, "minItems": 1, "maxItems": MOST_NAMES, "uniqueItems": True}
     else:
         schema["type"] = parameter.type
-        if parameter.type == "integer" and "enum" not in schema:  # an int of C, unless the kind says otherwise
+        if parameter.type == "integer" and "enum" not in schema:  # Without bounds of the kind, it must fit an int of C.
             lowest, highest = ("minimum", -(1 << 31)), ("maximum", (1 << 31) - 1)
             stated = {word.lower().removeprefix("exclusive") for word in parameter.bounds}
             schema |= {key: limit for key, limit in (lowest, highest) if key not in stated}
@@ -117,7 +117,10 @@ def _description(parameter: KindParameter) -> str:
 
 
 def typed_value(parameter: KindParameter, node: YamlNode | None, diagnostics: Diagnostics) -> object:
-    """The value of ``node`` as :func:`epg.check.compose.typed_parameters` describes it; the default if it is None."""
+    """The value of ``node``, or the default if ``node`` is None; None if there is no default either.
+
+    :func:`epg.check.compose.typed_parameters` describes the types.  Reports values that are wrong or out of range.
+    """
     stated = node if node is not None else parameter.default
     if stated is None:
         return None
@@ -140,7 +143,7 @@ def typed_value(parameter: KindParameter, node: YamlNode | None, diagnostics: Di
 
 
 def _value(parameter: KindParameter, written: object) -> Fraction | float | int | str | bool:
-    """The typed value of what is written; raises :class:`QuantityError`."""
+    """The typed value of a scalar as it is written.  Raises :class:`QuantityError`."""
     if parameter.type == "quantity":
         return parse_quantity(written, parameter.dimension)
     if parameter.type == "ratio":

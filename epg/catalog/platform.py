@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Platforms and families of chips as data: ``platforms/`` and ``families/`` below the ``targets`` folders.
+"""Platforms and families of chips as data: ``platforms/`` and ``families/`` in the folders of targets.
 
-A platform is a way of running, a family is whose registers.  A platform either knows the registers itself, for the
-families or the board that it names, or leaves them to the families that name it.
+A platform is a way of running: bare metal, FreeRTOS, Zephyr, on the host.  A family is a group of chips with the same
+registers.  A platform either contains a port layer for the families or the board that it names, or the families
+contain it and name the platform (``by_family``).
 """
 
 from __future__ import annotations
@@ -18,9 +19,9 @@ from epg.source import Span, YamlNode
 
 @dataclass(frozen=True)
 class Product:
-    """A file beside an executable; ``*`` in ``file`` is the executable's name without its ending.
+    """A file that a build makes beside an executable; ``*`` in ``file`` is the executable's name without its suffix.
 
-    ``what`` says what a person does with it.
+    ``what`` tells the user how to use the file.
     """
 
     file: str
@@ -29,29 +30,28 @@ class Product:
 
 @dataclass(frozen=True)
 class Platform:
-    """A way of running: for the chips of ``families``, for one ``board``, or ``by_family``.
+    """A way of running, for the chips of ``families``, for one ``board``, or ``by_family``.
 
-    The port layer of a platform ``by_family`` comes from the folders in ``families/``: :func:`platform_for` gives the
-    platform with what the chip's ``family`` brings.
+    The port layer of a platform ``by_family`` is in the folders in ``families/``.  :func:`platform_for` returns the
+    platform with the parts that the chip's ``family`` adds.  If ``builds`` is False, there is no port layer yet:
+    targets can be checked but not built.
 
-    Without ``builds`` there is none yet: targets can be checked but not built.
+    ``middlewares`` maps each middleware to its transports, the default first.  With ``has_usb_names``, a target
+    configuration can set the names of the USB device.  ``tick`` is the resource class that times the control loop, None
+    if the system software times it.  With ``tick_is_optional``, the system software also times it on chips without this
+    class.  With ``has_nodes``, a component can name a devicetree node instead of pins.  ``shared`` are folders beside
+    this one whose templates the platform uses, too.
 
-    ``middlewares`` names transports; the first of each is the default.  With ``has_usb_names`` a target configuration
-    says what the target is called as a USB device.  ``tick`` is the class of the peripheral that
-    times the control loop, None where the system software does, as also on chips without that class where
-    ``tick_is_optional``.  With ``has_nodes`` a component can name a node of a devicetree instead of pins.  ``shared``
-    are folders beside this one whose templates it uses too.
-
-    ``sdk`` is the SDK whose name for the board a build is given, "" where there is none, ``headers`` those of
-    its headers that are included by name alone; ``built_by`` "cmake" or
-    "west"; ``program`` the CMake target of the executable where the SDK makes it; ``needs`` are tools by name,
-    ``products`` what a build makes for people, the best first.
+    ``sdk`` is the SDK whose name of the board is passed to a build, or "".  ``headers`` are the headers of the SDK that
+    code includes by their name without a folder.  ``built_by`` is "cmake" or "west".  ``program`` is the CMake target
+    of the executable if the SDK makes it.  ``needs`` are names of tools.  ``products`` are the files that a build makes
+    for the user, the most useful first.
     """
 
     name: str
     summary: str
     families: tuple[str, ...]
-    board: str | None  # serves this board only, and its one target is called as the platform is
+    board: str | None  # the only board of the platform; the only target then has the name of the platform
     simulates_plant: bool
     classes: tuple[str, ...]
     middlewares: Mapping[str, tuple[str, ...]]
@@ -76,31 +76,31 @@ class Platform:
 
     @property
     def offers(self) -> YamlNode:
-        """The file that lists its middlewares."""
+        """The file that lists the middlewares: that of the family, or of the platform."""
         return self.node if self.family is None else self.family.node
 
     @property
     def template_folder(self) -> str:
-        """Where its templates are, below a ``targets`` folder."""
+        """The folder of its templates, relative to a folder of targets."""
         return f"platforms/{self.name}" if self.family is None else f"families/{self.family.name}"
 
     @property
     def folders(self) -> tuple[Path, ...]:
-        """The folders whose templates its own ones can use, its own first."""
+        """The folders whose templates the platform can use, its own folder first."""
         beside = tuple(self.folder.parent / name for name in self.shared)
         return (self.folder, *beside, *(() if self.family is None else (self.family.folder,)))
 
     @property
     def project_names(self) -> tuple[str, ...]:
-        """What a folder of ``projects/`` for it can be called, the best first."""
+        """The possible names of a folder in ``projects/`` for this platform, the most specific first."""
         return (self.name, *self.shared, *(() if self.family is None else (self.family.name,)))
 
 
 @dataclass(frozen=True)
 class Family:
-    """The port layer of a family of chips, for the ``platforms`` that leave it to families.
+    """The port layer of a family of chips for ``platforms`` that are ``by_family``.
 
-    The rest means what it means in a :class:`Platform`.
+    The other attributes are the same as those of :class:`Platform`.
     """
 
     name: str
@@ -172,7 +172,7 @@ def make_family(node: YamlNode, folder: Path) -> Family:
 
 
 def platform_for(platform: Platform, family: Family) -> Platform:
-    """A platform ``by_family`` with what the family brings."""
+    """A platform ``by_family`` with the parts that ``family`` adds."""
     return replace(
         platform,
         classes=family.classes,

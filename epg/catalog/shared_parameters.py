@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Parameters that several kinds share: ``components/common/<name>.yaml`` below the ``targets`` folders."""
+"""Parameters that several kinds share: ``components/common/<name>.yaml`` in the folders of targets."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ _KEYS = ("api", "parameters")
 def with_shared_parameters(kind: YamlNode, roots: Sequence[Path], diagnostics: Diagnostics) -> YamlNode | None:
     """The kind's ``component.yaml`` with the parameters of the files that it names; None after reporting mistakes.
 
-    A parameter of the kind itself replaces a shared one of the same name, and a later file an earlier one.  In
-    positions, each parameter keeps the file where it is written.
+    A parameter of the kind itself replaces a shared one of the same name, and a later file replaces an earlier one.
+    The position of each parameter stays in the file in which it is written.
     """
     names = kind.get(KEY)
     own = kind.get("parameters") or YamlNode(MappingProxyType({}), kind.span)
     if names is None or not names.is_sequence or not own.is_mapping:
-        return kind  # the schema says what is wrong
+        return kind  # There are no shared parameters, or the check against the schema reports the mistake.
     values, keys = dict(own.items()), dict(own.keys)
     for name in names.elements():
         shared = _load(name, roots, diagnostics)
@@ -39,7 +39,7 @@ def with_shared_parameters(kind: YamlNode, roots: Sequence[Path], diagnostics: D
 
 
 def _load(name: YamlNode, roots: Sequence[Path], diagnostics: Diagnostics) -> YamlNode | None:
-    """The parameters in the file that ``name`` names, of the first ``targets`` folder that has it."""
+    """The parameters in the file ``name`` of the first folder of targets that has it; None after reporting mistakes."""
     files = {path.stem: path for root in reversed(roots) for path in (root / "components" / "common").glob("*.yaml")}
     if str(name.value) not in files:
         hint = did_you_mean(str(name.value), sorted(files), "files in components/common/")
