@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bindings as written: which model port belongs to which component port, checked in itself but not against a model."""
+"""Reads a bindings file, which assigns component ports to model ports.
+
+The file is checked alone here.  :mod:`epg.resolve.wires` compares it with the model and the components.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +25,10 @@ UNCONNECTED = "unconnected"
 
 @dataclass(frozen=True)
 class Conversion:
-    """``value * scale + offset``, then limited; None where nothing is said.  ``unit`` is that of the model's side."""
+    """``value * scale + offset``, then limited to ``limits``.  Attributes that are not stated are None.
+
+    ``unit`` is the unit on the model's side.  ``span`` is the position of the first attribute that is stated.
+    """
 
     scale: Fraction | None = None
     offset: float | None = None
@@ -33,7 +39,7 @@ class Conversion:
 
 @dataclass(frozen=True)
 class Binding:
-    """One end of a wire: ``component``, or ``component.port``, with a conversion."""
+    """One end of a wire with its conversion: ``component.port``, or ``component`` (then ``port`` is None)."""
 
     component: str
     port: str | None
@@ -43,7 +49,7 @@ class Binding:
 
 @dataclass(frozen=True)
 class Bindings:
-    """A bindings file.  ``inputs`` and ``outputs`` map model ports to (where the name is written, bindings)."""
+    """A bindings file.  ``inputs`` and ``outputs`` map model ports to the position of the name, and the bindings."""
 
     path: Path
     model: str
@@ -57,7 +63,7 @@ class Bindings:
 def load_bindings(
     path: Path, diagnostics: Diagnostics, wanted_by: Span | None = None, drafts: Drafts = NO_DRAFTS
 ) -> Bindings | None:
-    """The bindings in ``path``, or None after reporting what is wrong with them."""
+    """The bindings in ``path``, or None after reporting mistakes."""
     node = load_yaml(path, diagnostics, wanted_by, drafts)
     if node is None:
         return None
@@ -82,7 +88,7 @@ def load_bindings(
 
 
 def conversion_of(node: YamlNode, diagnostics: Diagnostics) -> Conversion:
-    """The conversion keys (``scale``, ``offset``, ``limits``, ``unit``) of a map; problems are reported."""
+    """The conversion that the keys ``scale``, ``offset``, ``limits`` and ``unit`` of a map state; reports mistakes."""
     scale, offset, limits, unit = (node.get(key) for key in ("scale", "offset", "limits", "unit"))
     factor: Fraction | None = None
     if scale is not None:

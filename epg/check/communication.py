@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The section ``communication`` of a ``.tcf``: how topics travel, and whether the target has what that needs."""
+"""Checks the section ``communication`` of a ``.tcf``.  The target must offer its middleware and its transport."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from epg.quantity import QuantityError, parse_quantity
 from epg.source import Span, YamlNode
 
 CONSOLE = "console"
-"""The middleware that can run beside another one."""
+"""The only middleware that can run beside another one."""
 PERIOD = Fraction(33, 1000)
-"""Seconds between two runs of the communication side, if nothing else is written."""
+"""The default time between two runs of the communication side, in seconds."""
 
 _Offers = Mapping[str, tuple[str, ...]]
-"""Middlewares of a target, each with its transports."""
+"""The middlewares that a target can have, each with its transports."""
 
 
 class _Range(NamedTuple):
-    """Times that are possible, in seconds; ``zero`` means none."""
+    """A range of times in seconds.  With ``zero``, 0 s is possible, too, and switches the function off."""
 
     low: Fraction
     high: Fraction
@@ -41,34 +41,35 @@ _DIAGNOSTICS = _Range(Fraction(1, 100), Fraction(3600), True, "10 ms to 3600 s, 
 
 @dataclass(frozen=True)
 class Communication:
-    """How topics travel; ``period`` in seconds, ``options`` those of the middleware.
+    """The checked section ``communication``; ``options`` are those of the middleware.
 
-    ``transport`` is one of the platform's, or the name of a component whose kind is a transport.
+    ``transport`` is a transport of the platform, or the name of a component whose kind is a transport.  ``period`` is
+    the time in seconds between two runs of the communication side.
     """
 
     middleware: Middleware
     transport: str | None
     period: Fraction
-    domain: int | None  # None: the agent's, or the environment's
-    diagnostics: Fraction  # seconds between two messages; 0: none
-    console: Middleware | None  # that runs beside it
+    domain: int | None  # None: the domain of the agent or of the environment
+    diagnostics: Fraction  # seconds between two messages; 0: no messages
+    console: Middleware | None  # the console that runs beside the middleware
     console_options: Mapping[str, object]
     options: Mapping[str, object]
-    usb: Mapping[str, object]  # what is written of vendor_id, product_id, manufacturer, product, serial
-    span: Span  # of the middleware's name, if it is written
+    usb: Mapping[str, object]  # the stated ones of vendor_id, product_id, manufacturer, product, serial
+    span: Span  # position of the middleware's name, else of the section
 
     @property
     def middlewares(self) -> tuple[Middleware, ...]:
-        """The middleware, and a console beside it."""
+        """The middleware, and the console if one runs beside it."""
         return (self.middleware,) if self.console is None else (self.middleware, self.console)
 
 
 def check_communication(
     root: YamlNode, target: Target | None, carries: Mapping[str, bool], catalog: Catalog, diagnostics: Diagnostics
 ) -> Communication | None:
-    """How topics travel, or None after reporting why not, or when there is no target.
+    """The communication of a target, or None after reporting mistakes; also None if ``target`` is None.
 
-    ``carries`` says of each component that is right whether it can carry a middleware's bytes.
+    ``carries`` maps each component without mistakes to True if it can carry the bytes of a middleware.
     """
     node = root.get("communication")
     middleware = root.get("communication", "middleware")
@@ -107,7 +108,7 @@ def check_communication(
 def _choice(
     node: YamlNode | None, target: Target | None, catalog: Catalog, diagnostics: Diagnostics
 ) -> tuple[str, _Offers]:
-    """The name of the middleware, and those that are possible; reports one that is not."""
+    """The name of the middleware, and all possible ones.  Reports a middleware that the target does not have."""
     possible: _Offers = dict(target.platform.middlewares) if target else {}
     name = str(node.value) if node else next(iter(possible), "none")
     if target and name not in possible:
@@ -127,7 +128,7 @@ def _check_transport(
     carries: Mapping[str, bool],
     diagnostics: Diagnostics,
 ) -> None:
-    """A transport is one of the platform's, or a component that carries bytes."""
+    """Reports a transport that is neither one of the platform nor a component that carries bytes."""
     known = [*own, *(name for name, able in carries.items() if able)] if own else []
     if node.value not in known:
         message = f"'{middleware}' on {target.platform.name} has no transport '{node.value}'"
@@ -136,7 +137,11 @@ def _check_transport(
 
 
 def _usb(node: YamlNode | None, target: Target, diagnostics: Diagnostics) -> Mapping[str, object]:
-    """What the target is called as a USB device; platforms without USB leave it to others of the same robot."""
+    """The stated names and numbers of the target as a USB device.
+
+    Reports them on a platform that sets the names in another way.  A platform without USB ignores them: another target
+    of the same robot may use them.
+    """
     if node is None:
         return {}
     platform = target.platform
@@ -148,7 +153,10 @@ def _usb(node: YamlNode | None, target: Target, diagnostics: Diagnostics) -> Map
 
 
 def _diagnostics(node: YamlNode | None, middleware: Middleware, diagnostics: Diagnostics) -> Fraction:
-    """Seconds between two messages of state and statistics; 0 for none, as with middlewares that are no ROS 2 node."""
+    """Seconds between two messages of state and statistics.
+
+    0 means no messages, as for all middlewares that are not a ROS 2 node.
+    """
     seconds = _seconds(node, Fraction(1), _DIAGNOSTICS, diagnostics)
     return seconds if middleware.is_node else Fraction(0)
 
@@ -161,7 +169,10 @@ def _console(
     catalog: Catalog,
     diagnostics: Diagnostics,
 ) -> tuple[Middleware | None, Mapping[str, object]]:
-    """The console beside ``middleware`` with its options; None if there is none, or if that is the console already."""
+    """The console that runs beside ``middleware``, with its options.
+
+    None without one, and if ``middleware`` is the console itself.
+    """
     if node is None or node.value is False or middleware.name == CONSOLE:
         return None, {}
     found = catalog.find_middleware(CONSOLE) if CONSOLE in possible or CONSOLE in offered(target, catalog) else None
@@ -177,7 +188,7 @@ def _console(
 
 
 def _seconds(node: YamlNode | None, default: Fraction, allowed: _Range, diagnostics: Diagnostics) -> Fraction:
-    """The time that ``node`` states, which must be in a range; the default if it states none."""
+    """The time of ``node`` in seconds; ``default`` if there is no time.  Reports a time outside of ``allowed``."""
     seconds = time_of(node, diagnostics)
     if node is not None and seconds is not None:
         possible = allowed.low <= seconds <= allowed.high or (allowed.zero and seconds == 0)
@@ -187,7 +198,7 @@ def _seconds(node: YamlNode | None, default: Fraction, allowed: _Range, diagnost
 
 
 def time_of(node: YamlNode | None, diagnostics: Diagnostics) -> Fraction | None:
-    """The seconds that ``node`` states; None if it is missing, or after reporting that it is not a time."""
+    """The time of ``node`` in seconds; None if ``node`` is None, or after reporting that it is not a time."""
     if node is None:
         return None
     try:

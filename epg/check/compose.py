@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Components as their kinds describe them: the JSON Schema of a component, and its parameters as typed values."""
+"""Makes the JSON Schema of a component from its kind, and typed values from its parameters.
+
+The same for the options of middlewares.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +28,7 @@ _PIN = {"type": ["integer", "string"], "minimum": 0, "description": "number or n
 
 
 def component_schema(kind: Kind, with_pins: bool) -> dict[str, Any]:
-    """The JSON Schema (draft 2020-12) of a component of ``kind``; on targets without pins they may be left out."""
+    """The JSON Schema (draft 2020-12) of a component of ``kind``.  It requires ``pins`` only if ``with_pins`` is True."""
     properties: dict[str, Any] = {"kind": {"const": kind.name, "description": kind.summary}}
     required = ["kind"]
     if kind.pins:
@@ -60,7 +63,7 @@ def component_schema(kind: Kind, with_pins: bool) -> dict[str, Any]:
 
 
 def communication_schema(middleware: Middleware) -> dict[str, Any]:
-    """The JSON Schema of ``communication`` with ``middleware``: the keys of every one, and its options."""
+    """The JSON Schema of ``communication`` with ``middleware``: the keys of all middlewares, and its own options."""
     common = load_schema("tcf")["properties"]["communication"]
     options = {option.name: parameter_schema(option) for option in middleware.options}
     return {
@@ -72,7 +75,7 @@ def communication_schema(middleware: Middleware) -> dict[str, Any]:
 
 
 def options_schema(middleware: Middleware) -> dict[str, Any]:
-    """The JSON Schema of a map of the options of ``middleware`` alone, as for a console beside another one."""
+    """The JSON Schema of a map with the options of ``middleware`` only, for a console beside another middleware."""
     return {
         "type": "object",
         "properties": {option.name: parameter_schema(option) for option in middleware.options},
@@ -82,7 +85,7 @@ def options_schema(middleware: Middleware) -> dict[str, Any]:
 
 
 def typed_options(middleware: Middleware, node: YamlNode | None, diagnostics: Diagnostics) -> Mapping[str, object]:
-    """The options in a map that has passed one of the schemas above, typed as :func:`typed_parameters` does."""
+    """The options in a map that fits one of the two schemas above, with the types of :func:`typed_parameters`."""
     values = {
         option.name: typed_value(option, node.get(option.name) if node is not None else None, diagnostics)
         for option in middleware.options
@@ -91,11 +94,11 @@ def typed_options(middleware: Middleware, node: YamlNode | None, diagnostics: Di
 
 
 def typed_parameters(kind: Kind, node: YamlNode, diagnostics: Diagnostics) -> Mapping[str, object]:
-    """The parameters of a component that has passed :func:`component_schema`; problems with values are reported.
+    """The parameters of a component that fits :func:`component_schema`.  Reports wrong values.
 
-    Quantities are in base units (s, Hz, rad, ...) and, like ratios, exact fractions unless their unit is not; other
-    numbers are floats, integers stay; ``pins`` maps names to pins as written.  Parameters that are not stated have
-    their default, or None.
+    Quantities are in base units (s, Hz, rad, ...).  Quantities and ratios are exact fractions, or floats if the factor
+    of the unit is not exact.  The type ``number`` gives a float, ``integer`` an int.  ``pins`` maps names to pins as
+    they are written.  A parameter that is not stated has its default, or None.
     """
     _relations(kind, node, diagnostics)
     values: dict[str, object] = {}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A target configuration, complete and typed: the merged ``.tcf`` after every check that needs no model."""
+"""A target configuration, complete and typed: the merged ``.tcf`` after all checks that do not need a model."""
 
 from __future__ import annotations
 
@@ -26,12 +26,16 @@ from epg.documents.yaml_file import newer_version
 from epg.source import Span, YamlNode
 
 ENABLE_TOPIC, DIAGNOSTICS_TOPIC = "~/enable", "/diagnostics"
-"""Topics of ROS 2 middlewares, whatever the components are."""
+"""The topics that every target with a ROS 2 middleware has, in addition to those of its components."""
 
 
 @dataclass(frozen=True)
 class Control:
-    """The control loop; times in seconds: ``period`` None follows the model's step, ``output_delay`` None is none."""
+    """The control loop; times are in seconds.
+
+    If ``period`` is None, it is the step of the model.  If ``output_delay`` is None, outputs are written as soon as
+    they are computed.
+    """
 
     period: Fraction | None
     period_span: Span
@@ -39,14 +43,14 @@ class Control:
     output_delay_span: Span
     enable_at_start: bool
     overrun_limit: int
-    enable_topic: str | None  # None: there is none
+    enable_topic: str | None  # None: no topic enables the target
     enable_topic_span: Span
     fail_safe: str | None
 
 
 @dataclass(frozen=True)
 class Component:
-    """A component with typed parameters (numbers in SI units), the components it uses, and its conversion."""
+    """A component with typed parameters (numbers in SI units), the components that it uses, and its conversion."""
 
     name: str
     kind: Kind
@@ -54,13 +58,16 @@ class Component:
     uses: Mapping[str, Used]
     conversion: Conversion
     node: YamlNode
-    span: Span  # of its name
+    span: Span  # position of its name
 
 
 @dataclass(frozen=True)
 class Configuration:
-    """All a ``.tcf`` says.  ``files`` are those it was read from, ``absent`` those that would have been read
-    if they existed, ``root`` is the merged tree with positions."""
+    """The contents of a ``.tcf`` and of the files that it extends.
+
+    ``files`` are the files that were read.  ``absent`` are the files that do not exist but would be read if they did.
+    ``root`` is the merged tree with positions.
+    """
 
     target: Target
     node: str
@@ -79,7 +86,7 @@ def check_configuration(
     catalog: Catalog,
     diagnostics: Diagnostics,
 ) -> Configuration | None:
-    """The configuration that ``chain`` and the settings made on top of it mean, or None after reporting why not."""
+    """The configuration of ``chain`` with the settings applied to it, or None after reporting mistakes."""
     errors = diagnostics.error_count
     schema = load_schema("tcf")
     for file in chain:
@@ -163,7 +170,7 @@ def _components(
 def _control(
     root: YamlNode, components: Mapping[str, Component], communication: Communication | None, diagnostics: Diagnostics
 ) -> Control:
-    """The control loop; all of it may be left out, and then the target starts disabled."""
+    """The control loop.  The section ``control`` and all its keys are optional.  By default a target starts disabled."""
     node = root.get("control") or YamlNode(MappingProxyType({}), root.span)
     period, at_start = node.get("period"), node.get("enable_at_start")
     seconds = time_of(period, diagnostics)
@@ -188,7 +195,7 @@ def _control(
 
 
 def _topics(components: Mapping[str, Component], control: Control, communication: Communication | None) -> list[Use]:
-    """All topics with who uses them."""
+    """All topics with their users."""
     topics: list[Use] = [
         (c.name, str(c.node[key].value), c.node[key].span, c.node[key])
         for c in components.values()

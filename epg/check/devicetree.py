@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Components that name a node of a devicetree: ``encoder: {kind: quadrature_encoder, node: qdec0, ...}``."""
+"""Checks components that name a devicetree node: ``encoder: {kind: quadrature_encoder, node: qdec0, ...}``."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ def check_node(
 ) -> None:
     """Reports a ``node`` of a component that cannot have one.
 
-    A node stands for the pins and the peripheral of one claim, on platforms that read a devicetree.  Targets without
-    pins ignore it, as they ignore pins.
+    On platforms that read a devicetree, a node replaces the pins and the peripheral of one claim.  Targets without pins
+    ignore the key, as they ignore ``pins``.
     """
     notes = extended_from(node)
     instead = "write 'pins' instead ('node: null' if another file has written it)"
     span = component.key_span("node")
     if not kind.claims:
-        return  # the schema has no such key then
+        return  # The schema of such a kind has no key ``node``, so the key is reported there.
     if len(kind.claims) > 1:
         message = f"'node' stands for one peripheral, and a {kind.name} has {len(kind.claims)}"
         diagnostics.error("node-not-possible", span, message, hint=instead, notes=notes)

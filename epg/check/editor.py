@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The JSON Schemas for editors: complete, with all kinds and targets, in the part of draft 2020-12 they understand.
+"""The JSON Schemas for editors: complete schemas with all kinds and targets.
 
-EPG itself checks files with ``schemas/*.schema.json`` and, part by part, with what kinds say of themselves.  An editor
-has one schema for a file, so :func:`editor_schema` puts all of it into one: ``if`` the ``kind`` of a component is that,
-``then`` it is what that kind describes; quantities have the units of their dimension; and ``null``, with which a
-``.tcf`` deletes what another one says, is possible everywhere.  Nothing is required unless a file is complete by
-itself, which is one that names a ``target`` and extends nothing: robots and wirings, which others extend, need not be.
+EPG itself checks a file in parts: with ``schemas/*.schema.json``, and each component with the schema of its kind.  An
+editor has one schema for a file.  Therefore :func:`editor_schema` puts all parts into one schema, and uses only the
+part of draft 2020-12 that editors understand:
+
+- For each kind, ``if`` a component has this ``kind``, ``then`` the kind's schema applies.
+- A pattern gives quantities the units of their dimension.
+- ``null`` is possible everywhere, because in a ``.tcf`` it deletes a value of an extended file.
+- Keys are required only in a file that is complete: one that names a ``target`` and has no ``extends``.  Robots and
+  wirings, which other files extend, are not complete.
 """
 
 from __future__ import annotations
@@ -30,9 +34,10 @@ _COMPLETE = {"required": ["target"], "not": {"required": ["extends"]}}
 
 
 def editor_schema(name: str, catalog: Catalog, *, built_in: bool) -> Schema:
-    """The schema of the files called ``name``, one of :data:`USER_FILES` and :data:`TARGET_FILES`.
+    """The schema of the files of the sort ``name``, which is in :data:`USER_FILES` or :data:`TARGET_FILES`.
 
-    ``built_in``: the catalog holds nothing of the user's, so that the schema is the one with the public ``$id``.
+    ``built_in`` is True if the catalog has no folder of the user.  Only then the schema is the public one and has its
+    ``$id``.
     """
     schema = _plain(load_schema(name))
     if name == "tcf":
@@ -71,7 +76,10 @@ def _tcf(schema: Schema, catalog: Catalog) -> Schema:
 
 
 def _components(kinds: Iterable[Kind]) -> Schema:
-    """Definitions: a ``component``, what a ``complete`` and a ``wired`` one needs, and all of that for each kind."""
+    """The definitions ``component``, ``complete`` and ``wired``, and the same three for each kind.
+
+    ``complete`` and ``wired`` hold the keys that a component needs in a complete file, and on a target with pins.
+    """
     kinds = list(kinds)
     definitions: Schema = {}
     keys = {"kind"}
@@ -104,7 +112,7 @@ def _if_kind(kind: Kind, definition: str) -> Schema:
 
 
 def _relations(kind: Kind) -> Schema:
-    """Of keys that exclude each other one is stated, and keys that need another one are not alone."""
+    """The relations between the keys of a kind: keys that exclude each other, and keys that need another one."""
     relations: Schema = {}
     if kind.exactly_one:
         relations["allOf"] = [{"oneOf": [{"required": [name]} for name in names]} for names in kind.exactly_one]
@@ -132,9 +140,9 @@ def _pins_needed(kind: Kind) -> Schema:
 
 
 def _middlewares(targets: Iterable[Target], catalog: Catalog, named: bool) -> list[Schema]:
-    """What each platform offers in ``communication`` on a family of chips, for files that name one of its targets.
+    """The middlewares and transports of each platform on each family of chips, for files that name such a target.
 
-    ``named``: a transport can be the name of a component too.
+    ``named`` is True if a transport can also be the name of a component.
     """
     platforms: dict[str, list[Target]] = {}
     for target in targets:
@@ -156,7 +164,7 @@ def _middlewares(targets: Iterable[Target], catalog: Catalog, named: bool) -> li
 
 
 def _options(middlewares: Iterable[Middleware]) -> list[Schema]:
-    """The options of each middleware, for files that name it; those that it needs, in complete files."""
+    """The options of each middleware, for files that name it.  In complete files, its required options are required."""
     rules: list[Schema] = []
     for middleware in middlewares:
         whole = _plain(communication_schema(middleware))
@@ -177,7 +185,7 @@ def _communication(properties: Schema, required: Iterable[str] = ()) -> Schema:
 
 
 def _plain(schema: Schema) -> Schema:
-    """``schema`` without EPG's own annotations; quantities and ratios by their exact form instead."""
+    """``schema`` without EPG's own annotations, and with exact patterns for quantities and ratios in their place."""
 
     def convert(value: Any) -> Any:
         if isinstance(value, list):
@@ -196,7 +204,7 @@ def _plain(schema: Schema) -> Schema:
 
 
 def _quantity_form(dimension: str, sign: str) -> str:
-    """What :func:`epg.quantity.parse_quantity` takes, as a regular expression of ECMA-262."""
+    """A regular expression of ECMA-262 for the texts that :func:`epg.quantity.parse_quantity` accepts."""
     units = units_of(dimension)
     spellings = sorted(other for other, unit in SPELLINGS.items() if unit in units)
     alternatives = "|".join(unit.replace(".", r"\.") for unit in (*units, *spellings))
@@ -208,7 +216,7 @@ def _ratio_form(sign: str) -> str:
 
 
 def _optional(schema: Mapping[str, Any]) -> Schema:
-    """``schema`` with nothing required in it, and ``null`` as a value of every key."""
+    """``schema`` without required keys, and with ``null`` as a possible value of every key."""
     result = {key: value for key, value in schema.items() if key != "required"}
     if "properties" in result:
         result["properties"] = {key: _nullable(child) for key, child in result["properties"].items()}
@@ -226,7 +234,7 @@ def _nullable(schema: Mapping[str, Any]) -> Schema:
 
 
 def _needs(schema: Mapping[str, Any]) -> Schema:
-    """What ``schema`` requires, and nothing else of it."""
+    """Only the required keys of ``schema``, on all levels."""
     needs: Schema = {"required": schema["required"]} if schema.get("required") else {}
     inner = {key: found for key, child in schema.get("properties", {}).items() if (found := _needs(child))}
     return needs | ({"properties": inner} if inner else {})

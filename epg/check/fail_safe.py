@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The input that disables a target while it is off: which component it can be, and what a broken wire does to it."""
+"""Checks ``fail_safe``, the input that disables a target while it is off.
+
+The input must be a boolean one, and it should be off if its wire breaks.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,7 @@ from epg.source import YamlNode
 
 
 class Input(Protocol):
-    """A component; ``parameters`` are typed, ``node`` is as written."""
+    """A component with typed ``parameters``; ``node`` is its part of the ``.tcf``."""
 
     @property
     def kind(self) -> Kind: ...
@@ -26,12 +29,15 @@ class Input(Protocol):
 def check_fail_safe(
     node: YamlNode, section: YamlNode, components: Mapping[str, Input], diagnostics: Diagnostics
 ) -> None:
-    """``node`` must name a boolean source that is not a topic; ``components`` are the faultless ones of ``section``."""
+    """Reports a ``node`` that does not name a component with a boolean source, or that names a topic.
+
+    ``components`` are the components of ``section`` that have no mistakes.
+    """
     name = str(node.value)
     able = [
         name
         for name, component in components.items()
-        if not component.kind.communication  # a topic is not a wire
+        if not component.kind.communication  # A topic is not an electrical input.
         and any(port.direction == "source" and port.type == "boolean" for port in component.kind.ports)
     ]
     if name in able:
@@ -39,16 +45,16 @@ def check_fail_safe(
     elif name in components:
         message = f"'{name}' is a {components[name].kind.name}, which is not on or off"
         diagnostics.error("wrong-port-type", node.span, message, hint="name a digital_input")
-    elif name not in section:  # else it has a mistake of its own, which is reported
+    elif name not in section:  # Else the component has mistakes, which are reported already.
         hint = did_you_mean(name, able, "digital inputs")
         diagnostics.error("unknown-component", node.span, f"there is no component '{name}'", hint=hint)
 
 
 def _check_open_wire(name: str, component: Input, diagnostics: Diagnostics) -> None:
-    """Warns when the input is on, or may be, while nothing is connected to its pin."""
+    """Warns if the input is on, or can be on, while its pin is not connected."""
     pull, invert = component.parameters.get("pull"), bool(component.parameters.get("invert", False))
     if "pins" not in component.node or pull is None or pull == ("up" if invert else "down"):
-        return  # without pins nothing is known of the wire: the host has none, and a devicetree node has its own pull
+        return  # Without pins, EPG does not know the wire: the host has none, a devicetree node has its own pull.
     written = component.node.get("pull")
     span = component.node.key_span("kind") if written is None else written.span
     if pull == "none":

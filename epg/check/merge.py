@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The merge of ``.tcf`` files that extend each other, as devicetree overlays do.
+"""Merges ``.tcf`` files that extend each other, in the way of devicetree overlays.
 
-Maps merge key by key, lists and scalars replace, ``null`` deletes.  Every value keeps the position of the file that
-wrote it, and learns which files lead there (:attr:`epg.source.Node.origins`).
+Maps are merged key by key.  Lists and scalars replace those of the extended file.  ``null`` deletes a key.  Every value
+keeps its position in its own file, and gets the positions of each ``extends`` that leads there
+(:attr:`epg.source.YamlNode.origins`).
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from epg.source import Span, YamlNode
 
 
 def merge_chain(chain: Sequence[TcfFile]) -> YamlNode:
-    """The configuration a chain (innermost first) means; ``extends`` itself is gone."""
+    """The merged tree of a chain (the extending file first), without ``extends`` and without ``null``."""
     merged: YamlNode | None = None
     origins: list[Span] = [file.extended_by for file in chain if file.extended_by is not None]
     for index in range(len(chain) - 1, -1, -1):
@@ -28,7 +29,7 @@ def merge_chain(chain: Sequence[TcfFile]) -> YamlNode:
 
 
 def merge(base: YamlNode, overlay: YamlNode) -> YamlNode:
-    """``base`` with what ``overlay`` says instead; ``null`` values stay, see :func:`without_nulls`."""
+    """``base`` with the values of ``overlay``.  Values ``null`` stay: see :func:`without_nulls`."""
     if not (base.is_mapping and overlay.is_mapping):
         return overlay
     values = dict(base.items())
@@ -40,7 +41,7 @@ def merge(base: YamlNode, overlay: YamlNode) -> YamlNode:
 
 
 def apply_settings(root: YamlNode, settings: Iterable[tuple[tuple[str, ...], YamlNode]]) -> YamlNode:
-    """``root`` with values set from outside; maps on the way are created."""
+    """``root`` with the values of settings (keys, value).  Maps that do not exist are created."""
     for path, node in settings:
         for key in reversed(path):
             node = YamlNode(MappingProxyType({key: node}), node.span, MappingProxyType({key: node.span}))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The middleware and the transport that a target names, and those that it could name."""
+"""The middlewares and transports that a target can have, and checks of the ones that it names."""
 
 from __future__ import annotations
 
@@ -13,7 +13,10 @@ from epg.source import YamlNode
 
 
 def offered(target: Target, catalog: Catalog) -> dict[str, tuple[str, ...]]:
-    """Middlewares of a target with their transports: those its platform names, then those that name the platform."""
+    """The possible middlewares of a target, with their transports.
+
+    First the middlewares that the platform names, then those whose own file names the platform.
+    """
     result = dict(target.platform.middlewares)
     for name in catalog.names("middleware"):
         middleware = catalog.find_middleware(name) if name not in result else None
@@ -23,7 +26,7 @@ def offered(target: Target, catalog: Catalog) -> dict[str, tuple[str, ...]]:
 
 
 def unoffered_hint(name: str, possible: Iterable[str], catalog: Catalog) -> str:
-    """What to write instead of a middleware that is not among the ``possible`` ones of a target."""
+    """The hint for a middleware ``name`` that is not among the ``possible`` ones of a target."""
     middleware = catalog.find_middleware(name) if name in catalog.names("middleware") else None
     if middleware is None or not middleware.platforms:
         return did_you_mean(name, possible, "it has")
@@ -31,7 +34,7 @@ def unoffered_hint(name: str, possible: Iterable[str], catalog: Catalog) -> str:
 
 
 def check_offer(target: Target, middleware: Middleware, diagnostics: Diagnostics) -> None:
-    """Transports are named for middlewares only that use one."""
+    """Reports a platform that names transports for a middleware that does not use one."""
     transports = target.platform.offers.get("middlewares", middleware.name)
     if transports is None:
         transports = middleware.node["platforms"][target.platform.name]
@@ -43,7 +46,7 @@ def check_offer(target: Target, middleware: Middleware, diagnostics: Diagnostics
 
 
 def check_lack(target: Target | None, transport: str | None, where: YamlNode, diagnostics: Diagnostics) -> None:
-    """Reports a transport that the target's platform has on other boards."""
+    """Reports a transport that the platform has on other boards, but not on the board of this target."""
     if target is not None and transport is not None and transport in target.board.lacks:
         message = f"{target.board.name} has no transport '{transport}': {target.board.lacks[transport]}"
         hint = "name a component that carries bytes, such as a uart, in 'transport', or write 'middleware: none'"

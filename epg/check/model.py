@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A model as a part of a target or a library: the names of its ports, and how many instances it allows."""
+"""Checks a model as a part of a target or a library: the names of its ports, and its number of instances."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from epg.source import Span
 
 
 def check_model_names(model: Model, library: str, diagnostics: Diagnostics) -> None:
-    """No port is called like a macro in the header of the model's ``library`` or of the target it belongs to."""
+    """Reports a port with the name of a macro in the header of the model's ``library`` or of its target."""
     macros = {f"{library}_{word}".upper() for word in ("step_size", "instances", "parameters")}
     macros |= {f"{library.rpartition('_')[0]}_{word}".upper() for word in ("epg_version", "hash")}
     for port in (*model.inputs, *model.outputs):
@@ -20,7 +20,10 @@ def check_model_names(model: Model, library: str, diagnostics: Diagnostics) -> N
 
 
 def check_instances(model: Model, instances: int, span: Span, diagnostics: Diagnostics) -> None:
-    """Several instances need a model that keeps no state in globals."""
+    """Reports a number of ``instances`` that is not possible.
+
+    A model can have several only if it does not keep its state in global variables.
+    """
     if instances < 1 or instances > 255:
         diagnostics.error("out-of-range", span, f"{instances} instances: must be from 1 to 255")
     elif instances > 1 and not model.instantiable:

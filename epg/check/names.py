@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names: C identifiers and the names ROS 2 allows.
+"""The rules for names: C identifiers, names of ROS 2, and paths that CMake and build programs accept.
 
 Rules for ROS names: https://design.ros2.org/articles/topic_and_service_names.html
 """
@@ -19,7 +19,7 @@ using virtual wchar_t xor xor_eq""".split()
 _C_LIBRARY = "main errno stdin stdout stderr NULL EOF assert unix linux".split()
 
 RESERVED = frozenset(_C11) | frozenset(_CPP) | frozenset(_C_LIBRARY)
-"""Words that are no identifiers in C11 or C++20, or macros of the C library and common compilers."""
+"""Keywords of C11 and C++20, and macros of the C library and common compilers."""
 
 STANDARD_HEADERS = frozenset(
     """assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdalign stdarg stdatomic
@@ -27,14 +27,20 @@ STANDARD_HEADERS = frozenset(
     memory poll pthread pwd sched semaphore spawn stdckdint strings syslog termios unistd values features alloca endian
     byteswap elf error link""".split()
 )
-"""Headers of C11, and of POSIX and common C libraries, without ``.h``: a generated header would be found first."""
+"""Headers of C11, POSIX and common C libraries, without ``.h``.
+
+The compiler would find a generated header of the same name first.
+"""
 
 SYSTEM_LIBRARIES = frozenset(
     """m c g pthread rt dl util crypt nsl resolv anl gcc gcc_s gcc_eh atomic gomp quadmath ssp asan tsan ubsan lsan
     unwind nosys rdimon gloss semihost System objc kernel32 user32 gdi32 winspool shell32 ole32 oleaut32 uuid comdlg32
     advapi32 ws2_32 winmm mingw32 mingwex moldname msvcrt""".split()
 )
-"""Libraries of compilers and systems: CMake takes ``m`` in target_link_libraries() for a target of that name."""
+"""Libraries of compilers and systems.
+
+If a CMake target has such a name, target_link_libraries(... m) links this CMake target instead of the library.
+"""
 
 STANDARD_TYPES = frozenset(
     """size_t ssize_t ptrdiff_t wchar_t wint_t max_align_t sig_atomic_t time_t clock_t clockid_t timer_t pid_t off_t
@@ -42,7 +48,7 @@ STANDARD_TYPES = frozenset(
     errno_t rsize_t sigset_t stack_t sem_t mtx_t thrd_t cnd_t tss_t locale_t va_t intptr_t uintptr_t intmax_t uintmax_t
     useconds_t suseconds_t blksize_t blkcnt_t uint_t""".split()
 ) | {f"{sign}int{least}{bits}_t" for sign in ("", "u") for least in ("", "_least", "_fast") for bits in (8, 16, 32, 64)}
-"""Types of C11 and POSIX headers."""
+"""Types that are defined in headers of C11 and POSIX."""
 
 STATIC_NAMES = frozenset(
     """read_inputs inputs_finite model_init model_step model_finite model_stopped prepare_outputs write_outputs
@@ -52,7 +58,7 @@ STATIC_NAMES = frozenset(
     middleware_output middleware_values middleware_received middleware_input middleware_best_effort console_options
     console_output console_values node_values node_sent_values node_received node_publications node_buffer""".split()
 )
-"""Names of two words in generated files: a target and a component's name could make one of them."""
+"""Static names in generated files.  The names of a target and a component, joined by ``_``, could be the same."""
 
 _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,62}")
 _ROS_TOKEN = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
@@ -61,7 +67,7 @@ _NOT_IN_PROJECTS = re.compile("[#<>?]" if os.name == "nt" else r'[#<>?:;"\\]')
 
 
 def identifier_problem(name: str) -> str | None:
-    """Why ``name`` cannot be a C identifier of a user, or None."""
+    """The reason why ``name`` cannot be a C identifier of a user, or None."""
     if not _IDENTIFIER.fullmatch(name):
         return "is not a C identifier: use letters, digits and '_', at most 63, no digit first"
     if name in RESERVED:
@@ -74,14 +80,20 @@ def identifier_problem(name: str) -> str | None:
 
 
 SERIAL = "$serial"
-"""What stands for the board's serial number in the names of a node and its namespace."""
+"""The placeholder for the board's serial number in the names of a node and its namespace."""
 _SERIAL_NUMBER = "0123456789ABCDEF"
 _NODE_SIZE, _NAMESPACE_SIZE, _TOPIC_SIZE, _PRIVATE_SIZE = 63, 63, 127, 63
-"""Characters that epg/node.h has room for: a full name, of namespace, node and private topic, has 191 at most."""
+"""The numbers of characters for which epg/node.h has room.
+
+A full name of namespace, node and private topic has at most 191 characters.
+"""
 
 
 def node_name_problem(name: str) -> str | None:
-    """Why ``name`` cannot name a ROS 2 node, or None; ``$serial`` in it becomes hexadecimal digits."""
+    """The reason why ``name`` cannot be the name of a ROS 2 node, or None.
+
+    ``$serial`` in the name becomes 16 hexadecimal digits.
+    """
     if name.startswith(SERIAL):
         return f"begins with the serial number, which may begin with a digit: write 'robot_{SERIAL}'"
     name = name.replace(SERIAL, _SERIAL_NUMBER)
@@ -91,9 +103,9 @@ def node_name_problem(name: str) -> str | None:
 
 
 def namespace_problem(name: str) -> str | None:
-    """Why ``name`` cannot be a namespace, or None; a leading slash may be left out, empty means none.
+    """The reason why ``name`` cannot be a namespace, or None.
 
-    ``$serial`` in it becomes hexadecimal digits.
+    The leading slash is optional, and an empty text means no namespace.  ``$serial`` becomes 16 hexadecimal digits.
     """
     if name in ("", "/"):
         return None
@@ -104,13 +116,13 @@ def namespace_problem(name: str) -> str | None:
 
 
 def normal_namespace(name: str) -> str:
-    """A namespace as generated code has it: empty, or with a leading slash."""
+    """The form of a namespace in generated code: empty, or with a leading slash."""
     path = name.strip("/")
     return f"/{path}" if path else ""
 
 
 def topic_problem(name: str) -> str | None:
-    """Why ``name`` cannot name a topic, or None; ``~/`` stands for the node's name."""
+    """The reason why ``name`` cannot be the name of a topic, or None.  A private topic begins with ``~/``."""
     if name.startswith("~"):
         if not name.startswith("~/"):
             return "is no topic: '~' is followed by '/'"
@@ -119,9 +131,10 @@ def topic_problem(name: str) -> str | None:
 
 
 def absolute_topic(topic: str, namespace: str, node: str) -> str:
-    """The full name of ``topic``: absolute names stay, private ones stand below the node, others below the namespace.
+    """The full name of ``topic``.
 
-    ``$serial`` in the names of node and namespace is replaced by a serial number as long as they are.
+    An absolute name stays as it is.  A private name (``~/``) is below namespace and node, any other below the
+    namespace.  ``$serial`` is replaced by a text that is as long as a real serial number.
     """
     if topic.startswith("/"):
         return topic
@@ -130,10 +143,10 @@ def absolute_topic(topic: str, namespace: str, node: str) -> str:
 
 
 def cmake_path_problem(path: str) -> str | None:
-    """Why a path cannot stand in CMake's files, or in those that CMake writes for Ninja and Make.
+    """The reason why a path cannot be written in CMake's files, or in the files that CMake writes; None if it can.
 
-    CMake does not escape ``|`` for Ninja, nor ``$(`` for Ninja and Make, and it replaces ``${X}`` in names of sources.
-    Open brackets swallow the ``;`` of its lists, and ``]]`` ends a bracket argument.
+    CMake does not escape ``|`` for Ninja, nor ``$(`` for Ninja and Make.  It replaces ``${X}`` in names of sources.
+    In a list of CMake, a ``;`` after an open bracket does not separate elements.  ``]]`` ends a bracket argument.
     """
     if not path.isprintable():
         return "it is no printable UTF-8 text"
@@ -144,10 +157,11 @@ def cmake_path_problem(path: str) -> str | None:
 
 
 def project_folder_problem(path: str) -> str | None:
-    """Why a project in the folder ``path`` cannot be built with CMake, or None.
+    """The reason why CMake cannot build a project in the folder ``path``, or None.
 
-    Besides what no path can have: CMake's own checks of a compiler fail with ``:``, ``;``, ``"`` and a backslash, what
-    it writes for Make fails with ``?``, and its custom targets cannot have ``#``, ``<`` and ``>``.
+    In addition to :func:`cmake_path_problem`: CMake's own checks of a compiler fail with ``:``, ``;``, ``"`` and a
+    backslash, the files that CMake writes for Make fail with ``?``, and its custom targets fail with ``#``, ``<`` and
+    ``>``.
     """
     found = _NOT_IN_PROJECTS.search(path)
     return f"CMake cannot build a project with '{found[0]}' in its path" if found else cmake_path_problem(path)

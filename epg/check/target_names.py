@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names that a target gives to others: C symbols, types, headers and CMake targets must not hide any of theirs."""
+"""Checks the names that are made of a target's name: C symbols, types, headers and CMake targets.
+
+None of them may hide a symbol, type, header or library of others.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +24,7 @@ from epg.source import Span
 
 
 def check_name(name: str, span: Span, diagnostics: Diagnostics) -> None:
-    """A target's name becomes the prefix of C symbols, the name of a header and a CMake target."""
+    """Checks a target's name, which becomes the prefix of C symbols, and the name of a header and of a CMake target."""
     problem = identifier_problem(name)
     if problem is None and name in STANDARD_HEADERS:
         problem = f"would make a header '{name}.h', which hides the C library's: choose another name"
@@ -36,7 +39,7 @@ def check_name(name: str, span: Span, diagnostics: Diagnostics) -> None:
 
 
 def check_library_name(name: str, span: Span, diagnostics: Diagnostics) -> None:
-    """The name of a model's library also becomes a type ``<name>_t``."""
+    """Checks the name of a model's library, which also becomes the name of a type ``<name>_t``."""
     check_name(name, span, diagnostics)
     if f"{name}_t" in STANDARD_TYPES:
         message = f"target '{name}' would make a type '{name}_t', which is one of the C library's"
@@ -44,7 +47,7 @@ def check_library_name(name: str, span: Span, diagnostics: Diagnostics) -> None:
 
 
 def check_sdk_headers(name: str, target: Target, span: Span, diagnostics: Diagnostics) -> None:
-    """No generated header hides one of the SDK's."""
+    """Reports a generated header that would hide a header of the SDK."""
     for header in sorted(_generated_headers(name).intersection(target.platform.headers)):
         message = f"target '{name}' makes a header '{header}', which would hide one that {target.name} needs"
         diagnostics.error("invalid-name", span, message, hint=f"choose another name, such as {name}_robot")
@@ -56,7 +59,7 @@ def _generated_headers(name: str) -> set[str]:
 
 
 def check_driver_headers(name: str, configuration: Configuration, diagnostics: Diagnostics) -> None:
-    """No generated header is called like one of a driver that it is compiled with."""
+    """Reports a generated header that has the name of a driver's header in the same target."""
     generated = _generated_headers(name)
     for component in configuration.components.values():
         for header in sorted(generated.intersection(component.kind.headers)):
@@ -70,7 +73,7 @@ def check_driver_headers(name: str, configuration: Configuration, diagnostics: D
 
 
 def check_paths(paths: Iterable[Path], diagnostics: Diagnostics) -> None:
-    """Paths that CMake is told can be named there, and in the files that it writes for Ninja and Make."""
+    """Reports the first path that cannot be named in CMake's files, or in those that it writes for Ninja and Make."""
     for path in sorted(paths):
         text = str(path.absolute())
         problem = cmake_path_problem(text)

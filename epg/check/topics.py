@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names of the node, its namespace and its topics: each possible, and no topic twice."""
+"""Checks the names of the node, its namespace and its topics.  No topic may have two users."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from epg.documents.schema import extended_from
 from epg.source import Span, YamlNode
 
 Use = tuple[str, str, Span, YamlNode | None]
-"""Who uses a topic, its name, where that is written, and what is written there (None: EPG's own choice)."""
+"""The user of a topic, the topic's name, the position of the name, and its YAML node (None: EPG chose the name)."""
 
 
 def check_names(node: YamlNode, namespace: YamlNode | None, topics: Iterable[Use], diagnostics: Diagnostics) -> None:
-    """Reports names that are none, and topics that have two users."""
+    """Reports names that ROS 2 does not allow, and topics that have two users."""
     _report(node, node_name_problem(str(node.value)), diagnostics)
     if namespace is not None:
         _report(namespace, namespace_problem(str(namespace.value)), diagnostics)

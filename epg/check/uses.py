@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Components that name other components: a guard its motor and its encoder, a probe its topic."""
+"""References of components to other components: a guard names its motor and its encoder, a probe names its topic."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from epg.source import YamlNode
 
 @dataclass(frozen=True)
 class Used:
-    """The component that is named, and its port; None where the component as a whole is meant (a topic)."""
+    """A component that another one names, and its port.  ``port`` is None if the component is a topic."""
 
     component: str
     port: KindPort | None
@@ -24,10 +24,10 @@ class Used:
 def used_components(
     kind: Kind, node: YamlNode, kinds: Mapping[str, Kind | None], diagnostics: Diagnostics
 ) -> Mapping[str, Used]:
-    """What a component of ``kind`` uses, by the names in its kind.
+    """The components that a component of ``kind`` uses, by the names of :class:`KindUse` in its kind.
 
-    A reference is the name of a component, which means its main port, or ``component.port``.  ``kinds`` are those of
-    all components, None for one with mistakes of its own.
+    A reference is ``component.port``, or the name of a component, which means its main port.  ``kinds`` maps all
+    components to their kinds, and a component with mistakes to None.
     """
     result: dict[str, Used] = {}
     for use in kind.uses:
@@ -68,7 +68,7 @@ def _used(
 
 
 def _references(use: KindUse, name: str, kind: Kind) -> list[str]:
-    """How a component of ``kind`` can be named, the short form where there is one."""
+    """The possible references to a component of ``kind``, in the short form if there is one."""
     if use.topic:
         return [name] if kind.topic_ports else []
     main = _port(use, kind, "")
@@ -76,7 +76,7 @@ def _references(use: KindUse, name: str, kind: Kind) -> list[str]:
 
 
 def _port(use: KindUse, kind: Kind, name: str) -> KindPort | None:
-    """The port of that name, or the one that is meant without a name; None unless it is possible."""
+    """The port ``name``, or the main port if ``name`` is empty; None if ``use`` does not allow it."""
     fitting = [port for port in kind.ports if _fits(use, port)]
     if name:
         return next((port for port in fitting if port.name == name), None)
