@@ -28,7 +28,7 @@ _PIN = {"type": ["integer", "string"], "minimum": 0, "description": "number or n
 
 
 def component_schema(kind: Kind, with_pins: bool) -> dict[str, Any]:
-    """The JSON Schema (draft 2020-12) of a component of ``kind``.  It requires ``pins`` only if ``with_pins`` is True."""
+    """The JSON Schema (draft 2020-12) of a component of ``kind``.  It requires ``pins`` only with ``with_pins``."""
     properties: dict[str, Any] = {"kind": {"const": kind.name, "description": kind.summary}}
     required = ["kind"]
     if kind.pins:

@@ -170,7 +170,7 @@ def _components(
 def _control(
     root: YamlNode, components: Mapping[str, Component], communication: Communication | None, diagnostics: Diagnostics
 ) -> Control:
-    """The control loop.  The section ``control`` and all its keys are optional.  By default a target starts disabled."""
+    """The control loop.  The section ``control`` and its keys are optional.  By default, a target starts disabled."""
     node = root.get("control") or YamlNode(MappingProxyType({}), root.span)
     period, at_start = node.get("period"), node.get("enable_at_start")
     seconds = time_of(period, diagnostics)

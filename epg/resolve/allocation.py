@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Allocation: which pins, which peripheral and which settings each claim gets.
+"""Allocation: gives each claim its pins, its peripheral and its settings.
 
-Claims say a class of peripheral, pins and attributes; the chip's data say what implements the class and what it
-reaches.  What is wrong with one claim is reported first, then a search places all claims on each peripheral,
-and if that is impossible, :mod:`epg.resolve.conflict` says which claims are in each other's way.
+A claim names a resource class, pins and attributes.  The data of the chip say which peripheral implements the class,
+and which pins this peripheral reaches.  Allocation has three parts:
+
+1. Check each claim alone, and report its mistakes.
+2. For each peripheral, search places for all of its claims (:mod:`epg.resolve.search`).
+3. If there are no such places, report the claims that exclude each other (:mod:`epg.resolve.conflict`).
 """
 
 from __future__ import annotations
@@ -25,23 +28,23 @@ from epg.resolve.search import WHOLE, Demand, Place, find_places
 __all__ = ["Assignment", "allocate"]
 
 NODES = 255
-"""The ``instance`` of the first peripheral that a devicetree node describes; the others count down from it."""
+"""The ``instance`` of the first peripheral that a devicetree node describes.  The others count down from it."""
 
 NODE_STEPS = 0xFFFF
-"""Steps of a duty cycle where a devicetree node makes the PWM: its clock is not known here."""
+"""The steps of a duty cycle for a PWM that a devicetree node describes.  EPG does not know its clock."""
 
-_MANY = 12  # digits, to tell apart values that are close to each other
+_MANY = 12  # digits in messages, so that values that are close to each other look different
 
 
 @dataclass(frozen=True)
 class Assignment:
     """The hardware of one claim.
 
-    ``pins`` maps signals to the chip's numbers of pins, ``instance`` and ``slot`` are the numbers in C
-    (slot 0 where all of the instance is taken), ``settings`` holds ``prescaler`` and ``top`` where there is a divider.
-    ``resource`` is its name for people: "PWM slice 1, channel A"; ``instance_name`` and ``slot_name`` are the words of
-    the chip's data.  ``frequency`` is the divider's, in Hz, and ``asked`` the one that was asked for; None without one.
-    ``attributes`` are those of the claim, in base units.
+    ``pins`` maps signals to the numbers of pins in C.  ``instance`` and ``slot`` are numbers in C, too; ``slot`` is 0
+    if the claim takes the whole instance.  ``settings`` holds ``prescaler`` and ``top`` if there is a divider.
+    ``resource`` is the name in messages: "PWM slice 1, channel A".  ``instance_name`` and ``slot_name`` are the names
+    in the chip's data.  ``frequency`` is the actual frequency of the divider in Hz, and ``asked`` the wanted one; both
+    are None without a divider.  ``attributes`` are those of the claim, in base units.
     """
 
     pins: Mapping[str, int]
@@ -52,19 +55,19 @@ class Assignment:
     frequency: Fraction | None = None
     asked: Fraction | None = None
     pins_are_real: bool = True
-    """False where EPG numbered the pins, as the target has none."""
+    """False if the target has no pins, and EPG has numbered the signals."""
     instance_name: str = ""
     slot_name: str = ""
     attributes: Mapping[str, object] = field(default_factory=dict)
     pin_names: Mapping[str, int | str] = field(default_factory=dict)
-    """Signals, and what the chip calls their pins: a number (GPIO 10) or a name (PD12); empty without real pins."""
+    """Signal -> the chip's name of its pin: a number (GPIO 10) or a text (PD12).  Empty without real pins."""
     node: str = ""
     """The devicetree node that is used instead of pins and a peripheral."""
 
 
 @dataclass(frozen=True)
 class _Placed:
-    """A claim that is right in itself."""
+    """A claim without mistakes, with the places that it can have."""
 
     claim: Claim
     resource_class: ResourceClass
@@ -74,7 +77,7 @@ class _Placed:
 
 
 def allocate(claims: Sequence[Claim], target: Target, diagnostics: Diagnostics) -> Mapping[ClaimKey, Assignment] | None:
-    """An assignment for each claim, or None after reporting everything that is in the way.
+    """An assignment for each claim, or None after reporting mistakes and conflicts.
 
     The same claims get the same hardware in every run.
     """
@@ -101,7 +104,11 @@ def allocate(claims: Sequence[Claim], target: Target, diagnostics: Diagnostics) 
 
 
 def _nodes(claims: Sequence[Claim], target: Target, diagnostics: Diagnostics) -> dict[ClaimKey, Assignment]:
-    """What devicetree nodes describe: nothing of the chip is taken; numbers in C count down from the last one."""
+    """The assignments of claims that name a devicetree node.
+
+    They take no peripheral or pin of the chip.  Their numbers in C count down from :data:`NODES`, so that they differ
+    from the numbers of the chip.
+    """
     result = {}
     number = NODES
     for place, claim in enumerate(claims):
@@ -129,7 +136,7 @@ def _nodes(claims: Sequence[Claim], target: Target, diagnostics: Diagnostics) ->
 
 
 def _check(claims: Sequence[Claim], pins: Pins, target: Target, diagnostics: Diagnostics) -> list[_Placed]:
-    """The claims that are right in themselves; the others are reported."""
+    """The claims without mistakes.  Reports the mistakes of the others."""
     result: list[_Placed] = []
     for claim in claims:
         resource_class = _class(claim, target, diagnostics)
@@ -152,7 +159,7 @@ def _check(claims: Sequence[Claim], pins: Pins, target: Target, diagnostics: Dia
 
 
 def _class(claim: Claim, target: Target, diagnostics: Diagnostics) -> ResourceClass | None:
-    """What implements the claim on this target; reports classes and signals that do not exist."""
+    """The resource class of a claim on this target.  Reports classes and signals that do not exist; then it is None."""
     found = target.resource_class(claim.resource_class)
     if found is None:
         offered = [name for name in target.platform.classes if name in target.soc.classes]
@@ -175,7 +182,7 @@ def _class(claim: Claim, target: Target, diagnostics: Diagnostics) -> ResourceCl
 
 
 def _check_support(claim: Claim, resource_class: ResourceClass, target: Target, diagnostics: Diagnostics) -> None:
-    """Reports attributes with a value that this chip does not do."""
+    """Reports attributes with a value that this chip does not support."""
     for attribute, stated in claim.attributes.items():
         unsupported = resource_class.unsupported.get((attribute, str(stated.value)))
         if unsupported is not None:
@@ -200,14 +207,14 @@ def _division(
     target: Target,
     diagnostics: Diagnostics,
 ) -> Division | None:
-    """The setting of the divider; None without one, and after reporting a value that it cannot make."""
+    """The setting of the divider; None without a divider, and after reporting a value that the divider cannot make."""
     attribute = resource_class.divider_from
     if peripheral is None or peripheral.divider is None or attribute is None:
         return None
     if attribute not in claim.attributes:
         if claim.component:
             _incomplete(claim, resource_class, diagnostics)
-        return None  # the control loop's period may be unknown as yet
+        return None  # The period of the control loop can be unknown while there is no model yet.
     stated, clock = claim.attributes[attribute], peripheral.clock
     assert isinstance(stated.value, (int, float, Fraction))
     value = Fraction(stated.value)
@@ -238,7 +245,7 @@ def _division(
 
 
 def _written(clocks: int, attribute: str, clock: Fraction) -> Fraction:
-    """A number of clocks as the attribute says it: in Hz or in s."""
+    """A number of clocks in the unit of the attribute: Hz or s."""
     return clock / clocks if attribute == "frequency" else clocks / clock
 
 
@@ -248,7 +255,7 @@ def _candidate(placed: _Placed, peripheral: Peripheral) -> Candidate:
 
 
 def _agreed(placed: _Placed, attribute: str) -> Hashable:
-    """The value of an attribute that users of an instance have in common."""
+    """The value of an attribute that must be equal for all users of an instance."""
     if attribute in ("frequency", "period") and placed.division is not None:
         return placed.division
     if attribute in placed.resource_class.fixed:
@@ -261,7 +268,10 @@ def _agreed(placed: _Placed, attribute: str) -> Hashable:
 
 
 def _costs(peripheral: Peripheral) -> list[int]:
-    """Who needs no pin gets an instance with few: they stay free for others."""
+    """For each instance, its number of pins.
+
+    A claim without pins gets an instance with few pins, so that instances with many pins stay free for other claims.
+    """
     counts = [0] * len(peripheral.instances)
     for (instance, _), pins in peripheral.pins.items():
         counts[instance] += len(pins)
@@ -298,7 +308,7 @@ def _attributes(claim: Claim) -> Mapping[str, object]:
 
 
 def _asked(placed: _Placed) -> Fraction:
-    """The frequency that was asked of a divider, in Hz."""
+    """The frequency in Hz that a claim wants of a divider."""
     attribute = placed.resource_class.divider_from
     assert attribute is not None
     value = placed.claim.attributes[attribute].value

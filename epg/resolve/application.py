@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The application: what the three kinds of file mean together, with nothing left to choose."""
+"""The application: the result of model, target configuration and bindings together, with every choice made."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from epg.source import Span
 class Step:
     """One step of a conversion: ``value * scale + offset``, then limited to ``limits``.
 
-    ``reason`` says where it comes from: ``components.encoder_pan``, ``inputs.position_pan`` or ``rad -> deg``.
+    ``reason`` names its origin: ``components.encoder_pan``, ``inputs.position_pan`` or ``rad -> deg``.
     """
 
     scale: Fraction | float = Fraction(1)
@@ -34,8 +34,8 @@ class Step:
 class ResolvedComponent:
     """A component with its hardware.
 
-    ``value_index`` are the indices of its ports' values in the exchange (topics only), counted per direction;
-    ``first_index`` is the first of them.
+    ``symbol`` is the prefix of its C symbols.  For topics, ``value_index`` maps ports to the value indices in the
+    exchange, counted per direction; ``first_index`` is the smallest one, or None.
     """
 
     name: str
@@ -55,7 +55,7 @@ class ResolvedComponent:
 
 @dataclass(frozen=True)
 class Wire:
-    """A model port and the component port it is bound to; ``steps`` in the order the value takes."""
+    """A model port and the component port that it is bound to.  The value passes ``steps`` in their order."""
 
     port: Port
     component: ResolvedComponent
@@ -66,7 +66,10 @@ class Wire:
 
 @dataclass(frozen=True)
 class Setpoint:
-    """A subscription's fault handling; times in seconds, ``rate_limit`` in units per second (0: none)."""
+    """The reaction of a subscription to missing and jumping setpoints.
+
+    ``timeout`` is in seconds, ``rate_limit`` in units per second; 0 switches each of them off.
+    """
 
     initial: float
     rate_limit: float
@@ -76,7 +79,10 @@ class Setpoint:
 
 @dataclass(frozen=True)
 class TopicValue:
-    """One number of a message: its name for people, the component's port, its value index, and a setpoint's faults."""
+    """One value of a message: its name in messages to the user, the component's port, and its value index.
+
+    ``setpoint`` is the fault handling of a subscribed value.
+    """
 
     name: str
     port: str
@@ -86,11 +92,11 @@ class TopicValue:
 
 @dataclass(frozen=True)
 class Topic:
-    """One topic.  ``key`` is what makes it: ``components.pan_publisher``, ``control.enable_topic``.
+    """One topic.  ``key`` is the key of the ``.tcf`` that makes it: ``components.pan_publisher``.
 
-    ``role`` is "values", "enable", "diagnostics" or "echo"; ``index`` is the index of the first value, of an echo's
-    subscription the number of the publication that answers.  ``trigger`` is "period" (``period`` in seconds), "cycles"
-    (every ``cycles`` control cycles) or "change".
+    ``role`` is "values", "enable", "diagnostics" or "echo".  ``index`` is the index of the first value; for the
+    subscription of an echo, it is the number of the publication that answers.  ``trigger`` is "period" (``period`` in
+    seconds), "cycles" (every ``cycles`` control cycles) or "change".
     """
 
     name: str
@@ -108,7 +114,7 @@ class Topic:
 
 @dataclass(frozen=True)
 class Plant:
-    """The simulated plant of a host target: its inputs come from actuators, its outputs drive sensors."""
+    """The simulated plant of a target on the host.  Its inputs come from actuators, and its outputs drive sensors."""
 
     model: Model
     inputs: tuple[Wire, ...]
@@ -119,7 +125,10 @@ class Plant:
 
 @dataclass(frozen=True)
 class Application:
-    """One target, ready to be emitted.  ``period`` in seconds; the model runs every ``step_divider``-th cycle."""
+    """One target, ready to be emitted.
+
+    ``period`` is the control period in seconds.  The model runs in every ``step_divider``-th control cycle.
+    """
 
     name: str
     target: Target

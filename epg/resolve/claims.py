@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What components and the control loop need of the hardware, as one list."""
+"""The claims of a target: the peripherals and pins that its components and its control loop need, in one list."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from epg.diagnostics import Note
 from epg.source import Span
 
 ClaimKey = tuple[str, str]
-"""Name of the component and of the claim within its kind."""
+"""The name of the component, and the name of the claim in its kind."""
 
 TICK: ClaimKey = ("", "tick")
 """The claim of the control loop's timer, which belongs to no component."""
@@ -23,7 +23,7 @@ TICK: ClaimKey = ("", "tick")
 
 @dataclass(frozen=True)
 class Stated:
-    """A value with the place it is written, and the files whose ``extends`` lead there."""
+    """A value with its position, and the positions of each ``extends`` that leads to its file."""
 
     value: object
     span: Span
@@ -36,10 +36,10 @@ class Stated:
 
 @dataclass(frozen=True)
 class Claim:
-    """A use of one peripheral, or of pins alone.
+    """One use of a resource class: of a peripheral with its pins, or of pins only.
 
-    ``signals`` maps the signals of the class to pins as written; it is empty where EPG numbers pins.  ``attributes``
-    are in base units (Hz, s).  ``component`` is empty for the control loop.
+    ``signals`` maps the signals of the class to pins as they are written.  It is empty if EPG numbers the signals.
+    ``attributes`` are in base units (Hz, s).  ``component`` is empty for the control loop.
     """
 
     component: str
@@ -49,9 +49,9 @@ class Claim:
     attributes: Mapping[str, Stated]
     span: Span
     stated_in: Span = field(default_factory=lambda: Span(""))
-    """Where a kind or platform makes the claim: for mistakes in its file."""
+    """The position of the claim in the file of its kind or platform, for mistakes in that file."""
     node: str = ""
-    """The devicetree node that is claimed in place of pins and a peripheral; empty: none is named."""
+    """The devicetree node that replaces pins and a peripheral; empty if the component does not name one."""
 
     @property
     def key(self) -> ClaimKey:
@@ -59,20 +59,20 @@ class Claim:
 
     @property
     def user(self) -> str:
-        """What messages call the one that claims."""
+        """The user of the claim in messages: the component in quotes, or "the control loop"."""
         return f"'{self.component}'" if self.component else "the control loop"
 
 
 def component_claims(configuration: Configuration) -> tuple[Claim, ...]:
-    """The claims of all components, in the order they are written."""
+    """The claims of all components, in the order of the ``.tcf``."""
     target = configuration.target
     return tuple(_claims(configuration.components.values(), target.has_pins, target.platform.has_nodes))
 
 
 def tick_claims(target: Target, period: Fraction | None, span: Span) -> tuple[Claim, ...]:
-    """The claim of the control loop, none where the platform times it without a peripheral.
+    """The claim of the control loop; empty if the platform times the loop without a peripheral.
 
-    ``period`` in seconds; None, when it is not known yet, still claims the peripheral.
+    ``period`` is in seconds.  If it is None, because it is not known yet, the peripheral is claimed nevertheless.
     """
     if target.tick is None:
         return ()
@@ -105,7 +105,7 @@ def _pin(component: Component, pin: str) -> Stated:
 
 
 def _attributes(component: Component, claim: KindClaim) -> dict[str, Stated]:
-    """The attributes that have a value; a default counts as written at the component's name."""
+    """The attributes that have a value.  The position of a default is that of the component's name."""
     result: dict[str, Stated] = {}
     for attribute, parameter in claim.attributes.items():
         value, node = component.parameters.get(parameter), component.node.get(parameter)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Says why claims cannot have their places together: the smallest sets of them that are in each other's way."""
+"""Reports why claims cannot be placed together: it finds the smallest sets of claims that exclude each other."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from epg.source import Span
 
 @dataclass(frozen=True)
 class Candidate:
-    """A claim on its way to a place."""
+    """A claim without mistakes that needs a place."""
 
     claim: Claim
     resource_class: ResourceClass
@@ -29,7 +29,10 @@ class Candidate:
 def report_conflicts(
     candidates: Sequence[Candidate], peripheral: Peripheral, pins: Pins, diagnostics: Diagnostics
 ) -> None:
-    """One error for each set of claims that cannot be together; there is at least one such set."""
+    """Reports an error for each set of claims that cannot be placed together.
+
+    The caller has found that ``candidates`` have at least one such set.
+    """
     left = list(candidates)
     while not _possible(left):
         core = smallest_conflict(left)
@@ -47,10 +50,12 @@ def report_conflicts(
 
 
 def smallest_conflict(candidates: Sequence[Candidate]) -> list[Candidate]:
-    """Claims that cannot be together although they could without any one of them.
+    """A minimal set of ``candidates`` that cannot be placed together: without any one of them, the others could.
 
-    ``candidates`` cannot be together.  Each claim of the result is the last one with which those found before and all
-    that follow it still cannot: as leaving out one claim after another would find, in fewer searches.
+    ``candidates`` must be a set that cannot be placed together.  The result is the same as if one claim after another
+    were left out, and put back if the others then had places.  A binary search finds the same claims with fewer calls
+    of :func:`find_places`: the next claim of the result is the last one for which this claim, all claims after it, and
+    those found before cannot be placed together.
     """
     core: list[Candidate] = []
     first = 0
@@ -72,19 +77,19 @@ def _possible(candidates: Sequence[Candidate]) -> bool:
 
 
 def _bound_by_pin(candidate: Candidate) -> bool:
-    """Whether a pin decides which slot a claim gets."""
+    """True if the pins of a claim decide which slot it gets."""
     return "slot" in candidate.resource_class.signals.values()
 
 
 def _pins_hint(moved: Candidate, others: Sequence[Candidate], peripheral: Peripheral, pins: Pins) -> str:
-    """The free pins on which ``moved`` would be in nobody's way; empty when there are none."""
+    """A hint with the free pins on which ``moved`` would fit together with ``others``; empty if there are none."""
     if len(moved.claim.signals) != 1:
         return f"move {moved.claim.user} to other pins"
     signal = next(iter(moved.claim.signals))
     demands = [other.demand for other in others]
     if find_places(demands) is None:
         demands = []
-        for other in others:  # without those that are in each other's way
+        for other in others:  # Leave out the claims that exclude each other: they are reported separately.
             if find_places([*demands, other.demand]) is not None:
                 demands.append(other.demand)
     good = [
@@ -100,7 +105,7 @@ def _moved(candidate: Candidate, signal: str, pin: str, peripheral: Peripheral, 
 
 
 def _two(first: Candidate, second: Candidate, peripheral: Peripheral, hint: str, diagnostics: Diagnostics) -> None:
-    """Two claims whose pins lead to the same slot, or to one instance on which they disagree."""
+    """Reports two claims whose pins lead to the same slot, or to one instance that they need with other settings."""
     where = _common_name(first, second, peripheral)
     one_slot = first.demand.places == second.demand.places and len(first.demand.places) == 1
     differing = None if one_slot else _difference(first, second, peripheral)
@@ -122,7 +127,7 @@ def _two(first: Candidate, second: Candidate, peripheral: Peripheral, hint: str,
 def _too_many(
     alike: Sequence[Candidate], possible: int, peripheral: Peripheral, target: Target, diagnostics: Diagnostics
 ) -> None:
-    """More equal claims than there are places."""
+    """Reports more equal claims than there are places."""
     title = alike[0].resource_class.title
     users = ", ".join(candidate.claim.user for candidate in alike)
     message = f"{len(alike)} {title}s are asked for, {target.name} has {possible} ({_extent(peripheral)})"
@@ -132,7 +137,7 @@ def _too_many(
 
 
 def _several(core: Sequence[Candidate], peripheral: Peripheral, target: Target, diagnostics: Diagnostics) -> None:
-    """Different claims of which each could have a place without the others."""
+    """Reports a minimal set of different claims that do not fit together."""
     last = core[-1]
     others = ", ".join(candidate.claim.user for candidate in core[:-1])
     needs = f"needs all of {peripheral.a_title}" if last.resource_class.whole else f"is {last.resource_class.a_title}"
@@ -150,7 +155,7 @@ def _several(core: Sequence[Candidate], peripheral: Peripheral, target: Target, 
 
 
 def _extent(peripheral: Peripheral) -> str:
-    """How much there is: ``2 PIO blocks with 4 state machines each``."""
+    """The numbers of instances and slots in words: ``2 PIO blocks with 4 state machines each``."""
     count, slots = len(peripheral.instances), len(peripheral.slots)
     instances = f"{count} {peripheral.title}s" if count > 1 else f"1 {peripheral.title}"
     if slots == 1:
@@ -159,7 +164,7 @@ def _extent(peripheral: Peripheral) -> str:
 
 
 def _common_name(first: Candidate, second: Candidate, peripheral: Peripheral) -> str:
-    """The slot or instance that both are bound to."""
+    """The name of the slot or instance that both claims need."""
     common = first.demand.places & second.demand.places
     if len(common) == 1 and first.demand.places == second.demand.places:
         instance, slot = next(iter(common))
@@ -171,7 +176,7 @@ def _common_name(first: Candidate, second: Candidate, peripheral: Peripheral) ->
 
 
 def _difference(first: Candidate, second: Candidate, peripheral: Peripheral) -> tuple[str, str, str] | None:
-    """The attribute on which two claims disagree with both values, or None if they agree."""
+    """The first attribute for which two claims want different values, with both values; None if there is none."""
     one, other = first.demand.agree, second.demand.agree
     assert isinstance(one, tuple) and isinstance(other, tuple)
     for attribute, a, b in zip(peripheral.agree, one, other):
@@ -181,7 +186,7 @@ def _difference(first: Candidate, second: Candidate, peripheral: Peripheral) -> 
 
 
 def _shown(candidate: Candidate, attribute: str) -> str:
-    """The value of an attribute as people write it."""
+    """The value of an attribute with its unit, for messages."""
     divider = candidate.resource_class.divider_from
     if attribute in ("frequency", "period") and divider is not None:
         attribute = divider

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Steps of a conversion as the generated code computes them."""
+"""Folds the steps of a conversion into the steps that the generated code computes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,10 @@ from epg.resolve.application import Step
 
 
 def folded(steps: Sequence[Step]) -> list[Step]:
-    """``steps`` with those that have no limits between them made one.  Raises OverflowError beyond C's doubles."""
+    """Joins successive ``steps`` without limits between them into one.
+
+    Raises OverflowError if a factor is outside of the range of a double.
+    """
     result: list[Step] = []
     for step in steps:
         if result and result[-1].limits is None:
@@ -23,7 +26,10 @@ def folded(steps: Sequence[Step]) -> list[Step]:
 
 
 def is_computable(steps: Sequence[Step]) -> bool:
-    """Whether every factor and offset, alone and folded, is a normal double: no factor overflows, or becomes 0."""
+    """True if a double can hold all factors and offsets, before and after folding.
+
+    Factors must be normal: they must not overflow and must not become 0.
+    """
     try:
         return all(_is_normal(float(step.scale)) and math.isfinite(step.offset) for step in (*steps, *folded(steps)))
     except OverflowError:

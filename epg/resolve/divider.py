@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Integer dividers: the prescaler and counter that make a frequency or a period of a clock.
+"""Integer dividers: finds the prescaler and counter that make a frequency or a period from a clock.
 
 >>> divide(Fraction(125_000_000, 20_000), Divider((1, 255), (2, 65536)), exact=False)
 Division(prescaler=1, counter=6250)
@@ -14,12 +14,12 @@ from fractions import Fraction
 from epg.catalog.hardware import Divider
 
 NEAR_ENOUGH = Fraction(1, 100)
-"""The largest relative error of a divider that need not be exact."""
+"""The largest relative error of a divider that does not have to be exact."""
 
 
 @dataclass(frozen=True)
 class Division:
-    """``prescaler * counter`` clocks; the counter runs from 0 to ``counter - 1``."""
+    """A setting of a divider: ``prescaler * counter`` clocks.  The counter runs from 0 to ``counter - 1``."""
 
     prescaler: int
     counter: int
@@ -30,9 +30,10 @@ class Division:
 
 
 def divide(clocks: Fraction, divider: Divider, exact: bool) -> Division | None:
-    """The division nearest to ``clocks``, with the smallest prescaler as that gives the finest steps.
+    """The setting for a number of ``clocks``, with the smallest possible prescaler, which gives the finest steps.
 
-    None when there is no exact one, or none within :data:`NEAR_ENOUGH`.
+    With ``exact``, None if no setting gives exactly ``clocks``.  Otherwise the counter is rounded, and the result is
+    None if the relative error is more than :data:`NEAR_ENOUGH`.
     """
     if exact:
         return _exactly(clocks.numerator, divider) if clocks.denominator == 1 else None
@@ -45,12 +46,12 @@ def divide(clocks: Fraction, divider: Divider, exact: bool) -> Division | None:
 
 
 def clock_range(divider: Divider) -> tuple[int, int]:
-    """The fewest and most clocks that a divider counts."""
+    """The smallest and the largest number of clocks that a divider can count."""
     return divider.prescaler[0] * divider.counter[0], divider.prescaler[1] * divider.counter[1]
 
 
 def neighbours(clocks: Fraction, divider: Divider, exact: bool) -> tuple[int, int]:
-    """The possible numbers of clocks next to ``clocks``, which is in range but not possible: below and above."""
+    """The nearest possible numbers of clocks below and above ``clocks``, which is in range but not possible itself."""
     first, last = clock_range(divider)
     below, above = math.floor(clocks), math.ceil(clocks)
     while below > first and divide(Fraction(below), divider, exact) is None:

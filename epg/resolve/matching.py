@@ -1,10 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which component a model port is probably meant for, by the words of their names.
+"""Proposes a component port for each model port, by the words in their names.
 
-``encoder_reset_pan`` and ``encoder_pan.reset`` have the same words; ``position_pan`` has only words of
-``encoder_pan.position``.  A match must be the only one of its quality.  What is left then may still meet by its
-nature: ``setpoint_pan`` and ``pan_subscriber`` share ``pan`` with no other port and no other topic that is left.  Only
-topics are given away so lightly, never what moves something.  Everything else is left to the user.
+There are three qualities of a match, tried in this order:
+
+1. Both names have the same words: ``encoder_reset_pan`` and ``encoder_pan.reset``.
+2. The words of the model port are some of the component port's: ``position_pan`` and ``encoder_pan.position``.
+3. A model port and a topic are left that share a word with each other, and with no other port or topic that is left:
+   ``setpoint_pan`` and ``pan_subscriber``.
+
+A match must be the only one of its quality.  The third quality is for topics only: a weak match must never move
+hardware.  The user binds all other ports.
 """
 
 from __future__ import annotations
@@ -19,7 +24,11 @@ from epg.models.model import Model, Port
 
 @dataclass(frozen=True)
 class Match:
-    """``reference`` as bindings write it, None when no name matches; ``candidates`` are all of the right direction."""
+    """The proposal for one model port.
+
+    ``reference`` is the component port as bindings write it, or None without a match.  ``candidates`` are all component
+    ports of the right direction.
+    """
 
     port: Port
     reference: str | None
@@ -27,7 +36,7 @@ class Match:
 
 
 def match_ports(model: Model, components: Mapping[str, Component]) -> dict[str, Match]:
-    """The match of every port of ``model``, in its order; no component port is given to two outputs."""
+    """The match of each port of ``model``, in the order of the model.  No component port is given to two outputs."""
     result: dict[str, Match] = {}
     taken: set[str] = set()
     used: set[str] = set()
@@ -53,14 +62,14 @@ def match_ports(model: Model, components: Mapping[str, Component]) -> dict[str, 
 
 
 def _meet(ports: Sequence[Port], topics: Sequence[str]) -> list[tuple[Port, str]]:
-    """Pairs of ports and topics that share a word with each other and with nobody else."""
+    """The pairs of ports and topics that share a word with each other, and with no other topic or port."""
     near = {port.name: [topic for topic in topics if _words(port.name) & _words(topic)] for port in ports}
     found = [(port, near[port.name][0]) for port in ports if len(near[port.name]) == 1]
     return [(port, topic) for port, topic in found if sum(topic in names for names in near.values()) == 1]
 
 
 def _ends(components: Mapping[str, Component], direction: str) -> dict[str, tuple[frozenset[str], frozenset[str]]]:
-    """References of a direction -> (words of the reference, the same with the words of its port and kind)."""
+    """Reference -> (its words, all words of its component, port and kind), for the ports of a direction."""
     result = {}
     for component in components.values():
         main = component.kind.main_port(direction)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pins: which of them exist, are free, and reach what is claimed."""
+"""Checks the pins of claims: they must exist, be free, and reach the peripheral that is claimed."""
 
 from __future__ import annotations
 
@@ -18,25 +18,25 @@ from epg.source import Span
 
 @dataclass(frozen=True)
 class PinUser:
-    """Who has a pin, and where that is written."""
+    """The user of a pin, and the position at which it names the pin."""
 
     name: str
     span: Span
 
 
 class Pins:
-    """The pins of one target while claims are checked; those of claims that came before are taken."""
+    """The pins of one target while its claims are checked.  The pins of claims that were checked before are taken."""
 
     def __init__(self, target: Target, claims: Iterable[Claim], diagnostics: Diagnostics) -> None:
-        """``claims`` are all there are, so that hints name only pins that stay free."""
+        """``claims`` must be all claims of the target, so that hints name only pins that stay free."""
         self.target = target
         self.diagnostics = diagnostics
         self.usable_pins = {*target.board.pins, *target.board.onboard}
         self.taken: dict[str, PinUser] = {}
         self.wanted = {target.board.pin_name(str(s.value)) for claim in claims for s in claim.signals.values()}
-        self.numbered = 0  # pins that EPG numbered
-        self._places: dict[tuple[str, str], Mapping[str, frozenset[Place]]] = {}  # by class and signal, then by pin
-        self._anywhere: dict[str, frozenset[Place]] = {}  # by class
+        self.numbered = 0  # number of signals that EPG has numbered
+        self._places: dict[tuple[str, str], Mapping[str, frozenset[Place]]] = {}  # (class, signal) -> pin -> places
+        self._anywhere: dict[str, frozenset[Place]] = {}  # class -> places
 
     def check(self, claim: Claim, resource_class: ResourceClass) -> Mapping[str, str] | None:
         """Signal -> pin of the chip, or None after reporting pins that do not exist or are not free."""
@@ -48,7 +48,11 @@ class Pins:
         return result if len(result) == len(claim.signals) else None
 
     def numbers(self, claim: Claim, resource_class: ResourceClass, pins: Mapping[str, str]) -> Mapping[str, int] | None:
-        """Signal -> number of its pin in C, None when none is left; in the order of claims where users name no pins."""
+        """Signal -> number of its pin in C.
+
+        On targets without pins, the signals are numbered in the order of the claims.  None after reporting that there
+        are no numbers left.
+        """
         soc = self.target.soc
         if self.target.has_pins:
             return MappingProxyType({signal: soc.numbers[pin] for signal, pin in pins.items()})
@@ -63,7 +67,7 @@ class Pins:
     def places(
         self, claim: Claim, resource_class: ResourceClass, peripheral: Peripheral, pins: Mapping[str, str]
     ) -> frozenset[Place]:
-        """Where ``claim`` can go with its pins; empty after reporting why nowhere."""
+        """The places that ``claim`` can have with its pins; empty after reporting why there are none."""
         neighbours = [pins[signal] for signal in resource_class.neighbours if signal in pins]
         if len(neighbours) == 2 and not self._are_neighbours(*neighbours):
             self._report_neighbours(claim, resource_class, neighbours)
@@ -76,7 +80,7 @@ class Pins:
     def reachable(
         self, resource_class: ResourceClass, peripheral: Peripheral, pins: Mapping[str, str]
     ) -> frozenset[Place]:
-        """The places whose pins include ``pins``."""
+        """The places that reach all ``pins`` with their signals."""
         found: frozenset[Place] | None = None
         for signal, pin in pins.items():
             if resource_class.signals.get(signal, "any") != "any":
@@ -94,7 +98,7 @@ class Pins:
     def _places_by_pin(
         self, resource_class: ResourceClass, peripheral: Peripheral, signal: str
     ) -> Mapping[str, frozenset[Place]]:
-        """For each pin the places in which ``signal`` has it; for a signal that does not have any pin."""
+        """Pin -> the places in which ``signal`` can have it.  Only for a signal that cannot have "any" pin."""
         key = resource_class.name, signal
         if key not in self._places:
             result: dict[str, set[Place]] = {}
@@ -105,7 +109,7 @@ class Pins:
         return self._places[key]
 
     def usable(self, resource_class: ResourceClass, signal: str) -> list[str]:
-        """Free pins that a signal of a class can have, in the chip's order."""
+        """The free pins that a signal of a class can have, in the order of the chip."""
         board = self.target.board
         free = set(board.pins) | {pin for pin, at in board.onboard.items() if resource_class.name in at.classes}
         free -= set(self.taken) | self.wanted
@@ -180,7 +184,7 @@ class Pins:
         order = self.target.soc.pins
         free = {*self.usable(resource_class, resource_class.neighbours[0]), *pins}
         pairs = [pair for pair in pairwise(order) if free.issuperset(pair)]
-        pairs.sort(key=lambda pair: pins[0] not in pair)  # those with the first pin come first
+        pairs.sort(key=lambda pair: pins[0] not in pair)  # Pairs with the first pin come first.
         shown = ", ".join(f"{one} and {other}" for one, other in pairs[:8])
         hint = f"free pairs: {shown}" if pairs else "no pair of neighbours is free"
         notes = [Note(f"{resource_class.neighbours[0]} is written here", first.span), *second.notes]
@@ -189,7 +193,7 @@ class Pins:
     def _report_unreachable(
         self, claim: Claim, resource_class: ResourceClass, peripheral: Peripheral, pins: Mapping[str, str]
     ) -> None:
-        """A pin that reaches nothing, or pins of which each reaches something but not the same."""
+        """Reports a pin that reaches no place, or several pins that reach no common place."""
         alone = [signal for signal, pin in pins.items() if not self._can_reach(resource_class, signal, pin)]
         for signal in alone:
             stated = claim.signals[signal]
@@ -213,7 +217,7 @@ class Pins:
 
 
 def all_places(resource_class: ResourceClass, peripheral: Peripheral) -> list[Place]:
-    """Every place that a class can take of its peripheral, whatever the pins."""
+    """All places of a peripheral that a resource class can take, if the pins are ignored."""
     slots = [WHOLE] if resource_class.whole else list(range(len(peripheral.slots)))
     numbers = {name: number for number, name in enumerate(peripheral.instances)}
     names = resource_class.instances or peripheral.instances

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""From checked files to an :class:`~epg.resolve.application.Application`."""
+"""Makes an :class:`~epg.resolve.application.Application` of a checked configuration, a model and bindings."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ from epg.resolve.wires import input_wires, output_wires, parameter_overrides
 _PUBLIC = frozenset(
     "start stop enable status statistics target inputs outputs control host model plant hash epg_version".split()
 )
-"""What follows ``<name>_`` in names that every application has."""
+"""The parts after ``<name>_`` of the public names that every application has."""
 
 _SHORTEST, _LONGEST = Fraction(1, 1_000_000), Fraction(3600)
-"""Control periods in seconds; targets have narrower limits of their own."""
+"""The limits of control periods in seconds.  The timer of a target can have narrower limits."""
 
 
 @dataclass(frozen=True)
 class PlantFiles:
-    """A plant model with its bindings to the components' physical side."""
+    """A plant model, with the bindings of its ports to the sensors and actuators."""
 
     model: Model
     bindings: Bindings
@@ -47,7 +47,7 @@ def resolve(
     plant: PlantFiles | None,
     diagnostics: Diagnostics,
 ) -> Application | None:
-    """The application ``name``, or None after reporting everything that keeps its parts from fitting together."""
+    """The application ``name``, or None after reporting all reasons why its parts do not fit together."""
     errors = diagnostics.error_count
     _same_model(bindings, model, diagnostics)
     period, divider = _period(configuration, model, diagnostics)
@@ -97,7 +97,7 @@ def resolve(
 
 
 def _bound_ports(components: Mapping[str, Component], outputs: Sequence[Wire], diagnostics: Diagnostics) -> None:
-    """Parameters that wait for a port which the model must drive: a homing for the encoder's reset."""
+    """Reports parameters that need a port that no model output drives: homing needs the reset of an encoder."""
     driven = {(wire.component.name, wire.component_port.name) for wire in outputs}
     for component in components.values():
         for needed in component.kind.needs_bound:
@@ -127,7 +127,10 @@ def _same_model(bindings: Bindings, model: Model, diagnostics: Diagnostics) -> N
 
 
 def _period(configuration: Configuration, model: Model, diagnostics: Diagnostics) -> tuple[Fraction, int]:
-    """The control period in seconds, and every how many cycles the model runs."""
+    """The control period in seconds, and the number of control cycles for one step of the model.
+
+    Reports periods, output delays and steps that are out of range or do not fit together.
+    """
     period = configuration.control.period or model.step
     if not _SHORTEST <= period <= _LONGEST:
         stated = configuration.control.period is not None
@@ -160,7 +163,10 @@ def _period(configuration: Configuration, model: Model, diagnostics: Diagnostics
 def allocate_hardware(
     configuration: Configuration, period: Fraction | None, diagnostics: Diagnostics
 ) -> Mapping[tuple[str, str], Assignment] | None:
-    """Peripherals for all components and the loop's timer; ``period`` in seconds, None when it is not known yet."""
+    """The assignments for all components and for the timer of the control loop, or None after reporting mistakes.
+
+    ``period`` is in seconds, or None if it is not known yet.
+    """
     claims = [
         *component_claims(configuration),
         *tick_claims(configuration.target, period, configuration.control.period_span),
@@ -195,9 +201,11 @@ def _components(
 
 
 def _symbol(application: str, component: str, beginnings: Collection[str]) -> str:
-    """The C symbol of a component: prefixed, so that it meets neither the C library nor other targets' symbols.
+    """The C symbol of a component.
 
-    Kinds append to it (``<symbol>_config``), so it is none of the ``beginnings`` of other components' names.
+    The prefix ``application`` makes it different from names of the C library and symbols of other targets.  Kinds make
+    further symbols by appending words (``<symbol>_config``).  Therefore it must not be one of the ``beginnings`` of
+    components' names: a component ``motor_config`` would have the same symbol.
     """
     folded = component.casefold()
     symbol = component
@@ -215,7 +223,10 @@ def _plant(
     period: Fraction,
     diagnostics: Diagnostics,
 ) -> Plant | None:
-    """The plant, whose inputs come from actuators and whose outputs drive sensors."""
+    """The plant, whose inputs come from actuators and whose outputs drive sensors.
+
+    None after reporting that the platform does not simulate one.
+    """
     model, bindings = plant.model, plant.bindings
     platform = configuration.target.platform
     if not platform.simulates_plant:
@@ -253,7 +264,7 @@ def _files(
 
 
 def _apart(one: Fraction, other: Fraction) -> tuple[str, str]:
-    """Two different times as people write them, with as many digits as make them differ."""
+    """Two different times with their units, with so many digits that the texts differ."""
     for digits in range(6, 18):
         texts = show(one, "time", digits=digits), show(other, "time", digits=digits)
         if texts[0] != texts[1]:

@@ -1,18 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Search for a place for every demand on one peripheral.
+"""The search for a place for every demand on one peripheral.
 
-A peripheral has instances with slots.  A demand takes one of the places it can use: a slot of an instance, or the
-whole instance.  All users of an instance must agree on their attributes.  Taking the first place that is free would
-refuse wirings that are possible, so this searches: the most constrained demand first.
+The problem: a peripheral has instances, and an instance can have slots.  A demand takes one of its possible places: a
+slot of an instance, or the whole instance.  All users of an instance must agree on their attributes.  To give each
+demand the first free place would refuse wirings that are possible.  Therefore this is a depth-first search, which
+always places a demand of the most constrained group next.
 
-Most wirings need no second try.  A dive takes the best move again and again without looking ahead; if it gets through,
-no step of it could have been refused, so it is what the search would have found.  Otherwise the search starts over,
-with checks of what remains after each step.
+Most wirings need no backtracking.  Before the search, a *dive* makes the best move again and again, without checks of
+the remaining demands.  If it places all demands, each of its steps would have passed these checks, so the full search
+would find the same places.  If it fails, the full search begins, with checks after each step.
 
-Refusing must be fast too.  Demands that are equal form a group, instances and slots that the groups see alike are
-interchangeable, and a state of the search is what is left once names are taken away: how many of each group remain,
-how many slots of each bank are used.  States that were refused once are remembered, so nothing is refused twice under
-another name.
+The search must also prove quickly that a wiring is impossible.  Three things make this fast:
+
+- Equal demands are one *group*.  The order of its members does not matter.
+- Slots of an instance that are equal for all groups are one *bank*; instances with equal banks have one *profile*.
+  Only one of several equal instances is tried.
+- The key of a state does not contain names: it is the number of remaining demands of each group, and the number of used
+  slots of each bank.  A state that has failed once is remembered by its key and not tried again.
 """
 
 from __future__ import annotations
@@ -21,7 +25,7 @@ from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 WHOLE = -1
-"""In place of a slot: all of an instance."""
+"""Used instead of the number of a slot: the whole instance."""
 
 Place = tuple[int, int]
 """Instance and slot, both counted from 0; or instance and :data:`WHOLE`."""
@@ -29,7 +33,7 @@ Place = tuple[int, int]
 
 @dataclass(frozen=True)
 class Demand:
-    """One user: the places it can have, and what the other users of its instance must agree on."""
+    """One user: the places that it can have, and the value that all users of its instance must have in common."""
 
     places: frozenset[Place]
     agree: Hashable = None
@@ -37,7 +41,7 @@ class Demand:
 
 @dataclass(frozen=True)
 class _Group:
-    """Equal demands, by their places in the input; ``whole`` if each takes an instance."""
+    """Equal demands; ``members`` are their indices in the input.  ``whole``: each takes a whole instance."""
 
     agree: int
     members: tuple[int, ...]
@@ -46,7 +50,7 @@ class _Group:
 
 @dataclass(frozen=True)
 class _Bank:
-    """Slots of an instance that all groups see alike."""
+    """Slots of an instance that the same ``groups`` can use."""
 
     groups: frozenset[int]
     slots: tuple[int, ...]
@@ -54,33 +58,33 @@ class _Bank:
 
 @dataclass(frozen=True)
 class _Instance:
-    """What the groups see of an instance; instances of one ``profile`` are interchangeable while equally used."""
+    """An instance.  Instances with the same ``profile`` are interchangeable as long as they are used equally."""
 
     index: int
     profile: int
     banks: tuple[_Bank, ...]
-    whole: frozenset[int]
-    users: frozenset[int]  # groups that could use it
-    pressure: int  # how many demands could use it
+    whole: frozenset[int]  # groups that can take the whole instance
+    users: frozenset[int]  # groups that can use it
+    pressure: int  # number of demands that can use it
     cost: int
 
 
 @dataclass(frozen=True)
 class _Use:
-    """How an instance is used: slots per bank, and the agreement of its users (-1: there are none)."""
+    """The use of an instance: the number of used slots of each bank, and the agreement of its users (-1: no users)."""
 
     used: tuple[int, ...]
     agree: int
 
 
-_Move = tuple[int, int, int]  # group, instance (as a position in the list), bank or WHOLE
-_State = tuple[tuple[int, ...], tuple[_Use, ...]]  # how many of each group remain; the use of each instance
+_Move = tuple[int, int, int]  # group, instance (its position in the list), bank or WHOLE
+_State = tuple[tuple[int, ...], tuple[_Use, ...]]  # number of remaining demands per group; use of each instance
 
 
 def find_places(demands: Sequence[Demand], costs: Sequence[int] = ()) -> tuple[Place, ...] | None:
-    """A place for each demand, in their order, or None if there is no way.
+    """A place for each demand, in the order of ``demands``, or None if there are no such places.
 
-    ``costs``: what it costs to use an instance; of instances that are equal otherwise the cheapest is taken.
+    ``costs`` are costs of instances.  Of several instances that are equally good, the cheapest one is taken.
     """
     problem = _Problem(demands, costs)
     moves = problem.solve()
@@ -107,10 +111,10 @@ class _Problem:
         return self._dive(state) or self._search(state)
 
     def _dive(self, state: _State) -> list[_Move] | None:
-        """The first path of the search, followed without looking ahead; None if it ends early.
+        """The first path of the search, without checks of the remaining demands; None if it does not place all.
 
-        Only the options of groups that reach the instance of the last move change with it: that keeps a wiring with
-        hundreds of demands fast.
+        A move changes only the options of groups that can use its instance.  The options of the others are kept, so
+        that a wiring with hundreds of demands stays fast.
         """
         remaining, uses = list(state[0]), list(state[1])
         options = {number: list(self._options(number, uses)) for number, count in enumerate(remaining) if count}
@@ -132,7 +136,7 @@ class _Problem:
         return path
 
     def _search(self, state: _State) -> list[_Move] | None:
-        """Depth-first search; without recursion, as there can be hundreds of demands."""
+        """Depth-first search with its own stack, not by recursion: there can be hundreds of demands."""
         refused: set[Hashable] = set()
         path: list[_Move] = []
         stack: list[tuple[_State, Iterator[_Move]]] = [(state, self._moves(state))]
@@ -154,7 +158,10 @@ class _Problem:
         return None
 
     def places(self, moves: Sequence[_Move]) -> tuple[Place, ...]:
-        """Concrete places: members of a group, slots of a bank and equal instances in rising order."""
+        """The places of all demands after ``moves``.
+
+        Members of a group, slots of a bank and equal instances are used in rising order.
+        """
         waiting = [list(group.members) for group in self.groups]
         free = {(n, s): list(bank.slots) for n, i in enumerate(self.instances) for s, bank in enumerate(i.banks)}
         result: list[Place] = [(0, 0)] * self.count
@@ -164,7 +171,7 @@ class _Problem:
         return tuple(result)
 
     def _moves(self, state: _State) -> Iterator[_Move]:
-        """All that can be done for the most constrained group, best first."""
+        """The possible moves of the most constrained group, the best first."""
         remaining, uses = state
         options = {number: list(self._options(number, uses)) for number, count in enumerate(remaining) if count}
         if not options:
@@ -177,12 +184,12 @@ class _Problem:
         return min(options, key=lambda number: (len(options[number]), -remaining[number], number))
 
     def _rank(self, move: _Move, uses: Sequence[_Use]) -> tuple[int, ...]:
-        """Instances in use first, then those that others need least."""
+        """The order of moves: instances in use first, then those that the fewest demands can use."""
         instance = self.instances[move[1]]
         return int(uses[move[1]].agree < 0), instance.pressure, instance.cost, instance.index, move[2]
 
     def _options(self, number: int, uses: Sequence[_Use]) -> Iterator[_Move]:
-        """Moves of a group, one for each set of interchangeable instances."""
+        """The possible moves of a group, with one instance of each set of interchangeable instances."""
         group = self.groups[number]
         seen: set[tuple[int, _Use]] = set()
         for position in self.reached[number]:
@@ -212,17 +219,21 @@ class _Problem:
         return _Use(used, self.groups[number].agree)
 
     def _key(self, state: _State) -> Hashable:
-        """The state without names of instances."""
+        """The state without the names of instances, to recognize equal states."""
         remaining, uses = state
         used = sorted((i.profile, use.used, use.agree) for i, use in zip(self.instances, uses))
         return remaining, tuple(used)
 
     def _hopeful(self, state: _State) -> bool:
-        """False when what remains cannot fit, by counting."""
+        """False if the remaining demands certainly do not fit."""
         return self._enough_instances(state) and self._enough_places(state)
 
     def _enough_instances(self, state: _State) -> bool:
-        """Demands that agree on something fill up the instances that have it; the rest of each needs unused ones."""
+        """True if there are enough unused instances, by their number only.
+
+        Demands that agree on a value fill up the instances that have this value.  The rest of them needs unused
+        instances, and so does each demand for a whole instance.
+        """
         remaining, uses = state
         empty = sum(use.agree < 0 for use in uses)
         needed = 0
@@ -240,7 +251,10 @@ class _Problem:
         return needed <= empty
 
     def _enough_places(self, state: _State) -> bool:
-        """A flow from groups to free places, leaving aside what the users of an unused instance must agree on."""
+        """True if a maximum flow from groups to free places serves all remaining demands.
+
+        For unused instances, the agreement of users is ignored.  Thus True does not mean that there is a solution.
+        """
         remaining, uses = state
         capacity: dict[tuple[int, int], int] = {}
         reach: list[list[tuple[int, int]]] = [[] for _ in self.groups]
@@ -268,7 +282,10 @@ def _route(
     capacity: dict[tuple[int, int], int],
     taken: dict[tuple[int, int], dict[int, int]],
 ) -> bool:
-    """Finds room for one more of ``group``, moving others if need be (an augmenting path, breadth first)."""
+    """Finds a place for one more demand of ``group``, and moves others if necessary.
+
+    This is an augmenting path, found breadth first (Edmonds-Karp).  False if there is none.
+    """
     came_from: dict[tuple[int, int], int] = {}
     place_of: dict[int, tuple[int, int]] = {}
     queue = [group]
@@ -310,7 +327,7 @@ def _groups(demands: Sequence[Demand]) -> tuple[_Group, ...]:
 
 
 def _instances(demands: Sequence[Demand], groups: Sequence[_Group], costs: Sequence[int]) -> tuple[_Instance, ...]:
-    """The instances that any group can use, the cheapest first."""
+    """The instances that at least one group can use, the cheapest first."""
     seen: dict[int, dict[int, set[int]]] = {}  # instance -> slot -> groups
     for number, group in enumerate(groups):
         for index, slot in demands[group.members[0]].places:

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Topics of an application: those of its components, and those that every ROS 2 node of EPG has.
+"""The topics of an application: those of its components, and those that every ROS 2 node of EPG has.
 
-A value has an index in the exchange between the two sides of a target: setpoints in the order of the subscriptions,
-monitoring values in the order of the publications.  A message of several values has consecutive ones.
+Each value has an index in the exchange between the control side and the communication side of a target.  Setpoints are
+numbered in the order of the subscriptions, monitoring values in the order of the publications.  The values of one
+message have consecutive indices.
 """
 
 from __future__ import annotations
@@ -17,13 +18,14 @@ from epg.quantity import dimension_of
 from epg.resolve.application import ResolvedComponent, Setpoint, Topic, TopicValue, Wire
 
 HISTORY = 10
-"""Messages that a publication keeps unless told otherwise: what rclcpp and rclpy call the depth, and their default."""
+"""The number of messages that a publication keeps, if ``depth`` is not stated: the default of rclcpp and rclpy."""
 
 
 def value_indices_of(components: Mapping[str, Component], bindings: Bindings) -> dict[str, dict[str, int]]:
     """The value indices of each component, by its ports, counted per direction in the order of the components.
 
-    Of several ports those have one that are bound, in the order of the message; if none is, all of them.
+    If a component has several ports, only the ports that are bound have an index, in the order of the message.  If none
+    of them is bound, all have one.
     """
     bound = _bound_ports(components, bindings)
     result: dict[str, dict[str, int]] = {}
@@ -59,7 +61,7 @@ def _main_port(kind: Kind, direction: str) -> str | None:
 def subscriptions_of(
     components: Mapping[str, ResolvedComponent], configuration: Configuration, inputs: Iterable[Wire]
 ) -> tuple[Topic, ...]:
-    """What is subscribed to: setpoints, then echoes, then the topic that enables."""
+    """The topics that a target subscribes to: setpoints, then echoes, then the topic that enables the target."""
     units: dict[tuple[str, str], set[str]] = {}
     for wire in inputs:
         units.setdefault((wire.component.name, wire.component_port.name), set()).add(wire.port.unit)
@@ -85,7 +87,7 @@ def subscriptions_of(
 
 
 def publications_of(components: Mapping[str, ResolvedComponent], configuration: Configuration) -> tuple[Topic, ...]:
-    """What is published: values, then echoes, then state and statistics."""
+    """The topics that a target publishes: monitoring values, then echoes, then state and statistics."""
     communication = configuration.communication
     result = []
     for component in components.values():
@@ -152,7 +154,7 @@ def _topic_name(component: ResolvedComponent, parameter: str) -> str:
 
 
 def _value_name(topic: str, port: str, component: ResolvedComponent) -> str:
-    """What people call a value: the one of a topic as the topic, one of several ``joint_states/pan.position``."""
+    """The name of a value in messages: the topic's name, or ``joint_states/pan.position`` for one of several values."""
     return (
         topic
         if len(component.kind.topic_ports) == 1 and not component.kind.topic_ports[0].element
@@ -167,9 +169,10 @@ def _trigger(parameters: Mapping[str, object]) -> str:
 
 
 def _setpoint(component: Component, port: str, units: Mapping[tuple[str, str], Collection[str]]) -> Setpoint:
-    """Fault handling of a value; velocities time out after 0.5 s unless told otherwise, positions never.
+    """The fault handling of a setpoint.  By default velocities time out after 0.5 s, and other values never.
 
-    ``units`` are those of the model ports that component ports feed, for those that state none.
+    The unit tells whether a value is a velocity.  ``units`` are the units of the model ports that a component port
+    drives; they are used if neither the kind nor the component states a unit.
     """
     parameters = component.parameters
     timeout = parameters.get("timeout")

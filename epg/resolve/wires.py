@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Wires: bindings by name against the ports of a model and of the components, with directions, types and units."""
+"""Makes wires of bindings: finds the ports of the model and the components, and checks directions, types and units."""
 
 from __future__ import annotations
 
@@ -26,17 +26,17 @@ def input_wires(
     *,
     direction: str = "source",
 ) -> tuple[Wire, ...]:
-    """The wires into ``model``: each input has exactly one.
+    """The wires into ``model``.  Each input must have exactly one.
 
-    ``direction`` is "source" for a controller, which reads sensors; a plant's inputs read actuators: "sink".
-    Conversions on components stand between driver and controller, so a plant's wires do not see them.
+    ``direction`` is "source" for a controller, whose inputs read sensors, and "sink" for a plant, whose inputs read
+    actuators.  Conversions of components are between driver and controller, so they do not apply to wires of a plant.
     """
     wires: list[Wire] = []
     misspelt = _unknown_ports(bindings.inputs, model.inputs, model.outputs, model, "input", diagnostics)
     for port in model.inputs:
         if port.name not in bindings.inputs:
             if port.name in misspelt:
-                continue  # the error about the name that is bound says it
+                continue  # The error about the misspelt name in the bindings reports it.
             otherwise = f"add 'inputs: {{{port.name}: ...}}' with one of"
             hint = _nearest(port.name, lambda: _possible(components.values(), direction), otherwise, diagnostics)
             span = bindings.root.key_span("inputs") if "inputs" in bindings.root else bindings.model_span
@@ -79,7 +79,11 @@ def output_wires(
     *,
     direction: str = "sink",
 ) -> tuple[Wire, ...]:
-    """The wires out of ``model``; no component port is driven twice.  A plant's outputs drive sensors: "source"."""
+    """The wires out of ``model``.  A component port must not be driven twice.
+
+    ``direction`` is "sink" for a controller, whose outputs drive actuators, and "source" for a plant, whose outputs
+    drive sensors.
+    """
     wires: list[Wire] = []
     drivers: dict[tuple[str, str], tuple[str, Span]] = {}
     misspelt = _unknown_ports(bindings.outputs, model.outputs, model.inputs, model, "output", diagnostics)
@@ -114,7 +118,7 @@ def output_wires(
 
 
 def parameter_overrides(bindings: Bindings, model: Model, diagnostics: Diagnostics) -> dict[str, float]:
-    """The values that replace exported ones, by the model's own names; ``.`` may be written for ``\\``."""
+    """The values that replace exported parameters, by the model's own names.  Bindings can write ``.`` for ``\\``."""
     names = {parameter.name: parameter.name for parameter in model.parameters}
     for parameter in model.parameters:
         names.setdefault(parameter.name.replace("\\", "."), parameter.name)
@@ -140,7 +144,7 @@ def _unknown_ports(
     what: str,
     diagnostics: Diagnostics,
 ) -> set[str]:
-    """Reports names that are bound and are not ports; returns the ports that were probably meant."""
+    """Reports names in the bindings that are not ports.  Returns the ports that the user probably means."""
     assert isinstance(bound, Mapping)
     meant = set()
     names = {port.name for port in ports}
@@ -165,7 +169,7 @@ def _nearest(word: str, choices: Callable[[], Iterable[str]], otherwise: str, di
 
 
 def _possible(components: Iterable[Component], direction: str) -> list[str]:
-    """References to all component ports of a direction, the short form for default ports."""
+    """References to all component ports of a direction, with the short form for main ports."""
     result = []
     for component in components:
         main = component.kind.main_port(direction)
@@ -178,7 +182,7 @@ def _possible(components: Iterable[Component], direction: str) -> list[str]:
 def _end(
     binding: Binding, direction: str, components: Mapping[str, Component], diagnostics: Diagnostics
 ) -> tuple[Component, KindPort] | None:
-    """The component port a binding names, after checking that it exists and has the direction."""
+    """The component port that a binding names; None after reporting that it does not exist or has another direction."""
     component = components.get(binding.component)
     if component is None:
         hint = _nearest(binding.component, lambda: _possible(components.values(), direction), "possible", diagnostics)
@@ -218,12 +222,12 @@ def _wrong_direction(
 
 
 def component_steps(component: Component, port: KindPort) -> tuple[list[Step], str]:
-    """The conversion on the component, and the unit on its model side (empty: unknown)."""
+    """The conversion that the component itself states, and the unit on its model side (empty: unknown)."""
     conversion = component.conversion
     unit = normal_unit(port.unit)
     steps: list[Step] = []
     if not port.default and port.type == "boolean":
-        return steps, unit  # a conversion on a component is about its main value
+        return steps, unit  # The conversion of a component applies to its main value, not to boolean ports beside it.
     given = normal_unit(conversion.unit) if conversion.unit is not None else ""
     if conversion.scale is None and given and unit and given != unit and dimension_of(given) == dimension_of(unit):
         steps.append(Step(scale=conversion_factor(unit, given), reason=f"{unit} -> {given}"))
@@ -237,7 +241,10 @@ def _step(conversion: Conversion, reason: str) -> Step:
 
 
 def _unit_step(source: str, target: str, binding: Binding, names: str, diagnostics: Diagnostics) -> list[Step]:
-    """The step between two units when the wire gives no scale of its own."""
+    """The step that converts one unit to another; none if the wire has a scale, or if a unit is not known.
+
+    Reports units that do not convert to each other.
+    """
     if binding.conversion.scale is not None or not source or not target or source == target:
         return []
     if dimension_of(source) is None or dimension_of(target) is None or dimension_of(source) != dimension_of(target):
@@ -279,7 +286,7 @@ def _output_steps(
     own, unit = ([], normal_unit(component_port.unit)) if physical else component_steps(component, component_port)
     given = normal_unit(binding.conversion.unit if binding.conversion.unit is not None else port.unit)
     between = _unit_step(given, unit, binding, f"{port.name} -> {component.name}", diagnostics)
-    # towards the hardware a unit conversion on the component runs the other way round
+    # Towards the hardware, a unit conversion of the component runs in the opposite direction.
     own = [Step(1 / step.scale, reason=_reversed(step.reason)) if " -> " in step.reason else step for step in own]
     ordered = [step for step in own if " -> " not in step.reason] + [step for step in own if " -> " in step.reason]
     return (*_wire_step(binding, f"outputs.{port.name}"), *between, *ordered)
