@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Edits of files that people write: one value changes, everything else stays as it was written."""
+"""Edits of files that users write: one value changes, and all other text stays as it was written."""

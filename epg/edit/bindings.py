@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One port of a bindings file is bound otherwise, and everything else in the file stays as it was written.
+"""Changes the binding of one port in a bindings file.  All other text of the file stays as it was written.
 
 >>> text = "version: 1\\nmodel: servo\\ninputs:\\n  angle: encoder   # at the load\\n"
 >>> print(set_ends(text, "servo.bindings.yaml", model, "angle", [End("encoder", scale="1/4")]), end="")
@@ -8,15 +8,14 @@ model: servo
 inputs:
   angle: {from: encoder, scale: 1/4}   # at the load
 
-An edit and its reverse give the old text, but for what had to go:
+An edit followed by its reverse gives the old text, with these exceptions:
 
-- comments on lines that were removed, comments of ``epg bind`` whose place was taken, line breaks and comments within
-  a value that was replaced as a whole
-- a section that was missing, commented out or empty comes back as ``inputs: {}``
-- a port that comes back stands right below the one before it in the model's order, a key of a map likewise in the
-  order scale, offset, limits, unit: blank lines and comments that were between stay below
-- quotes around `unconnected`, which another value has replaced
-- ``{from: x}`` and ``[x]`` on one line become ``x`` when a key or an element is taken out of them
+- These texts are lost: comments on lines that were removed, comments of ``epg bind`` that a new line has replaced, line
+  breaks and comments within a value that was replaced as a whole, and quotes around ``unconnected``.
+- A section that was missing, commented out or empty becomes ``inputs: {}``.
+- A port that is added again is placed directly below the port before it in the model's order.  A key of a map is placed
+  in the order scale, offset, limits, unit.  Blank lines and comments that were between are below it then.
+- ``{from: x}`` and ``[x]`` on one line become ``x`` when a key or an element is removed from them.
 """
 
 from __future__ import annotations
@@ -38,11 +37,11 @@ __all__ = ["CannotEdit", "End", "ends_of", "set_ends"]
 
 
 def set_ends(text: str, file: str, model: Model, port: str, ends: Sequence[End] | None) -> str:
-    """``text`` with ``port`` of ``model`` bound to ``ends``: None takes the port out, an empty list says `unconnected`.
+    """``text`` with ``port`` of ``model`` bound to ``ends``: None removes the port, an empty list is ``unconnected``.
 
-    ``file`` names the text in messages.  Numbers that are none, and references that no component can have, are
-    written so that reading the file reports them.  A port that the model does not have can be taken out only.
-    Raises :class:`CannotEdit`.
+    ``file`` is the name of the text in messages.  Wrong numbers and impossible references are written as they are:
+    reading the file reports them.  A port that the model does not have can only be removed.  Raises
+    :class:`CannotEdit`.
     """
     body = text.removeprefix("\ufeff")
     root = parse_map(body, file)
@@ -69,7 +68,7 @@ def set_ends(text: str, file: str, model: Model, port: str, ends: Sequence[End] 
 
 
 def _section_of(root: YamlNode, file: str, model: Model, port: str, ends: Sequence[End] | None) -> str:
-    """Where ``port`` belongs; to be taken out also where it should not be."""
+    """The section of ``port``.  A port that is to be removed can also be in the wrong section."""
     own = [
         section
         for section, ports in (("inputs", model.inputs), ("outputs", model.outputs))
@@ -91,7 +90,7 @@ def _section_of(root: YamlNode, file: str, model: Model, port: str, ends: Sequen
 def _refuse(ends: Sequence[End], file: str, section: str, port: str) -> None:
     texts = [text for end in ends for text in (end.reference, end.scale, end.offset, *(end.limits or ()), end.unit)]
     if any("\ud800" <= character <= "\udfff" for character in "".join((port, *texts))):
-        # half a character beyond U+FFFF: PyYAML's own parser takes what libyaml refuses
+        # A surrogate is half of a character beyond U+FFFF.  PyYAML's own parser accepts it, libyaml does not.
         raise CannotEdit(f"{file}: what '{section}' would say of a port is no text")
     if section == "inputs" and len(ends) != 1:
         raise CannotEdit(f"{file}: input '{port}' takes its value from one component, not from {len(ends) or 'none'}")
@@ -108,7 +107,7 @@ def _where(root: YamlNode, file: str, section: str, port: str) -> str:
 
 
 def _verify(root: YamlNode, changed: str, file: str, section: str, port: str, said: object) -> None:
-    """Whether ``changed`` says what is wanted, and of everything else the same as before."""
+    """Raises :class:`CannotEdit` unless ``changed`` has the wanted binding and otherwise the same data as before."""
     problems = Diagnostics()
     after = parse_yaml(changed, file, problems)
     if (

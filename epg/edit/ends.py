@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Ends of wires as bindings files say them: as texts to show and edit, and as data to compare."""
+"""The ends of wires in a bindings file, in two forms: texts to show and edit, and data to compare."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from epg.edit.scalars import scalar_text
 from epg.source import YamlNode
 
 REFERENCE = {"inputs": "from", "outputs": "to"}
-"""The key of a map that names the component, by section."""
+"""Section -> the key in the map of a binding that names the component."""
 KEYS = ("scale", "offset", "limits", "unit")
-"""What else a wire may have, in the order in which keys are added to a map."""
+"""The other keys of a binding, in the order in which they are added to a map."""
 
 
 @dataclass(frozen=True)
 class End:
-    """One end of a wire as the file says it; texts, so that 1/4 stays 1/4, and empty where nothing is said."""
+    """One end of a wire as it is written: as texts, so that 1/4 stays 1/4.  Texts that are not stated are empty."""
 
     reference: str  # "encoder_pan" or "encoder_pan.reset"
     scale: str = ""
@@ -30,9 +30,9 @@ class End:
 
 
 def ends_of(root: YamlNode, section: str, port: str) -> tuple[End, ...] | None:
-    """What a file says about a port: None if nothing, an empty tuple for ``unconnected``.
+    """The ends of a port in a file: None if the file does not name the port, an empty tuple for ``unconnected``.
 
-    ``section`` is "inputs" or "outputs".  A value the schema does not allow gives ends, too, as well as that goes.
+    ``section`` is "inputs" or "outputs".  A value that the schema does not allow gives as many ends as can be read.
     """
     node = root.get(section, port)
     if node is None:
@@ -42,7 +42,7 @@ def ends_of(root: YamlNode, section: str, port: str) -> tuple[End, ...] | None:
 
 
 def said_ends(node: YamlNode | None, section: str) -> list[Any] | None:
-    """The value of a port as data: for each end a list of keys and values, whatever way it is written."""
+    """The value of a port as data: for each end a sorted list of keys and values, the same for all ways to write it."""
     if node is None:
         return None
     ends = node.elements() if node.is_sequence else (node,)
@@ -51,12 +51,12 @@ def said_ends(node: YamlNode | None, section: str) -> list[Any] | None:
         for end in ends
         if section == "inputs" or end.value != UNCONNECTED
     ]
-    # a unit that is empty says as much as none
+    # An empty unit means the same as no unit.
     return [sorted((key, value) for key, value in said.items() if (key, value) != ("unit", "")) for said in maps]
 
 
 def data_of(end: End, section: str) -> list[tuple[str, object]]:
-    """What :func:`said_ends` gives for an end of a file that says ``end``."""
+    """The data that :func:`said_ends` returns for a file with this ``end``."""
     said: list[tuple[str, object]] = [(REFERENCE[section], end.reference)]
     for key in KEYS:
         value = getattr(end, key)
@@ -68,7 +68,7 @@ def data_of(end: End, section: str) -> list[tuple[str, object]]:
 
 
 def typed_value(key: str, text: str) -> object:
-    """The value that YAML makes of ``text`` where a number is meant, else ``text`` itself."""
+    """The number that YAML reads from ``text``; ``text`` itself if it is not a number or if ``key`` takes text."""
     if key in ("reference", "unit") or not text or any(not (c.isascii() and (c.isalnum() or c in "+-.")) for c in text):
         return text
     node = parse_yaml(text, "", Diagnostics())

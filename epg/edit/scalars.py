@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Scalars as YAML text that every reader takes for the same value, in blocks and between ``{}`` and ``[]``.
+"""Scalars as YAML text that YAML 1.1 and YAML 1.2 read as the same value, in blocks and between ``{}`` and ``[]``.
 
 >>> scalar_text("encoder_pan.reset"), scalar_text("on"), scalar_text("1/4"), scalar_text("010")
 ('encoder_pan.reset', "'on'", '1/4', "'010'")
@@ -12,12 +12,12 @@ import re
 
 _WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_.]*(/[A-Za-z0-9_.]+)?")
 _RATIO = re.compile(r"[-+]?[0-9][0-9.]*/[-+]?[0-9.]+")
-# YAML 1.1 reads more words as truth values than YAML 1.2
+# YAML 1.1 reads more words as booleans than YAML 1.2.
 _NO_TEXT = frozenset(("true", "false", "null", "yes", "no", "on", "off", "y", "n"))
 
 
 def scalar_text(value: object, style: str = "") -> str:
-    """``value`` on one line.  ``style`` is the quote a text had before, which it keeps if it can."""
+    """``value`` on one line.  ``style`` is the quote that a text had before; the text keeps it if possible."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if value is None:
@@ -34,7 +34,7 @@ def scalar_text(value: object, style: str = "") -> str:
 
 
 def _double_quoted(text: str) -> str:
-    # JSON's escapes are YAML's, but for pairs of surrogates
+    # The escapes of JSON are valid in YAML, except pairs of surrogates.
     return '"' + "".join(_escaped(character) for character in text) + '"'
 
 

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Ports of a bindings file as entries of its sections ``inputs`` and ``outputs``: put in at their place, taken out.
+"""Adds ports to the sections ``inputs`` and ``outputs`` of a bindings file at the right place, and removes them.
 
-A section may be missing, commented out by ``epg bind``, empty, or in braces; ports may stand in it as comments that
-``epg bind`` left (:func:`open_port`).
+A section can be missing, commented out by ``epg bind``, empty, or in braces.  It can have comments of ``epg bind`` for
+ports that are not bound yet (:func:`open_port`).
+
+All functions take the whole text and return the changed text.
 """
 
 from __future__ import annotations
@@ -18,23 +20,23 @@ from epg.edit import yaml_edit
 from epg.edit.scalars import scalar_text
 
 ORDER = ("version", "model", "inputs", "outputs", "parameters")
-"""Keys of a bindings file in the order in which EPG writes them."""
+"""The keys of a bindings file, in the order in which EPG writes them."""
 _SECTIONS = ("inputs", "outputs")
 _OPEN_PORT = re.compile(r"# (.*):    # no name matches; possible: .*")
 
 
 def open_port(name: str, candidates: Sequence[str]) -> str:
-    """The comment for a port that nobody has bound."""
+    """The comment for a port that is not bound."""
     return f"# {scalar_text(name)}:    # no name matches; possible: {', '.join(candidates) or 'nothing'}"
 
 
 def open_section(section: str) -> str:
-    """The first line of a section in which all ports are such comments."""
+    """The first line of a section in which all ports are comments of :func:`open_port`."""
     return f"# {section}:    # remove this '#' with the first below it"
 
 
 def remove_port(text: str, section: str, port: str) -> str:
-    """Without the lines of ``port``; a section without ports becomes ``{}``, as files must say it."""
+    """The text without the lines of ``port``.  A section without ports becomes ``{}``: its value must be a map."""
     node = yaml_edit.node_at(text, (section,))
     last = len(node.value) == 1
     if not last or yaml_edit.is_flow(node):
@@ -45,9 +47,10 @@ def remove_port(text: str, section: str, port: str) -> str:
 
 
 def add_port(text: str, section: str, order: Sequence[str], port: str, value: str | list[str]) -> str:
-    """With ``port: value``, which is not in the text; ``order`` are the names of all ports of the section.
+    """The text with ``port: value``.  The text must not have the port yet.
 
-    A list of lines is a value in block style; their indentation counts from that of the port.
+    ``order`` are the names of all ports of the section, in the order of the model.  A ``value`` in block style is a
+    list of lines, which are indented relative to the port.
     """
     root = yaml_edit.node_at(text, ())
     node = yaml_edit.find(text, (section,))
@@ -69,14 +72,14 @@ def add_port(text: str, section: str, order: Sequence[str], port: str, value: st
 
 
 def _entry(port: str, value: str | list[str]) -> str:
-    """``port: value`` for a place between braces."""
+    """``port: value`` for a section in braces."""
     if isinstance(value, list):
         value = f"[{', '.join(line.strip().removeprefix('- ') for line in value)}]"
     return f"{scalar_text(port)}: {value}"
 
 
 def _index(present: Sequence[str], order: Sequence[str], name: str) -> int:
-    """Where ``name`` comes among ``present``: behind the nearest that is before it in ``order``."""
+    """The index at which ``name`` is inserted into ``present``: behind the nearest name before it in ``order``."""
     for other in reversed(order[: order.index(name)]):
         if other in present:
             return present.index(other) + 1
@@ -84,7 +87,10 @@ def _index(present: Sequence[str], order: Sequence[str], name: str) -> int:
 
 
 def _may_open(text: str, section: str, node: yaml.Node) -> bool:
-    """Whether ``{}`` can go, so that ports stand on lines of their own: nothing else is in it or before it."""
+    """True if ``{}`` can be removed, so that each port gets its own line.
+
+    Nothing may be inside of the braces, or between them and the colon.
+    """
     before = text[yaml_edit.colon_of(text, (section,)) + 1 : yaml_edit.start_of(node)]
     return (
         not before.strip() and not yaml_edit.has_break(before) and yaml_edit.source_of(text, node)[1:-1].strip() == ""
@@ -92,7 +98,7 @@ def _may_open(text: str, section: str, node: yaml.Node) -> bool:
 
 
 def _opened(text: str, section: str, node: yaml.Node) -> str:
-    """With nothing behind the section's colon."""
+    """The text without the value behind the section's colon."""
     if not yaml_edit.source_of(text, node):
         return text
     colon = yaml_edit.colon_of(text, (section,))
@@ -100,7 +106,7 @@ def _opened(text: str, section: str, node: yaml.Node) -> str:
 
 
 def _with_section(text: str, root: yaml.Node, section: str) -> str:
-    """With a section that has no ports yet: in the place of its comment, or behind the key before it."""
+    """The text with a section that has no ports yet: in place of its comment, or behind the key before it."""
     line = _open_section_of(text, section)
     if line is None:
         return _with_line(text, section, f"{section}:")
@@ -109,7 +115,7 @@ def _with_section(text: str, root: yaml.Node, section: str) -> str:
 
 
 def _with_line(text: str, section: str, line: str) -> str:
-    """With a line where ``section`` should be."""
+    """The text with ``line`` at the place of ``section``: behind the key before it and the comments of this key."""
     root = yaml_edit.node_at(text, ())
     index = _index([key.value for key, _ in root.value], ORDER, section)
     if index == 0 and not line.startswith("#"):
@@ -117,7 +123,7 @@ def _with_line(text: str, section: str, line: str) -> str:
     last = root if yaml_edit.is_flow(root) else root.value[max(index - 1, 0)][1]
     column = root.start_mark.column
     position = yaml_edit.end_of(text, last)
-    # comments that belong to the key before, and those of a section that is commented out
+    # Skip comments that belong to the key before, and comments of a section that is commented out.
     for following in _lines(text, yaml_edit.next_line(text, position), len(text)):
         if _is_deeper_comment(text, following, column) or any(_is_open(text, following, name) for name in _SECTIONS):
             position = following
@@ -136,12 +142,12 @@ def _is_open(text: str, line: int, section: str) -> bool:
 
 
 def _open_section_of(text: str, section: str) -> int | None:
-    """Where the line begins that says the section is commented out."""
+    """The position of the line that begins a section that is commented out, or None."""
     return next((line for line in _lines(text, 0, len(text)) if _is_open(text, line, section)), None)
 
 
 def _lines(text: str, start: int, end: int) -> list[int]:
-    """Where the lines begin from ``start`` on, which begins one."""
+    """The positions at which the lines from ``start`` to ``end`` begin.  ``start`` must be the begin of a line."""
     lines = []
     while start < end:
         lines.append(start)
@@ -150,7 +156,10 @@ def _lines(text: str, start: int, end: int) -> list[int]:
 
 
 def add_open_port(text: str, section: str, order: Sequence[str], port: str, candidates: Sequence[str]) -> str:
-    """With the comment for a port that nobody has bound, where the port would be, if there is none yet."""
+    """The text with the comment for a port that is not bound, at the place of the port.
+
+    Returns the same text if it has this comment already.
+    """
     if yaml_edit.find(text, (section,)) is None and _open_section_of(text, section) is None:
         text = _with_line(text, section, open_section(section))
     place = _place_of(text, section, order)
@@ -160,7 +169,7 @@ def add_open_port(text: str, section: str, order: Sequence[str], port: str, cand
 
 
 def comment_out_port(text: str, section: str, port: str, remark: str) -> str:
-    """With ``port`` as a comment that ends with ``remark``."""
+    """The text with the lines of ``port`` as comments.  The first of them ends with ``remark``."""
     parent = yaml_edit.node_at(text, (section,))
     key, value = next((key, value) for key, value in parent.value if key.value == port)
     start, end = yaml_edit.start_of(key), yaml_edit.end_of(text, value)
@@ -184,14 +193,14 @@ def comment_out_port(text: str, section: str, port: str, remark: str) -> str:
 
 @dataclass(frozen=True)
 class _Place:
-    """A section in block style, or one that has no value or is a comment: where its parts begin and end.
+    """The positions of the parts of a section in block style, without a value, or commented out.
 
-    ``head`` is behind all of which the first port must be below, ``column`` is that of the ports.
+    The first port must be below ``head``.  ``column`` is the column of the ports.
     """
 
     head: int
-    ports: Mapping[str, int]  # where their values end
-    comments: Mapping[str, int]  # those of open ports, where their lines begin
+    ports: Mapping[str, int]  # port -> end of its value
+    comments: Mapping[str, int]  # port that is not bound -> begin of the line of its comment
     column: int
 
 
@@ -213,7 +222,10 @@ def _place_of(text: str, section: str, order: Sequence[str]) -> _Place:
 
 
 def _put(text: str, section: str, order: Sequence[str], port: str, value: str | list[str]) -> str:
-    """Puts a port into a section in block style, or one that has no value yet."""
+    """The text with a port in a section in block style, or without a value yet.
+
+    The port replaces its comment of :func:`open_port` if there is one.
+    """
     place = _place_of(text, section, order)
     blanks = " " * place.column
     lines = [f"{blanks}{scalar_text(port)}:" + (f" {value}" if isinstance(value, str) else "")]
@@ -225,18 +237,18 @@ def _put(text: str, section: str, order: Sequence[str], port: str, value: str | 
 
 
 def _inserted(text: str, place: _Place, order: Sequence[str], port: str, lines: Sequence[str]) -> str:
-    """Lines below those of the nearest port before ``port``, or below the section's name."""
+    """The text with ``lines`` below those of the nearest port before ``port``, or below the section's name."""
     known = {**place.comments, **place.ports}
     for name in reversed(order[: order.index(port)]):
         if name in known:
             return yaml_edit.insert_lines(text, known[name], lines)
-    # comments below an empty section were above a port that was taken out
+    # Comments below an empty section were written above a port that has been removed.
     below = [] if known else _comments_below(text, place.head)
     return yaml_edit.insert_lines(text, below[-1] if below else place.head, lines)
 
 
 def _comments_below(text: str, head: int) -> list[int]:
-    """The lines of comments that belong to a section by their indentation, up to the first other line."""
+    """The positions of comment lines that belong to a section by their indentation, up to the first other line."""
     base = _base_column(text)
     lines = _lines(text, yaml_edit.next_line(text, head), len(text))
     return list(takewhile(lambda line: _is_deeper_comment(text, line, base), lines))
@@ -247,7 +259,10 @@ def _base_column(text: str) -> int:
 
 
 def _column(text: str, section: str, head: int) -> int:
-    """How far the first port is indented: as comments below the section are, or as in the other one, or by two."""
+    """The column of the first port: that of the comments below the section, or of the ports in the other section.
+
+    Otherwise it is two more than the column of the section.
+    """
     base = _base_column(text)
     lines = (text[line : yaml_edit.line_end(text, line)] for line in _comments_below(text, head))
     depths = [len(line) - len(line.lstrip(" ")) for line in lines]
@@ -261,7 +276,10 @@ def _column(text: str, section: str, head: int) -> int:
 def _comments(
     text: str, section: str, order: Sequence[str], head: int, taken: Sequence[yaml_edit.Item]
 ) -> dict[str, int]:
-    """Where the comments for open ports are, which stand below the section's name and above the next key."""
+    """Port -> position of its comment of :func:`open_port`, between the section's name and the next key.
+
+    ``taken`` are the parts of the text with bound ports, whose comments do not count.
+    """
     root = yaml_edit.node_at(text, ())
     keys = [yaml_edit.line_start(text, yaml_edit.start_of(key)) for key, _ in root.value]
     end = min((key for key in keys if key > head), default=len(text))

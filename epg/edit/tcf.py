@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The file that a ``.tcf`` builds on is another one, and everything else in it stays as it was written.
+"""Changes the name of the file that a ``.tcf`` extends.  All other text of the file stays as it was written.
 
 >>> text = "# my robot\\nversion: 1\\nextends: host_jiwy.tcf   # for now\\nnode: me\\n"
 >>> print(set_extends(text, "robot.tcf", "rpi_pico_bare_metal_jiwy.tcf"), end="")
@@ -24,10 +24,10 @@ KEY = "extends"
 
 
 def set_extends(text: str, file: str, value: str) -> str:
-    """``text`` with ``extends: value``: in the place of the old name, or behind ``version`` where there was none.
+    """``text`` with ``extends: value``: in place of the old name, or behind ``version`` if there was none.
 
-    ``file`` names the text in messages.  Raises :class:`~epg.edit.yaml_edit.CannotEdit` for a text that is no map, or
-    whose ``extends`` is something other than one name.
+    ``file`` is the name of the text in messages.  Raises :class:`~epg.edit.yaml_edit.CannotEdit` if the text is not a
+    map, or if its ``extends`` is a map or a list.
     """
     body = text.removeprefix("\ufeff")
     root = parse_map(body, file)
@@ -56,7 +56,7 @@ def _edited(text: str, value: str, is_there: bool) -> str:
 
 
 def _name(value: str, style: str = "") -> str:
-    """A file name needs quotes only if a part of it does: ``../robots/a-b.tcf``."""
+    """A file name as YAML text.  It needs quotes only if a part of it does: ``../robots/a-b.tcf`` needs none."""
     parts = value.replace("-", "_").split("/")
     plain = not style and all(part in (".", "..") or scalar_text(part) == part for part in parts)
     return value if plain and not value.startswith("-") else scalar_text(value, style)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The value of one port of a bindings file as text: a new one, and a change of one that is there.
+"""The value of one port of a bindings file as YAML text: writes new values, and changes existing ones.
 
 Maps are changed key by key and lists element by element, so that their comments stay.
 """
@@ -21,7 +21,7 @@ from epg.edit.yaml_edit import Steps
 
 
 def change_value(text: str, path: Steps, old: Sequence[End], new: Sequence[End]) -> str:
-    """``text`` with the ends ``new`` at ``path`` in the place of ``old``."""
+    """``text`` with the ends ``new`` at ``path`` in place of ``old``."""
     node = yaml_edit.node_at(text, path)
     if not old or not new or not yaml_edit.source_of(text, node):
         return _replace_value(text, path, new)
@@ -33,7 +33,7 @@ def change_value(text: str, path: Steps, old: Sequence[End], new: Sequence[End])
 
 
 def _written(key: str, value: str, style: str = "") -> str:
-    """``value`` of ``key``: a number as it was typed, a text in the quotes that were there before."""
+    """``value`` of ``key`` as YAML text: a number as the user has typed it, a text in the same quotes as before."""
     return value if not isinstance(typed_value(key, value), str) else scalar_text(value, style)
 
 
@@ -49,7 +49,7 @@ def _keys_of(end: End) -> list[str]:
 
 
 def _end_text(end: End, section: str, reference: str = "") -> str:
-    """``end`` on one line; ``reference`` is how the file writes it."""
+    """``end`` on one line.  ``reference`` is the YAML text of its reference in the file, or empty."""
     reference = reference or scalar_text(end.reference)
     if not _keys_of(end):
         return reference
@@ -58,7 +58,7 @@ def _end_text(end: End, section: str, reference: str = "") -> str:
 
 
 def value_text(text: str, ends: Sequence[End], section: str) -> str | list[str]:
-    """The value of a port on one line, or as the indented lines of a list, if that is the file's style."""
+    """The value of a port on one line, or as indented lines of a list if the file has its lists in this style."""
     texts = [_end_text(end, section) for end in ends]
     if not texts:
         return UNCONNECTED
@@ -69,7 +69,7 @@ def value_text(text: str, ends: Sequence[End], section: str) -> str | list[str]:
 
 
 def _list_indent(text: str) -> str | None:
-    """The blanks before the dashes of lists, counted from their key; None if the file has its lists in brackets."""
+    """The blanks before the dashes of lists, relative to their key; None if the lists of the file are in brackets."""
     outputs = yaml_edit.find(text, ("outputs",))
     if not isinstance(outputs, yaml.MappingNode) or outputs.flow_style:
         return None
@@ -88,7 +88,7 @@ def _replace_value(text: str, path: Steps, ends: Sequence[End]) -> str:
 
 
 def _change_end(text: str, path: Steps, old: End, new: End) -> str:
-    """One end, which is a scalar or a map, is now another one."""
+    """``text`` with the end ``new`` at ``path``, where a scalar or a map is ``old``."""
     node = yaml_edit.node_at(text, path)
     key = REFERENCE[str(path[0])]
     if isinstance(node, yaml.ScalarNode):
@@ -103,7 +103,7 @@ def _change_end(text: str, path: Steps, old: End, new: End) -> str:
     removed = False
     for name in KEYS:
         if name not in _keys_of(new):
-            # an empty unit may stay, it says nothing
+            # An empty unit can stay, because it means the same as no unit.
             if name in present and not (name == "unit" and yaml_edit.node_at(text, (*path, name)).value == ""):
                 text = yaml_edit.remove(text, (*path, name))
                 present.remove(name)
@@ -139,7 +139,7 @@ def _change_number(text: str, path: Steps, key: str, new: str) -> str:
 
 
 def _reference_text(text: str, node: yaml.Node, old: End, new: End) -> str:
-    """As the file writes it if it stays the same, else in the same quotes."""
+    """The reference of ``new`` as YAML text: unchanged if it is that of ``old``, else in the same quotes."""
     style = node.style or "" if isinstance(node, yaml.ScalarNode) else ""
     source = yaml_edit.source_of(text, node)
     safe = style in ('"', "'") or source == scalar_text(new.reference)
@@ -148,7 +148,10 @@ def _reference_text(text: str, node: yaml.Node, old: End, new: End) -> str:
 
 
 def _without_braces(text: str, path: Steps, inner: Steps) -> str:
-    """The value at ``inner``, all that is left between braces or brackets, stands for them; comments prevent it."""
+    """``text`` with the value at ``inner`` in place of the braces or brackets at ``path``, if it is their only content.
+
+    Braces over several lines stay, because they can hold comments.
+    """
     node = yaml_edit.node_at(text, path)
     if not yaml_edit.is_flow(node) or yaml_edit.has_break(yaml_edit.source_of(text, node)):
         return text
@@ -156,7 +159,7 @@ def _without_braces(text: str, path: Steps, inner: Steps) -> str:
 
 
 def _as_list(text: str, path: Steps) -> str:
-    """The one end at ``path`` as a list of one, in the file's style."""
+    """``text`` with a list of one element in place of the single end at ``path``, in the style of the file's lists."""
     node = yaml_edit.node_at(text, path)
     indent = _list_indent(text)
     if isinstance(node, yaml.MappingNode) and not node.flow_style:
@@ -170,9 +173,9 @@ def _as_list(text: str, path: Steps) -> str:
 
 
 def _change_list(text: str, path: Steps, old: Sequence[End], new: Sequence[End]) -> str:
-    """A list of ends: those with the same reference are the same ends, in the order of ``new``."""
+    """``text`` with the list ``new`` at ``path``.  An end of ``new`` replaces the end of ``old`` with its reference."""
     elements = yaml_edit.node_at(text, path).value
-    # the word 'unconnected' beside others says nothing and stays
+    # The word 'unconnected' beside other elements has no meaning, and stays.
     places = [index for index, element in enumerate(elements) if element.value != UNCONNECTED]
     removed = False
     for what, first, last, start, stop in _changes(old, new):
@@ -192,6 +195,6 @@ def _change_list(text: str, path: Steps, old: Sequence[End], new: Sequence[End])
 
 
 def _changes(old: Sequence[End], new: Sequence[End]) -> Iterator[tuple[str, int, int, int, int]]:
-    """How ``new`` comes of ``old``, from the end on, so that indices before a change stay true."""
+    """The differences between ``old`` and ``new``, the last first, so that indices before a change stay valid."""
     names, wanted = [end.reference for end in old], [end.reference for end in new]
     yield from reversed(SequenceMatcher(None, names, wanted, autojunk=False).get_opcodes())

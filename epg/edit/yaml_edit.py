@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Edits of YAML text that leave every character alone which the edit is not about.
+"""Edits of YAML text that change only the characters of one value or one entry.
 
-Each function takes the text, finds its place by the positions that PyYAML's nodes have, and returns the new text.
-None of them knows what the text is for, and none checks the result: callers parse it again.
+Each function takes the text, finds the place of the edit by the positions of PyYAML's nodes, and returns the new text.
+The functions do not know the meaning of the text, and they do not check the result: callers must parse it again.
 """
 
 from __future__ import annotations
@@ -21,17 +21,20 @@ from epg.source import YamlNode
 _BREAK = re.compile("\r\n|[\r\n\x85\u2028\u2029]")
 _REST = re.compile(r"[ \t]*(#.*)?")
 Steps = tuple["str | int", ...]
-"""A way from the root to a value: keys of maps and indices of lists."""
+"""The path from the root to a value: keys of maps and indices of lists."""
 Item = tuple[int, int]
-"""Where an entry of a map or an element of a list begins and ends in the text, comments and commas not included."""
+"""The begin and the end of an entry of a map or an element of a list in the text, without comments and commas."""
 
 
 class CannotEdit(Exception):
-    """Only an editor can make this change; the message says where and why."""
+    """EPG cannot make this change; the user can in an editor.  The message says where and why."""
 
 
 def parse_map(text: str, file: str) -> YamlNode:
-    """The map that ``text`` is.  Raises :class:`CannotEdit` with the first mistake in it; ``file`` names it there."""
+    """Parses ``text``, which must be a map.  ``file`` is its name in messages.
+
+    Raises :class:`CannotEdit` with the first mistake.
+    """
     problems = Diagnostics()
     root = yaml_file.parse_yaml(text, file, problems)
     if root is None:
@@ -43,13 +46,13 @@ def parse_map(text: str, file: str) -> YamlNode:
 
 
 def compose(text: str) -> yaml.Node:
-    """The nodes of ``text``, which :func:`epg.documents.yaml_file.parse_yaml` has accepted."""
+    """PyYAML's root node of ``text``, which :func:`epg.documents.yaml_file.parse_yaml` must have accepted before."""
     return _compose(text, yaml_file.LOADER)
 
 
 @lru_cache(maxsize=4)
 def _compose(text: str, loader: Any) -> yaml.Node:
-    # one edit asks for the same text several times
+    # One edit needs the nodes of the same text several times.
     try:
         root = yaml.compose(text, Loader=loader)
     except (yaml.YAMLError, RecursionError) as error:
@@ -74,7 +77,7 @@ def find(text: str, path: Steps) -> yaml.Node | None:
 
 
 def node_at(text: str, path: Steps) -> yaml.Node:
-    """As :func:`find`, where there must be one."""
+    """The node at ``path``.  Raises :class:`CannotEdit` if there is none."""
     node = find(text, path)
     if node is None:
         raise CannotEdit(f"there is no '{'.'.join(map(str, path))}'")
@@ -86,7 +89,10 @@ def start_of(node: yaml.Node) -> int:
 
 
 def end_of(text: str, node: yaml.Node) -> int:
-    """Where the last value in ``node`` ends: PyYAML's end of a block is where the next thing begins."""
+    """The end of the last value in ``node``.
+
+    PyYAML's own end of a block is not used: it is the begin of the next token, behind comments and blank lines.
+    """
     if isinstance(node, yaml.ScalarNode):
         end = int(node.end_mark.index)
         return max(len(text[:end].rstrip()), start_of(node)) if node.style in ("|", ">") else end
@@ -97,7 +103,7 @@ def end_of(text: str, node: yaml.Node) -> int:
 
 
 def is_flow(node: yaml.Node) -> bool:
-    """Whether it is written with ``{}`` or ``[]``."""
+    """True if the node is written with ``{}`` or ``[]``."""
     return bool(getattr(node, "flow_style", False))
 
 
@@ -128,7 +134,10 @@ def has_break(text: str) -> bool:
 
 
 def insert_lines(text: str, position: int, lines: Sequence[str]) -> str:
-    """``lines`` below the one that ``position`` is in; a last line without a line end leaves the new one so too."""
+    """The text with ``lines`` below the line of ``position``.
+
+    If this is the last line and has no line end, the new last line has none either.
+    """
     found = _BREAK.search(text, position)
     if found:
         return text[: found.end()] + "".join(line + found[0] for line in lines) + text[found.end() :]
@@ -136,7 +145,7 @@ def insert_lines(text: str, position: int, lines: Sequence[str]) -> str:
 
 
 def remove_lines(text: str, start: int, end: int) -> str:
-    """Without the lines from that of ``start`` to that of ``end``."""
+    """The text without the lines from that of ``start`` to that of ``end``."""
     first = line_start(text, start)
     found = _BREAK.search(text, end)
     if found:
@@ -145,7 +154,7 @@ def remove_lines(text: str, start: int, end: int) -> str:
 
 
 def skip_gap(text: str, position: int) -> int:
-    """The next character after ``position`` that is neither blank nor part of a comment."""
+    """The position of the first character from ``position`` on that is not blank and not part of a comment."""
     while position < len(text):
         if text[position] == "#":
             position = line_end(text, position)
@@ -157,7 +166,7 @@ def skip_gap(text: str, position: int) -> int:
 
 
 def colon_of(text: str, path: Steps) -> int:
-    """Where the ``:`` is that the value at ``path`` follows."""
+    """The position of the ``:`` before the value at ``path``."""
     parent = node_at(text, path[:-1])
     for key, _ in parent.value:
         if key.value == path[-1]:
@@ -168,7 +177,10 @@ def colon_of(text: str, path: Steps) -> int:
 
 
 def replace(text: str, path: Steps, new: str) -> str:
-    """The value at ``path`` is ``new`` instead; what stood over several lines below its key now stands beside it."""
+    """The text with ``new`` in place of the value at ``path``.
+
+    If the old value was a block on the lines below its key, ``new`` is on the line of the key.
+    """
     node = node_at(text, path)
     start, end = start_of(node), end_of(text, node)
     if start == end:
@@ -183,7 +195,10 @@ def replace(text: str, path: Steps, new: str) -> str:
 
 
 def replace_by_lines(text: str, path: Steps, lines: Sequence[str]) -> str:
-    """The value at ``path``, of a key in a block, is what ``lines`` say; they are indented from the key's column on."""
+    """The text with ``lines`` below the key at ``path``, in place of its value.
+
+    The key must be in a block.  The lines are indented relative to its column.
+    """
     node = node_at(text, path)
     colon = colon_of(text, path)
     key = next(key for key, _ in node_at(text, path[:-1]).value if key.value == path[-1])
@@ -197,7 +212,7 @@ def replace_by_lines(text: str, path: Steps, lines: Sequence[str]) -> str:
 
 
 def indent_as_element(text: str, node: yaml.Node) -> str:
-    """The block map ``node`` is the element of a list of one."""
+    """The text with a list whose only element is the block map ``node``."""
     end = end_of(text, node)
     position = next_line(text, start_of(node))
     result = f"{text[: start_of(node)]}- {text[start_of(node) : position]}"
@@ -210,7 +225,7 @@ def indent_as_element(text: str, node: yaml.Node) -> str:
 
 
 def insert(text: str, path: Steps, index: int, new: str) -> str:
-    """``new`` (``key: value``, or an element) becomes the entry with that index of the map or list at ``path``."""
+    """The text with ``new`` (``key: value``, or an element) as entry ``index`` of the map or list at ``path``."""
     node = node_at(text, path)
     items = _items(text, node)
     if is_flow(node):
@@ -225,9 +240,10 @@ def insert(text: str, path: Steps, index: int, new: str) -> str:
 
 
 def remove(text: str, path: Steps) -> str:
-    """Without the entry at ``path``, and without comments inside of it and behind it, if it had the line for itself.
+    """The text without the entry at ``path``.
 
-    A map or list in block style must have another entry.
+    If the entry is alone on its lines, comments inside of it and behind it are removed, too.  A map or list in block
+    style must have another entry.
     """
     parent = node_at(text, path[:-1])
     items = _items(text, parent)
@@ -237,7 +253,7 @@ def remove(text: str, path: Steps) -> str:
     start, end = items[index]
     if not text[line_start(text, start) : start].strip():
         return remove_lines(text, start, end)
-    # the first key of a map that begins on the line of a dash
+    # This is the first key of a map that begins on the line of a dash.
     following = skip_gap(text, end)
     if "#" in text[line_end(text, end) : following]:
         return text[:start].rstrip() + text[line_end(text, end) :]
@@ -263,7 +279,7 @@ def _dash(text: str, path: Steps) -> int:
 
 
 def _comma(text: str, end: int) -> int | None:
-    """Where the comma is that follows what ends at ``end``."""
+    """The position of the comma behind the entry that ends at ``end``, or None."""
     position = skip_gap(text, end)
     return position if text[position : position + 1] == "," else None
 

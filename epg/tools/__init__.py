@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""SDKs and programs of this machine, found as ``targets/tools`` describes them."""
+"""Finds the SDKs and programs on this computer, as ``targets/tools`` describes them."""

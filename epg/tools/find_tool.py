@@ -1,13 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where an SDK or program is: the same order of places for all.
+"""Finds an SDK or program.  The order of the places is the same for all tools:
 
-1. The first CMake variable with a value.  2. The first environment variable with a value.  A tool that a variable
-names must be there: it is not looked for elsewhere.  3. ``PATH``, for programs.  4. The places that its own installers
-use, in the order of the table.  5. CMake's user package registry.  6. EPG's cache.  Of several folders in one place the
-last one wins, with numbers compared as numbers.
+1. The first CMake variable with a value.
+2. The first environment variable with a value.
+3. ``PATH``, for programs.
+4. The places that the tool's own installers use, in the order of its file.
+5. CMake's user package registry.
+6. EPG's cache.
 
-cmake/EPGSdk.cmake takes the same steps for SDKs, because builds find them without starting Python;
-tests/tools/test_same_answer.py compares the answers.
+If a variable names a tool, the tool must be there: EPG does not search other places.  If one place has several folders,
+the last one in natural order is used, for which numbers in names are compared by value.
+
+cmake/EPGSdk.cmake has the same steps for SDKs, because builds find them without starting Python.
+tests/tools/test_same_answer.py compares the results.
 
 >>> # find_tool(tools["pico_sdk"], Surroundings.here(cache_folder())).path
 """
@@ -27,15 +32,15 @@ from epg.documents.text_file import read_text
 from epg.tools.tools import Tool
 
 TIMEOUT = 5.0
-"""Seconds that a program may take to say its version."""
+"""The longest time in seconds that a program may take to print its version."""
 
 
 @dataclass(frozen=True)
 class Surroundings:
-    """What decides where tools are looked for; ``cmake`` are the variables of a CMake cache.
+    """The inputs of a search: the environment, and the variables ``cmake`` of a CMake cache.
 
-    Without ``run``, programs that these variables name are not started to ask for their version: a folder that somebody
-    has handed on may name any program.
+    Without ``run``, programs that variables of CMake name are not started to read their version.  A build folder that
+    comes from another person can name any program.
     """
 
     environment: Mapping[str, str]
@@ -46,7 +51,7 @@ class Surroundings:
 
     @staticmethod
     def here(cache: Path, cmake: Mapping[str, str] | None = None, *, run: bool = True) -> Surroundings:
-        """Those of this process."""
+        """The surroundings of this process."""
         return Surroundings(os.environ, cmake or {}, Path.home(), cache, run)
 
     @property
@@ -56,11 +61,12 @@ class Surroundings:
 
 @dataclass(frozen=True)
 class Finding:
-    """What was found of a tool.
+    """The result of the search for a tool.
 
-    ``status``: "found"; "missing"; "old" when it is older than needed; "wrong" when a variable leads to something
-    else, which is not passed over, because builds would stop there too.  ``source`` says how it was found, ``looked``
-    all places that were tried.  ``asked`` is False where its version is not known because it must not be started.
+    ``status`` is "found", "missing", "old" if the tool is older than needed, or "wrong" if a variable names a place
+    without the tool.  In this case, EPG does not search further, because a build would stop there, too.  ``source``
+    names the place where the tool was found, ``looked`` all places that were searched.  ``asked`` is False if the
+    version is not known because the program must not be started.
     """
 
     tool: Tool
@@ -76,12 +82,12 @@ class Finding:
 class _Place:
     source: str
     folders: list[Path]
-    stated: bool = False  # by a variable: then the tool must be there
-    of_build: bool = False  # by a CMake variable
+    stated: bool = False  # a variable names the place: the tool must be there
+    of_build: bool = False  # a CMake variable names the place
 
 
 def find_tool(tool: Tool, where: Surroundings) -> Finding:
-    """Looks for ``tool`` in all its places; the first hit wins."""
+    """Searches ``tool`` in all its places.  The first one found is the result."""
     looked: list[str] = []
     for place in _places(tool, where):
         looked.append(place.source)
@@ -98,7 +104,7 @@ def find_tool(tool: Tool, where: Surroundings) -> Finding:
 
 
 def read_cmake_cache(path: Path, diagnostics: Diagnostics) -> dict[str, str]:
-    """The variables of a ``CMakeCache.txt``, without those that say that nothing was found."""
+    """The variables of a ``CMakeCache.txt``, without empty ones and those that end with ``NOTFOUND``."""
     text = read_text(path, diagnostics) or ""
     found = re.findall(r"^([^#/\s][^:=\n]*):[A-Z]+=(.*)$", text, re.MULTILINE)
     return {name: value for name, value in found if value and not value.endswith("NOTFOUND")}
@@ -123,15 +129,18 @@ def _places(tool: Tool, where: Surroundings) -> Iterator[_Place]:
 
 
 def _matches(pattern: str, home: Path) -> list[Path]:
-    """The folders that an absolute pattern stands for; ``~`` is the home folder."""
+    """The folders that match an absolute pattern, the newest first; ``~`` is the home folder."""
     path = Path(pattern.replace("~", home.as_posix(), 1))
-    if not path.is_absolute():  # a place of another system
+    if not path.is_absolute():  # The place is for another operating system.
         return []
     return _newest_first(Path(path.anchor).glob(path.relative_to(path.anchor).as_posix()))
 
 
 def _registered(tool: Tool, where: Surroundings) -> list[Path]:
-    """Folders that packages have entered into CMake's user package registry, or the one above that is the tool's."""
+    """The folders of a tool in CMake's user package registry.
+
+    An entry can be a folder inside of the tool; then the result has the folder above it that is the tool's.
+    """
     folders = []
     for entry in (where.home / ".cmake/packages" / tool.registry).glob("*"):
         try:
@@ -143,26 +152,30 @@ def _registered(tool: Tool, where: Surroundings) -> list[Path]:
 
 
 def _in_folder(tool: Tool, folder: Path, where: Surroundings) -> Path | None:
-    """The tool at ``folder``: the folder itself, or a program in it or its ``bin``, or the program of that name."""
+    """The tool at ``folder``, or None.
+
+    For an SDK it is the folder itself.  For a program, it is a program in the folder or in its ``bin``, or the program
+    that ``folder`` names.
+    """
     if tool.holds:
         return folder if (folder / tool.holds).is_file() else None
     if folder.is_dir():
         places = [(program, str(place)) for program in tool.programs for place in (folder, folder / "bin")]
-    else:  # CC="gcc -m32", or a name to be found in PATH
+    else:  # A program with arguments (CC="gcc -m32"), or a name that must be searched in PATH.
         places = [(str(folder), where.path), (str(folder).split(" ")[0], where.path)]
     found = (shutil.which(program, path=path) for program, path in places)
     return next((Path(path) for path in found if path), None)
 
 
 def _version(tool: Tool, path: Path) -> str:
-    """The version as the tool states it, or "" when it does not."""
+    """The version that the tool states, or ""."""
     text = _said(path) if tool.programs else _read(path / tool.version_file)
     parts = [match[1] for pattern in tool.version_patterns if (match := re.search(pattern, text)) is not None]
     return ".".join(parts) if len(parts) == len(tool.version_patterns) else ""
 
 
 def _said(program: Path) -> str:
-    """What a program answers to ``--version``."""
+    """The output of a program with ``--version``; empty if it cannot be started or takes too long."""
     try:
         done = subprocess.run(
             [str(program), "--version"],
@@ -189,12 +202,12 @@ def _newest_first(folders: Iterable[Path]) -> list[Path]:
 
 
 def _natural(text: str) -> list[tuple[str, int]]:
-    """The order of CMake's ``COMPARE NATURAL``: by characters, but by value where both texts have a number."""
+    """A key for the order of CMake's ``COMPARE NATURAL``: numbers are compared by value, other text by characters."""
     return [("0", int(part)) if part.isdecimal() else (part, 0) for part in re.findall(r"[0-9]+|[^0-9]", text)]
 
 
 def _numbers(version: str) -> tuple[int, ...]:
-    """The numbers of a version, without zeros at its end: 2.0 and 2.0.0 are the same version."""
+    """The numbers of a version without zeros at the end: 2.0 and 2.0.0 are the same version."""
     numbers = [int(digits) for digits in re.findall(r"\d+", version)]
     while numbers and not numbers[-1]:
         numbers.pop()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command that gets a tool, by the package manager that this computer has."""
+"""The command that installs a tool, with the package manager of this computer."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from epg.tools.find_tool import Surroundings, find_tool
 from epg.tools.tools import Tool
 
 MANAGERS = {"apt": "apt-get", "dnf": "dnf", "pacman": "pacman", "brew": "brew", "winget": "winget"}
-"""Package managers, and the program that shows that a computer has them."""
+"""Package manager -> the program that exists on computers with this package manager."""
 
 
 def command_for(tool: Tool, where: Surroundings, tools: Mapping[str, Tool]) -> str:
-    """The command that gets ``tool``; it may name EPG's cache and the folders of other ``tools``."""
+    """The command that installs ``tool``.  It can contain the paths of EPG's cache and of other ``tools``."""
     manager = package_manager()
     command = tool.get.get(manager) if manager else None
     prefix = privileged(manager) if command else ""
 
     def folder(match: re.Match[str]) -> str:
         path = where.cache.as_posix() if match[1] == "cache" else _folder_of(tools[match[1]], where)
-        # Quotes around a part of a word do for a shell.
+        # A shell also accepts quotes around a part of a word.
         return f'"{path}"' if " " in path else path
 
     names = "|".join(("cache", *map(re.escape, tools)))
@@ -31,7 +31,7 @@ def command_for(tool: Tool, where: Surroundings, tools: Mapping[str, Tool]) -> s
 
 
 def _folder_of(tool: Tool, where: Surroundings) -> str:
-    """Where ``tool`` is, or where its command will put it."""
+    """The folder of ``tool``; if it is not found, the folder in which its command will install it."""
     found = find_tool(tool, where)
     if found.status == "found" and found.path is not None:
         return found.path.as_posix()
@@ -44,6 +44,6 @@ def package_manager() -> str:
 
 
 def privileged(manager: str) -> str:
-    """What makes a command of this package manager one of the system's administrator: "sudo " or ""."""
+    """The prefix with which a command of this package manager runs as the administrator: "sudo " or ""."""
     root = hasattr(os, "geteuid") and os.geteuid() == 0
     return "" if root or manager in ("brew", "winget") else "sudo "

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The SDKs, compilers and programs that targets need: data in ``tools/<name>.json`` below the ``targets`` folders.
+"""The SDKs, compilers and programs that targets need: ``tools/<name>.json`` in the folders of targets.
 
-JSON, because CMake reads it too, and because ``epg doctor`` must work before any Python package is there.
+The files are JSON because CMake reads them, too, and because ``epg doctor`` must work before any Python package is
+installed.
 
 >>> # tools = load_tools(targets_roots(), diagnostics)
 >>> # tools["pico_sdk"].get["any"]  ->  git clone ...
@@ -25,11 +26,13 @@ _NUMBERS = r"(\d+(?:\.\d+)+)"
 
 @dataclass(frozen=True)
 class Tool:
-    """A program (``programs``: its names, best first) or a folder (``holds``: a file that makes it the right one).
+    """A program or a folder.
 
-    ``places`` are patterns of folders, ``cached`` one below EPG's cache.  ``tested`` is the version EPG is verified
-    with, ``oldest`` the first that will do.  ``get`` maps package managers (or ``any``) to the command that gets it;
-    ``{cache}`` in it stands for EPG's cache.  ``optional`` says why it may be missing.
+    ``programs`` are the possible names of a program, the best first.  ``holds`` is a file by which the folder is
+    recognized.  ``places`` are patterns of folders; ``cached`` is a pattern in EPG's cache.  ``tested`` is the version
+    that EPG was tested with, ``oldest`` the oldest version that EPG accepts.  ``get`` maps package managers, or
+    ``any``, to the command that installs the tool; ``{cache}`` in it is replaced by EPG's cache.  ``optional`` is the
+    reason why the tool may be missing.
     """
 
     name: str
@@ -38,20 +41,20 @@ class Tool:
     optional: str = ""
     programs: tuple[str, ...] = ()
     holds: str = ""
-    variables: tuple[str, ...] = ()  # of CMake
+    variables: tuple[str, ...] = ()  # variables of CMake
     environment: tuple[str, ...] = ()
     places: tuple[str, ...] = ()
     registry: str = ""  # name in CMake's user package registry
     cached: str = ""
     oldest: str = ""
     tested: str = ""
-    version_file: str = ""  # of a folder; a program is asked with --version
-    version_patterns: tuple[str, ...] = (_NUMBERS,)  # the parts of the version
+    version_file: str = ""  # the file with the version of a folder; a program prints it with --version
+    version_patterns: tuple[str, ...] = (_NUMBERS,)  # a regular expression for each part of the version
     get: Mapping[str, str] = field(default_factory=dict)
 
 
 def load_tools(roots: Iterable[Path], diagnostics: Diagnostics) -> dict[str, Tool]:
-    """All tools by name, in the order of their files; of two with one name the first root's, the user's, wins."""
+    """All tools by name, in the order of their files.  If two have the same name, that of the first root is used."""
     tools: dict[str, Tool] = {}
     for root in roots:
         for path in sorted((root / "tools").glob("*.json")):
@@ -78,7 +81,11 @@ def _load(path: Path, diagnostics: Diagnostics) -> Tool | None:
 
 
 def _tool(data: Mapping[str, Any]) -> Tool:
-    """The tool a file describes.  Raises what comes where ``schemas/tool.schema.json`` is not kept."""
+    """The tool that a file describes.
+
+    Raises KeyError, TypeError, ValueError, AttributeError or re.error if the data do not follow
+    ``schemas/tool.schema.json``.
+    """
     if data["api"] != 1 or bool(data.get("programs")) == bool(data.get("holds")):
         raise ValueError
     version = data.get("version", {})
