@@ -42,6 +42,8 @@ class EpgMetadataHook(MetadataHookInterface):
 
 
 class EpgBuildHook(BuildHookInterface):
+    """Adds the folders of ``DATA`` to a wheel, and CMake's package files to wheels and editable installs."""
+
     PLUGIN_NAME = "custom"
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:

@@ -195,6 +195,11 @@ def package_folder(group: str) -> Path:
 
 
 def _install(group: str, folder: Path, missing: list[str]) -> None:
+    """Installs the packages of ``group`` with pip into ``folder``.
+
+    pip installs wheels with the hashes of the lock file only, into a temporary folder, which is renamed at the end.
+    Variables of the environment that change Python are not passed on.  Raises :class:`MissingPackages`.
+    """
     if importlib.util.find_spec("pip") is None:
         raise MissingPackages(_remedy(missing, "this Python has no pip to install them with"))
     import shutil

@@ -52,14 +52,17 @@ class Diagnostics:
     def error(
         self, id: str, span: Span, message: str, *, hint: str = "", notes: Iterable[Note] = (), about: str = ""
     ) -> None:
+        """Adds an error: a mistake that the user must correct."""
         self._add(Diagnostic(id, "error", span, message, hint, tuple(notes), about))
 
     def warning(
         self, id: str, span: Span, message: str, *, hint: str = "", notes: Iterable[Note] = (), about: str = ""
     ) -> None:
+        """Adds a warning: EPG goes on, but the user should change something."""
         self._add(Diagnostic(id, "warning", span, message, hint, tuple(notes), about))
 
     def note(self, id: str, span: Span, message: str, *, hint: str = "") -> None:
+        """Adds a note: information about something that is right."""
         self._add(Diagnostic(id, "note", span, message, hint))
 
     def add_all(self, others: Iterable[Diagnostic]) -> None:
@@ -79,6 +82,7 @@ class Diagnostics:
 
     @property
     def error_count(self) -> int:
+        """The number of errors.  A check that returns None after errors compares it before and after."""
         for item in self.items[self._counted :]:  # Count new items only: every check reads this property.
             self._errors += item.severity == "error"
         self._counted = len(self.items)

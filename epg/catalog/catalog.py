@@ -177,6 +177,7 @@ class Catalog:
         return self._items[category, name]  # type: ignore[return-value]
 
     def _load(self, category: str, name: str, make: Callable[[YamlNode, Path], Item]) -> Item | None:
+        """Reads and checks the file of an item; None if it does not exist, or after reporting mistakes."""
         paths = self._paths(category).get(name, [])
         if not paths:
             return None

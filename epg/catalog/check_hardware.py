@@ -140,6 +140,7 @@ def check_target(target: Target, diagnostics: Diagnostics) -> None:
 
 
 def _peripheral(name: str, node: YamlNode, pins: Sequence[str], diagnostics: Diagnostics) -> None:
+    """Checks a peripheral of a chip with these ``pins``."""
     instances = _listed(node["instances"])
     slots = [""]
     if "slots" in node:
@@ -172,6 +173,7 @@ def _peripheral(name: str, node: YamlNode, pins: Sequence[str], diagnostics: Dia
 
 
 def _resource_class(name: str, node: YamlNode, peripherals: dict[str, YamlNode], diagnostics: Diagnostics) -> None:
+    """Checks a resource class: its peripheral, instances, slots and signals must exist."""
     stated = node.get("peripheral")
     if stated is not None and stated.value not in peripherals:
         _unknown("peripheral", stated, peripherals, diagnostics)
@@ -223,6 +225,7 @@ def _pins(node: YamlNode | None, diagnostics: Diagnostics) -> tuple[str, ...]:
 
 
 def _listed(node: YamlNode | None) -> list[str]:
+    """The names in a list, or the numbers from 0 as text for a number; empty if ``node`` is None."""
     if node is None:
         return []
     if isinstance(node.value, int):

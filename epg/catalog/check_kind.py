@@ -83,6 +83,7 @@ def _communication(node: YamlNode, parameters: Mapping[str, YamlNode], diagnosti
 
 
 def _relations(node: YamlNode, parameters: Iterable[str], uses: Iterable[str], diagnostics: Diagnostics) -> None:
+    """Checks ``relations``: all parameters and uses that they name must exist."""
     relations = node.get("relations")
     for relation in relations.elements() if relations else ():
         names = [
@@ -144,6 +145,7 @@ def _each(port: YamlNode, parameters: Mapping[str, YamlNode], diagnostics: Diagn
 
 
 def _claims(node: YamlNode, parameters: Mapping[str, YamlNode], diagnostics: Diagnostics) -> None:
+    """Checks ``claims``: their pins and parameters must exist, and each pin must be claimed once."""
     pins = texts_of(node, "pins")
     used: dict[str, Span] = {}
     for claim in map_of(node, "claims").values():

@@ -112,7 +112,7 @@ class ResourceClass:
 class Soc:
     """A chip.  The number of a pin in C is its index in ``pins``.
 
-    A chip with ``automatic_pins`` has no real pins: EPG gives signals numbers, at most so many.  ``clock`` in Hz is the
+    A chip with ``automatic_pins`` has no real pins: EPG numbers the signals, up to this number.  ``clock`` in Hz is the
     clock of all dividers that do not name another one.
     """
 

@@ -110,6 +110,7 @@ def typed_parameters(kind: Kind, node: YamlNode, diagnostics: Diagnostics) -> Ma
 
 
 def _relations(kind: Kind, node: YamlNode, diagnostics: Diagnostics) -> None:
+    """Reports keys of a component that its kind does not allow together, and keys that it requires together."""
     span = node["kind"].span
     for names in kind.exactly_one:
         stated = [name for name in names if name in node]

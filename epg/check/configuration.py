@@ -129,6 +129,7 @@ def check_configuration(
 def _components(
     root: YamlNode, target: Target | None, catalog: Catalog, diagnostics: Diagnostics
 ) -> dict[str, Component]:
+    """The components without mistakes, by name.  Reports the mistakes of the others."""
     section = root["components"]
     result: dict[str, Component] = {}
     folded: dict[str, str] = {}

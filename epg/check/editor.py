@@ -50,6 +50,7 @@ def editor_schema(name: str, catalog: Catalog, *, built_in: bool) -> Schema:
 
 
 def _tcf(schema: Schema, catalog: Catalog) -> Schema:
+    """The schema of a ``.tcf`` with all kinds, targets and middlewares of the catalog."""
     kinds = [kind for name in catalog.kind_names() if (kind := catalog.find_kind(name)) is not None]
     targets = [target for name in catalog.target_names() if (target := catalog.find_target(name)) is not None]
     needed = _needs(schema)

@@ -41,6 +41,7 @@ def used_components(
 def _used(
     use: KindUse, node: YamlNode, kind: Kind, kinds: Mapping[str, Kind | None], diagnostics: Diagnostics
 ) -> Used | None:
+    """The component and port that a reference names; None after reporting that ``use`` does not allow it."""
     text = str(node.value)
     possible = [reference for name, other in kinds.items() if other for reference in _references(use, name, other)]
     name, _, port_name = text.partition(".")

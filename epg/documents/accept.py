@@ -35,6 +35,7 @@ def accepts(value: object, schema: Schema, *, partial: bool = False) -> bool:
 
 
 def _fits(value: object, schema: Any, root: Schema, partial: bool) -> bool:
+    """True if ``value`` fits ``schema``, a part of the schema ``root``.  Raises :class:`_Unknown`."""
     if isinstance(schema, bool):
         return schema
     if partial and value is None:

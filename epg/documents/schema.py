@@ -76,6 +76,7 @@ def extended_from(node: YamlNode) -> list[Note]:
 
 
 def _report(error: Any, root: YamlNode, diagnostics: Diagnostics) -> None:
+    """Reports one violation that jsonschema has found: at the key for unknown and missing keys, else at the value."""
     path: Path = tuple(error.absolute_path)
     node = root.get(*path) or root
     schema = error.schema if isinstance(error.schema, dict) else {}
@@ -216,6 +217,7 @@ def _type_hint(value: object, wanted: list[str]) -> str:
 
 
 def _shown(value: object) -> str:
+    """A value in a message: text in quotes and shortened, maps and lists by their type."""
     if isinstance(value, str):
         return f"'{value if len(value) <= 60 else value[:57] + '...'}'"
     if isinstance(value, bool):

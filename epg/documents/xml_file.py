@@ -100,6 +100,8 @@ def parse_xml(
 
 
 class _Builder:
+    """Builds the tree from the events of expat's parser.  Raises :class:`_Refused` for documents that are too large."""
+
     def __init__(self, file: str, lines: list[str] | None = None) -> None:
         self.file = file
         self.lines = lines

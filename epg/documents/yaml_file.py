@@ -109,6 +109,11 @@ class _Collection:
 
 
 class _Builder:
+    """Builds the tree of one document from the events of PyYAML's parser.
+
+    ``stack`` holds the collections that are open.  ``failed`` is True after an error: then the tree is not used.
+    """
+
     def __init__(self, file: str, text: str, diagnostics: Diagnostics) -> None:
         self.file = file
         self.text = text
@@ -158,6 +163,7 @@ class _Builder:
         return True
 
     def _scalar(self, event: yaml.ScalarEvent) -> None:
+        """Adds a scalar as the next key of the open map, or as a value."""
         span = self._span(event)
         top = self.stack[-1] if self.stack else None
         if not event.style and (self._foreign_comment(event) or self._key_without_colon(event, top)):
@@ -216,6 +222,10 @@ class _Builder:
         return found is not None
 
     def _plain_value(self, text: str, span: Span) -> Scalar:
+        """The value of a scalar without quotes, by the core schema of YAML 1.2 (section 10.3).
+
+        Reports decimal numbers that begin with a zero, because YAML 1.1 reads them as octal.
+        """
         if text in _NULL:
             return None
         if text in _BOOL:

@@ -79,6 +79,11 @@ class _Level:
 
 
 class _Reader:
+    """Reads a text line by line, and stops at the first mistake.
+
+    It keeps the levels of indentation that are open, and the brackets and quotes that are open.
+    """
+
     def __init__(self, lines: list[str]) -> None:
         self.lines = lines
         self.levels: list[_Level] = []
@@ -107,6 +112,7 @@ class _Reader:
         return in_block or (content.startswith("---") and not self.levels)
 
     def _line(self, number: int, line: str, content: str) -> Mistake | None:
+        """Reads a line outside of brackets, quotes and blocks of text; ``content`` is the line without indentation."""
         indent = len(line) - len(content)
         if "\t" in line[:indent]:
             column = line.index("\t") + 1
@@ -232,6 +238,7 @@ class _Reader:
         )
 
     def _plain(self, number: int, line: str, start: int) -> Mistake | None:
+        """Reads a value without quotes and brackets, which ends with its line."""
         value = re.sub(r"(^|\s)#.*", "", line[start:]).rstrip()
         comment = foreign_comment(value)
         if comment:
@@ -281,6 +288,7 @@ class _Reader:
         return self._open_mistake()
 
     def _never_closed(self, last: int) -> Mistake | None:
+        """The mistake of a bracket or quote that is open at line ``last`` and is not closed in any later line."""
         for number, line in enumerate(self.lines[last:], last + 1):
             if len(line) > _LONGEST:
                 return None

@@ -205,6 +205,7 @@ class _Place:
 
 
 def _place_of(text: str, section: str, order: Sequence[str]) -> _Place:
+    """The positions of the parts of a section, which must exist or be commented out."""
     root = yaml_edit.node_at(text, ())
     node = yaml_edit.find(text, (section,))
     if node is None:

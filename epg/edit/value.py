@@ -88,7 +88,7 @@ def _replace_value(text: str, path: Steps, ends: Sequence[End]) -> str:
 
 
 def _change_end(text: str, path: Steps, old: End, new: End) -> str:
-    """``text`` with the end ``new`` at ``path``, where a scalar or a map is ``old``."""
+    """``text`` with the end ``new`` at ``path``.  The node there is a scalar or a map that holds ``old``."""
     node = yaml_edit.node_at(text, path)
     key = REFERENCE[str(path[0])]
     if isinstance(node, yaml.ScalarNode):

@@ -85,6 +85,7 @@ def node_at(text: str, path: Steps) -> yaml.Node:
 
 
 def start_of(node: yaml.Node) -> int:
+    """The position at which the node begins in the text."""
     return int(node.start_mark.index)
 
 
@@ -108,28 +109,34 @@ def is_flow(node: yaml.Node) -> bool:
 
 
 def source_of(text: str, node: yaml.Node) -> str:
+    """The part of the text that is the node, with its quotes or brackets."""
     return text[start_of(node) : end_of(text, node)]
 
 
 def line_start(text: str, position: int) -> int:
+    """The begin of the line of ``position``."""
     return max(text.rfind(character, 0, position) for character in "\r\n\x85\u2028\u2029") + 1
 
 
 def line_end(text: str, position: int) -> int:
+    """The end of the line of ``position``, before its line break."""
     found = _BREAK.search(text, position)
     return found.start() if found else len(text)
 
 
 def next_line(text: str, position: int) -> int:
+    """The begin of the next line, or the end of the text."""
     found = _BREAK.search(text, position)
     return found.end() if found else len(text)
 
 
 def column_of(text: str, position: int) -> int:
+    """The column of ``position``, counted from 0."""
     return position - line_start(text, position)
 
 
 def has_break(text: str) -> bool:
+    """True if the text has more than one line."""
     return _BREAK.search(text) is not None
 
 
@@ -285,6 +292,7 @@ def _comma(text: str, end: int) -> int | None:
 
 
 def _has_own_lines(text: str, item: Item, comma: int | None) -> bool:
+    """True if the lines of an entry have only this entry, its comma and a comment."""
     start, end = item
     behind = end if comma is None else comma + 1
     rest = text[behind : line_end(text, behind)]
@@ -292,6 +300,7 @@ def _has_own_lines(text: str, item: Item, comma: int | None) -> bool:
 
 
 def _insert_flow(text: str, node: yaml.Node, items: list[Item], index: int, new: str) -> str:
+    """:func:`insert` for a node in braces or brackets.  The entry gets its own line if its neighbour has one."""
     if not items:
         inside = start_of(node) + 1
         return text[:inside] + new + text[inside:]
@@ -310,6 +319,7 @@ def _insert_flow(text: str, node: yaml.Node, items: list[Item], index: int, new:
 
 
 def _remove_flow(text: str, items: list[Item], index: int) -> str:
+    """:func:`remove` for a node in braces or brackets, with one of the commas around the entry."""
     start, end = items[index]
     comma = _comma(text, end)
     before = _comma(text, items[index - 1][1]) if index > 0 else None

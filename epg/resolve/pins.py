@@ -116,6 +116,7 @@ class Pins:
         return [pin for pin in self.target.soc.pins if pin in free and self._can_reach(resource_class, signal, pin)]
 
     def _exists(self, pin: str, stated: Stated) -> bool:
+        """True if components can use the pin.  Reports a pin that the board does not have, or reserves for itself."""
         board, soc = self.target.board, self.target.soc
         if pin in board.reserved:
             message = f"pin {pin} of {board.name} is reserved: {board.reserved[pin]}"
@@ -131,6 +132,10 @@ class Pins:
         return False
 
     def _is_free(self, pin: str, stated: Stated, claim: Claim, signal: str, resource_class: ResourceClass) -> bool:
+        """True after taking the pin for ``claim``.
+
+        Reports a pin that another claim has taken, or that is wired to a device on the board of another class.
+        """
         onboard = self.target.board.onboard.get(pin)
         if onboard and resource_class.name not in onboard.classes:
             message = f"pin {pin} is wired to {onboard.title}, it can be no {resource_class.title}"

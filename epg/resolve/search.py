@@ -92,6 +92,8 @@ def find_places(demands: Sequence[Demand], costs: Sequence[int] = ()) -> tuple[P
 
 
 class _Problem:
+    """One search: its groups of demands, its instances, and the instances that each group can use."""
+
     def __init__(self, demands: Sequence[Demand], costs: Sequence[int]) -> None:
         self.count = len(demands)
         self.groups = _groups(demands)

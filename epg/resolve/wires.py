@@ -267,6 +267,10 @@ def _input_steps(
     *,
     physical: bool,
 ) -> tuple[Step, ...]:
+    """The steps from a component to an input: the component's conversion, the units, the conversion of the wire.
+
+    With ``physical``, for a plant, the conversion of the component does not apply.
+    """
     steps, unit = ([], normal_unit(component_port.unit)) if physical else component_steps(component, component_port)
     wanted = normal_unit(binding.conversion.unit if binding.conversion.unit is not None else port.unit)
     steps += _unit_step(unit, wanted, binding, f"{component.name} -> {port.name}", diagnostics)
@@ -283,6 +287,10 @@ def _output_steps(
     *,
     physical: bool,
 ) -> tuple[Step, ...]:
+    """The steps from an output to a component: the conversion of the wire, the units, the component's conversion.
+
+    With ``physical``, for a plant, the conversion of the component does not apply.
+    """
     own, unit = ([], normal_unit(component_port.unit)) if physical else component_steps(component, component_port)
     given = normal_unit(binding.conversion.unit if binding.conversion.unit is not None else port.unit)
     between = _unit_step(given, unit, binding, f"{port.name} -> {component.name}", diagnostics)

@@ -111,6 +111,7 @@ def read_cmake_cache(path: Path, diagnostics: Diagnostics) -> dict[str, str]:
 
 
 def _places(tool: Tool, where: Surroundings) -> Iterator[_Place]:
+    """The places in which a tool is searched, in the order of the module's docstring."""
     for name in tool.variables:
         if where.cmake.get(name):
             yield _Place(f"CMake variable {name}", [Path(where.cmake[name])], stated=True, of_build=True)
