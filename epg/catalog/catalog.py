@@ -91,14 +91,14 @@ class Catalog:
         return self._item("middleware", name, make_middleware)
 
     def kind(self, name: str, span: Span, diagnostics: Diagnostics) -> Kind | None:
-        """The kind ``name``, or None after reporting at ``span`` that it does not exist."""
+        """The kind ``name``, or None after reporting mistakes in its file, or at ``span`` that it does not exist."""
         if name not in self._paths("component"):
             hint = not_found_hint(name, self.kind_names(), "kinds")
             diagnostics.error("unknown-kind", span, f"there is no kind '{name}'", hint=hint)
         return self.find_kind(name)
 
     def target(self, name: str, span: Span, diagnostics: Diagnostics) -> Target | None:
-        """The target ``name``, or None after reporting at ``span`` that it does not exist."""
+        """The target ``name``, or None after reporting mistakes in its files, or at ``span`` that it does not exist."""
         target, exists = self._target(name)
         if not exists:
             hint = target_hint(name, self.target_names(), "targets")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks the files of the folders of targets: first against their schema, then the rules that a schema cannot hold."""
+"""Checks the files in folders of targets: first against their schema, then by the rules that no schema can express."""
 
 from __future__ import annotations
 

@@ -45,7 +45,7 @@ def check_board(node: YamlNode, diagnostics: Diagnostics) -> None:
 
 
 def _layout(layout: YamlNode, pins: set[str], diagnostics: Diagnostics) -> None:
-    """Checks the layout: each contact must be a pin of the board, which has one contact only, or a supply."""
+    """Checks the layout: each contact must be a supply or a pin of the board.  A pin can have one contact only."""
     supplies = map_of(layout, "supplies")
     seen: dict[str, Span] = {}
     for contact in (child for row in layout["rows"].elements() for child in row["contacts"].elements()):
@@ -83,7 +83,7 @@ def check_platform(node: YamlNode, diagnostics: Diagnostics) -> None:
 
 
 def _left_to_families(node: YamlNode, diagnostics: Diagnostics) -> None:
-    """Reports keys of a platform with ``by_family`` that belong into the files of the families."""
+    """Reports keys of a platform with ``by_family`` that must be in the files of the families instead."""
     for key in ("classes", "middlewares", "usb_names", "templates", "shared", "sdk", "products"):
         if key in node:
             message = f"'{key}' depends on the family of chips, so a platform with 'by_family' cannot state it"

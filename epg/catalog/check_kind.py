@@ -102,7 +102,7 @@ def _relations(node: YamlNode, parameters: Iterable[str], uses: Iterable[str], d
 
 
 def _ports(node: YamlNode, parameters: Mapping[str, YamlNode], diagnostics: Diagnostics) -> None:
-    """Checks ports.  In each direction, at most one port can be the default, and not one of ports with ``each``."""
+    """Checks ports.  Each direction can have one default port, which must not be one with ``each``."""
     defaults: dict[str, tuple[str, Span]] = {}
     for name, port in map_of(node, "ports").items():
         span = node["ports"].key_span(name)

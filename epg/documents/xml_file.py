@@ -49,7 +49,7 @@ class _Refused(Exception):
 
 
 def load_xml(path: Path, diagnostics: Diagnostics, *, required: bool = True) -> Element | None:
-    """The root of the document at ``path``, or None after reporting what is wrong with it.
+    """The root of the document at ``path``, or None after reporting mistakes.
 
     ``required`` is False for files that EPG can do without, because the sources hold the same data.  Their mistakes are
     reported as warnings.

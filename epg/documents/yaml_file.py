@@ -43,7 +43,7 @@ _MAX_DIGITS = 64
 def load_yaml(
     path: Path, diagnostics: Diagnostics, wanted_by: Span | None = None, drafts: Drafts = NO_DRAFTS
 ) -> YamlNode | None:
-    """The document in ``path``, or None after reporting what is wrong with the file."""
+    """The document in ``path``, or None after reporting mistakes."""
     text = read_text(path, diagnostics, wanted_by, drafts)
     return None if text is None else parse_yaml(text, str(path), diagnostics)
 

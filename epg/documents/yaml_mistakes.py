@@ -143,7 +143,7 @@ class _Reader:
         return self._value(number, line, indent + entry.start("value")) if value else None
 
     def _place(self, number: int, indent: int, content: str) -> Mistake | None:
-        """Finds the level of a line by its indentation, or begins a new one.  Returns a mistake in the indentation."""
+        """Finds the level of a line by its indentation, or begins a new one.  Returns a mistake, if there is one."""
         entry = _ENTRY.match(content)
         kind = "list" if re.match(r"-(\s|$)", content) else "map" if entry else "text"
         left: list[_Level] = []
