@@ -4,8 +4,8 @@
 The Python that CMake selects may lack jinja2, PyYAML or jsonschema, and it may refuse ``pip install``.  (Debian's
 externally managed Python has no ensurepip either.)  Therefore EPG installs the packages once, with
 ``pip install --target``, into a folder of its cache.  The name of this folder contains the version of Python and a hash
-of the lock file.  ``epg/lock/*.in`` name the packages and their oldest versions; the lock files (``epg/lock/*.txt``) pin
-every file by its hash.  The folder is prepared under a temporary name and renamed when it is complete.  Thus an
+of the lock file.  ``epg/lock/*.in`` name the packages and their oldest versions.  The lock files (``epg/lock/*.txt``)
+pin every file by its hash.  The folder is prepared under a temporary name and renamed when it is complete.  Thus an
 interrupted or concurrent installation never leaves an incomplete folder.
 
 This module uses only the standard library.  To renew a lock file::

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks the section ``communication`` of a ``.tcf``.  The target must offer its middleware and its transport."""
+"""Checks the section ``communication`` of a ``.tcf``: the target must offer the middleware and the transport."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Makes the JSON Schema of a component from its kind, and typed values from its parameters.
 
-The same for the options of middlewares.
+Does the same for the options of middlewares.
 """
 
 from __future__ import annotations

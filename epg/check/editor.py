@@ -36,8 +36,8 @@ _COMPLETE = {"required": ["target"], "not": {"required": ["extends"]}}
 def editor_schema(name: str, catalog: Catalog, *, built_in: bool) -> Schema:
     """The schema of the files of the sort ``name``, which is in :data:`USER_FILES` or :data:`TARGET_FILES`.
 
-    ``built_in`` is True if the catalog has no folder of the user.  Only then the schema is the public one and has its
-    ``$id``.
+    ``built_in`` is True if the catalog has no folder of the user.  Only then the schema is the published one, and has
+    its ``$id``.
     """
     schema = _plain(load_schema(name))
     if name == "tcf":
