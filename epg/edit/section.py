@@ -4,7 +4,7 @@
 A section can be missing, commented out by ``epg bind``, empty, or in braces.  It can have comments of ``epg bind`` for
 ports that are not bound yet (:func:`open_port`).
 
-All functions take the whole text and return the changed text.
+The functions that edit take the whole text and return the changed text.
 """
 
 from __future__ import annotations

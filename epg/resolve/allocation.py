@@ -5,7 +5,7 @@ A claim names a resource class, pins and attributes.  The data of the chip say w
 and which pins this peripheral reaches.  Allocation has three parts:
 
 1. Check each claim alone, and report its mistakes.
-2. For each peripheral, search places for all of its claims (:mod:`epg.resolve.search`).
+2. For each peripheral, find places for all of its claims (:mod:`epg.resolve.search`).
 3. If there are no such places, report the claims that exclude each other (:mod:`epg.resolve.conflict`).
 """
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reports why claims cannot be placed together: it finds the smallest sets of claims that exclude each other."""
+"""Reports why claims cannot be placed together: it finds minimal sets of claims that exclude each other."""
 
 from __future__ import annotations
 

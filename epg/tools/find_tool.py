@@ -87,7 +87,7 @@ class _Place:
 
 
 def find_tool(tool: Tool, where: Surroundings) -> Finding:
-    """Searches ``tool`` in all its places.  The first one found is the result."""
+    """Searches for ``tool`` in all its places.  The first one found is the result."""
     looked: list[str] = []
     for place in _places(tool, where):
         looked.append(place.source)
@@ -111,7 +111,7 @@ def read_cmake_cache(path: Path, diagnostics: Diagnostics) -> dict[str, str]:
 
 
 def _places(tool: Tool, where: Surroundings) -> Iterator[_Place]:
-    """The places in which a tool is searched, in the order of the module's docstring."""
+    """The places in which EPG searches for a tool, in the order of the module's docstring."""
     for name in tool.variables:
         if where.cmake.get(name):
             yield _Place(f"CMake variable {name}", [Path(where.cmake[name])], stated=True, of_build=True)
