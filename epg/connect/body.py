@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a request to a session says, checked: nothing of it reaches a file unseen."""
+"""Checks the body of a request to a session.  No value of a body may reach a file without one of these checks."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Body = Mapping[str, object]
 
 
 class Refused(Exception):
-    """Something that cannot be done, in the user's words; ``status`` is HTTP's."""
+    """An action that cannot be done.  ``message`` and ``hint`` are for the user; ``status`` is the HTTP status."""
 
     def __init__(self, message: str, hint: str = "", status: int = 400) -> None:
         super().__init__(message)
@@ -22,7 +22,10 @@ class Refused(Exception):
 
 
 def text(body: Body, key: str, default: str | None = None) -> str:
-    """A text on one line; required without ``default``."""
+    """The text of ``key``, which must be one line of at most 1000 characters.  It is required without ``default``.
+
+    Raises :class:`Refused`, as all functions of this module do.
+    """
     value = body.get(key, default)
     if not isinstance(value, str) or len(value) > _LONGEST or not value.isprintable():
         raise Refused(f"'{key}' must be a text on one line")
@@ -39,7 +42,7 @@ def boolean(body: Body, key: str) -> bool:
 
 
 def names(body: Body, key: str, default: Sequence[str]) -> list[str]:
-    """A list of texts, each once."""
+    """The list of texts of ``key``, without duplicates; ``default`` if the body has no such key."""
     value = body.get(key, list(default))
     if not isinstance(value, list) or not all(isinstance(name, str) for name in value):
         raise Refused(f"'{key}' must be a list of names")
@@ -47,7 +50,7 @@ def names(body: Body, key: str, default: Sequence[str]) -> list[str]:
 
 
 def ends(body: Body) -> tuple[End, ...]:
-    """The ends of a wire."""
+    """The ends of a wire, at most 64."""
     value = body.get("ends")
     if not isinstance(value, list) or len(value) > _MOST_ENDS:
         raise Refused("'ends' must be a list")
@@ -73,7 +76,7 @@ def _end(value: object) -> End:
 
 
 def _number(value: object, key: str) -> str:
-    """A number as a text, so that 1/4 stays 1/4; whether it is one is said when the file is read."""
+    """A number as text, so that 1/4 stays 1/4.  The reader of the bindings reports a text that is not a number."""
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         value = repr(value)
     return text({key: value}, key, "").strip()

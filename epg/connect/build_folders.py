@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The build folders of a project: those that are there, those its presets want, the usual one."""
+"""The build folders of a project: the existing ones, those of its CMake presets, and the usual one, ``build``."""
 
 from __future__ import annotations
 
@@ -21,22 +21,22 @@ CACHE = "CMakeCache.txt"
 
 @dataclass(frozen=True)
 class BuildFolder:
-    """``variables``: of its cache, or of the preset called ``preset`` that would make it.
+    """A build folder.  ``variables`` are those of its CMake cache, or of the preset ``preset`` that would create it.
 
-    Where sysbuild has built several images, ``path`` is the folder around them, as ``west build -d`` takes it.
+    If Zephyr's sysbuild has built several images, ``path`` is the folder around them, as ``west build -d`` takes it.
     """
 
     path: Path
     variables: Mapping[str, str] = field(default_factory=dict)
     preset: str = ""
-    image: Path | None = None  # where CMake has configured the project: ``path`` or, with sysbuild, below it
+    image: Path | None = None  # the folder that CMake has configured: ``path`` or, with sysbuild, a folder below it
 
 
 def build_folders(source: Path) -> list[BuildFolder]:
-    """All that may be meant for the project in ``source``, the likeliest first; the usual one is always the last."""
+    """All folders that may belong to the project in ``source``, the likeliest first.  The usual one is always last."""
     presets = list(_presets(source))
     places = [source / USUAL, *_below(source / USUAL), *(preset.path for preset in presets), *_below(source)]
-    places += _below(source.parent / USUAL)  # sysbuild's, of the application around an image
+    places += _below(source.parent / USUAL)  # sysbuild: the build folder of the application around an image
     found: dict[Path, BuildFolder] = {}
     names = {preset.path: preset.preset for preset in presets}
     for place in places:
@@ -52,7 +52,7 @@ def _below(folder: Path) -> list[Path]:
 
 
 def _variables(folder: Path, source: Path) -> dict[str, str] | None:
-    """The cache of ``folder`` if CMake has configured ``source`` there."""
+    """The variables in the cache of ``folder``, or None if CMake has not configured ``source`` there."""
     variables = _cache(folder / CACHE)
     return variables if _same(variables.get("CMAKE_HOME_DIRECTORY", ""), source) else None
 
@@ -66,7 +66,10 @@ def _same(folder: str, other: Path) -> bool:
 
 
 def _presets(source: Path) -> Iterator[BuildFolder]:
-    """What the configure presets in ``source`` make; what cannot be read, CMake will complain about."""
+    """The build folders of the configure presets in ``source``.
+
+    Files and macros that cannot be read are skipped: CMake reports them.
+    """
     presets: dict[str, dict[str, Any]] = {}
     for name in ("CMakePresets.json", "CMakeUserPresets.json"):
         try:
@@ -114,7 +117,7 @@ def _parents(preset: Mapping[str, Any]) -> list[str]:
 
 
 def _expand(text: str, source: Path, preset: str) -> str | None:
-    """``text`` with cmake-presets(7)'s macros replaced, or None when one is not known here."""
+    """``text`` with the macros of cmake-presets(7) replaced, or None if it has a macro that is not known here."""
     values = {
         "sourceDir": source.as_posix(),
         "sourceParentDir": source.parent.as_posix(),

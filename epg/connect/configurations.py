@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The target configurations one can choose for a model: predefined ``.tcf`` files, and targets by themselves.
+"""The target configurations that the user can choose for a model: predefined ``.tcf`` files, and targets alone.
 
 >>> # catalogue = Configurations(roots)
 >>> # [entry["name"] for entry in catalogue.entries(model, current)]
@@ -31,9 +31,10 @@ from epg.tools.tools import load_tools
 
 @dataclass(frozen=True)
 class Choice:
-    """A configuration by its name, or a target by itself: then ``robot`` is empty.
+    """A predefined configuration of a robot, or a target alone (a board and a platform).
 
-    ``configuration`` is None for a target, and where ``problem`` says what is wrong with a configuration.
+    ``robot`` is empty for a target alone.  ``configuration`` is None for a target alone and for a configuration with
+    an error; ``problem`` is then the message of that error.
     """
 
     name: str
@@ -44,7 +45,7 @@ class Choice:
 
 
 class Configurations:
-    """All that can be chosen; read when first asked for, which takes a second."""
+    """All choices.  They are read on first use, which takes about a second."""
 
     def __init__(self, user_roots: Sequence[Path]) -> None:
         self._user_roots = tuple(user_roots)
@@ -55,11 +56,11 @@ class Configurations:
 
     @property
     def ready(self) -> bool:
-        """Whether entries can be had at once."""
+        """True if :meth:`prepare` is done, so that :meth:`entries` returns at once."""
         return self._ready.is_set()
 
     def prepare(self) -> None:
-        """Reads everything, and looks for the tools of all targets."""
+        """Reads all choices, and looks for the tools of all targets."""
         with self._preparing:
             for choice in self.choices:
                 self._missing(choice.target)
@@ -81,7 +82,7 @@ class Configurations:
         return next((choice for choice in self.choices if choice.name == name), None)
 
     def picture(self, name: str) -> str | None:
-        """The wiring of a configuration's board; None where there is none to draw."""
+        """The picture of the wiring of a choice, as SVG; None if there is nothing to draw."""
         choice = self.find(name)
         if choice is None or not _has_picture(choice):
             return None
@@ -92,13 +93,16 @@ class Configurations:
         return draw_wiring(choice.target, configuration.components, hardware or {}, choice.name)
 
     def entries(self, model: Model | None, project: Project | None) -> list[dict[str, Any]]:
-        """What there is to choose, for a new project, or for the ``project`` there is."""
+        """All choices as plain data: for ``project``, or for a new project if that is None.
+
+        ``possible`` is False for a choice that cannot be taken; ``reason`` then says why.
+        """
         entries = []
         for choice in self.choices:
             reason = _new_reason(choice, self._roots) if project is None else project.reason(choice)
             components = choice.configuration.components if choice.configuration is not None else {}
             ports = (*model.inputs, *model.outputs) if model is not None else ()
-            if not choice.robot:  # a topic for each port that a topic can serve
+            if not choice.robot:  # a target alone: each port that a topic can carry becomes a topic
                 matches = sum(port.direction == "output" or port.type == "real" for port in ports)
             else:
                 matches = self._count(choice, model)
@@ -123,7 +127,7 @@ class Configurations:
         return entries
 
     def _count(self, choice: Choice, model: Model | None) -> int:
-        """How many ports of the model have a component whose name matches; counted once for the same ports."""
+        """The number of model ports that match a component by name.  The result is kept for models with equal ports."""
         if model is None or choice.configuration is None:
             return 0
         key = (choice.name, tuple((port.name, port.direction) for port in (*model.inputs, *model.outputs)))
@@ -133,7 +137,10 @@ class Configurations:
         return self._counts[key]
 
     def _predefined(self, file: str, catalog: Catalog) -> Choice | None:
-        """One of EPG's or the user's ``.tcf`` files; None for parts that others extend: they name no target."""
+        """The choice that a ``.tcf`` file of EPG or of the user defines.
+
+        None for a ``.tcf`` that names no target: other files extend it.
+        """
         request = Request("connect", file, Path(), Path(), user_roots=self._user_roots, beside=self._roots[-1])
         chain = load_tcf_chain(file, self._roots, Diagnostics(), beside=request.beside)
         named = next((node for part in chain if (node := part.node.get("target")) is not None), None)
@@ -147,7 +154,7 @@ class Configurations:
 
     @cached_property
     def _lacking(self) -> Mapping[str, str]:
-        """Titles of the tools this computer lacks, by name."""
+        """The titles of the tools that are missing on this computer, by name."""
         where = Surroundings.here(cache_folder())
         tools = load_tools(self._roots, Diagnostics())
         return {name: tool.title for name, tool in tools.items() if find_tool(tool, where).status != "found"}
@@ -158,9 +165,10 @@ class Configurations:
 
 @dataclass(frozen=True)
 class Project:
-    """The project a configuration is chosen for: what its ``.tcf`` ``extends``, and whether that can be changed.
+    """The project for which a configuration is chosen.
 
-    ``fixed`` says why not; empty if it can.
+    ``chosen`` is the configuration that its ``.tcf`` extends now.  ``fixed`` says why that cannot be changed; it is
+    empty if it can.
     """
 
     chosen: str
@@ -168,7 +176,7 @@ class Project:
     target: Target | None
 
     def reason(self, choice: Choice) -> str:
-        """Why ``choice`` cannot be taken; empty if it can."""
+        """The reason why ``choice`` cannot be taken; empty if it can."""
         if choice.name == self.chosen:
             return ""
         if self.fixed or choice.problem:
@@ -189,7 +197,7 @@ def _hardware_of(target: Target) -> tuple[str, str]:
 
 
 def _new_reason(choice: Choice, roots: Sequence[Path]) -> str:
-    """Why no project can be started with ``choice``."""
+    """The reason why a new project cannot be started with ``choice``; empty if it can."""
     if choice.problem:
         return choice.problem
     platform = choice.target.platform

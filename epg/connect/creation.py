@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A project is started for a model that has none: by the engine of ``epg new``, in its words."""
+"""Starts a project for a model without one, with the functions and messages of ``epg new``."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from epg.new_project import ProjectRequest, project_name, write_project
 
 
 def proposal(model: Path) -> dict[str, str]:
-    """Where a project for ``model`` could be, and what it could be called."""
+    """A folder and a name for a new project for ``model``.  The folder is beside the model's and does not exist yet."""
     around = model.resolve()
     around = around if around.is_dir() else around.parent
     words = [around.name.removesuffix(end) for end in ("_export", "-export") if around.name.endswith(end)]
@@ -26,7 +26,11 @@ def proposal(model: Path) -> dict[str, str]:
 
 
 def create(body: Mapping[str, object], model: Path, user_roots: Sequence[Path]) -> list[Job]:
-    """The targets of the new project.  Raises Refused with nothing written, or with a project that needs an editor."""
+    """Writes a new project, and returns its targets.
+
+    Raises Refused if nothing could be written, or if the written project has a mistake that must be corrected in an
+    editor.
+    """
     folder = Path(os.path.expanduser(text(body, "folder").strip()))
     if not folder.is_absolute():
         folder = Path(os.path.abspath(model.resolve().parent / folder))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a user has changed and not saved yet: operations on top of the files, which can be undone and applied again.
+"""The user's changes that are not saved yet: a list of operations on the files, with undo and redo.
 
 >>> # draft = Draft(read_snapshot(bindings), read_snapshot(tcf), "version: 1\\nmodel: JIWY\\n")
 >>> # draft.do((SetEnds("pwm_pan", (End("motor"),)),), model); draft.undo(); draft.diff()
@@ -20,7 +20,10 @@ from epg.models.model import Model
 
 @dataclass(frozen=True)
 class SetEnds:
-    """A port gets other ends: None takes it out of the bindings, none at all leaves an output unconnected."""
+    """Binds a port to ``ends``.
+
+    None removes the port from the bindings.  An empty tuple leaves an output unconnected on purpose.
+    """
 
     port: str
     ends: tuple[End, ...] | None
@@ -28,18 +31,18 @@ class SetEnds:
 
 @dataclass(frozen=True)
 class SetExtends:
-    """The ``.tcf`` extends another file."""
+    """Makes the ``.tcf`` extend the file ``name``."""
 
     name: str
 
 
 Operation = tuple["SetEnds | SetExtends", ...]
-"""What one press of a button did."""
+"""All changes of one user action; undo and redo treat them as one."""
 
 
 @dataclass(frozen=True)
 class Texts:
-    """The two files that can be edited; None where there is no text to edit."""
+    """The texts of the two files that can be edited; None for a file without readable text."""
 
     bindings: str | None
     tcf: str | None
@@ -52,9 +55,9 @@ class _Done:
 
 
 class Draft:
-    """Operations on the text of two files.
+    """The operations, and the texts of the two files after them.
 
-    ``fresh`` is the text that edits begin with where there is no file of bindings yet.
+    ``fresh`` is the first text of the bindings if that file does not exist yet.
     """
 
     def __init__(self, bindings: Snapshot, tcf: Snapshot, fresh: str) -> None:
@@ -62,8 +65,8 @@ class Draft:
         self.texts = self._on_disk()
         self._done: list[_Done] = []
         self._undone: list[tuple[Operation, Texts]] = []
-        self._saved = 0  # how many operations the files hold
-        self._diverged = False  # from those: some were undone, and others came in their place
+        self._saved = 0  # the number of operations that the files on the disk contain
+        self._diverged = False  # True after some of the saved operations were undone and others done in their place
 
     @property
     def changed(self) -> bool:
@@ -78,12 +81,12 @@ class Draft:
         return bool(self._undone)
 
     def drafts(self) -> dict[Path, str]:
-        """What is to be read instead of the files."""
+        """The texts that must be read instead of the files, by path."""
         texts = ((self.bindings.path, self.texts.bindings), (self.tcf.path, self.texts.tcf))
         return {path: text for path, text in texts if text is not None}
 
     def do(self, operation: Operation, model: Model | None) -> None:
-        """Applies ``operation``, or raises CannotEdit with the texts as they were."""
+        """Applies ``operation``.  Raises CannotEdit; the texts are then unchanged."""
         after = self._applied(self.texts, operation, model)
         if after == self.texts:
             return
@@ -103,11 +106,11 @@ class Draft:
         self.texts = after
 
     def unsaved(self) -> list[Snapshot]:
-        """The files as they are to be written, those that differ only."""
+        """The new contents of the files that differ from the disk."""
         return [after for _, after in self._pairs()]
 
     def saved(self, after: Snapshot) -> None:
-        """One of the files is now this."""
+        """Notes that one of the files was saved as ``after``."""
         if after.path == self.bindings.path:
             self.bindings = after
         else:
@@ -116,9 +119,9 @@ class Draft:
             self._saved, self._diverged = len(self._done), False
 
     def rebase(self, bindings: Snapshot, tcf: Snapshot, model: Model | None) -> int:
-        """The files are now these: applies what is not saved to them; how many operations that were.
+        """Takes new contents of the files, and applies the unsaved operations to them.  Returns their number.
 
-        Raises CannotEdit, with everything as it was, where one of them does not fit the new text any more.
+        Raises CannotEdit if an operation does not fit the new text any more; the draft is then unchanged.
         """
         if self.changed and (self._diverged or len(self._done) < self._saved):
             raise CannotEdit("what was saved and then undone cannot be taken out of the new text")
@@ -131,11 +134,11 @@ class Draft:
         return len(operations)
 
     def before_saving(self, path: Path) -> Snapshot:
-        """The file as it was read."""
+        """The file at ``path`` as it was last read or saved."""
         return self.bindings if path == self.bindings.path else self.tcf
 
     def diff(self) -> str:
-        """What saving would change, as people read it in version control."""
+        """The changes that saving would make, as a unified diff."""
         lines: list[str] = []
         for before, after in self._pairs():
             old, new = before.text or "", after.text or ""

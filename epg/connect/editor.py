@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One target that is open: its files, the draft on top of them, and what all of it means."""
+"""One open target: its files, the draft on top of them, and the result of loading both."""
 
 from __future__ import annotations
 
@@ -26,7 +26,11 @@ _CONFLICT_HINT = "reload: your changes go; or save anyway: the others' changes g
 
 
 class Editor:
-    """Not safe for threads: the session has the lock."""
+    """The files and the draft of ``job``.  Not thread-safe: the caller must hold the session's lock.
+
+    ``external`` is a note for the user about an edit by another program.  ``conflict`` is set while such an edit and
+    the draft do not fit together.
+    """
 
     def __init__(self, job: Job) -> None:
         self.job = job
@@ -40,7 +44,7 @@ class Editor:
         self._load()
 
     def edit(self, operation: Operation) -> None:
-        """Changes the draft; raises CannotEdit, or Refused, with all as it was."""
+        """Changes the draft.  Raises CannotEdit or Refused; nothing has changed then."""
         self.check_conflict()
         self.draft.do(operation, self.loaded.parts.model)
         self._after_edit()
@@ -58,7 +62,7 @@ class Editor:
         self._after_edit()
 
     def save(self, *, anyway: bool) -> None:
-        """Writes what has changed; ``anyway`` also over what others have written since."""
+        """Writes the changed files.  ``anyway`` also overwrites edits that other programs have made since."""
         if not anyway:
             self.check_conflict()
         for after in self.draft.unsaved():
@@ -69,13 +73,16 @@ class Editor:
         self._load()
 
     def reload(self) -> None:
-        """Throws the draft away."""
+        """Discards the draft and reads the files again."""
         self.draft = self._new_draft()
         self.conflict = self.external = None
         self._load()
 
     def look(self) -> bool:
-        """Notices what was edited outside; whether anything was."""
+        """Reads the files again if another program has changed them.  Returns True if one has changed.
+
+        If there are unsaved changes, they are applied to the new text.  If they do not fit it, ``conflict`` is set.
+        """
         changed = self._watch.changed()
         if not changed:
             return False
@@ -94,7 +101,7 @@ class Editor:
         return True
 
     def project(self) -> Project:
-        """What the project's own ``.tcf`` extends, and why that cannot be changed."""
+        """The configuration that the project's own ``.tcf`` extends, and the reason if that cannot be changed."""
         configuration, chain = self.loaded.parts.configuration, self.loaded.chain
         target = configuration.target if configuration is not None else None
         path = self._tcf_path
@@ -128,7 +135,7 @@ class Editor:
         }
 
     def _why_not(self) -> str:
-        """Why ports cannot be connected; empty if they can."""
+        """The reason why ports cannot be connected; empty if they can."""
         name = self.job.request.bindings.name
         text = self.draft.texts.bindings
         if text is None:
@@ -149,14 +156,14 @@ class Editor:
         return {what: _relative(path, folder) for what, path in files.items()}
 
     def check_conflict(self) -> None:
-        """Raises :class:`Refused` while the files were edited outside so that the draft does not fit them."""
+        """Raises :class:`Refused` while the draft does not fit an edit of the files by another program."""
         if self.conflict is not None:
             raise Refused(self.conflict["message"], self.conflict["hint"], 409)
 
     def _after_edit(self) -> None:
         self.external = None
         if self.conflict is not None and not self.draft.changed:
-            self.draft = self._new_draft()  # nothing of the user's is left that could be lost
+            self.draft = self._new_draft()  # the last change was undone, so nothing can be lost
             self.conflict = None
         self._load()
 
@@ -185,7 +192,7 @@ class Editor:
         return read_snapshot(self.job.request.bindings), read_snapshot(self._tcf_path)
 
     def _fresh(self, bindings: Snapshot) -> str:
-        """The text that bindings begin with which are not there yet."""
+        """The first text of the bindings if that file does not exist; empty if it does."""
         if bindings.data is not None:
             return ""
         model = load_model(self.job.request.model, Diagnostics())
@@ -193,6 +200,6 @@ class Editor:
 
 
 def _relative(path: Path, folder: Path) -> str:
-    """A path as people write it: relative where it is below ``folder``."""
+    """``path`` relative to ``folder`` if it is below it, else absolute."""
     absolute = Path(os.path.abspath(path))
     return absolute.relative_to(folder).as_posix() if folder in absolute.parents else str(absolute)

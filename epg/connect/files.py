@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The files of a session: read as text, written at once and whole, watched for edits by others.
+"""Reads the files of a session as text, replaces them atomically, and watches them for edits by other programs.
 
-A file keeps what people see only in their editor: line ends, a byte order mark, its permissions, and the link that
-leads to it within the project.
+Saving keeps the line ends of a file, its byte order mark, its permissions, and a symbolic link that leads to it
+within the project.
 """
 
 from __future__ import annotations
@@ -21,19 +21,19 @@ BOM = b"\xef\xbb\xbf"
 
 
 class Unsavable(Exception):
-    """A file is not the one that was read, or cannot be written; the message says which and why."""
+    """A file cannot be written, or has changed since it was read.  The message names the file and the reason."""
 
 
 @dataclass(frozen=True)
 class Snapshot:
-    """A text file as it was read: ``data`` None if there was none."""
+    """The contents of a text file at one moment.  ``data`` is None if there was no readable file."""
 
     path: Path
     data: bytes | None
 
     @property
     def text(self) -> str | None:
-        """The text without a byte order mark; None where there is no file, or what is there is no UTF-8 text."""
+        """The text without its byte order mark; None if there is no file, it is too large, or it is not UTF-8."""
         if self.data is None or len(self.data) > MAX_BYTES:
             return None
         try:
@@ -42,13 +42,13 @@ class Snapshot:
             return None
 
     def with_text(self, text: str) -> Snapshot:
-        """The same file with another text, marked as it was."""
+        """The same file with another text; a byte order mark is kept."""
         mark = BOM if self.data is not None and self.data.startswith(BOM) else b""
         return Snapshot(self.path, mark + text.encode("utf-8"))
 
 
 def read_snapshot(path: Path) -> Snapshot:
-    """The file as it is now.  One that cannot be read counts as missing: loading it says why."""
+    """The file as it is now.  A file that cannot be read counts as missing: loading it reports the reason."""
     try:
         with path.open("rb") as file:
             return Snapshot(path, file.read(MAX_BYTES + 1))
@@ -57,11 +57,14 @@ def read_snapshot(path: Path) -> Snapshot:
 
 
 def save(before: Snapshot, after: Snapshot, *, project: Path | None = None, anyway: bool = False) -> None:
-    """Replaces the file by ``after``, if it is still the one read ``before``: whoever reads it sees one of the two.
+    """Replaces the file ``before`` by ``after``, if it has not changed since; with ``anyway`` also if it has.
 
-    The file that a symbolic link leads to is replaced, not the link, and its permissions stay.  A link must not lead
-    out of ``project``, the folder of the project, nor out of the file's own folder if that lies elsewhere or there is
-    no project.  Raises :class:`Unsavable`, with the file as it was.
+    The replacement is atomic: another program that reads the file sees the old or the new contents, never a mixture.
+    If the file is a symbolic link, the file that it leads to is replaced and keeps its permissions; the link stays.
+    The link must not lead out of ``project``, the folder of the project.  If the file is not in ``project``, or there
+    is no project, the link must not lead out of the file's own folder.
+
+    Raises :class:`Unsavable`; the file is then unchanged.
     """
     target = Path(os.path.realpath(before.path))
     _check_links(before.path, target, project)
@@ -90,7 +93,7 @@ def save(before: Snapshot, after: Snapshot, *, project: Path | None = None, anyw
 
 
 def _check_links(path: Path, target: Path, project: Path | None) -> None:
-    """Refuses a link that would have a file changed that nobody named."""
+    """Raises Unsavable if ``path`` is a link that leads out of the project: the user has not named that file."""
     path = Path(os.path.abspath(path))
     inside = project if project is not None and Path(os.path.abspath(project)) in path.parents else path.parent
     if Path(os.path.realpath(inside)) not in target.parents:
@@ -101,18 +104,18 @@ def _check_links(path: Path, target: Path, project: Path | None) -> None:
 
 
 def _discard(temporary: Path) -> None:
-    with suppress(OSError):  # it was not made
+    with suppress(OSError):  # the temporary file may not exist
         temporary.unlink()
 
 
 class Watch:
-    """Whether any of some files has other contents than before.
+    """Notices when the contents of some files change.
 
-    Contents are read only when what the file system says of a file has changed, so asking twice a second costs little.
+    A file is read again only if its status has changed (times, size, inode), so two looks a second cost little.
     """
 
     def __init__(self, paths: Iterable[Path] = (), read: Iterable[Snapshot] = ()) -> None:
-        """``read`` are files of which it is known what was read: a change since then counts."""
+        """``read`` are files with the contents that were read earlier: a change since then counts, too."""
         self._known: dict[Path, tuple[tuple[int, ...], bytes]] = {
             path: (_status(path), _digest(path)) for path in paths
         }
@@ -121,11 +124,11 @@ class Watch:
             self._known[snapshot.path] = ((-1,), digest)
 
     def newest(self) -> float:
-        """When the youngest of the files was changed, in seconds since 1970; 0 where there is none."""
+        """The time of the latest change of any of the files, in seconds since 1970; 0 if none exists."""
         return max((status[0] * 1e-9 for status, _ in self._known.values() if len(status) > 1), default=0.0)
 
     def changed(self) -> list[Path]:
-        """The files that have changed since they were last asked for, sorted."""
+        """The files that have changed since the last call, sorted."""
         found = []
         for path, (status, digest) in self._known.items():
             now = _status(path)
@@ -147,7 +150,7 @@ def _status(path: Path) -> tuple[int, ...]:
 
 
 def _digest(path: Path) -> bytes:
-    """What a file contains, or a folder lists; empty where there is nothing."""
+    """A hash of the contents of a file, or of the names in a folder; empty if there is neither."""
     try:
         if path.is_dir():
             return hashlib.sha256("\0".join(sorted(os.listdir(path))).encode("utf-8", "surrogateescape")).digest()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which ends a wire can have without a word against it: what a page or a terminal offers first.
+"""Finds the component ports that fit a model port without a conversion.  The page and the terminal offer them first.
 
-The wires themselves are judged by :mod:`epg.resolve.wires`; nothing is refused here.
+Nothing is refused here: :mod:`epg.resolve.wires` checks the wires.
 """
 
 from __future__ import annotations
@@ -14,7 +14,10 @@ from epg.resolve.wires import component_steps
 
 
 def fits(port: Port, component: Component, component_port: KindPort) -> bool:
-    """Whether a port of the model and one of a component of its direction agree in type and unit, as they are."""
+    """True if a model port and a component port of the matching direction agree in type and in the dimension of units.
+
+    A real value does not fit an input of another type.  A port without a unit fits every unit.
+    """
     if port.direction == "input" and component_port.type == "real" and port.type != "real":
         return False
     own, other = normal_unit(port.unit), component_steps(component, component_port)[1]

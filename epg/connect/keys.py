@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Who may use the page's server: one-time tokens in addresses, and the secrets that they are exchanged for.
+"""Access to the page's server: a one-time token in an address, and the secret for which the page exchanges it.
 
-An address can be read by other users of the computer: a browser is started with it on its command line.  Its token
-therefore works once, and the page keeps the secret that it gets for the token out of every address.
+Other users of the computer can read an address, because it is on the command line of the browser.  A token therefore
+works only once.  The page gets a secret for it, and never puts the secret into an address.
 
 >>> keys = Keys()
 >>> token = keys.new_token()
@@ -19,9 +19,9 @@ import threading
 
 
 class Keys:
-    """All methods can be called by any thread.
+    """The valid tokens and secrets.  All methods can be called by any thread.
 
-    Digests are kept and compared: how long that takes says nothing about the text.
+    Only digests are kept and compared, so the time of a comparison reveals nothing about a token or a secret.
     """
 
     def __init__(self) -> None:
@@ -37,7 +37,7 @@ class Keys:
         return token
 
     def exchange(self, token: str) -> str | None:
-        """A new secret for ``token``, which is used up by that; None for any other text."""
+        """A new secret for ``token``, which becomes invalid; None if ``token`` is not valid."""
         digest = _digest(token)
         with self._lock:
             if digest not in self._tokens:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Calls of EPG's functions that a CMakeLists.txt makes with literal arguments, read without running CMake.
+"""Reads calls of EPG's functions with literal arguments from a CMakeLists.txt, without running CMake.
 
-Literal arguments may hold CMake's names of the source folders.  A call that needs more is :class:`Unknown`: one with
-another variable, in a loop or in a function.  A call under a condition is taken as one that is made.
+A literal argument may contain CMake's variables for the source folders.  A call with another variable, in a loop or
+in a function is :class:`Unknown`: only CMake can evaluate it.  A call in if() counts as made.
 Grammar: cmake-language(7), "Syntax".
 """
 
@@ -33,7 +33,7 @@ _REPEATING = re.compile(r"(end)?(?:foreach|while|function|macro)")
 
 @dataclass(frozen=True)
 class Word:
-    """One argument; ``text`` is None if it is not literal."""
+    """One argument.  ``text`` is its value, None if it is not literal; ``written`` is the text in the file."""
 
     text: str | None
     written: str
@@ -42,7 +42,7 @@ class Word:
 
 @dataclass(frozen=True)
 class Call:
-    """One call in ``folder``, whose targets folders ``roots`` are those of ``set(EPG_TARGETS_PATH ...)``."""
+    """One call in the CMakeLists.txt of ``folder``.  ``roots`` are the folders of ``set(EPG_TARGETS_PATH ...)``."""
 
     name: str
     words: tuple[Word, ...]
@@ -53,7 +53,7 @@ class Call:
 
 @dataclass(frozen=True)
 class Unknown:
-    """A place that only CMake can understand, and why."""
+    """A place that only CMake can evaluate.  ``message`` says why."""
 
     span: Span
     message: str
@@ -65,7 +65,7 @@ def not_literal(word: Word) -> Unknown:
 
 @dataclass
 class LiteralCalls:
-    """What the project whose top folder is ``top`` calls, in it and in the folders that add_subdirectory() names."""
+    """The calls of the project in ``top``: in that folder and in all folders that add_subdirectory() names."""
 
     top: Path
     calls: list[Call] = field(default_factory=list)
@@ -81,7 +81,7 @@ class LiteralCalls:
         try:
             text = path.read_bytes().decode("utf-8-sig", "replace").replace("\r\n", "\n")
         except (OSError, ValueError):
-            return  # CMake says so when it configures
+            return  # CMake reports it when it configures
         if folder in self._read or len(self._read) >= MAX_FOLDERS:
             return
         self._read.add(folder)
@@ -113,7 +113,7 @@ class LiteralCalls:
                 self._folder(Path(os.path.normpath(call.folder / first.text)), call.roots)
 
     def _commands(self, text: str, path: Path) -> Iterator[tuple[str, Span, tuple[Word, ...]]]:
-        """The commands of ``text`` with names in lower case; a mistake in the syntax ends them and is reported."""
+        """The commands of ``text``, their names in lower case.  The first syntax error is reported and ends them."""
         name, opening, words, depth, at, line, before = "", Span(str(path)), list[Word](), 0, 0, 1, 0
         while at < len(text):
             match = _TOKEN.match(text, at)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Everything a request's files mean at one moment, with the command line's own messages about them."""
+"""Loads all files of a request, with the same messages about them as the command line's."""
 
 from __future__ import annotations
 
@@ -24,14 +24,17 @@ from epg.resolve.resolve import allocate_hardware
 from epg.source import YamlNode
 
 _MOST_WATCHED = 2000
-"""Files and folders of a model that cannot be read: which of them will mend it nobody knows."""
+"""The limit of files and folders watched for a model that cannot be read: a change of any of them may repair it."""
 _SETTLED = 2.0
-"""Seconds after which a file counts as written: younger ones could have changed while they were read."""
+"""Seconds after which a file counts as completely written: a younger file may have changed while it was read."""
 
 
 @dataclass(frozen=True)
 class Loaded:
-    """The parts of a request as far as they are right.  ``root`` is the tree of the bindings, even of wrong ones."""
+    """The parts of a request that could be loaded without an error, and the messages about all of it.
+
+    ``root`` is the YAML tree of the bindings, even if they have errors.
+    """
 
     request: Request
     parts: Parts
@@ -41,7 +44,7 @@ class Loaded:
 
     @cached_property
     def hardware(self) -> Hardware:
-        """What the components have got of the hardware; without an application as far as the ``.tcf`` says it."""
+        """The assignments of the components' claims; without an application, those that follow from the ``.tcf``."""
         configuration, application = self.parts.configuration, self.parts.application
         if application is not None:
             return hardware_of(application)
@@ -52,7 +55,7 @@ class Loaded:
 
     @cached_property
     def matches(self) -> Mapping[str, Match]:
-        """The component each port is probably meant for."""
+        """The probable component of each model port."""
         if self.parts.model is None or self.parts.configuration is None:
             return {}
         return match_ports(self.parts.model, self.parts.configuration.components)
@@ -65,11 +68,11 @@ class Loaded:
 
     @cached_property
     def places(self) -> Places:
-        """What the lines of the files belong to."""
+        """The ports and components to which the lines of the files belong."""
         return Places(str(self.request.bindings), self.root, self.parts.model, self.chain)
 
     def files(self) -> Iterator[Path]:
-        """Every file that a change of could change any of this."""
+        """All files that must be watched: a change of any of them can change this object."""
         request, parts = self.request, self.parts
         yield request.bindings
         yield from (file.path for file in self.chain)
@@ -84,18 +87,18 @@ class Loaded:
 
 
 def tcf_path(request: Request) -> Path | None:
-    """The file that ``request.tcf`` names."""
+    """The file that ``request.tcf`` names; None if it is not found."""
     return find_tcf(request.tcf, request.beside, request.roots)
 
 
 class Models:
-    """Models by their place, read again only when a file of theirs has changed: large ones take a while."""
+    """A cache of models by path.  A model is read again only if one of its files has changed: large ones take long."""
 
     def __init__(self) -> None:
         self._known: dict[Path, tuple[Watch, Model | None, Diagnostics]] = {}
 
     def read(self, path: Path, diagnostics: Diagnostics) -> Model | None:
-        """As :func:`epg.models.load_model`, with the same messages each time."""
+        """The model as :func:`epg.models.load_model` reads it.  Each call adds the same messages to ``diagnostics``."""
         known = self._known.pop(path, None)
         if known is None or known[0].changed():
             problems = Diagnostics()
@@ -109,7 +112,7 @@ class Models:
 
 
 def load(request: Request, models: Models) -> Loaded:
-    """Reads all files of ``request``, drafts instead of those that have one."""
+    """Reads all files of ``request``.  The draft of a file is read instead of the file."""
     diagnostics = Diagnostics()
     parts = load_parts(request, diagnostics, models.read)
     if parts.bindings is not None:
@@ -129,14 +132,14 @@ def load(request: Request, models: Models) -> Loaded:
 
 
 def files_of_model(path: Path, model: Model | None) -> Iterator[Path]:
-    """What a change of would make the model at ``path`` another one."""
+    """The files and folders on which the model at ``path`` depends; ``model`` is None if it cannot be read."""
     yield path
     if model is not None:
         yield from model.files
         yield from model.twins
         yield from (model.directory, *model.searched)
         return
-    if path.exists():  # what it lacks may be put beside it
+    if path.exists():  # the user may add a missing file in a folder beside it
         near = Neighbours(path if path.is_dir() else path.parent, cpp=True)
         yield from (*near.folders, *near.watched)
     count = 0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The user at the other end of a connection on this computer, as Linux says it.
+"""Finds the user at the other end of a connection on this computer, on Linux.
 
 /proc/net/tcp lists both ends of such a connection, each with the user who owns it (proc_pid_net(5)).
 """
@@ -13,13 +13,14 @@ from pathlib import Path
 
 TABLE = Path("/proc/net/tcp")
 _OVERFLOW = 65534
-"""Any user from outside the user namespace that this program runs in (user_namespaces(7))."""
+"""The number of every user from outside of this program's user namespace (user_namespaces(7))."""
 
 
 def is_another_user(peer: tuple[str, int], here: tuple[str, int]) -> bool:
-    """True if another user owns the end ``peer`` of the connection to ``here``; False also where nobody can tell.
+    """True if another user owns the end ``peer`` of the connection to ``here``; False if the owner is not known.
 
-    The superuser does not count, who may do everything anyway, nor does the user who has started this by sudo.
+    The superuser does not count as another user, because root may do everything anyway.  The user who has started this
+    program with sudo does not count either.
     """
     user = owner(peer, here)
     own = {0, _OVERFLOW, os.geteuid(), _sudo_user()} if user is not None else set()
@@ -27,7 +28,7 @@ def is_another_user(peer: tuple[str, int], here: tuple[str, int]) -> bool:
 
 
 def owner(peer: tuple[str, int], here: tuple[str, int], table: Path = TABLE) -> int | None:
-    """The number of the user who owns the end ``peer``; None if it is not in the table, or there is no table."""
+    """The user id of the owner of the end ``peer``; None if the table does not exist or does not list it."""
     try:
         lines = table.read_text(encoding="ascii").splitlines()[1:]
     except (OSError, ValueError):
@@ -37,7 +38,7 @@ def owner(peer: tuple[str, int], here: tuple[str, int], table: Path = TABLE) -> 
 
 
 def _entry(address: str, port: int) -> str:
-    """As the kernel writes it: the address as a number of this computer's byte order."""
+    """An end as the kernel writes it: the address as a number in this computer's byte order, then the port."""
     return f"{int.from_bytes(socket.inet_aton(address), sys.byteorder):08X}:{port:04X}"
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures of what a session shows, drawn when somebody asks for them."""
+"""Draws the pictures of a session on request."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from epg.graph.wiring import draw_wiring
 
 
 def draw(loaded: Loaded, name: str, title: str) -> str | None:
-    """The picture called ``name`` as SVG; None where there is no such picture, or it cannot be drawn now."""
+    """The picture ``name`` as SVG; None if there is no picture of that name, or it cannot be drawn now."""
     if not pictures(loaded).get(name):
         return None
     if name == "wiring":

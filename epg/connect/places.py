@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which port, and which component, a message is about, by the place it points to."""
+"""Finds the port and the component that a message is about, by its position."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _SECTIONS = ("inputs", "outputs")
 
 @dataclass(frozen=True)
 class _Stretch:
-    """From the first character of a key to the last of its value."""
+    """The text from the first character of a key to the last character of its value."""
 
     name: str
     file: str
@@ -28,7 +28,7 @@ class _Stretch:
 
 
 class Places:
-    """The lines of bindings that belong to ports, those of a ``.tcf`` and what it extends that belong to components."""
+    """The lines of the bindings that belong to ports, and the lines of the ``.tcf`` files that belong to components."""
 
     def __init__(self, bindings: str, root: YamlNode | None, model: Model | None, chain: Sequence[TcfFile]) -> None:
         self._bindings = bindings
@@ -43,7 +43,7 @@ class Places:
         self._declared = {port.span: port.name for port in ports if port.span.line and spans.count(port.span) == 1}
 
     def port(self, diagnostic: Diagnostic) -> str | None:
-        """The model's port that a message is about, if it is about one."""
+        """The model port that a message is about; None if it is not about a port."""
         span = diagnostic.span
         section, _, name = diagnostic.about.partition(".")
         if section in _SECTIONS and span.file == self._bindings:
@@ -51,11 +51,11 @@ class Places:
         return self._declared.get(span) or self.port_at(span)
 
     def port_at(self, span: Span) -> str | None:
-        """The port whose lines in the bindings a place is in."""
+        """The port whose lines in the bindings contain ``span``."""
         return _name(self._ports, span)
 
     def component(self, diagnostic: Diagnostic) -> str | None:
-        """The component whose lines a message points to."""
+        """The component whose lines in a ``.tcf`` contain the position of a message."""
         return _name(self._components, diagnostic.span)
 
 
@@ -73,7 +73,7 @@ def _stretches(section: YamlNode) -> list[_Stretch]:
 
 
 def _spans(node: YamlNode) -> Iterator[Span]:
-    """Where the value and all it holds stand."""
+    """The positions of a value and of everything in it."""
     yield node.span
     yield from node.keys.values()
     for _, child in node.items():

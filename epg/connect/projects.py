@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The targets of a project that can be connected: the epg_add_target() calls of its CMakeLists.txt.
+"""Finds the targets of a project: the epg_add_target() calls in its CMakeLists.txt files.
 
 >>> # find_jobs(Path("examples/jiwy"), diagnostics)[0].request.name  ->  "jiwy"
 """
@@ -22,15 +22,16 @@ from epg.source import Span
 _ONE = ("TCF", "MODEL", "BINDINGS", "PLANT", "PLANT_BINDINGS", "NODE", "NAMESPACE")
 _NEEDED = ("TCF", "MODEL", "BINDINGS")
 _LEVELS = 8
-"""So many folders above one are looked at for the project around it."""
+"""The number of folders, from one upwards, that are searched for the project around it."""
 
 
 @dataclass(frozen=True)
 class Job:
-    """One target that can be connected, and how its project is built.
+    """One target that can be connected, and the way its project is built.
 
-    ``source_dir`` is the folder of the top CMakeLists.txt; ``build_dir`` one that is there or that ``preset`` or the
-    user would make.  ``executables`` are those of epg_add_executable(); ``board`` is what `west build -b` was given.
+    ``source_dir`` is the folder of the top CMakeLists.txt.  ``build_dir`` exists, or is the one that ``preset`` or the
+    user would create.  ``executables`` are the names that epg_add_executable() got; ``board`` is the argument that
+    ``west build -b`` got.
     """
 
     request: Request
@@ -43,10 +44,10 @@ class Job:
 
 
 def find_jobs(folder: Path, diagnostics: Diagnostics) -> list[Job]:
-    """The targets that the project in ``folder`` makes, or those of the folder of a project around it.
+    """The targets of the project in ``folder``.  ``folder`` may be inside of a larger project, too.
 
-    Empty without a message where no epg_add_target() is written.  A call that cannot be understood is an error, but a
-    warning where others are.
+    The list is empty, without a message, if there is no epg_add_target().  A call that only CMake can evaluate is an
+    error if there is no other target, else a warning.
     """
     folder = Path(os.path.abspath(folder))
     if not (folder / FILE).is_file():
@@ -58,7 +59,7 @@ def find_jobs(folder: Path, diagnostics: Diagnostics) -> list[Job]:
     requests, unknown = _requests(read, folder)
     build = next((build for build in builds if requests.keys() & records[build.path].requests.keys()), builds[0])
     executables = _executables(read)
-    if unknown or not requests:  # only CMake knows all targets, and has written them down if it has configured
+    if unknown or not requests:  # only CMake knows all targets; a configured build folder has a record of them
         build = next((build for build in builds if records[build.path].below(folder)), build)
         known = records[build.path].below(folder)
         requests, unknown = ({**requests, **known}, []) if known else (requests, unknown)
@@ -84,7 +85,7 @@ def find_jobs(folder: Path, diagnostics: Diagnostics) -> list[Job]:
 
 
 def jobs_of_model(model: Path) -> list[Job]:
-    """The targets of the project around the folder or file ``model`` that are made of it."""
+    """The targets that are made of ``model``, a folder or file, in the project around it."""
     wanted = os.path.realpath(model)
     for above in list(Path(wanted).parents)[:_LEVELS]:
         jobs = [job for job in find_jobs(above, Diagnostics()) if os.path.realpath(job.request.model) == wanted]
@@ -94,7 +95,7 @@ def jobs_of_model(model: Path) -> list[Job]:
 
 
 def report_no_target(folder: Path, diagnostics: Diagnostics) -> None:
-    """Says so where there is a project in ``folder``, or below it, but no target in ``folder`` itself."""
+    """Reports that ``folder`` has no target.  Reports nothing if there is no project in or directly below it."""
     here = folder / FILE
     below = [path.parent for path in sorted(folder.glob(f"*/{FILE}")) if find_jobs(path.parent, Diagnostics())]
     if not here.is_file() and not below:
@@ -119,7 +120,7 @@ def _top(folder: Path) -> Path:
 
 
 def _requests(read: LiteralCalls, folder: Path) -> tuple[dict[str, Request], list[Unknown]]:
-    """The targets that literal calls below ``folder`` ask for, and the calls that only CMake understands."""
+    """The targets of literal calls in ``folder`` and below, and the calls that only CMake can evaluate."""
     requests: dict[str, Request] = {}
     unknown = [unknown for unknown in read.unknown if Path(unknown.span.file).is_relative_to(folder)]
     for call in read.calls:
@@ -134,7 +135,7 @@ def _requests(read: LiteralCalls, folder: Path) -> tuple[dict[str, Request], lis
 
 
 def _executables(read: LiteralCalls) -> dict[str, list[str]]:
-    """The executables that literal calls make, by target."""
+    """The names of the executables that literal calls make, by target."""
     executables: dict[str, list[str]] = {}
     for call in read.calls:
         texts = [word.text for word in call.words]
@@ -144,7 +145,7 @@ def _executables(read: LiteralCalls) -> dict[str, list[str]]:
 
 
 def _request(call: Call, unknown: list[Unknown]) -> Request | None:
-    """What one epg_add_target() asks for, or None after noting why that cannot be told."""
+    """The request of one epg_add_target() call.  If that is not known, None, and the reason is added to ``unknown``."""
     for word in call.words:
         if word.text is None:
             unknown.append(not_literal(word))
@@ -176,7 +177,7 @@ def _request(call: Call, unknown: list[Unknown]) -> Request | None:
 
 
 def _keywords(words: Sequence[Word]) -> tuple[Mapping[str, Word], Iterable[Word]]:
-    """As cmake_parse_arguments() sorts them: the value of each keyword, and all those of SET."""
+    """Sorts arguments as cmake_parse_arguments() does: the value of each keyword, and all values of SET."""
     values: dict[str, Word] = {}
     settings: list[Word] = []
     current = ""
@@ -196,6 +197,6 @@ def _path(folder: Path, word: Word) -> Path:
 
 
 def _user_roots(call: Call) -> tuple[Path, ...]:
-    """The user's folders as CMake takes them: of its variable, else of the environment."""
+    """The user's folders of targets, as CMake takes them: from its variable, else from the environment."""
     roots = call.roots or os.environ.get("EPG_TARGETS_PATH", "").split(os.pathsep)
     return tuple(call.folder / root for root in roots if root)

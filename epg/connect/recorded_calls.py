@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The targets that CMake has made in a build folder, as cmake/EPGConnect.cmake has written them down.
+"""Reads the targets that CMake has made in a build folder, from the record that cmake/EPGConnect.cmake has written.
 
-A line is the name of a function, or a tab and one of its arguments.
+A line of the record is the name of a function, or a tab and one of its arguments.
 """
 
 from __future__ import annotations
@@ -21,18 +21,18 @@ RECORD = "CMakeFiles/epg/calls.txt"
 
 @dataclass(frozen=True)
 class RecordedCalls:
-    """Targets by name, and the names of the executables of each."""
+    """The targets by name, and the names of the executables of each target."""
 
     requests: Mapping[str, Request] = field(default_factory=dict)
     executables: Mapping[str, list[str]] = field(default_factory=dict)
 
     def below(self, folder: Path) -> dict[str, Request]:
-        """The targets that CMakeLists.txt files in ``folder`` and below it make."""
+        """The targets of the CMakeLists.txt files in ``folder`` and below."""
         return {name: request for name, request in self.requests.items() if request.beside.is_relative_to(folder)}
 
 
 def recorded_calls(build: BuildFolder) -> RecordedCalls:
-    """The calls of the last configure run in a build folder; none where CMake has not run."""
+    """The calls of the last configuration of a build folder; none if CMake has not run there."""
     path = (build.image or build.path) / RECORD
     text = (read_text(path, Diagnostics()) if is_file(path) else None) or ""
     requests: dict[str, Request] = {}
@@ -49,7 +49,10 @@ def recorded_calls(build: BuildFolder) -> RecordedCalls:
 
 
 def _request(name: str, options: list[tuple[str, str]]) -> Request | None:
-    """The target of one call; ``options`` are those of ``epg generate``, and ``--targets-path``."""
+    """The target of one call; None if an option is missing.
+
+    ``options`` are those of ``epg generate``, and ``--targets-path``.
+    """
     values = dict(options)
     if not {"--tcf", "--model", "--bindings", "--beside", "--caller"} <= values.keys():
         return None

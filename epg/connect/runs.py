@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The build of a session: the one that runs, or ran last."""
+"""The build of a session: the running one, or the last one."""
 
 from __future__ import annotations
 
@@ -31,7 +31,10 @@ NONE: dict[str, Any] = {
 
 
 class Runs:
-    """``changed`` is called, by any thread, when there is something new to show."""
+    """Starts, cancels and shows builds, one at a time.
+
+    ``changed`` is called, by any thread, when there is something new to show.
+    """
 
     def __init__(self, changed: Callable[[], None]) -> None:
         self._changed = changed
@@ -47,7 +50,10 @@ class Runs:
             raise Refused("a build is running", "wait for it, or cancel it", 409)
 
     def ask(self, job: Job, target: Target | None, agreed: str) -> dict[str, Any] | None:
-        """What must be agreed to first; ``agreed`` is the key of a question that was answered with yes."""
+        """The question that the user must agree to before the build; None if there is no question left.
+
+        ``agreed`` is the key of a question that the user has answered with yes.
+        """
         from epg.connect.build.consent import question_about
 
         self._question = question_about(job, target)
@@ -57,7 +63,7 @@ class Runs:
         return self._question.data() if self._question is not None else None
 
     def start(self, job: Job) -> None:
-        """Configures and builds ``job``."""
+        """Configures and builds ``job``.  Raises Refused while another build runs."""
         from epg.connect.build.run import Build
 
         self.check_idle()
@@ -69,7 +75,7 @@ class Runs:
             self._build.cancel()
 
     def close(self) -> None:
-        """Cancels what runs, and waits for its end."""
+        """Cancels a running build, and waits at most 10 s for its end."""
         self.cancel()
         if self._build is not None:
             self._build.wait(10)
@@ -78,7 +84,7 @@ class Runs:
         self._build = self._question = None
 
     def state(self, places: Places | None) -> dict[str, Any]:
-        """What there is to show; messages about the bindings with the port they are about."""
+        """The state of the build for the page.  A message about the bindings gets the port that it is about."""
         ask = self._question.data() if self._question is not None else None
         if self._build is None:
             return NONE | {"ask": ask}
@@ -89,6 +95,6 @@ class Runs:
         return state
 
     def log(self, start: int) -> dict[str, Any]:
-        """What was printed, from line ``start`` on."""
+        """The printed lines from line ``start`` on, and the number of the next line."""
         lines = self._build.lines(start) if self._build is not None else []
         return {"lines": lines, "next": start + len(lines)}

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page's server: HTTP on this computer alone, for the page whose address it gave out.
+"""The page's HTTP server.  It serves this computer only, and only pages with an address that it has announced.
 
-The page itself is public; all that it shows and does needs a secret in a header, which the page gets once for the token
-in its address (``keys.py``).  A header is not a cookie: browsers send a cookie to every port of 127.0.0.1.  Requests of
-other users of this computer (``peer.py``), of other pages (``Origin``) and under a name that is not this computer's
-(``Host``) are refused whatever they know.  The token stands behind ``#``, so no browser sends it by itself.
+The static files of the page are public.  All data and actions need a secret in a header.  The page gets the secret
+once, for the token in its address (``keys.py``).  The token is behind ``#``, so the browser does not send it by
+itself.  The secret is not a cookie, because browsers send a cookie to every port of 127.0.0.1.
+
+These requests are refused even with the secret: requests of other users of this computer (``peer.py``), of other pages
+(``Origin``), and with a host name that is not this computer's (``Host``).
 
 >>> # server = Server(session); print(server.new_address()); server.run()
 """
@@ -38,7 +40,7 @@ TYPES = {
     ".svg": "image/svg+xml",
 }
 _PICTURES_STYLE = base64.b64encode(hashlib.sha256(style_sheet().encode()).digest()).decode()
-"""By this hash a picture that is opened by itself may have its own style: the page's policy holds for it, too."""
+"""The hash of the pictures' style sheet.  The page's security policy also holds for a picture that is opened alone."""
 HEADERS = {
     "Content-Security-Policy": "default-src 'none'; script-src 'self'; "
     f"style-src 'self' 'sha256-{_PICTURES_STYLE}'; img-src 'self' blob:; "
@@ -50,19 +52,19 @@ HEADERS = {
     "X-Content-Type-Options": "nosniff",
 }
 SECRET = "X-EPG-Secret"
-"""The header that each request for more than the page itself must have."""
+"""The header that each request must have, except those for the static files of the page."""
 NAMES = ("127.0.0.1", "localhost")
-"""Names of this computer in ``Host``.  The port may differ: a tunnel may begin at another one."""
+"""Names of this computer in ``Host``.  The port may differ from the server's: a tunnel may use another one."""
 LONGEST_WAIT = 20.0
-"""Seconds that a request for the next state waits."""
+"""Seconds after which a request for the next state is answered even if the state has not changed."""
 MOST_BYTES = 1 << 20
 CLOSED = 30.0
-"""Seconds without a page after which it counts as closed; a page asks again at least every 20."""
+"""Seconds without a request after which the page counts as closed.  An open page asks at least every 20 s."""
 NEVER_OPENED = 600.0
 
 
 class Server:
-    """Serves ``session`` on 127.0.0.1; ``port`` 0 takes any that is free."""
+    """Serves ``session`` on 127.0.0.1; ``port`` 0 takes any free port."""
 
     def __init__(
         self,
@@ -73,7 +75,11 @@ class Server:
         opened: float = NEVER_OPENED,
         announce: Callable[[str], None] | None = None,
     ) -> None:
-        """``announce`` gets an address at once, and the next one as soon as a page was opened by the last."""
+        """``announce`` is called at once with an address, and with a new address each time a page has used the last.
+
+        ``closed`` and ``opened`` are the seconds after which :meth:`run` ends with ``until_closed``: without an open
+        page, and if no page was opened at all.
+        """
         self.session = session
         self.keys = Keys()
         self._closed, self._until_opened = closed, opened
@@ -94,7 +100,7 @@ class Server:
         return f"http://127.0.0.1:{self._http.server_address[1]}/#{self.keys.new_token()}"
 
     def exchange(self, token: str) -> str:
-        """The secret for the token of an address; raises :class:`Refused` for one that is used or was never given."""
+        """The secret for the token of an address.  Raises :class:`Refused` for a used or unknown token."""
         secret = self.keys.exchange(token)
         if secret is None:
             hint = "open the address that 'epg connect' printed last"
@@ -108,7 +114,7 @@ class Server:
         announce(self._announced)
 
     def run(self, *, until_closed: bool = False) -> None:
-        """Serves until the session ends, or, with ``until_closed``, until no page is open any more."""
+        """Serves until the session ends; with ``until_closed``, also ends when no page is open any more."""
         thread = threading.Thread(target=self._http.serve_forever, kwargs={"poll_interval": 0.1}, daemon=True)
         thread.start()
         try:
@@ -118,12 +124,12 @@ class Server:
         finally:
             self.session.ended.set()
             self.session.close()
-            time.sleep(0.2)  # for the answer to whoever ended it
+            time.sleep(0.2)  # the page that has ended the session must get its answer
             self._http.shutdown()
             self._http.server_close()
 
     def state(self, after: int) -> dict[str, Any]:
-        """The next state for a page, which is open as long as it asks."""
+        """The next state after version ``after``.  A page counts as open while it calls this."""
         with self._lock:
             self._waiting += 1
         try:
@@ -144,11 +150,11 @@ class Server:
 
 class _Http(ThreadingHTTPServer):
     daemon_threads = True
-    allow_reuse_address = sys.platform != "win32"  # where it would mean that others can take the port
+    allow_reuse_address = sys.platform != "win32"  # on Windows another program could then take over the port
     owner: Server
 
     def handle_error(self, request: object, client_address: object) -> None:
-        """A browser that goes away in the middle of an answer is no error."""
+        """Ignores a browser that closes the connection during an answer."""
         if not isinstance(sys.exc_info()[1], ConnectionError):
             super().handle_error(request, client_address)  # type: ignore[arg-type]
 
@@ -166,19 +172,19 @@ class _Handler(BaseHTTPRequestHandler):
 
     def do_GET(self) -> None:
         if "Content-Length" in self.headers or "Transfer-Encoding" in self.headers:
-            self.close_connection = True  # nobody reads the body, which would count as the next request
+            self.close_connection = True  # the body is not read, and would be taken for the next request
         self._answer(self._get)
 
     def do_POST(self) -> None:
         self._answer(self._post)
 
     def send_error(self, code: int, message: str | None = None, explain: str | None = None) -> None:
-        """What is no request this server knows: methods other than GET and POST, lines that are no HTTP."""
+        """Answers unknown requests: methods other than GET and POST, and text that is not HTTP."""
         self.close_connection = True
         self._send(404 if code == 501 else code, "application/json", b"{}")
 
     def log_message(self, format: str, *arguments: object) -> None:
-        """Says nothing: the terminal is for the user."""
+        """Does nothing: the terminal is for the user, not for a log of requests."""
 
     def _answer(self, respond: Callable[[str, Mapping[str, str]], None]) -> None:
         try:
@@ -191,7 +197,7 @@ class _Handler(BaseHTTPRequestHandler):
                 raise Refused("no such address", status=404) from None
             respond(path, query)
         except Refused as problem:
-            self.close_connection = True  # what is left of a body that nobody has read
+            self.close_connection = True  # the rest of an unread body would be taken for the next request
             error = {"message": problem.message, "hint": problem.hint}
             self._send(problem.status, "application/json", json.dumps({"error": error}).encode())
         except ConnectionError:
@@ -203,7 +209,7 @@ class _Handler(BaseHTTPRequestHandler):
             self._send(500, "application/json", json.dumps({"error": error}).encode())
 
     def _check_sender(self) -> None:
-        """Refuses requests that cannot come from the page, whatever they know."""
+        """Raises Refused for a request that cannot come from the page, even if it has the secret."""
         if self._is_foreign:
             raise Refused("this page belongs to another user of the computer", status=403)
         hosts = self.headers.get_all("Host", [])
@@ -250,7 +256,7 @@ class _Handler(BaseHTTPRequestHandler):
             self._json(self.server.owner.session.act(path.removeprefix("api/"), body))
 
     def _body(self) -> dict[str, object]:
-        """The object that a request holds.  That it must be JSON keeps out what forms of other pages can send."""
+        """The JSON object of a request.  Forms of other pages cannot send JSON, so they are refused here."""
         if self.headers.get_content_type() != "application/json":
             raise Refused("a request must be application/json", status=415)
         lengths = self.headers.get_all("Content-Length", [])

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A session of ``epg connect``: what is shown, and everything a person can do to it.
+"""A session of ``epg connect``: the state that is shown, and all actions of the user.
 
-Page and terminal call the same two functions: :meth:`Session.wait` for the state, :meth:`Session.act` to change it.
-The state is made anew from the files and the draft after each change, so that it cannot disagree with them.
+Page and terminal call the same two functions: :meth:`Session.wait` returns the state, :meth:`Session.act` changes it.
+After each change the whole state is made again from the files and the draft, so it cannot disagree with them.
 
 >>> # session = Session(find_jobs(Path("examples/jiwy"), diagnostics))
 >>> # session.act("connect", {"port": "pwm_pan", "ends": [{"reference": "pwm_tilt"}]})["diagnostics"]
@@ -34,13 +34,13 @@ from epg.edit.bindings import CannotEdit, End
 __all__ = ["Refused", "Session", "State"]
 
 LOOK = 0.5
-"""Seconds between two looks at the files while somebody waits for a change."""
+"""Seconds between two looks at the files while a caller waits for a change."""
 
 State = dict[str, Any]
 
 
 class Session:
-    """One target of ``jobs`` at a time, or, where there is none yet, the choice of one for ``model``.
+    """Shows one target of ``jobs`` at a time.  Without jobs, the user first chooses a target for ``model``.
 
     All methods can be called by any thread.
     """
@@ -53,7 +53,7 @@ class Session:
         model: Path | None = None,
         user_roots: Sequence[Path] = (),
     ) -> None:
-        """``folder`` is where ``jobs`` were found, and are found again when its CMakeLists.txt changes."""
+        """``folder`` is the folder of ``jobs``: they are searched again when its CMakeLists.txt changes."""
         self.ended = threading.Event()
         self._changed = threading.Condition(threading.RLock())
         self._version = 0
@@ -87,14 +87,14 @@ class Session:
         threading.Thread(target=self._list_configurations, daemon=True).start()
 
     def state(self) -> State:
-        """The state at this moment."""
+        """The present state, without a look at the files."""
         with self._changed:
             places = self._editor.loaded.places if self._editor is not None else None
             shown = {"version": self._version, "epg": epg.__version__, **self._shown}
             return shown | {"build": self._runs.state(places)}
 
     def wait(self, after: int, timeout: float) -> State:
-        """The state as soon as its version is another than ``after``, or after ``timeout`` seconds."""
+        """The state.  Waits until its version differs from ``after``, at most ``timeout`` seconds."""
         until = time.monotonic() + timeout
         while True:
             self._look()
@@ -105,7 +105,10 @@ class Session:
                 self._changed.wait(min(LOOK, left))
 
     def act(self, action: str, body: Body) -> State:
-        """Does ``action``; returns the state after it, or raises :class:`Refused` with everything as it was."""
+        """Does ``action`` and returns the state after it.
+
+        Raises :class:`Refused`.  Nothing has changed then, except that saving may have written one of the two files.
+        """
         try:
             if action in self._unlocked:
                 self._unlocked[action](body)
@@ -119,16 +122,16 @@ class Session:
         except CannotEdit as problem:
             raise Refused(str(problem)) from None
         except Unsavable as problem:
-            self._publish()  # one of two files may have been saved
+            self._publish()  # one of the two files may have been saved
             raise Refused(str(problem), status=409) from None
         return self.state()
 
     def log(self, start: int) -> dict[str, Any]:
-        """What configuring and building have printed, from line ``start`` on."""
+        """The output of configuring and building, from line ``start`` on."""
         return self._runs.log(max(0, start))
 
     def picture(self, name: str, configuration: str = "") -> str:
-        """One of the pictures as SVG."""
+        """The picture ``name`` of the open target as SVG, or the wiring of ``configuration``.  Raises Refused."""
         editor = self._editor
         svg = None
         if configuration:
@@ -140,27 +143,30 @@ class Session:
         return svg
 
     def source(self, file: str, line: int) -> dict[str, Any]:
-        """The lines around one that a message points to."""
+        """The lines around ``line`` of a file that a message names.  Raises Refused for other files."""
         editor = self._editor
         job = editor.job if editor is not None else None
         folder = (job.build_dir or job.source_dir if job is not None else None) or Path()
         return excerpt(self.state(), folder, editor.draft.drafts() if editor is not None else {}, file, line)
 
     def build_question(self) -> dict[str, Any] | None:
-        """What a build would run, where that must be agreed to first: 'generate' with its key as 'run' does that."""
+        """The question that the user must agree to before a build; None if there is none.
+
+        The action "generate" with the question's key as "run" agrees to it.
+        """
         with self._changed:
             return self._ask("")
 
     def close(self) -> None:
-        """Ends a build that still runs, with all that it has started."""
+        """Cancels a running build and all programs that it has started."""
         self._runs.close()
 
     @property
     def is_building(self) -> bool:
-        """Whether a build runs."""
+        """True while a build runs."""
         return self._runs.running
 
-    # what people do to the files
+    # actions of the user
 
     def _connect(self, body: Body) -> None:
         port, wires = text(body, "port"), ends(body)
@@ -238,7 +244,7 @@ class Session:
         configuration = self._opened().loaded.parts.configuration
         return self._runs.ask(self._opened().job, configuration.target if configuration is not None else None, agreed)
 
-    # how the state comes about
+    # making the state
 
     def _opened(self) -> Editor:
         if self._editor is None:
@@ -246,7 +252,7 @@ class Session:
         return self._editor
 
     def _look(self, *, at_once: bool = False) -> None:
-        """Notices what was edited outside: twice a second at most, unless somebody is about to change something."""
+        """Notices edits by other programs: at most twice a second, or with ``at_once`` before a change of the user."""
         with self._changed:
             now = time.monotonic()
             if not at_once and now - self._looked < 0.9 * LOOK:
@@ -261,7 +267,7 @@ class Session:
                 self._publish()
 
     def _open_anew(self) -> None:
-        """Opens the target as its CMakeLists.txt says now, once nothing can be lost by that."""
+        """Opens the target as the changed CMakeLists.txt defines it, as soon as there are no unsaved changes."""
         editor = self._editor
         if editor is None or not self._outdated:
             return
@@ -273,7 +279,7 @@ class Session:
         self._outdated = False
 
     def _publish(self) -> None:
-        """Makes the state anew."""
+        """Makes the state again from the files and the draft, and wakes all callers of :meth:`wait`."""
         with self._changed:
             if self._editor is not None:
                 shown = {"phase": "connect", "create": None, **self._editor.show()}

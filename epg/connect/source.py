@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The lines around a place that a message names; of no other file."""
+"""Shows the lines around the position of a message.  Files that no message names cannot be read this way."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from epg.connect.files import read_snapshot
 from epg.documents.text_file import Drafts
 
 AROUND = 10
-"""Lines shown before and after the one that is meant."""
+"""The number of lines that are shown before and after the line of the message."""
 
 
 def excerpt(state: Mapping[str, Any], folder: Path, drafts: Drafts, file: str, line: int) -> dict[str, Any]:
-    """21 lines of ``file``, as its draft says if it has one.
+    """21 lines of ``file`` around ``line``, from its draft if it has one.
 
-    Names that are not absolute, as compilers print them, are below ``folder``.  Raises Refused for files that nothing
-    in ``state`` names.
+    Compilers print names that are not absolute: these are relative to ``folder``.  Raises Refused for a file that
+    nothing in ``state`` names.
     """
     if file not in set(_named(state)):
         raise Refused("no message is about this file", status=404)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A model that has no project yet: what there is to say before one is chosen for it."""
+"""The state of a session for a model without a project, until the user has chosen a target."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from epg.models import load_model
 
 
 class Start:
-    """The model, looked at again when its files change."""
+    """The model at ``path``.  It is read again when its files change."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -23,14 +23,14 @@ class Start:
         self._load()
 
     def look(self) -> bool:
-        """Whether the model has changed."""
+        """Reads the model again if its files have changed.  Returns True if they have."""
         changed = bool(self._watch.changed())
         if changed:
             self._load()
         return changed
 
     def show(self) -> dict[str, Any]:
-        """The state before there is a project; all that belongs to one is empty."""
+        """The state without a project: all values that belong to a project are empty."""
         model = self.model
         return {
             "phase": "choose",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The targets of a project, found anew when a CMakeLists.txt changes."""
+"""The targets of a project.  They are searched again when a CMakeLists.txt changes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from epg.diagnostics import Diagnostics
 
 
 class Targets:
-    """``jobs`` of the project in ``folder``; without a folder they stay as they are."""
+    """The ``jobs`` of the project in ``folder``.  Without a folder they never change."""
 
     def __init__(self, jobs: Sequence[Job], folder: Path | None = None) -> None:
         self._folder = folder
@@ -27,7 +27,7 @@ class Targets:
         return next((job for job in self.jobs if job.request.name == name), None)
 
     def look(self) -> bool:
-        """Whether a CMakeLists.txt has changed and still makes targets."""
+        """Searches the targets again if a CMakeLists.txt has changed.  Returns True if it has and still has targets."""
         if self._folder is None or not self._watch.changed():
             return False
         jobs = find_jobs(self._folder, Diagnostics())

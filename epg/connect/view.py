@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a page or a terminal shows of a target: plain data, made of nothing but the files and the draft.
+"""A target as the page and the terminal show it: plain data, made from the files and the draft only.
 
-Messages are the command line's: the same words, places and order as ``epg check --json`` gives.
+The messages have the words, positions and order of ``epg check --json``.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ Data = dict[str, Any]
 
 
 def view_of(loaded: Loaded) -> Data:
-    """The part of the state that the files decide."""
+    """The part of the state that follows from the files and the draft."""
     model, configuration = loaded.parts.model, loaded.parts.configuration
     wires = _wires(loaded)
     taken = {end["reference"] for ends in wires.values() for end in ends}
@@ -55,14 +55,14 @@ def view_of(loaded: Loaded) -> Data:
 
 
 def pictures(loaded: Loaded) -> dict[str, bool]:
-    """Which pictures can be drawn."""
+    """For each picture: True if it can be drawn."""
     configuration, whole = loaded.parts.configuration, loaded.parts.application is not None
     drawn = configuration is not None and configuration.target.board.layout is not None and bool(loaded.hardware)
     return {"wiring": drawn, "application": whole, "schedule": whole}
 
 
 def model_view(model: Model) -> Data:
-    """What is known of a model."""
+    """A model and its ports.  ``step`` is in seconds."""
     return {
         "name": model.name,
         "origin": model.origin,
@@ -109,7 +109,7 @@ def _component(component: Component, configuration: Configuration, claims: dict[
 
 
 def _reference(component: Component, port: KindPort) -> str:
-    """What bindings write for a port: the component alone where that is enough."""
+    """The text for a component port in bindings.  The component's name alone is enough for its main port."""
     return component.name if port == component.kind.main_port(port.direction) else f"{component.name}.{port.name}"
 
 
@@ -126,7 +126,7 @@ def _wires(loaded: Loaded) -> dict[str, list[Data]]:
 
 
 def _wire(end: End, name: str, direction: str, loaded: Loaded) -> Data:
-    """One end of a wire: what the bindings say of it, and in ``from_tcf`` what its component converts besides."""
+    """One end of a wire: its conversion in the bindings, and in ``from_tcf`` the conversion of its component."""
     found = _end(end.reference, direction, loaded.parts.configuration)
     own = _said(end)
     given = ""
@@ -152,7 +152,7 @@ def _wire(end: End, name: str, direction: str, loaded: Loaded) -> Data:
 
 
 def _fitting(match: Match, loaded: Loaded) -> list[str]:
-    """Those of the candidates that agree with the port in type and unit too."""
+    """The candidates that agree with the port in type and unit, too."""
     direction = "source" if match.port.direction == "input" else "sink"
     ends = {reference: _end(reference, direction, loaded.parts.configuration) for reference in match.candidates}
     return [reference for reference, end in ends.items() if end is not None and fits(match.port, *end)]
@@ -182,7 +182,7 @@ def _units(steps: list[Step]) -> str:
 
 
 def diagnostic_view(diagnostic: Diagnostic, places: Places | None = None) -> Data:
-    """A message as the command line's JSON has it, with the port and the component it is about."""
+    """A message as in the command line's JSON, with the port and the component that it is about."""
     return {
         "id": diagnostic.id,
         "severity": diagnostic.severity,

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Builds that somebody watches: what is run, what it says and what it makes."""
+"""Builds of ``epg connect``: the commands, their messages and their products."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One message of CMake: a line that says where, a text in wrapped paragraphs, the calls that led there.
+"""Reads one message of CMake: a line with the position, a text in wrapped paragraphs, and the call stack.
 
 ::
 
@@ -31,7 +31,7 @@ def starts_cmake_message(line: str) -> bool:
 
 
 class CMakeMessage:
-    """Gathers a message from its first line on."""
+    """One message, read line by line; ``first`` is its first line."""
 
     def __init__(self, first: str) -> None:
         match = _START.fullmatch(first)
@@ -44,7 +44,7 @@ class CMakeMessage:
         self._after_empty = False
 
     def read(self, line: str) -> bool:
-        """Whether ``line`` belongs to this message."""
+        """Reads the next line.  Returns False if ``line`` does not belong to this message."""
         if line.startswith("Call Stack (most recent call first):"):
             self._in_stack = True
         elif self._in_stack:
@@ -57,7 +57,7 @@ class CMakeMessage:
         elif line.startswith("  "):
             self._lines.append(line[2:])
         elif not line:
-            ended = self._after_empty  # two of them; one in the text has two blanks
+            ended = self._after_empty  # two empty lines end a message; in its text they are single or have two blanks
             self._after_empty = True
             self._lines.append("")
             return not ended
@@ -68,9 +68,9 @@ class CMakeMessage:
 
     @property
     def problems(self) -> list[tuple[str, str]]:
-        """What is wrong, and the command that gets what is missing, or "".
+        """The problems of the message: for each its text, and a hint with the command that installs a tool, or "".
 
-        A message with several commands is one problem for each: the paragraph that ends with "Get it:".
+        A message with several commands has one problem for each: the paragraph that ends with "Get it:".
         """
         commands = list(_GET.finditer(self._whole))
         if len(commands) <= 1:
@@ -86,7 +86,7 @@ class CMakeMessage:
 
     @property
     def _whole(self) -> str:
-        """CMake fills lines up to a width: those of a paragraph are one line, indented ones stay."""
+        """The whole text.  CMake wraps paragraphs: their lines are joined here, and indented lines are kept."""
         paragraphs: list[str] = []
         go_on = False
         for line in (line.rstrip() for line in self._lines):
@@ -99,7 +99,7 @@ class CMakeMessage:
         return "\n".join(paragraphs).strip("\n")
 
     def place(self, project: Path) -> tuple[str, int]:
-        """The innermost call that stands in the project itself; else where CMake was when it said this."""
+        """File and line of the innermost call in the folder ``project``; else the position in CMake's first line."""
         for file, line in self._calls:
             path = Path(os.path.normpath(project / file))
             if file and path.is_relative_to(project):

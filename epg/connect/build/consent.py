@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a build would run, said before the first one in a folder.
+"""Asks the user for consent before the first build in a folder, and shows the commands that it would run.
 
-A folder that somebody has handed on may name any program: in its CMake files, in the cache of a build folder.  So the
-commands are shown once, and once more if they become others; what was agreed to is kept in EPG's cache.
+A project from another person may name any program: in its CMake files, or in the cache of a build folder.  The user
+must therefore agree to the commands once, and again when the programs or the folders change.  EPG's cache keeps the
+answers.
 
 >>> # question = question_about(job)
 >>> # question.commands  ->  ("cmake -S /robot -B /robot/build -G Ninja", "cmake --build /robot/build")
@@ -27,13 +28,16 @@ from epg.connect.build.plan import make_plan
 from epg.connect.projects import Job
 
 FILE = "agreed-builds"
-"""In EPG's cache: a line for each folder and its programs."""
+"""A file in EPG's cache, with one line for each :attr:`Question.key` that the user has agreed to."""
 KEPT = 1000
 
 
 @dataclass(frozen=True)
 class Question:
-    """``commands`` as one would type them in ``folder``; ``programs`` are run by them, ``key`` stands for all of it."""
+    """The ``commands`` as a user would type them in ``folder``, and the ``programs`` that they run.
+
+    ``key`` is a hash of the folders of source and build, and of the programs.
+    """
 
     folder: Path
     commands: tuple[str, ...]
@@ -49,7 +53,7 @@ class Question:
         }
 
     def agree(self) -> None:
-        """Does not ask again; only as long as EPG runs where its cache cannot be written."""
+        """Notes the user's consent.  If EPG's cache cannot be written, the consent holds until EPG ends."""
         _agreed.add(self.key)
         file = cache_folder() / FILE
         with suppress(OSError):
@@ -58,9 +62,9 @@ class Question:
 
 
 def question_about(job: Job, target: Target | None) -> Question | None:
-    """What is to be asked before ``job`` is built for ``target``; None if there is nothing to run, or all was said.
+    """The question to ask before ``job`` is built for ``target``.
 
-    Runs nothing that a build folder names.
+    None if there is nothing to run, or the user has agreed before.  This runs no program that a build folder names.
     """
     plan = make_plan(job, target, job.request.roots, run=False)
     if not plan.steps:
@@ -83,7 +87,7 @@ _agreed: set[str] = set()
 
 
 def _number(folder: Path) -> int:
-    """Another folder in the same place has another one."""
+    """The inode number: a new folder with the same path has another one, and needs a new consent."""
     try:
         return folder.stat().st_ino
     except OSError:

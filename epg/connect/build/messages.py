@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What went wrong in a build, out of what CMake, compilers, linkers and EPG print.
+"""Finds the errors and warnings of a build in the output of CMake, compilers, linkers, Zephyr's tools and EPG.
 
 >>> messages = Messages((Path("/home/me/robot"),))
 >>> messages.read("/home/me/robot/main.c:3:5: error: expected ';' before 'return'")
 >>> messages.finish(failed=True)[0].message
 "expected ';' before 'return'"
 
-Each line is read once, as it comes.  What only says that something else has failed is left out when that is there.
+Each line is read once, as it arrives.  A message that only reports another failure ("ld returned 1 exit status") is
+left out if there is a message about its cause.
 """
 
 from __future__ import annotations
@@ -21,14 +22,14 @@ from typing import Any
 from epg.connect.build.cmake_message import CMakeMessage, starts_cmake_message
 
 LIMIT = 100
-"""Messages that are kept of one build; a header that is wrong can give thousands."""
+"""The number of messages that are kept for one build; one wrong header can cause thousands."""
 TAIL = 12
-"""Lines that stand for a failure nobody understands."""
+"""The number of last lines that are shown for a failure without any known message."""
 
 
 @dataclass(frozen=True)
 class Message:
-    """One problem.  ``file`` is absolute where it was found; ``line`` and ``column`` count from 1, 0: not known."""
+    """One problem.  ``file`` is absolute if the file was found.  ``line`` and ``column`` count from 1; 0 is unknown."""
 
     severity: str  # "error" or "warning"
     message: str
@@ -69,39 +70,39 @@ _DTC = re.compile(r"Error: (?P<file>[^:\s]+):(?P<line>\d+)\.(?P<column>\d+)(?:-[
 _KCONFIG = re.compile(r"(?P<severity>error|warning): (?P<text>.*)")
 _PROGRAM = re.compile(r"(?:ninja: (?:error|fatal): |g?make(?:\[\d+\])?: \*\*\* |(?:FATAL )?ERROR: )(?P<text>.*)")
 _MAKE_STOPS = re.compile(r"g?make(?:\[\d+\])?: \*\*\* (?:\[.*\] (?:Error \d+|Terminated|Interrupt)|Waiting for )")
-"""Make says so after each command that has failed, for each Makefile around it."""
+"""Make prints this after each failed command, once for each Makefile around it."""
 _DRIVER = re.compile(r"(?:\S*[\\/])?[\w.+-]+: (?:fatal )?error: (?P<text>.*)")  # collect2: error: ..., cc1: error: ...
 _CAUSED = re.compile(
     r"was not generated; the messages above say why|subcommand failed|failed with return code|Child return code"
     r"|execute_process failed|ld returned \d+ exit status|linker command failed|Error \d+$|command exited with status"
     r"|Terminated$|^Aborting due to|^CMAKE_\w+ not set, after EnableLanguage"
 )
-"""What is said because of something else."""
+"""Messages that only report the failure of another command."""
 _NOISE = re.compile(
     r"\s*$|-- |See also |\[ *\d+(?:/\d+|%)\] |FAILED: |ninja: build stopped|g?make(?:\[\d+\])?: \*\*\* |Call Stack"
 )
 _ESCAPES = re.compile(r"\x1b(?:\[[0-?]*[ -/]*[@-~]|\][^\x07\x1b]*(?:\x07|\x1b\\)|.)")
-"""Colours, movements of the cursor, links."""
+"""Escape sequences of a terminal: colours, movements of the cursor, links."""
 
 
 def plain(line: str) -> str:
-    """A line as text: without colours and other controls."""
+    """``line`` without colours and other control characters; only the part after its last carriage return."""
     text = _ESCAPES.sub("", line).rpartition("\r")[2]
     return "".join(char for char in text if char.isprintable() or char == "\t")
 
 
 class Messages:
-    """Reads output line by line.  Names of files are looked for in ``folders``; the first is the project's own."""
+    """Reads output line by line.  Names of files are searched in ``folders``; the first is the project's own."""
 
     def __init__(self, folders: Sequence[Path]) -> None:
         self._folders = folders
         self._found: dict[tuple[str, str, int, str], Message] = {}
         self._tail: deque[str] = deque(maxlen=TAIL)
-        self._more: Callable[[str], bool] | None = None  # what a message's further lines go to, until it says False
-        self._perhaps: list[tuple[str, str, int, str]] = []  # warnings that Kconfig may take for errors
+        self._more: Callable[[str], bool] | None = None  # reads the further lines of a message until it returns False
+        self._perhaps: list[tuple[str, str, int, str]] = []  # warnings that Kconfig may treat as errors
 
     def read(self, line: str) -> None:
-        """Reads the next line, as :func:`plain` makes it."""
+        """Reads the next line, as :func:`plain` returns it."""
         if not _NOISE.match(line):
             self._tail.append(line)
         if self._more is not None and self._more(line):
@@ -115,7 +116,7 @@ class Messages:
             self._kconfig(line)
 
     def finish(self, *, failed: bool) -> list[Message]:
-        """All messages after the last line.  A failure without any error is what the last lines say."""
+        """All messages, after the last line.  If the build failed without any error, the last lines are the message."""
         if self._more is not None:
             self._more("")
             self._more = None
@@ -126,14 +127,14 @@ class Messages:
 
     @property
     def all(self) -> list[Message]:
-        """The messages of what was read so far: each once, and none that only says that another is there."""
+        """The messages so far, each once.  Messages that only report another failure are left out."""
         found = list(self._found.values())
         if any(message.severity == "error" and not _CAUSED.search(message.message) for message in found):
             found = [message for message in found if not _CAUSED.search(message.message)]
         return found
 
     def _simple(self, line: str) -> bool:
-        """Whether ``line`` is, or begins, a message that says all in itself, its hint aside."""
+        """Reads a message of one line; only EPG's own messages have further lines.  Returns False for other lines."""
         if match := _EPG.fullmatch(line):
             self._start_epg(self._message(match, id=match["id"]))
         elif match := _REFERENCE.fullmatch(line) or _DEVICETREE.fullmatch(line) or _DTC.fullmatch(line):
@@ -147,7 +148,7 @@ class Messages:
         elif match := _MICROSOFT.fullmatch(line):
             self._add(self._message(match, id=match["id"]))
         elif match := _LINKER.fullmatch(line):
-            # a line that ends so says where; the next one says what
+            # such a line names only the function; the next line is the message
             if not re.search(r"in function [`'\"‘].*:$", line):
                 self._add(Message(match["severity"] or _severity_of(match["text"]), _without_path(match["text"])))
         elif match := _DRIVER.fullmatch(line) or _PROGRAM.fullmatch(line):
@@ -164,19 +165,19 @@ class Messages:
         return Message(how, match["text"] if text is None else text, self._place(named["file"]), line, column, id=id)
 
     def _place(self, file: str | None) -> str:
-        """The file that a program means: absolute where one of the folders has it."""
+        """The path of a file that a program names: absolute if one of the folders contains it."""
         if not file or Path(file).is_absolute():
             return file or ""
         return next((str(folder / file) for folder in self._folders if (folder / file).exists()), file)
 
     def _add(self, message: Message) -> None:
-        # of a symbol that is missing, or defined twice, one place is enough
+        # one position is enough for a symbol that is missing or defined twice
         key = ("", "", 0, message.message) if _REFERS.match(message.message) else _key(message)
         if len(self._found) < LIMIT:
             self._found.setdefault(key, message)
 
     def _start_epg(self, message: Message) -> None:
-        """EPG's message goes on: the line with a caret, notes, the hint."""
+        """Reads the further lines of EPG's message: the line with a caret, notes, the hint."""
         self._add(message)
 
         def more(line: str) -> bool:
@@ -202,7 +203,7 @@ class Messages:
         self._more = more
 
     def _kconfig(self, line: str) -> None:
-        """Kconfig's messages have no file before them, and are wrapped: they go on until an empty line."""
+        """Reads a message of Kconfig: it begins without a file, and is wrapped until an empty line."""
         match = _KCONFIG.fullmatch(line)
         if match is None:
             return
@@ -223,14 +224,17 @@ class Messages:
         self._more = more
 
     def _traceback(self, line: str) -> bool:
-        """A script in Python has failed: what it says in the end is the message."""
+        """Reads the further lines of a Python traceback: its last line is the message."""
         if not line.strip() or line.startswith((" ", "Traceback ", "During handling ", "The above exception ")):
             return True
         self._add(Message("error", line))
         return False
 
     def _take_for_errors(self) -> None:
-        """Kconfig gives up because of what it has only warned of: above all what it has a place for."""
+        """Turns warnings into errors: Kconfig aborts because of its warnings.
+
+        If some warnings have a position, only those are turned.
+        """
         placed = [key for key in self._perhaps if key[1]]
         for key in placed or self._perhaps:
             if key in self._found:
@@ -245,7 +249,7 @@ def _key(message: Message) -> tuple[str, str, int, str]:
 
 
 def _severity_of(text: str) -> str:
-    """Linkers say of warnings only that they are."""
+    """The severity of a linker's message: linkers mark warnings, but not always errors."""
     return "warning" if re.search(r"(?:^|: )warning: ", text) else "error"
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is run to build a project: the commands a person would type, and the environment they run in.
+"""Plans a build: the same commands that a user would type, and their environment.
 
 >>> # plan = make_plan(job, target, roots)
 >>> # [step.command for step in plan.steps]  ->  [("cmake", "-S", ..., "-B", "build"), ("cmake", "--build", "build")]
@@ -36,9 +36,10 @@ class Step:
 
 @dataclass(frozen=True)
 class Plan:
-    """``missing`` are tools without which nothing can be started; there are no steps then.
+    """The commands of a build.  If tools are ``missing`` without which nothing can be started, there are no steps.
 
-    ``build_program`` is Ninja or Make, as the build folder's cache has it.
+    ``cache`` are the variables in the build folder's CMake cache.  ``build_program`` is Ninja or Make, as that cache
+    names it, or the program that was found.
     """
 
     source: Path
@@ -51,11 +52,12 @@ class Plan:
 
 
 def make_plan(job: Job, target: Target | None, roots: Sequence[Path], *, run: bool = True) -> Plan:
-    """How to build ``job``.  All targets of the project are built: what ``cmake --build`` does when a person types it,
-    so that what is on the disk afterwards is what they would have, files after the link such as ``.uf2`` included.
+    """The plan for ``job``.  It builds all targets of the project, as the user's own ``cmake --build`` would do.
 
-    ``target`` is None where its configuration is wrong; CMake then says why.  Without ``run``, programs that the build
-    folder names are not even asked for their version.
+    The products are therefore the same, including files that are made after linking, such as ``.uf2``.
+
+    ``target`` is None if the configuration has an error; CMake then reports it.  Without ``run``, no program that the
+    build folder names is started, not even to ask for its version.
     """
     source = Path(os.path.abspath(job.source_dir or job.request.beside))
     build = Path(os.path.abspath(job.build_dir or source / USUAL))
@@ -69,7 +71,7 @@ def make_plan(job: Job, target: Target | None, roots: Sequence[Path], *, run: bo
         return Plan(source, build, (), {}, cache, lacking)
     programs = {finding.tool.name: str(finding.path) for finding in findings}
     if cache:
-        home = cache.get("CMAKE_HOME_DIRECTORY", "") if west else ""  # of sysbuild: its own, not the application's
+        home = cache.get("CMAKE_HOME_DIRECTORY", "") if west else ""  # with sysbuild: its folder, not the application's
         configure = Step("configure", (programs["cmake"], "-S", home or str(source), "-B", str(build)), source)
     elif west:
         configure = _by_west(job, target, source, build, programs)
@@ -82,7 +84,7 @@ def make_plan(job: Job, target: Target | None, roots: Sequence[Path], *, run: bo
 
 
 def _first(job: Job, source: Path, build: Path, programs: Mapping[str, str]) -> tuple[str, ...]:
-    """Configures for the first time: by the preset that makes this folder, with Ninja if it is there."""
+    """The command of the first configuration: with the preset for this folder, if any, and with Ninja if found."""
     preset = ("--preset", job.preset) if job.preset else ("-S", str(source))
     ninja = Path(programs["build_program"])
     generator: tuple[str, ...] = ()
@@ -94,7 +96,10 @@ def _first(job: Job, source: Path, build: Path, programs: Mapping[str, str]) -> 
 
 
 def _by_west(job: Job, target: Target | None, source: Path, build: Path, programs: Mapping[str, str]) -> Step:
-    """``west build`` knows Zephyr; it wants to run in a workspace, which need not be around the project."""
+    """The step that configures with ``west build``, which finds Zephyr.
+
+    west must run in a workspace.  If the project is not in one, it runs in Zephyr's folder.
+    """
     board = job.board or (target.board.sdks.get(target.platform.sdk, "") if target is not None else "")
     around = [folder for folder in (source, *source.parents) if (folder / ".west").is_dir()]
     folder = source if around else Path(programs["zephyr"])
@@ -103,7 +108,7 @@ def _by_west(job: Job, target: Target | None, source: Path, build: Path, program
 
 
 def _parallel(cache: Mapping[str, str], programs: Mapping[str, str]) -> tuple[str, ...]:
-    """Make takes one processor unless it is told otherwise; Ninja takes all."""
+    """The option for a parallel build.  Make uses one processor by default, Ninja all of them."""
     generator = cache.get("CMAKE_GENERATOR", "") or (NINJA if "ninja" in Path(programs["build_program"]).name else "")
     if generator.startswith(NINJA) or os.environ.get("CMAKE_BUILD_PARALLEL_LEVEL"):
         return ()
@@ -111,16 +116,17 @@ def _parallel(cache: Mapping[str, str], programs: Mapping[str, str]) -> tuple[st
 
 
 _OF_MAKE = ("MAKEFLAGS", "MFLAGS", "MAKELEVEL", "MAKE_TERMOUT", "MAKE_TERMERR")
-"""What Make hands to what it starts: this may be started by a build, but is none of its parts."""
+"""Variables that Make sets for its commands.  ``epg connect`` may be such a command; its builds must not see them."""
 _SAY_WHICH_EPG = ("EPG_PATH", "EPG_DIR", "EPG_IMPORTED_DIR")
 _COLOURS = ("CLICOLOR_FORCE", "FORCE_COLOR", "CMAKE_COLOR_DIAGNOSTICS")
 
 
 def _environment(own: Mapping[str, str], cache: Mapping[str, str], *, west: bool) -> dict[str, str]:
-    """That of this process, as for somebody who types the command: nothing of EPG's own Python, no colours, English.
+    """The environment of the commands: that of this process, without colours, and with messages in English.
 
-    A build folder that has not found an EPG yet gets the one that runs now where nothing else is said, and its virtual
-    environment, as if that were activated.  Others have their own answers.
+    Variables of Make and of EPG's own Python are removed, so the commands run as if the user had typed them.
+    If neither the build folder nor the user says which EPG to use, the running one is used, with its virtual
+    environment.
     """
     first = not any(cache.get(name) for name in _SAY_WHICH_EPG)
     names = {*_OF_MAKE, *_COLOURS, "PYTHONHOME", "EPG_ABSOLUTE_PATHS"}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A program that is started, read line by line, and ended with all that it has started itself.
+"""Starts a program, reads its output line by line, and can end it together with all programs that it has started.
 
 >>> # process = Process(("cmake", "--build", "build"), Path("."), os.environ, print)
 >>> # status = process.run()          process.cancel() from another thread
@@ -17,11 +17,11 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 GRACE = 5.0
-"""Seconds that programs have to end by themselves: Ninja and Make delete half-written files then."""
+"""Seconds that programs get to end by themselves: Ninja and Make delete half-written files in this time."""
 
 
 class Process:
-    """One run.  ``line`` is called with each line of its output, standard error included, without its end."""
+    """One run of a program.  ``line`` is called with each line of its output and standard error, without line end."""
 
     def __init__(
         self, command: Sequence[str], folder: Path, environment: Mapping[str, str], line: Callable[[str], None]
@@ -32,7 +32,7 @@ class Process:
         self._cancelled = False
 
     def run(self) -> int:
-        """Runs to the end; the exit status.  Raises OSError when the program cannot be started."""
+        """Runs the program to its end, and returns its exit status.  Raises OSError if it cannot be started."""
         with self._lock:
             if self._cancelled:
                 return -signal.SIGTERM
@@ -42,11 +42,11 @@ class Process:
         status = self._process.wait()
         if self._cancelled:
             _end_all(self._process.pid)
-        reader.join(GRACE)  # a program left in the background may keep the other end open
+        reader.join(GRACE)  # a program that still runs in the background may keep the pipe open
         return status
 
     def cancel(self) -> None:
-        """Asks the program and all that it has started to end, and sees to it that they do.  Returns at once."""
+        """Asks the program and all that it has started to end.  Kills them after :data:`GRACE`.  Returns at once."""
         with self._lock:
             already, self._cancelled = self._cancelled, True
             process = self._process
@@ -66,8 +66,8 @@ class Process:
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
-            start_new_session=True,  # of POSIX: one signal reaches all, and a terminal's Ctrl-C reaches none
-            creationflags=new_group,  # of Windows
+            start_new_session=True,  # POSIX: a signal reaches the whole group, and Ctrl-C in the terminal does not
+            creationflags=new_group,  # Windows
         )
 
     def _read(self) -> None:
@@ -88,7 +88,7 @@ def _ask_to_end(process: subprocess.Popen[bytes]) -> None:
 
 
 def _end_all(leader: int) -> None:
-    """Waits until nothing of the session that ``leader`` has opened runs any more, and ends what does."""
+    """Waits at most :data:`GRACE` until all processes of the session of ``leader`` have ended, and kills the others."""
     if sys.platform == "win32":
         return
     until = time.monotonic() + GRACE
@@ -98,7 +98,7 @@ def _end_all(leader: int) -> None:
         try:
             os.kill(process, signal.SIGKILL)
         except OSError:
-            pass  # it has ended meanwhile
+            pass  # it has ended in the meantime
     try:
         os.killpg(leader, signal.SIGKILL)
     except OSError:
@@ -106,9 +106,9 @@ def _end_all(leader: int) -> None:
 
 
 def _session(leader: int) -> list[int]:
-    """The processes of a session, where the system says so (Linux).
+    """The running processes of a session.  Empty on systems other than Linux.
 
-    Ninja gives each command a process group of its own: the leader's group is not all.
+    The leader's process group is not enough: Ninja starts each command in a new process group.
     """
     found = []
     for entry in Path("/proc").glob("[0-9]*"):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a build has made for people: asked of CMake before it configures, by its file API (cmake-file-api(7)).
+"""Finds the files that a build has made for the user, with CMake's file API (cmake-file-api(7)).
 
 >>> # ask(build)                                 before CMake configures
 >>> # products(build, "jiwy", platform, ())      afterwards
@@ -21,23 +21,23 @@ _QUERY = "codemodel-v2"
 
 @dataclass(frozen=True)
 class Made:
-    """A file, and what a person does with it."""
+    """A product: its file, and the way to use it."""
 
     path: Path
     what: str
 
 
 def ask(build: Path) -> None:
-    """Lets CMake write, when it configures ``build``, which files its targets will be."""
+    """Requests a description of the targets and their files, which CMake writes when it configures ``build``."""
     folder = build / ".cmake/api/v1/query" / CLIENT
     folder.mkdir(parents=True, exist_ok=True)
     (folder / _QUERY).touch()
 
 
 def products(build: Path, target: str, platform: Platform | None, executables: Sequence[str]) -> list[Made]:
-    """The files of the ``executables``, and of all others with the EPG target in them; the best of each first.
+    """The files of the ``executables``, and of all other executables with the EPG target ``target``.
 
-    Files that are not there are left out: a build of other targets has not made them.
+    They are in the platform's order of ``products``: the most useful ones first.  Files that do not exist are left out.
     """
     found: dict[Path, tuple[int, Made]] = {}
     for program in _programs(build, target, executables, platform.program if platform is not None else ""):
@@ -48,7 +48,7 @@ def products(build: Path, target: str, platform: Platform | None, executables: S
 
 
 def _of_program(program: Path, platform: Platform | None) -> Iterator[tuple[int, Made]]:
-    """What ``platform`` says of the files beside an executable; the executable itself where it says nothing."""
+    """The products of an executable that ``platform`` lists, with their ranks; without a list, the executable."""
     known = platform.products if platform is not None else ()
     for rank, product in enumerate(known):
         name = program.name if product.file == "*" else product.file.replace("*", program.stem)
@@ -58,7 +58,10 @@ def _of_program(program: Path, platform: Platform | None) -> Iterator[tuple[int,
 
 
 def _programs(build: Path, target: str, executables: Sequence[str], of_sdk: str) -> list[Path]:
-    """The executables that CMake makes of ``target``."""
+    """The executables that CMake makes with ``target``.  ``of_sdk`` is the name of the SDK's own executable, or "".
+
+    If that is found, only its file is returned.
+    """
     described = list(_targets(build))
     programs = [
         (description["name"], [str(needed["id"]) for needed in description.get("dependencies", [])], paths)
@@ -76,7 +79,7 @@ def _programs(build: Path, target: str, executables: Sequence[str], of_sdk: str)
 
 
 def _targets(build: Path) -> Iterator[Mapping[str, Any]]:
-    """The targets as CMake's newest answer describes them; none when there is no answer."""
+    """The CMake targets as CMake's newest answer describes them; none if there is no answer."""
     folder = build / ".cmake/api/v1/reply"
     try:
         index = json.loads(max(folder.glob("index-*.json")).read_text(encoding="utf-8"))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A build as somebody watches it: started, followed, cancelled; what it said and what it made.
+"""Runs a build in the background: starts and cancels it, and shows its progress, messages and products.
 
 >>> # build = Build(job, changed=wake_the_page)
 >>> # build.start(); build.state()["done"], build.state()["messages"], build.lines(0)
@@ -25,17 +25,20 @@ from epg.diagnostics import Diagnostics
 from epg.project import load_configuration
 
 KEPT = 20_000
-"""Lines of output that can be read again; of more, the first are forgotten."""
+"""The number of lines of output that can be read again; older ones are forgotten."""
 WIDEST = 4_000
-"""Characters of a line; longer ones are cut."""
+"""The largest number of characters of a line; longer ones are cut."""
 OFTEN = 0.2
-"""Seconds between two calls of ``changed`` for progress alone."""
+"""The least seconds between two calls of ``changed`` for progress alone."""
 FORGOTTEN = "..."
 _PROGRESS = re.compile(r"\[ *(?P<done>\d+)(?:/(?P<total>\d+)|%)\] (?P<action>.*)")
 
 
 class Build:
-    """One build of ``job``, in a thread of its own.  All methods may be called from any thread, and none waits long."""
+    """One build of ``job`` in a separate thread.  ``changed`` is called when there is something new to show.
+
+    All methods can be called by any thread.  Only :meth:`wait` blocks.
+    """
 
     def __init__(self, job: Job, changed: Callable[[], None]) -> None:
         self._job, self._changed = job, changed
@@ -52,7 +55,7 @@ class Build:
         self._thread: threading.Thread | None = None
 
     def start(self) -> None:
-        """Begins.  Once for each object."""
+        """Starts the build.  It can be called once for each object."""
         with self._lock:
             assert self._thread is None, "a build is started once"
             self._state, self._began = "running", time.monotonic()
@@ -61,7 +64,7 @@ class Build:
         self._changed()
 
     def cancel(self) -> None:
-        """Ends the build with all that it has started; it is over when the state says so."""
+        """Asks the build and all programs that it has started to end.  The build is over when its state says so."""
         with self._lock:
             self._cancelled = True
             process = self._process
@@ -69,13 +72,13 @@ class Build:
             process.cancel()
 
     def wait(self, seconds: float | None = None) -> bool:
-        """Whether the build is over, after waiting for at most so long."""
+        """Waits at most ``seconds`` for the end of the build.  Returns True if it is over."""
         if self._thread is not None:
             self._thread.join(seconds)
         return self._thread is None or not self._thread.is_alive()
 
     def state(self) -> dict[str, Any]:
-        """What there is to show; the keys are those of the page's "build"."""
+        """The state of the build, with the keys of the page's "build".  ``seconds`` is the time that it has taken."""
         with self._lock:
             now = self._ended or time.monotonic()
             found = self._messages.all if self._messages is not None else self._found
@@ -92,11 +95,11 @@ class Build:
             }
 
     def lines(self, start: int) -> list[str]:
-        """The lines of output from number ``start`` on, which counts from 0."""
+        """The lines of output from number ``start`` on; the first has number 0."""
         with self._lock:
             return self._lines[max(start, 0) :]
 
-    # in the thread ----------------------------------------------------------------------------------------------------
+    # The methods below run in the build's thread. ---------------------------------------------------------------------
 
     def _run(self) -> None:
         state, found = "failed", [Message("error", "the build could not be started", id="build-failed")]
@@ -145,14 +148,14 @@ class Build:
         return process.run()
 
     def _target(self) -> Target | None:
-        """Board and platform, None where the configuration is wrong: the build says what is."""
+        """Board and platform; None if the configuration has an error, which the build reports."""
         diagnostics = Diagnostics()
         catalog = load_catalog(self._job.request.roots, diagnostics)
         configuration = load_configuration(self._job.request, catalog, diagnostics)
         return configuration.target if configuration is not None else None
 
     def _unsaid(self, found: Sequence[Message], target: Target | None, plan: Plan) -> list[Message]:
-        """Tools that are missing, where configuring has failed and nobody has named them."""
+        """Messages about missing tools that no message in ``found`` names, if configuring has failed."""
         if self._step != "configure" or target is None:
             return []
         said = " ".join(message.message for message in found)
@@ -171,7 +174,7 @@ class Build:
                 self._action = progress["action"]
             elif text.startswith("-- "):
                 self._action = text.removeprefix("-- ")
-            if self._messages is not None and not self._cancelled:  # what is said of an interruption is no news
+            if self._messages is not None and not self._cancelled:  # no messages about the user's own interruption
                 self._messages.read(text)
             now = time.monotonic()
             tell = now - self._told > OFTEN

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The tools that builds for a platform need, and what to do where one is missing: as ``epg doctor`` has it.
+"""The tools that a build for a platform needs, and the remedy if one is missing, as ``epg doctor`` reports them.
 
 >>> # [problem.message for problem in missing_tools(platform, roots)]  ->  ["The picotool was not found."]
 """
@@ -21,12 +21,12 @@ from epg.tools.remedy import command_for
 from epg.tools.tools import load_tools
 
 ALWAYS = ("cmake", "build_program")
-"""What every build needs."""
+"""The tools that every build needs."""
 
 
 @dataclass(frozen=True)
 class MissingTool:
-    """A tool that is not there, too old, or not where a variable says."""
+    """A tool that is not found, is too old, or is not in the place that a variable names."""
 
     name: str
     title: str
@@ -37,8 +37,11 @@ class MissingTool:
 def find_tools(
     names: Sequence[str], roots: Sequence[Path], cmake: Mapping[str, str] | None = None, *, run: bool = True
 ) -> list[Finding]:
-    """What is found of the tools called ``names``; ``cmake`` are variables of a build folder's cache, whose programs
-    are started only with ``run``."""
+    """Searches the tools called ``names``.  Names that are not known are left out.
+
+    ``cmake`` are the variables of a build folder's CMake cache.  The programs that they name are started only with
+    ``run``.
+    """
     tools = load_tools(roots, Diagnostics())
     where = Surroundings.here(cache_folder(), cmake, run=run)
     return [find_tool(tools[name], where) for name in names if name in tools]
@@ -47,7 +50,7 @@ def find_tools(
 def missing_tools(
     platform: Platform | None, roots: Sequence[Path], cmake: Mapping[str, str] | None = None
 ) -> list[MissingTool]:
-    """What a build for ``platform`` needs and this computer has not."""
+    """The tools that a build for ``platform`` needs and that are missing on this computer."""
     names = platform.needs if platform is not None and platform.needs else ALWAYS
     return missing(find_tools(names, roots, cmake), roots, cmake)
 
@@ -55,7 +58,7 @@ def missing_tools(
 def missing(
     findings: Iterable[Finding], roots: Sequence[Path], cmake: Mapping[str, str] | None = None
 ) -> list[MissingTool]:
-    """What is wrong with the tools that were looked for."""
+    """The problems of the tools in ``findings``, each with a hint."""
     tools = load_tools(roots, Diagnostics())
     where = Surroundings.here(cache_folder(), cmake)
     problems = []
@@ -74,7 +77,10 @@ def missing(
 
 
 def tools_of_project(folder: Path) -> list[str]:
-    """The names of the tools that the targets of the project in ``folder`` need, as far as its files say so."""
+    """The names of the tools that the targets of the project in ``folder`` need.
+
+    Targets whose configuration cannot be read are left out.
+    """
     names: set[str] = set()
     for job in find_jobs(folder, Diagnostics()):
         catalog = load_catalog(job.request.roots, Diagnostics())

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg connect --terminal``: the page's questions as lines of text."""
+"""``epg connect --terminal``: the functions of the page as questions and answers in lines of text."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A build as the terminal shows it: one line of progress, then the messages and what to do with the products."""
+"""Shows a build in the terminal: one line of progress, then the messages, the products and their use."""
 
 from __future__ import annotations
 
@@ -8,11 +8,14 @@ from epg.connect.terminal.console import Console
 from epg.connect.terminal.message import say_message
 
 LOOK = 1.0
-"""Seconds between two looks at a build that says nothing."""
+"""Seconds between two updates of the progress of a build without output."""
 
 
 def ask_to_build(session: Session, console: Console) -> str | None:
-    """What stands for the user's consent; None if there is none.  Says what runs before the first build of a folder."""
+    """Asks for consent to a build, and shows its commands before the first build of a folder.
+
+    Returns the key of the user's consent, "" if no key is needed, or None if the user does not agree.
+    """
     ask = session.build_question()
     if ask is not None:
         console.say(f"building runs, in {ask['folder']}:")
@@ -25,7 +28,7 @@ def ask_to_build(session: Session, console: Console) -> str | None:
 
 
 def build(session: Session, console: Console, agreed: str) -> bool:
-    """Saves, configures and builds; whether that went well.  Ctrl-C cancels.  Raises Refused."""
+    """Saves, configures and builds.  Ctrl-C cancels the build.  Returns True if it succeeded.  Raises Refused."""
     state = session.act("generate", {"run": agreed})
     said = ""
     while state["build"]["state"] == "running":

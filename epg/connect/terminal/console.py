@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Questions and answers as lines of text: on a terminal, through a pipe, from a file of answers.
+"""Questions and answers as lines of text: on a terminal, through a pipe, or from a file with answers.
 
 >>> import io
 >>> console = Console(io.StringIO("pa\\n"), io.StringIO())
@@ -15,9 +15,9 @@ from collections.abc import Iterable, Sequence
 from typing import TextIO
 
 NARROW = 80
-"""Columns where nobody says how many there are."""
+"""The number of columns if it is not known."""
 WIDE = 160
-"""More columns than these make lines that nobody reads."""
+"""The largest number of columns that is used: longer lines are hard to read."""
 
 
 class Ended(Exception):
@@ -25,14 +25,14 @@ class Ended(Exception):
 
 
 class Console:
-    """``input`` and ``output`` need not be a terminal; answers are shown in the output then, as if they were typed."""
+    """``input`` and ``output`` need not be a terminal.  If they are not, answers are also written to the output."""
 
     def __init__(self, input: TextIO, output: TextIO) -> None:
         self._input, self._output = input, output
         self.is_terminal = input.isatty() and output.isatty()
         columns = shutil.get_terminal_size((NARROW, 24)).columns if output.isatty() else NARROW
         self.width = max(40, min(columns, WIDE))
-        self._over = 0  # characters of a line that is written over
+        self._over = 0  # number of characters on the line that the next output replaces
 
     def say(self, text: str = "") -> None:
         """Prints lines as they are."""
@@ -44,13 +44,13 @@ class Console:
         self.say(textwrap.fill(text, self.width, initial_indent=indent, subsequent_indent=indent))
 
     def items(self, words: Iterable[str], indent: str = "") -> None:
-        """Prints words beside each other, none of them broken at a blank."""
+        """Prints words side by side.  A word that contains a blank is not broken there."""
         text = "  ".join(word.replace(" ", "\0") for word in words)
         filled = textwrap.fill(text, self.width, initial_indent=indent, subsequent_indent=indent)
         self.say(filled.replace("\0", " "))
 
     def table(self, header: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
-        """Prints columns; the last one is wrapped where the line ends."""
+        """Prints columns; only the last one is wrapped."""
         listed = [tuple(row) for row in rows]
         lines = [*([tuple(header)] if any(header) else []), *listed]
         if not lines:
@@ -66,20 +66,20 @@ class Console:
                 self.say(" " * before + more)
 
     def over(self, text: str) -> None:
-        """Shows ``text`` on a line that the next output replaces; nothing where nobody watches."""
+        """Shows ``text`` on a line that the next output replaces.  Does nothing if the output is not a terminal."""
         if self._output.isatty():
             shown = _visible(text)[: self.width - 1]
             self._write("\r" + shown + " " * (self._over - len(shown)))
             self._over = len(shown)
 
     def clear(self) -> None:
-        """Takes away what :meth:`over` has shown."""
+        """Removes the text that :meth:`over` has shown."""
         if self._over:
             self._write("\r" + " " * self._over + "\r")
             self._over = 0
 
     def ask(self, question: str, default: str) -> str:
-        """The answer, without blanks around it; ``default`` when it is empty.  Raises Ended at the end of the input."""
+        """The answer without blanks around it; ``default`` if it is empty.  Raises Ended at the end of the input."""
         self.clear()
         self._write(_visible(f"{question} [{default}]: " if default else f"{question}: "))
         line = self._input.readline()
@@ -91,7 +91,7 @@ class Console:
         return line.strip() or default
 
     def agree(self, question: str, default: str = "y") -> bool:
-        """Whether the answer is yes; Enter means ``default``."""
+        """Asks until the answer is yes or no.  Returns True for yes.  Enter means ``default``."""
         while True:
             answer = self.ask(f"{question} (y/n)", default).casefold()
             if answer in ("y", "yes", "n", "no"):
@@ -99,12 +99,12 @@ class Console:
             self.say("y or n, please.")
 
     def _write(self, text: str) -> None:
-        """Writes what the output's encoding has, and '?' for the rest."""
+        """Writes ``text``, with '?' for each character that the output's encoding does not have."""
         encoding = getattr(self._output, "encoding", None) or "utf-8"
         self._output.write(text.encode(encoding, "replace").decode(encoding))
         self._output.flush()
 
 
 def _visible(text: str) -> str:
-    """Text of files without what a terminal would obey: escape sequences, movements of the cursor."""
+    """``text`` with '?' for control characters: a terminal would obey escape sequences in the text of a file."""
     return "".join(char if char.isprintable() or char in "\n\t" else "?" for char in text)

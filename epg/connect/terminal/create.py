@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The terminal's first questions, where a model has no project yet: which target, which folder, which name."""
+"""The terminal's first questions if a model has no project: which target, which folder, which name."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from epg.connect.terminal.console import Console
 from epg.new_project import project_name
 
 WAIT = 60.0
-"""Seconds for the configurations to be read; they take about one."""
+"""Seconds to wait for the list of configurations; reading it takes about one."""
 
 Choice = Mapping[str, Any]
 
 
 class Left(Exception):
-    """The person has asked to leave."""
+    """The user has asked to leave."""
 
 
 def create_project(session: Session, console: Console) -> None:
-    """Asks until there is a project.  Raises Left."""
+    """Asks the user until there is a project.  Raises Left if the user leaves, or if the model cannot be read."""
     state = session.state()
     while not state["configurations"]:
         console.over("reading the configurations ...")
@@ -43,7 +43,7 @@ def create_project(session: Session, console: Console) -> None:
     while True:
         console.say()
         folder = console.ask("folder of the new project", proposal["folder"])
-        folder = os.path.abspath(os.path.expanduser(folder))  # as in any terminal: from the current folder on
+        folder = os.path.abspath(os.path.expanduser(folder))  # relative to the current folder, as usual in a terminal
         usual = proposal["name"] if folder == proposal["folder"] else project_name(Path(folder))
         name = console.ask("name of the target", usual)
         try:
@@ -56,7 +56,7 @@ def create_project(session: Session, console: Console) -> None:
 
 
 def _choose(configurations: Sequence[Choice], console: Console) -> Choice:
-    """One configuration, by its number or name; other text leaves those that have it."""
+    """Asks for one configuration by its number or name.  Any other text is a filter for the list."""
     possible = sorted((choice for choice in configurations if choice["possible"]), key=_relevance)
     shown = possible
     console.say()
@@ -91,12 +91,12 @@ def _list(shown: Sequence[Choice], possible: Sequence[Choice], console: Console)
 
 
 def _relevance(choice: Choice) -> tuple[bool, int]:
-    """Robots that have what the model wants come first, those that have nothing of it last."""
+    """The key for sorting: robots with many ports of the model come first, robots with none of them last."""
     return bool(choice["robot"]) and not choice["matches"], -choice["matches"] if choice["robot"] else 0
 
 
 def _matches(choice: Choice) -> str:
-    """How many ports find a component of their name; of a target alone, every port becomes a topic."""
+    """The number of ports with a component of matching name; "topics" for a target alone, where ports become topics."""
     return f"{choice['matches']}/{choice['ports']}" if choice["robot"] else "topics"
 
 
@@ -106,5 +106,5 @@ def _description(choice: Choice) -> str:
 
 
 def _text(choice: Choice) -> str:
-    """All that a filter looks at."""
+    """The text that a filter searches."""
     return " ".join(str(choice[key]) for key in ("name", "summary", "robot", "board", "platform")).casefold()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg connect --terminal``: the page's questions, one after the other, for who has no browser, and for scripts.
+"""``epg connect --terminal``: asks one question after the other, for users without a browser and for scripts.
 
 >>> # status = run(session, sys.stdin, sys.stdout)
 
@@ -22,7 +22,7 @@ LEFT_UNSAVED, INTERRUPTED = 1, 130
 
 
 def run(session: Session, input: TextIO, output: TextIO) -> int:
-    """Asks until all is done; the exit status: 0, or 1 where something is wrong, not saved or not built."""
+    """Asks until the user is done.  Returns the exit status: 0; 1 for an error or unsaved changes; 130 for Ctrl-C."""
     console = Console(input, output)
     try:
         if session.state()["phase"] == "choose":
@@ -80,7 +80,7 @@ class _Dialog:
                 if named is not None:
                     self._ports.ask([port for port in ports if port.name == named], ports)
 
-    # before and after -------------------------------------------------------------------------------------------------
+    # Questions before and after those about ports ---------------------------------------------------------------------
 
     def _choose_target(self) -> None:
         targets = self._talk.state["project"]["targets"]
@@ -100,7 +100,7 @@ class _Dialog:
         self._console.say(f"{len(ports)} ports, {left} of them to connect. h lists what can be answered.")
 
     def _finish(self) -> int:
-        """Saves and builds, if that is wanted."""
+        """Saves and builds, if the user agrees.  Returns the exit status."""
         self._talk.look()
         if self._talk.state["draft"]["changed"]:
             if not self._console.agree("save?"):

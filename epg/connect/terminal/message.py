@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Messages in the terminal: as the command line prints them, with the line they point to."""
+"""Prints messages in the terminal as the command line does, with the line at their position."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Excerpt = Callable[[Mapping[str, Any]], list[str]]
 
 
 def say_message(message: Mapping[str, Any], session: Session, console: Console) -> None:
-    """Prints one of the messages of the session's state, or of its build."""
+    """Prints a message of the session's state or of its build."""
     project = session.state()["project"]
     folder = str(project["folder"]) if project is not None else ""
     for line in message_lines(message, folder, lambda place: _excerpt(place, session)):
@@ -22,7 +22,7 @@ def say_message(message: Mapping[str, Any], session: Session, console: Console) 
 
 
 def _excerpt(place: Mapping[str, Any], session: Session) -> list[str]:
-    """The line, as the draft says, and a caret below it; nothing where the file cannot be read."""
+    """The line at a position, from the draft if there is one, and a caret below it.  Empty if it cannot be read."""
     if not place["line"] or not place["column"]:
         return []
     try:
@@ -35,7 +35,7 @@ def _excerpt(place: Mapping[str, Any], session: Session) -> list[str]:
 
 
 def message_lines(message: Mapping[str, Any], folder: str, excerpts: Excerpt) -> list[str]:
-    """A message as the command line prints it; ``folder`` is left out of paths."""
+    """The lines of a message as the command line prints it.  Paths below ``folder`` are relative to it."""
     place = _place(message, folder)
     id = f" [{message['id']}]" if message.get("id") else ""
     first, *rest = f"{message['message']}".split("\n")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The terminal's questions about ports: which component each is connected with."""
+"""The terminal's questions about ports: with which component each is connected."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ NONE_FITS = "no component fits: h lists what can be answered"
 
 
 class Ports:
-    """One port after the other."""
+    """Asks about one port after the other."""
 
     def __init__(self, talk: Talk) -> None:
         self._talk, self._console = talk, talk.console
@@ -44,7 +44,7 @@ class Ports:
         }
 
     def ask(self, wanted: Sequence[Port], ports: Sequence[Port]) -> None:
-        """Asks for each of ``wanted``; ``b`` leads to those before, in the order of all ``ports``."""
+        """Asks about each port of ``wanted``.  The answer ``b`` goes back to the previous one of all ``ports``."""
         queue = list(wanted)
         while queue:
             port = queue[0]
@@ -63,7 +63,10 @@ class Ports:
                 queue.pop(0)
 
     def _answer(self, port: Port) -> str:
-        """What is answered for a port; Enter gives what is proposed or is there already, or ""."""
+        """Asks about one port, and returns the answer.
+
+        Enter returns the proposal of an open port.  It returns "" if there is none, or if the port is connected.
+        """
         ports = ports_of(self._talk.state)
         self._console.say()
         number = [other.name for other in ports].index(port.name) + 1
@@ -79,9 +82,9 @@ class Ports:
         return "" if answer == default and not is_open(self._talk.state, port) else answer
 
     def _answered(self, port: Port, answer: str) -> bool:
-        """Does what was answered; whether the next port is due."""
+        """Does what the answer says.  Returns True if the next port follows."""
         if not answer:
-            return True  # stays as it is
+            return True  # the port stays as it is
         if answer in self._commands:
             return self._commands[answer](port)
         if answer in ("-", UNCONNECTED):
@@ -93,14 +96,14 @@ class Ports:
         return names is not None and self._connect(port, [{"reference": name} for name in names])
 
     def _references(self, port: Port, answer: str) -> list[str] | None:
-        """What a list of numbers and names means, or None after saying what is wrong."""
+        """The component ports that a list of numbers and names means; None after a message about a wrong one."""
         candidates = list(self._talk.state["candidates"].get(port.name, ()))
         every = [offered["reference"] for component in self._talk.state["components"] for offered in component["ports"]]
         names = []
         for word in (word.strip() for word in answer.split(",")):
             if word.isdecimal() and 0 < int(word) <= len(candidates):
                 name: str | None = candidates[int(word) - 1]
-            elif word in every:  # one that does not fit is refused in the command line's words
+            elif word in every:  # if it does not fit, the session refuses it with the command line's message
                 name = word
             else:
                 name = self._talk.named(word, candidates, "candidate")
@@ -141,7 +144,7 @@ class Ports:
         return False
 
     def _convert(self, port: Port) -> bool:
-        """Asks for a component and what to do with its values."""
+        """Asks for a component and the conversion of its values."""
         ends = self._talk.state["wires"].get(port.name) or []
         now = ends[0] if len(ends) == 1 else {}
         answer = self._console.ask(
@@ -162,5 +165,5 @@ class Ports:
 
 
 def _cleared(answer: str) -> str:
-    """``-`` takes away what stood there."""
+    """The answer; "" for ``-``, which removes the present value."""
     return "" if answer == "-" else answer

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A dialog about one target: its state, what is done to it, and what is said of that."""
+"""A dialog about one target: its state, the user's actions, and the messages after them."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from epg.connect.terminal.message import say_message
 from epg.connect.terminal.text import Port
 
 OF_OPEN_PORTS = frozenset(("unbound-input", "unbound-output", "needs-bound", "unused-component"))
-"""Messages that are there while ports are still to be asked for."""
+"""Ids of messages that are not shown while the user still connects ports."""
 
 
 class Talk:
-    """``state`` is the session's, as of the last answer."""
+    """The dialog.  ``state`` is the session's state after the last action or look."""
 
     def __init__(self, session: Session, console: Console) -> None:
         self.session, self.console = session, console
         self.state: State = session.state()
-        self._told = ""  # what was edited outside, as it was said last
+        self._told = ""  # the last note about an edit by another program
 
     def act(self, action: str, body: dict[str, Any], port: Port | None = None) -> bool:
-        """Does something, and says what comes of it; whether it was done."""
+        """Does ``action``, and prints the new messages, and those about ``port``.  Returns False if it was refused."""
         self.look()
         before = {_key(problem) for problem in self.state["diagnostics"]}
         try:
@@ -43,7 +43,7 @@ class Talk:
         return True
 
     def look(self) -> None:
-        """Says what was edited outside meanwhile."""
+        """Updates the state, and prints a note if another program has edited a file."""
         self.state = self.session.wait(self.state["version"], 0)
         external = self.state["draft"]["external"] or ""
         if external and external != self._told:
@@ -60,7 +60,10 @@ class Talk:
             self.console.fill(f"hint: {problem.hint}")
 
     def named(self, word: str, names: Sequence[str], what: str) -> str | None:
-        """The one of ``names`` that is called or begins with ``word``, or has it as its number."""
+        """The name in ``names`` that is equal to ``word``, begins with it, or has it as its number, counted from 1.
+
+        Returns None after a message if there is no such name or there are several.  ``what`` is the noun for names.
+        """
         fitting = [name for name in names if name == word] or [name for name in names if name.startswith(word)]
         if not fitting and word.isdecimal() and 0 < int(word) <= len(names):
             return names[int(word) - 1]
@@ -70,7 +73,7 @@ class Talk:
         return None
 
     def leave(self) -> None:
-        """Asks where something would be lost; raises Left."""
+        """Raises Left.  If there are unsaved changes, asks first, and returns if the user wants to stay."""
         if not self.state["draft"]["changed"]:
             raise Left
         if not self.console.agree("there are changes that are not saved: leave without them?", "n"):

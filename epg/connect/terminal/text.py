@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the terminal shows of a session's state: ports, wires, candidates."""
+"""The ports, wires and candidates of a session's state as text for the terminal."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Port:
 
     @property
     def title(self) -> str:
-        """``input position_pan in rad``; a type only where it is not the usual one."""
+        """A text such as ``input position_pan in rad``.  The type is added if it is not real."""
         kind = f" ({self.type})" if self.type != "real" else ""
         return f"{self.direction} {self.name}" + (f" in {self.unit}" if self.unit else "") + kind
 
@@ -33,7 +33,7 @@ class Port:
 
 
 def ports_of(state: State) -> list[Port]:
-    """The ports, inputs first; none when the model cannot be read."""
+    """The ports, inputs first; none if the model cannot be read."""
     model = state["model"]
     return [
         Port(port["name"], direction, port["unit"], port["type"], port["description"])
@@ -47,7 +47,7 @@ def is_open(state: State, port: Port) -> bool:
 
 
 def wire_text(state: State, port: Port) -> str:
-    """What a port is connected with, conversions included."""
+    """The component ports that a port is connected with, and the conversions."""
     if is_open(state, port):
         return OPEN
     ends = state["wires"][port.name]
@@ -55,7 +55,7 @@ def wire_text(state: State, port: Port) -> str:
 
 
 def wire_rows(state: State) -> Iterator[tuple[str, str, str, str]]:
-    """A row for each port: name, arrow, component, where that is on the board."""
+    """A row for each port: name, arrow, component, and the component's place on the board."""
     components = {component["name"]: component for component in state["components"]}
     for port in ports_of(state):
         names = [end["reference"].partition(".")[0] for end in state["wires"].get(port.name, ())]
@@ -64,7 +64,7 @@ def wire_rows(state: State) -> Iterator[tuple[str, str, str, str]]:
 
 
 def candidate_rows(state: State, port: Port) -> Iterator[tuple[str, str, str]]:
-    """A row for each component's port that may be connected: number, reference, what it is and where."""
+    """A row for each component port that may be connected: number, reference, and a description with its place."""
     found = {
         offered["reference"]: (component, offered)
         for component in state["components"]
@@ -84,7 +84,7 @@ def candidate_rows(state: State, port: Port) -> Iterator[tuple[str, str, str]]:
 
 
 def users_of(state: State) -> dict[str, list[str]]:
-    """The ports of the model at each component's port."""
+    """The model ports that are connected with each component port."""
     users: dict[str, list[str]] = {}
     for name, ends in state["wires"].items():
         for end in ends:
@@ -93,5 +93,5 @@ def users_of(state: State) -> dict[str, list[str]]:
 
 
 def _where(component: Mapping[str, Any]) -> str:
-    """Where a component is: its pins, or its topic."""
+    """The place of a component: its pins, or its topic."""
     return ", ".join(component["where"]) or (f"topic {component['topic']}" if component["topic"] else "")
