@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Notices above the page: a lost connection, edits by others, conflicts, refusals.
+// Notices above the page: a lost connection, edits by other programs, conflicts, refused actions.
 
 import { h } from "./dom.js";
 import { icon } from "./icons.js";
@@ -7,7 +7,7 @@ import { whyLocked } from "./key.js";
 import { hasEnded, isLost } from "./server.js";
 import { attempt, draw, ui } from "./ui.js";
 
-let dismissed = null; // the note about an edit elsewhere that was read already
+let dismissed = null; // the note about an edit by another program that the user has dismissed
 
 export function bars(state) {
   if (hasEnded()) return [];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Generate: progress, messages, products, log.
+// The build after "Generate": its progress, messages, products and log.
 
 import { openDialog } from "./dialog.js";
 import { h } from "./dom.js";
@@ -8,11 +8,11 @@ import { problem } from "./problems.js";
 import { current, getJson } from "./server.js";
 import { attempt, draw, say, ui } from "./ui.js";
 
-let log = []; // lines that were fetched
-let next = 0; // number of the line to ask for
+let log = []; // the fetched lines
+let next = 0; // the number of the next line to fetch
 let fetching = false;
-let since = null; // when the last State came: {seconds, at}
-let last = "idle";
+let since = null; // {seconds, at}: the build's age in the last state, and the time when that state arrived, in ms
+let last = "idle"; // the last state of the build
 
 function forgetLog() {
   log = [];
@@ -28,7 +28,8 @@ export async function generate() {
   if ((await attempt("generate")) && current().build.ask) openDialog("run", "What Generate runs", question);
 }
 
-// Before the first build in a folder: what runs there. Null, which closes the dialog, once that is settled.
+// The question before the first build in a folder, with the commands that will run. Returns null, which closes the
+// dialog, after the user has agreed.
 function question() {
   const { ask } = current().build;
   if (!ask) return null;
@@ -55,7 +56,7 @@ export function buildTitle(state) {
   ];
 }
 
-// Called with every new State: says when a build has ended, and goes on with the log.
+// Must be called with every new state. Announces the end of a build, and fetches new lines of the log.
 export function followBuild(state) {
   const { build } = state;
   since = { seconds: build.seconds, at: performance.now() };
@@ -79,7 +80,7 @@ async function fetchLog() {
     log.push(...answer.lines);
     next = answer.next;
   } catch {
-    // The page says already that the connection is lost.
+    // The notice about the lost connection is shown already.
   }
   fetching = false;
   draw();
@@ -152,7 +153,7 @@ setInterval(() => {
   if (place && state?.build.state === "running") place.textContent = elapsed(state.build);
 }, 1000);
 
-// Without a known end the bar moves by itself.
+// While the number of steps is unknown, the bar has no value: the browser then draws it moving.
 function progress(build) {
   if (build.state !== "running") return null;
   const known = build.total > 0;
@@ -182,7 +183,7 @@ async function copy(text, button) {
   try {
     await navigator.clipboard.writeText(text);
   } catch {
-    // Not allowed, as in some embedded browsers: the old way.
+    // Some embedded browsers do not allow the clipboard: copy from a temporary text field instead.
     const field = document.createElement("textarea");
     field.value = text;
     document.body.append(field);
@@ -212,7 +213,7 @@ function logPart(build) {
   );
 }
 
-// The end stays in sight unless somebody has scrolled up.
+// Shows the log, and keeps its end visible unless the user has scrolled up.
 function showLog(place) {
   const text = log.join("\n");
   if (place.textContent === text) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What saving would change in the files.
+// The tab with the changes that saving would make in the files.
 
 import { h } from "./dom.js";
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The dialog that gives the project another target.
+// The dialog in which the user chooses another target for the project.
 
 import { configurationCards } from "./configurations.js";
 import { closeDialog, openDialog } from "./dialog.js";
@@ -8,7 +8,7 @@ import { shortFile } from "./problems.js";
 import { current } from "./server.js";
 import { attempt, draw, ui } from "./ui.js";
 
-// What needs a project of its own is listed only when asked for, with the reason.
+// The check box that also lists the targets that this project cannot take. Each has its reason on its card.
 function others(all, toggle) {
   const count = current().configurations.filter((each) => !each.possible).length;
   if (count === 0) return null;

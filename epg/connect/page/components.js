@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the target offers: components with the ports of one direction, their pins, peripheral and topic.
+// The columns of components: ports of one direction, with the component's pins, peripheral and topic.
 
 import { h, id } from "./dom.js";
 import { componentLabel, handle, match } from "./handles.js";
@@ -9,7 +9,7 @@ import { unitMark } from "./wiring.js";
 export function componentColumn(state, side, diagnostics, users) {
   const direction = side === "sources" ? "source" : "sink";
   const shown = state.components.filter((component) => component.ports.some((port) => port.direction === direction));
-  // What has no ports, such as a motion guard, stands last on the left, so that its messages have a place.
+  // Components without ports, such as a motion guard, are last on the left, so that their messages have a place.
   const without = side === "sources" ? state.components.filter((component) => component.ports.length === 0) : [];
   return h(
     "section",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cards of the configurations one can choose, grouped by robot and board, with search and filter.
+// Cards of the configurations that can be chosen, grouped by robot and board, with search and filter.
 
 import { h, id } from "./dom.js";
 import { icon } from "./icons.js";
@@ -8,8 +8,8 @@ import { draw, ui } from "./ui.js";
 
 const NO_ROBOT = "Board only";
 
-// Radio buttons; the picked one is ui.chosen. `prefix` keeps the ids of two such lists apart.
-// `only` leaves some of all configurations.
+// The list of cards. Each is a radio button; ui.chosen is the chosen one. `prefix` keeps the ids of two such lists
+// apart. `only` is a function that returns true for the configurations to list.
 export function configurationCards(state, prefix, only = () => true) {
   const configurations = state.configurations.filter(only);
   const robots = [...new Set(configurations.map((each) => each.robot || NO_ROBOT))];
@@ -52,8 +52,8 @@ function isShown(configuration) {
 
 const isReady = (configuration) => configuration.possible && configuration.missing.length === 0;
 
-// [{robot, boards: [{board, list}]}]: robots whose ports match best first, bare boards last; of a robot, boards that
-// can be built for here and now first.
+// Returns [{robot, boards: [{board, list}]}]. The robot with the most matching ports is first; boards without a robot
+// are last. Of each robot, the boards for which this computer can build now are first.
 function grouped(configurations) {
   const robots = new Map();
   for (const each of configurations) {
@@ -184,7 +184,7 @@ function card(configuration, prefix) {
   );
 }
 
-// Long names may break after an underscore.
+// Lets a long name wrap after an underscore.
 function breakable(name) {
   const parts = name.split("_");
   return parts.map((part, n) => (n < parts.length - 1 ? [`${part}_`, h("wbr")] : part));

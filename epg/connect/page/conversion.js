@@ -27,7 +27,8 @@ export function editConversion(port, n) {
     ends[n] = { reference, scale: value("scale"), offset: value("offset"), limits, unit: value("unit") };
     const before = errorsOf(port).map((each) => each.message);
     error = await act("connect", { port, ends });
-    // What is written but wrong, such as a scale that is no number, is mended best where it was typed.
+    // A wrong value, such as a scale that is not a number, is accepted with an error message. Show that message in the
+    // dialog, where the user can correct the value.
     error = error || errorsOf(port).find((each) => !before.includes(each.message)) || null;
     draw();
     if (error) return;
@@ -39,7 +40,7 @@ export function editConversion(port, n) {
 
   openDialog("conversion", `${from} → ${to}`, () => {
     const end = endsOf(current(), port)[n];
-    // The wire may have gone by an edit elsewhere.
+    // Another program may have removed the wire.
     if (!end || end.reference !== reference) return null;
     const readonly = !current().editable;
     return h(

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Modal dialogs: the browser's own <dialog> keeps the focus inside and gives it back. An open dialog is drawn again
-// with every State, and what was typed into it stays.
+// Modal dialogs. The browser's <dialog> keeps the focus inside, and restores it on closing. An open dialog is drawn
+// again with every state; text that the user has typed stays.
 
 import { h, render } from "./dom.js";
 import { icon } from "./icons.js";
 
 const open = new Map(); // name -> {element, title, content}
 
-// `content` returns what is in the dialog; returning null closes it.
+// Opens a dialog. `content` is called for each drawing: it returns the children, or null to close the dialog.
 export function openDialog(name, title, content, attributes = {}) {
   closeDialog(name);
   const element = document.createElement("dialog");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lower part: tabs with everything that is more than ports.
+// The lower part of the page: tabs with problems, the build, pins, pictures and changes.
 
 import { buildPanel, buildTitle } from "./build.js";
 import { changes } from "./changes.js";

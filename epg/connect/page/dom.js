@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Elements as a function of data: h() says what should be there, render() changes only what differs, so that focus,
-// scroll positions, open lists and half-typed text stay.
+// Elements as a function of data. h() describes an element. render() changes only the differences between the page and
+// the descriptions, so the focus, scroll positions, open lists and half-typed text stay.
 //
 //   render(document.getElementById("main"), [h("p", {class: "note"}, "4 ports")])
 
 const SVG = "http://www.w3.org/2000/svg";
 const SVG_TAGS = new Set(["svg", "path", "circle", "g", "rect"]);
 
-// What an element should be. Attributes: `key` tells siblings apart, `on...` are handlers, `keep` leaves what is inside
-// to somebody else, `made` is called once with a new element, `shown` after each drawing. Children: null is nothing.
+// Describes an element. Special attributes:
+//   key      identifies the element among its siblings
+//   on...    an event handler
+//   keep     render() does not touch the children; another function draws them
+//   made     called once with the new element
+//   shown    called with the element after each drawing
+//   initial  the first value of an input; later the user's text stays
+// Children that are null, undefined or false are left out.
 export function h(tag, attributes, ...children) {
   const flat = children.flat(Infinity).filter((child) => child !== null && child !== undefined && child !== false);
   return { tag, attributes: attributes || {}, children: flat };
@@ -19,7 +25,7 @@ export function render(parent, descriptions) {
   const after = [];
   renderChildren(parent, [descriptions].flat(Infinity).filter(Boolean), after);
   for (const call of after) call();
-  // An element that was moved loses the focus.
+  // Moving an element takes the focus from it.
   if (focused && focused !== document.activeElement && focused.isConnected && parent.contains(focused)) focused.focus();
 }
 
@@ -82,8 +88,7 @@ function update(node, wanted, after) {
   for (const [name, value] of Object.entries(attributes)) set(node, name, value, old[name]);
   node.epgAttributes = attributes;
   if (!attributes.keep) renderChildren(node, children, after);
-  // A select takes its value only when its options are there. `value` is what the files say; what somebody types into
-  // a field is left alone (`initial` fills it once).
+  // A select accepts a value only after its options exist. Its `value` always follows the files.
   if (node.localName === "select" && node.value !== attributes.value) node.value = attributes.value;
   if ("checked" in attributes) node.checked = Boolean(attributes.checked);
   if (attributes.shown) after.push(() => attributes.shown(node));
@@ -98,7 +103,7 @@ function set(node, name, value, old) {
   else node.setAttribute(name, value === true ? "" : String(value));
 }
 
-// An id that is legal for any name of a port.
+// Joins the parts to an id that is legal for any name of a port.
 export function id(...parts) {
   return parts.join("-").replace(/[^\w-]/g, (letter) => `_${letter.codePointAt(0)}_`);
 }

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wires by pointer: pressed on a handle, released on a port of the other side.
+// Drawing wires with a pointer: it is pressed on a handle, and released on a port of the other side.
 
 import { current } from "./server.js";
 import { draw, ui } from "./ui.js";
 import { setPointer } from "./wires.js";
 import { OPPOSITE, join } from "./wiring.js";
 
-const START = 4; // pixels a pointer may shake before a press becomes a drag
-const EDGE = 40; // pixels from the upper and lower edge where the diagram scrolls
-const SPEED = 14; // pixels per frame that it scrolls there
+const START = 4; // a press becomes a drag after this movement, in pixels
+const EDGE = 40; // a drag so close to the upper or lower edge scrolls the diagram, in pixels
+const SPEED = 14; // speed of that scrolling, in pixels per frame
 
 export function listenForDrags(root) {
   root.addEventListener("pointerdown", (event) => {
@@ -24,7 +24,7 @@ function follow(start, handle) {
   const { side, name } = handle.dataset;
   let dragging = false;
   let over = null;
-  let last = start; // newest event of the pointer
+  let last = start; // the latest event of the pointer
   let frame = 0;
 
   const moved = (event) => {
@@ -39,7 +39,7 @@ function follow(start, handle) {
     }
     show(event);
   };
-  // At an edge the diagram goes on moving under a pointer that rests.
+  // A pointer that rests at an edge gives no events, but the diagram must go on scrolling.
   const keepScrolling = () => {
     if (scroll(last.clientY)) show(last);
     frame = requestAnimationFrame(keepScrolling);

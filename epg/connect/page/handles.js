@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The dots where wires begin and end: for a pointer to drag, and for the keyboard. Of each side one handle is a stop of
-// the Tab key; the arrow keys go through the others.
+// The handles: dots where wires begin and end, for the pointer and for the keyboard. The Tab key reaches one handle of
+// each side; the arrow keys move to the others.
 
 import { h, id } from "./dom.js";
 import { current } from "./server.js";
 import { draw, say, ui } from "./ui.js";
 import { OPPOSITE, disconnect, endsOf, fits, isUnconnected, join, modelPort, ofModel, unitText } from "./wiring.js";
 
-const stops = {}; // side -> name of the handle that Tab reaches
+const stops = {}; // side -> name of the handle that the Tab key reaches
 
 export const handleId = (side, name) => id("handle", side, name);
 
@@ -27,7 +27,7 @@ export function handle(side, name, label, connected) {
   });
 }
 
-// "fits" or "other" while an end of the opposite side is held, for marking.
+// The CSS class that marks a port while the user holds an end of a wire: "fits" or "other", "is-held" for that end.
 export function match(state, side, name) {
   if (ui.held === null) return "";
   if (ui.held.side === side) return ui.held.name === name ? "is-held" : "";
@@ -37,7 +37,7 @@ export function match(state, side, name) {
 
 const all = (side) => [...document.querySelectorAll(`[data-handle][data-side="${side}"]`)];
 
-// Exactly one handle of each side can be reached by Tab.
+// Makes exactly one handle of each side reachable with Tab. Must be called after each drawing.
 export function drawStops() {
   for (const side of Object.keys(OPPOSITE)) {
     const handles = all(side);
@@ -72,14 +72,15 @@ export function listenForPresses(root) {
     event.preventDefault();
     keys[event.key]();
   });
-  // A click does what Enter does: so do screen readers, and whoever cannot drag. Elsewhere it puts the end back.
+  // A click on a handle is the same as Enter, for screen readers and for users who cannot drag. A click elsewhere puts
+  // the held end back.
   root.addEventListener("click", (event) => {
     const here = event.target.closest?.("[data-handle]");
     if (here && !ui.dragged) press(here.dataset.side, here.dataset.name);
     else if (!here && ui.held?.by === "keyboard") putBack();
   });
   root.addEventListener("focusout", (event) => {
-    // Tab leaves: what was held is put back.
+    // Moving the focus away with Tab puts the held end back.
     const to = event.relatedTarget;
     if (ui.held?.by === "keyboard" && to && !to.closest?.("[data-handle]")) {
       ui.held = null;

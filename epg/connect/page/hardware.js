@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What of the board every component got.
+// The table of the pins and peripherals that are assigned to the components.
 
 import { h } from "./dom.js";
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Above everything: what this is, whether it is saved, and what can be done with it.
+// The head of the page: project and target, the count of problems, "saved" or not, and the buttons for actions.
 
 import { generate } from "./build.js";
 import { chooseTarget } from "./chooser.js";

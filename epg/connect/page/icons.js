@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small pictures that stand beside words, never alone without a name.
+// Small pictures beside a text. A button with an icon alone needs an aria-label.
 
 import { h } from "./dom.js";
 

@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-// The secret by which EPG knows its page. The page gets it once, for the token in its address, and keeps it for this tab
-// alone: never in the address, which other users of the computer can see, nor in a cookie, which browsers send to every
-// port of 127.0.0.1.
+// The secret with which the page proves its requests to EPG. The page gets it once, in exchange for the token in its
+// address, and keeps it for this tab only. It is never in the address, which other users of the computer can see, and
+// never in a cookie, which browsers send to every port of 127.0.0.1.
 
 const NAME = "epg-secret";
 let secret = stored();
-let refusal = "This page was opened without the key that an address of EPG has."; // said without a secret
+let refusal = "This page was opened without the key that an address of EPG has."; // shown while there is no secret
 
 export const whyLocked = () => (secret ? null : refusal);
 export const sign = () => (secret ? { "X-EPG-Secret": secret } : {});
 
-// EPG does not know the secret: it was started anew.
+// Forgets the secret. EPG does not know it, because EPG was started again.
 export function lock() {
   keep(null);
   refusal = "EPG was started again.";
 }
 
-// Exchanges the token in the address, if there is one. A reload has none: the secret is there already.
+// Exchanges the token in the address for the secret, if there is one. After a reload there is no token, but a secret.
 export async function unlock() {
-  // A page that the browser loads in advance must not use up the token.
+  // The token works once. A page that the browser only loads in advance must not use it.
   if (document.prerendering) {
     await new Promise((go) => document.addEventListener("prerenderingchange", go, { once: true }));
   }
@@ -43,7 +43,7 @@ function stored() {
   try {
     return sessionStorage.getItem(NAME);
   } catch {
-    return null; // not allowed: the secret lives until the page is loaded again
+    return null; // storage is not allowed: the secret is lost when the page is loaded again
   }
 }
 
@@ -53,6 +53,6 @@ function keep(text) {
     if (text) sessionStorage.setItem(NAME, text);
     else sessionStorage.removeItem(NAME);
   } catch {
-    // not allowed, as above
+    // storage is not allowed, as above
   }
 }

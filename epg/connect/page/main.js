@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws the page for every State, and listens to what concerns all of it.
+// Draws the page for every new state of the session, and handles the keys and events of the whole page.
 
 import { bars } from "./bars.js";
 import { followBuild } from "./build.js";

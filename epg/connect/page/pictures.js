@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures that the server draws, to look at and to zoom into.
+// Pictures that the server draws, with buttons for zoom.
 
 import { h } from "./dom.js";
 import { getPicture } from "./server.js";
@@ -8,7 +8,7 @@ import { draw, ui } from "./ui.js";
 const STEPS = [0.25, 0.5, 0.75, 1, 1.5, 2, 3, 4];
 
 export function picture(state, name) {
-  const zoom = ui.zoom[name] || 0; // 0: as wide and high as there is room
+  const zoom = ui.zoom[name] || 0; // 0: fitted into the panel
   const shown = newest(name, `picture/${name}.svg?version=${state.version}`);
   return [
     h(
@@ -43,9 +43,10 @@ export function picture(state, name) {
   ];
 }
 
-const pictures = new Map(); // name -> {wanted, shown}
+const pictures = new Map(); // name -> {wanted, shown}: the address to fetch, and the local address of the shown version
 
-// The address of a picture's newest version that is there; null before the first. The old one stays meanwhile.
+// Returns the local address of the newest fetched version of a picture, null before the first one. Starts to fetch the
+// version `wanted`; the old version stays visible until then.
 function newest(name, wanted) {
   const entry = pictures.get(name) || { wanted: "", shown: null };
   pictures.set(name, entry);
@@ -61,7 +62,7 @@ async function fetchNewest(entry, wanted) {
   try {
     address = await getPicture(wanted);
   } catch {
-    return; // problems, or the lost connection, are said elsewhere
+    return; // other parts of the page report errors and a lost connection
   }
   const old = entry.wanted === wanted ? entry.shown : address;
   if (entry.wanted === wanted) entry.shown = address;
@@ -69,9 +70,9 @@ async function fetchNewest(entry, wanted) {
   if (old) URL.revokeObjectURL(old);
 }
 
-const wirings = new Map(); // configuration -> promise of its picture's address
+const wirings = new Map(); // configuration -> promise of the local address of its picture
 
-// An <img> of a configuration's wiring, fetched once it is in sight.
+// An <img> of a configuration's wiring. The picture is fetched when the image becomes visible.
 export function wiringPicture(configuration, attributes) {
   return h("img", {
     ...attributes,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The model in the middle: inputs with their source, outputs with what they drive.
+// The model in the middle of the page: its inputs with their sources, and its outputs with their sinks.
 
 import { editConversion } from "./conversion.js";
 import { h, id } from "./dom.js";
@@ -27,7 +27,8 @@ export function modelHead(state) {
   );
 }
 
-// Buttons that go with what they offer leave the focus nowhere: the next thing to do gets it.
+// The buttons for proposals disappear when they are pressed, and the focus would be lost. The next useful element
+// gets it.
 async function acceptAll() {
   if (await attempt("accept")) document.getElementById("main").focus();
 }
@@ -103,7 +104,8 @@ function row(state, side, port, diagnostics) {
   );
 }
 
-// One end of a port: the list to choose from, its handle, and the conversion on its wire.
+// One end of a port: its handle, the list of component ports, and the conversion of its wire. `end` is null for an end
+// without a wire; `n` is the number of the end, from 0.
 function field(state, side, port, end, n) {
   const { name } = port;
   const ends = endsOf(state, name);
@@ -192,7 +194,7 @@ function conversionButton(port, side, end, n) {
   );
 }
 
-// A long conversion breaks between its steps: scale, offset, limits.
+// Lets a long conversion wrap between its steps: scale, offset, limits.
 function steps(text) {
   const parts = text.split(/ (?=[×+-]|in )/);
   return parts.map((part, n) => [n > 0 ? " " : null, h("span", { class: "conversion-step" }, part)]);

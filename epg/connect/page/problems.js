@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages: where they are about, and as a list. Their text is the command line's.
+// Messages, at their port or component and as a list. Their text is the same as on the command line.
 
 import { h, id } from "./dom.js";
 import { icon } from "./icons.js";
@@ -22,10 +22,10 @@ function countText(errors, warnings) {
 
 const severityIcon = (severity) => icon(severity in { error: 1, warning: 1 } ? severity : "note");
 
-// Hints that only say what the list of the port offers already.
+// Messages whose hints only repeat the list of component ports, which is shown beside them.
 const LISTED = new Set(["unbound-input", "unbound-output"]);
 
-// Messages at the port or component they are about.
+// The messages about a port or component, below its name.
 export function inline(diagnostics) {
   if (diagnostics.length === 0) return null;
   return h(
@@ -57,7 +57,7 @@ export function problemList(state) {
 
 const placeText = (file, { line, column }) => [file, line, column].filter(Boolean).join(":");
 
-// Inside the project as it is there; elsewhere the end says most.
+// A short name of a file: relative to the project's folder, else the last two parts of its path.
 export function shortFile(file) {
   const folder = current()?.project?.folder;
   if (folder && file.startsWith(folder)) return file.slice(folder.length).replace(/^[\\/]/, "");
@@ -65,7 +65,7 @@ export function shortFile(file) {
   return parts.length > 3 ? `…/${parts.slice(-2).join("/")}` : file;
 }
 
-// One message as a button that leads to its port, or else to its line.
+// One message as a button. A click leads to its port, or else shows its line.
 export function problem(message) {
   const full = placeText(message.file, message);
   const place = placeText(shortFile(message.file), message);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The other end: the newest State by long polling, and actions.
+// The connection to EPG: gets the newest state by long polling, and sends actions.
 
 import { lock, sign, unlock, whyLocked } from "./key.js";
 
@@ -13,11 +13,12 @@ export const current = () => state;
 export const isLost = () => lost;
 export const hasEnded = () => ended;
 
-// Calls `whenChanged` with every new State, and when the connection is lost or found again; never returns.
+// Calls `whenChanged` after every new state, and when the connection is lost or restored. Returns when EPG has ended.
 export async function follow(whenChanged) {
   changed = whenChanged;
   await unlock();
-  // An address that is opened in the tab of another one of EPG's only changes what stands behind its #.
+  // If the user opens a new address of EPG in this tab, the browser does not load the page again: only the token
+  // behind the # differs.
   window.addEventListener("hashchange", unlock);
   while (!ended) {
     const next = await newest();
@@ -32,7 +33,7 @@ export async function follow(whenChanged) {
         take(next, differs);
       }
     } catch (error) {
-      reportError(error); // a mistake of the page is none of the connection
+      reportError(error); // an error in drawing is a bug of the page; the connection is not lost
     }
     if (lost) await new Promise((resolve) => setTimeout(resolve, 1500));
   }
@@ -41,7 +42,7 @@ export async function follow(whenChanged) {
 async function newest() {
   if (whyLocked()) return null;
   try {
-    // After a loss the state may have been missed.
+    // After a lost connection, ask for the present state at once: the page may have missed one.
     const answer = await request(`api/state?after=${state === null || lost ? 0 : state.version}`);
     return answer.ok ? await answer.json() : null;
   } catch {
@@ -55,7 +56,7 @@ function take(next, always = false) {
   if (newer || always) changed();
 }
 
-// Does an action; null, or what speaks against it: {message, hint}.
+// Sends an action. Returns null, or the error if it was refused: {message, hint}.
 export async function act(action, body = {}) {
   let answer, data;
   try {
@@ -91,7 +92,7 @@ export async function getJson(address) {
   return answer.json();
 }
 
-// A picture of the server as an address that <img> and links can have: they cannot send the secret themselves.
+// Fetches a picture, and returns a local address of it for <img> and links: these cannot send the secret.
 export async function getPicture(address) {
   const answer = await request(address);
   if (!answer.ok) throw new Error(await answer.text());

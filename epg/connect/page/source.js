@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A dialog with the lines around a message.
+// The dialog with the lines of a file around the position of a message, and around those of its notes.
 
 import { openDialog } from "./dialog.js";
 import { h } from "./dom.js";

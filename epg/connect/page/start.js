@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The start page: a model that has no project yet. 1 Model, 2 Target, 3 Project.
+// The start page for a model without a project. It has three steps: 1 Model, 2 Target, 3 Project.
 
 import { configurationCards } from "./configurations.js";
 import { h } from "./dom.js";

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// What belongs to the view and not to the project: which tab is open, what is searched for, what is being dragged.
+// The state of the view, which is not part of the project: the open tab, the search, the end that is being dragged.
 
 import { act } from "./server.js";
 
 export const ui = {
   tab: "problems",
   dock: "open", // "open", "large", "closed"
-  refused: null, // what the server said against the last action: {message, hint, port}
-  adding: null, // output that is getting another end
-  held: null, // end of a wire that somebody holds: {side, name}
-  dragged: false, // a drag ends at this moment: the click that follows means nothing
+  refused: null, // the error of the last action if it was refused: {message, hint, port}
+  adding: null, // the name of the output to which the user adds another end
+  held: null, // the end of a wire that the user holds: {side, name, by}, by "pointer" or "keyboard"
+  dragged: false, // true right after a drag: the click event that follows must be ignored
   filter: { text: "", robot: "", fits: false },
-  chosen: null, // configuration picked on the start page, or in the dialog
-  zoom: {}, // per picture
+  chosen: null, // the configuration chosen on the start page or in the dialog
+  zoom: {}, // zoom of each picture
   logOpen: false,
 };
 
@@ -24,7 +24,7 @@ export function draw() {
   redraw();
 }
 
-// Does an action and shows what speaks against it; true: done.
+// Sends an action, and shows the error if it is refused. Returns true if it was done.
 export async function attempt(action, body = {}, port = null) {
   const error = await act(action, body);
   ui.refused = error ? { ...error, port } : null;
@@ -33,7 +33,7 @@ export async function attempt(action, body = {}, port = null) {
   return error === null;
 }
 
-// Has a screen reader say something.
+// Makes a screen reader announce `text`.
 export function say(text) {
   const place = document.getElementById("said");
   place.textContent = "";

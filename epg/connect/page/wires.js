@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wires as curves between handles, in one SVG behind the blocks.
+// Draws the wires as curves between handles, in one SVG over the diagram.
 
 import { editConversion } from "./conversion.js";
 import { h, id, render } from "./dom.js";
@@ -8,7 +8,7 @@ import { current } from "./server.js";
 import { ui } from "./ui.js";
 import { modelPort, ofModel } from "./wiring.js";
 
-let pointer = null; // where a dragged end is, in the diagram's coordinates
+let pointer = null; // the position of a dragged end, in the diagram's coordinates
 
 export function setPointer(place) {
   pointer = place;
@@ -22,7 +22,7 @@ export function drawWires() {
   const diagram = svg.parentElement;
   const zero = diagram.getBoundingClientRect();
   const anchors = new Map();
-  // Reading all places before anything is written keeps this at one layout of the page.
+  // All positions are read before anything is changed, so the browser computes the layout only once.
   for (const each of diagram.querySelectorAll("[data-wire-model], [data-wire-component]")) {
     const dot = each.querySelector("[data-handle], .tap");
     const box = dot.getBoundingClientRect();
@@ -66,7 +66,7 @@ function wire(port, n, end, d, isBad) {
   );
 }
 
-// A pointer over a wire shows both its ends.
+// Marks both ends of a wire while the pointer is over it.
 function mark(port, reference, on) {
   const side = modelPort(current(), port)?.side;
   const other = side === "inputs" ? "sources" : "sinks";
@@ -92,7 +92,7 @@ function heldCurve(state, anchors, zero) {
   return from && to ? curve(from, to) : null;
 }
 
-// From one place to another, leaving and arriving horizontally.
+// The SVG path of a curve between two positions; it is horizontal at both ends.
 function curve(from, to) {
   if (!from || !to) return null;
   const distance = to.x - from.x;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the State says about wires, and the edits of them. A side is one of
-//   sources   component ports that give a value      inputs   of the model
-//   outputs   of the model                           sinks    component ports that take a value
+// The wires in the session's state, and the actions that change them. A side is one of
+//   sources   component ports that give a value      inputs   inputs of the model
+//   outputs   outputs of the model                   sinks    component ports that take a value
 
 import { h } from "./dom.js";
 import { current } from "./server.js";
@@ -21,7 +21,7 @@ export function modelPort(state, name) {
 export const endsOf = (state, port) => state.wires[port] || [];
 export const isUnconnected = (state, port) => port in state.wires && state.wires[port].length === 0;
 
-// Whether two ends fit by direction, type and unit, as the server says.
+// True if two ends fit in direction, type and unit, according to the server.
 export function fits(state, side, name, other) {
   const [port, reference] = ofModel(side) ? [name, other] : [other, name];
   return (state.fits[port] || []).includes(reference);
@@ -31,7 +31,7 @@ export function unitText({ unit, type }) {
   return [unit || "no unit", type === "real" ? "" : type].filter(Boolean).join(", ");
 }
 
-// The same beside a name; what has no unit gets a dash.
+// The unit beside the name of a port; a dash for a real port without a unit.
 export function unitMark(port) {
   const text = unitText(port);
   return h(
@@ -54,8 +54,8 @@ export async function disconnect(port) {
   if (await attempt("disconnect", { port }, port)) say(`${port} is not connected`);
 }
 
-// Joins an end of a component and one of the model, whichever was taken first. An input has one source; an output may
-// drive several sinks.
+// Connects a component port and a model port. `side` and `name` are the end that was taken first, `other` is the
+// second. An input has one source: a new one replaces it. An output may drive several sinks.
 export async function join(side, name, other) {
   const [port, reference] = ofModel(side) ? [name, other] : [other, name];
   const state = current();
@@ -69,7 +69,7 @@ export async function join(side, name, other) {
   if (await setEnds(port, ends)) announceWire(port, reference);
 }
 
-// Replaces end number `n` of a port; null removes it.
+// Replaces end number `n` of a port, from 0. A `reference` of null removes the end.
 export async function replaceEnd(port, n, reference) {
   const ends = [...endsOf(current(), port)];
   if (reference === null) ends.splice(n, 1);
