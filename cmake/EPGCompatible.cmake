@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Answers find_package(EPG <version>): is PACKAGE_VERSION at least that, or in the range asked for?
+# Answers find_package(EPG <version>): compatible is a PACKAGE_VERSION that is not older than <version>, or is in the
+# requested range.  The file that includes this one must set PACKAGE_VERSION.
 set(PACKAGE_VERSION_COMPATIBLE TRUE)
 set(PACKAGE_VERSION_EXACT FALSE)
 if(PACKAGE_FIND_VERSION VERSION_GREATER PACKAGE_VERSION)

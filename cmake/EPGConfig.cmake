@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-# The CMake package EPG: a controller modelled in 20-sim as ordinary build targets.
+# The CMake package EPG: makes a controller modelled in 20-sim a library and an executable of an ordinary CMake project.
 #
 #   epg_add_target(<name> TCF <file> MODEL <folder> BINDINGS <file> ...)   library EPG::<name>: model, tables, runtime
 #   epg_add_executable(<executable> EPG::<name>)                           firmware with EPG's own main()
 #   epg_add_model(<name> MODEL <folder> [INSTANCES <n>])                   library EPG::<name>: a model alone
-#   epg_import_pico_sdk(), epg_use_versions(...)                           the Pico SDK, and which versions of it
+#   epg_import_pico_sdk(), epg_use_versions(...)                           finds the Pico SDK; chooses its version
 #   epg_add_simulation(<name> EXECUTABLE <host executable> SCENARIO <file>) target that runs and judges a simulation
 #
-# The package defines functions only (and, when they are first needed, libraries guarded by if(NOT TARGET)), so that it
-# may be found again in every directory of a project.  docs/cmake.md describes the functions.
+# A project may find this package again in each of its directories.  The package therefore only defines functions and
+# macros.  They make common libraries on first use, guarded by if(NOT TARGET).  docs/cmake.md describes the functions.
 
 if(CMAKE_VERSION VERSION_LESS 3.22)
   set(EPG_FOUND FALSE)

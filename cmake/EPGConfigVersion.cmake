@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# The version is the Python package's, so that there is one place to change.
+# The version is read from the Python package, so that it is written in one place only.
 get_filename_component(_epg_above "${CMAKE_CURRENT_LIST_DIR}/.." ABSOLUTE)
 set(_epg_init "${_epg_above}/epg/__init__.py")
 if(NOT EXISTS "${_epg_init}")

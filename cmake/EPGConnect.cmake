@@ -1,11 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-# The target <name>_connect, which opens a target in a browser: `epg connect` with what epg_add_target() was told.
+# The CMake target <name>_connect, which opens a target in a browser: `epg connect` with the arguments of
+# epg_add_target().
 
-# <ARGN> are the arguments that name the target's files.  The server runs inside the build, which it may start again:
-# neither Ninja nor Make locks its files, and Ninja opens its log when a command of its own has ended.
+# _epg_connect_target(<name> <argument>...)
+#
+# Makes the CMake target <name>_connect.
+#   <name>      the target
+#   <argument>  the arguments of `epg connect` that name the target's files
+#
+# The server runs inside a build, and may start another build in the same folder.  This works with Ninja and Make:
+# neither locks its files, and Ninja opens its log only when one of its own commands has ended.
 function(_epg_connect_target name)
   _epg_connect_command(command "${name}" ${ARGN})
-  if(command MATCHES "[#<>]") # in a file's name: custom targets cannot have them
+  if(command MATCHES "[#<>]") # the name of a file has such a character, which a custom target does not support
     return()
   endif()
   add_custom_target(${name}_connect
@@ -15,8 +22,13 @@ function(_epg_connect_target name)
   file(REMOVE "${CMAKE_BINARY_DIR}/epg/${name}_connect.cmake")
 endfunction()
 
-# Where the generator has failed, CMake writes no build files, and there is no target to build.  Sets <result> to a
-# script that does what the target would.
+# _epg_connect_script(<result> <name> <argument>...)
+#
+# Writes a CMake script that does the same as the target <name>_connect.  It is for a project with errors: the generator
+# has failed, so CMake writes no build files, and there is no target to build.
+#   <result>    variable that is set to the path of the script
+#   <name>      the target
+#   <argument>  the arguments of `epg connect` that name the target's files
 function(_epg_connect_script result name)
   _epg_connect_command(command "${name}" ${ARGN})
   set(words "")
@@ -29,6 +41,9 @@ function(_epg_connect_script result name)
   set(${result} "${script}" PARENT_SCOPE)
 endfunction()
 
+# _epg_connect_command(<result> <name> <argument>...)
+#
+# Sets <result> to the command line of `epg connect`, as a list.  The other arguments: see _epg_connect_target().
 function(_epg_connect_command result name)
   _epg_find_python(python)
   _epg_environment(environment)
@@ -38,11 +53,11 @@ function(_epg_connect_command result name)
     set(built_by west)
   endif()
   set(build "${CMAKE_BINARY_DIR}")
-  if(SYSBUILD) # an image, which is built with the others
+  if(SYSBUILD) # this is one image of several, which are built together from the folder above
     get_filename_component(build "${build}" DIRECTORY)
   endif()
   set(command "${CMAKE_COMMAND}" -E env)
-  foreach(word IN LISTS environment) # the separator of paths on Windows is that of lists
+  foreach(word IN LISTS environment) # on Windows, ';' separates paths, and in CMake the elements of a list
     string(REPLACE ";" "\\;" word "${word}")
     list(APPEND command "${word}")
   endforeach()
@@ -51,8 +66,11 @@ function(_epg_connect_command result name)
   set(${result} "${command}" PARENT_SCOPE)
 endfunction()
 
-# Writes down a call of <function> for `epg connect`, which reads the project's files without running CMake and so
-# understands calls with literal arguments only.  A configure run begins with an empty list.
+# _epg_record_call(<function> <argument>...)
+#
+# Adds a call of <function> with its arguments to a record in the build folder.  The first call of a configure run
+# begins a new record.  `epg connect` needs it, because it reads CMakeLists.txt without running CMake, and therefore
+# understands only calls with literal arguments.
 function(_epg_record_call function)
   set(record "${CMAKE_BINARY_DIR}/CMakeFiles/epg/calls.txt")
   get_property(begun GLOBAL PROPERTY EPG_RECORDS_CALLS)

@@ -1,9 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-# Gets a small library that the build itself compiles, when it is nowhere: what targets/tools/<name>.json says under
-# "fetch".  It is pinned by the id of its commit, which is a hash of all it holds, and ends up in EPG's cache, from
-# where every later build takes it.  FETCHCONTENT_FULLY_DISCONNECTED forbids it, as it does CMake's own downloads.
+# Downloads a small library that the build compiles, if it is not found on this computer.  "fetch" in
+# targets/tools/<name>.json names its repository and commit.  The id of a commit is a hash of its contents, so the
+# contents cannot change.  The library is kept in EPG's cache, where later builds find it.
+# FETCHCONTENT_FULLY_DISCONNECTED forbids the download, as it forbids CMake's own downloads.
 
-# Sets <result> to the folder, "" if there is nothing to get it from or that has failed.
+# _epg_fetch_sdk(<result> <json>)
+#
+#   <result>  variable that is set to the folder of the library; "" if the tool has no "fetch", downloads are forbidden,
+#             there is no Git, or the download has failed
+#   <json>    the text of targets/tools/<name>.json
 function(_epg_fetch_sdk result json)
   set(${result} "" PARENT_SCOPE)
   string(JSON commit ERROR_VARIABLE none GET "${json}" fetch commit)
@@ -27,7 +32,7 @@ function(_epg_fetch_sdk result json)
     message(STATUS "EPG: ${title} is not fetched: ${locked}: ${cache}/${name}.lock")
     return()
   endif()
-  if(NOT EXISTS "${folder}/${holds}") # another build may have been first
+  if(NOT EXISTS "${folder}/${holds}") # another build may have fetched it before this one got the lock
     message(STATUS "EPG: fetching ${title} from ${url}")
     _epg_clone(good "${url}" "${commit}" "${folder}")
     if(NOT good OR NOT EXISTS "${folder}/${holds}")
@@ -37,9 +42,15 @@ function(_epg_fetch_sdk result json)
   set(${result} "${folder}" PARENT_SCOPE)
 endfunction()
 
-# Puts <commit> of the repository at <url> into <folder>, whole or not at all.
+# _epg_clone(<result> <url> <commit> <folder>)
+#
+# Puts one commit of a Git repository into a folder, completely or not at all.
+#   <result>  variable that is set to TRUE, or to FALSE if Git has failed; its message is then printed
+#   <url>     address of the repository
+#   <commit>  id of the commit
+#   <folder>  folder to write; an existing one is replaced
 function(_epg_clone result url commit folder)
-  # With a point before its name, no pattern of a tool's "cached" finds a folder that another build is still filling.
+  # The name begins with a point, so no pattern of a tool's "cached" matches the folder while it is being filled.
   get_filename_component(parent "${folder}" DIRECTORY)
   get_filename_component(name "${folder}" NAME)
   set(part "${parent}/.${name}.part")

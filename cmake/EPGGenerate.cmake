@@ -1,14 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
-# When the generator runs: only if something it has read, or would read now, is not what it was.
+# Decides whether the generator must run: only if a file has changed that it has read or would read now.
 #
-# A run that succeeds ends with a stamp: a key (how EPG was called, and which EPG it was) and a digest of the contents
-# of all files read and written.  It names paths of this machine, so it stands apart from the outputs, which do not.
-# Contents, not times: an upgraded wheel, a checkout of another branch and an unpacked archive may bring changed files
-# that are old.  MD5 tells edits apart as well as SHA-256 does, in less time; nobody is to be kept out.  While the stamp
-# holds, no Python is started or looked for, and no file is touched.
+# A successful run ends with a stamp.  The stamp holds a key (the arguments and the version of EPG) and a digest of the
+# contents of all files that were read and written.  The stamp is not beside the generated files: it contains paths of
+# this computer, and they do not.
+#
+# The stamp compares contents, not times: an upgraded wheel, another branch or an unpacked archive can bring changed
+# files with old times.  MD5 is enough to notice edits, and faster than SHA-256; the digest does not protect against an
+# attacker.  While the stamp is valid, Python is neither searched nor started, and no file is written.
 
-# Brings <folder> up to date by `epg <argument>... --output <folder>`, which writes <name>.cmake among others.
-# Sets <result> to TRUE or FALSE; the messages of a run that failed are on the terminal.
+# _epg_generate(<result> <name> <folder> <argument>...)
+#
+# Brings the generated files in <folder> up to date with `epg <argument>... --output <folder>`.
+#   <result>    variable that is set to TRUE, or to FALSE if the run has failed; its messages are on the terminal
+#   <name>      the target or model; the run writes <name>.cmake among other files
+#   <folder>    folder of the generated files
+#   <argument>  the arguments of EPG without --output, such as: generate jiwy --tcf jiwy.tcf ...
 function(_epg_generate result name folder)
   set(record "${CMAKE_BINARY_DIR}/CMakeFiles/epg/${name}")
   set(stamp "${record}.stamp")
@@ -39,7 +46,7 @@ function(_epg_generate result name folder)
   if(good)
     include("${folder}/${name}.cmake")
     _epg_configure_depends()
-    # What was edited while the generator ran may have been read before or after.
+    # A file that was edited while the generator ran may have been read before or after the edit: write no stamp.
     set(settled TRUE)
     foreach(file IN LISTS EPG_DEPENDS)
       if("${file}" IS_NEWER_THAN "${started}")
@@ -55,7 +62,10 @@ function(_epg_generate result name folder)
   file(REMOVE "${started}")
 endfunction()
 
-# How EPG is called: arguments, the user's folders, interpreter and generator.
+# _epg_key(<result> <argument>...)
+#
+# Sets <result> to a hash of everything that determines a run of EPG, except the contents of the user's files: the
+# arguments, the user's folders of targets, the Python interpreter and the version of EPG.
 function(_epg_key result)
   _epg_fingerprint(generator)
   set(interpreter "")
@@ -65,12 +75,17 @@ function(_epg_key result)
     set(interpreter "${EPG_PYTHON} ${time} ${size}")
   endif()
   _epg_wanted_python(wanted)
-  _epg_user_folders(roots) # not where they are said: <name>_connect says those of a variable in the environment
+  # The folders count, not the way they are given: a variable here is an environment variable under <name>_connect.
+  _epg_user_folders(roots)
   string(SHA256 key "${ARGN}\n${roots}\n${generator}\n${interpreter}\n${wanted}")
   set(${result} "${key}" PARENT_SCOPE)
 endfunction()
 
-# The contents of what <name>.cmake, included by the caller, says was read and written.
+# _epg_digest(<result> <folder>)
+#
+# Sets <result> to a hash of the contents of all files that were read and written, and of the names in all folders that
+# were searched.  The caller must have included <name>.cmake, which lists them.
+#   <folder>  folder of the generated files
 function(_epg_digest result folder)
   set(text "")
   list(TRANSFORM EPG_OUTPUTS PREPEND "${folder}/" OUTPUT_VARIABLE outputs)
@@ -95,7 +110,10 @@ function(_epg_digest result folder)
   set(${result} "${digest}" PARENT_SCOPE)
 endfunction()
 
-# Which EPG this is, read once per configure run: a wheel by the list of hashes pip keeps of it, else by its files.
+# _epg_fingerprint(<result>)
+#
+# Sets <result> to a hash that identifies this version of EPG.  For a wheel, pip's list of the hashes of its files is
+# read, else the files.  This is done once per configure run.
 function(_epg_fingerprint result)
   get_property(fingerprint GLOBAL PROPERTY _EPG_FINGERPRINT)
   if(NOT fingerprint)
@@ -123,7 +141,10 @@ function(_epg_fingerprint result)
   set(${result} "${fingerprint}" PARENT_SCOPE)
 endfunction()
 
-# What makes the build configure again: the files that were read, and the folders that were searched.
+# _epg_configure_depends()
+#
+# Makes a build configure again after a change of a file that was read or of a folder that was searched.  The caller
+# must have included <name>.cmake, which lists them.
 function(_epg_configure_depends)
   set(folders ${EPG_FOLDERS})
   _epg_user_folders(roots)
@@ -135,7 +156,8 @@ function(_epg_configure_depends)
       endif()
     endforeach()
   endforeach()
-  # A folder changes with whatever is written in it: one around or below the build tree would configure without end.
+  # A folder changes with each file that is written into it.  A folder around or below the build tree changes with every
+  # build, so watching it would configure again and again.
   set(watched "")
   foreach(folder IN LISTS folders)
     string(FIND "${CMAKE_BINARY_DIR}/" "${folder}/" around)
@@ -147,7 +169,9 @@ function(_epg_configure_depends)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${EPG_DEPENDS} ${watched})
 endfunction()
 
-# Says again what the last run warned about, as a compiler would for a file it compiles again.
+# _epg_repeat_warnings(<file>)
+#
+# Prints the warnings of the last run again, if <file> has any, so that the user does not miss them.
 function(_epg_repeat_warnings file)
   if(EXISTS "${file}")
     file(READ "${file}" text)

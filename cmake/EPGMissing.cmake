@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-# What a computer lacks to build a project, said at once: SDKs, compiler and libraries, each with the command that gets it.
+# Reports all missing SDKs, compilers and libraries in one message, each with the command that installs it.
 #
-# A command stands on a line of its own with blanks before it: such lines of a message CMake does not wrap.
+# A command is written on a separate line that begins with blanks: CMake does not wrap such lines of a message.
 
-# Stops with what is missing for the Pico SDK, and for the targets that CMakeLists.txt makes once the SDK is there.
+# _epg_stop_without_parts()
+#
+# Stops with a list of everything that is missing: for the Pico SDK, and for the targets that CMakeLists.txt will add
+# after the SDK is found.
 function(_epg_stop_without_parts)
   set(tools arm_gcc pico_sdk)
   if(NOT picotool_DIR AND NOT PICO_NO_PICOTOOL)
@@ -16,8 +19,12 @@ function(_epg_stop_without_parts)
   message(FATAL_ERROR "EPG: this computer lacks parts that the project is built with.\n${text}Then configure again.")
 endfunction()
 
-# Whether all is there that target <name> is built with, by EPG_NEEDS of <name>.cmake.  Reports the rest, each part once
-# however many targets need it.
+# _epg_check_needs(<result> <name>)
+#
+# Checks that the tools in EPG_NEEDS are there.  The caller must have included <name>.cmake, which sets EPG_NEEDS.
+# A missing tool is reported once, even if several targets need it.
+#   <result>  variable that is set to TRUE if no tool is missing, else to FALSE
+#   <name>    the target, for the message
 function(_epg_check_needs result name)
   get_property(reported GLOBAL PROPERTY EPG_REPORTED_TOOLS)
   set(needed ${EPG_NEEDS})
@@ -35,8 +42,13 @@ function(_epg_check_needs result name)
   endforeach()
 endfunction()
 
-# Sets <missing> to those of <tool>... that are wrong or not there, and <text> to what to do about it.  Programs of this
-# computer are left to CMake, which has found them by now.
+# _epg_problems(<missing> <text> <tool>...)
+#
+#   <missing>  variable that is set to the list of the tools that are wrong or not found
+#   <text>     variable that is set to the description of these problems and the commands against them
+#   <tool>     names of tools: the files targets/tools/<tool>.json
+#
+# Programs other than the Arm compiler are not checked: CMake has found them before.
 function(_epg_problems missing text)
   set(wrong "")
   set(lines "")
@@ -70,7 +82,10 @@ function(_epg_problems missing text)
   set(${text} "${lines}" PARENT_SCOPE)
 endfunction()
 
-# The tools that the targets of this project need, as far as its CMakeLists.txt says so without being run.
+# _epg_tools_of_project(<result>)
+#
+# Sets <result> to the names of the tools that the targets of this project need.  `epg doctor` reads its CMakeLists.txt
+# without running CMake, so calls with other than literal arguments are missing.
 function(_epg_tools_of_project result)
   set(${result} "" PARENT_SCOPE)
   _epg_find_python(python)
@@ -89,11 +104,15 @@ function(_epg_tools_of_project result)
       list(APPEND tools "${tool}")
     endforeach()
   endif()
-  list(REMOVE_ITEM tools zephyr) # a target for another build of this project's files
+  list(REMOVE_ITEM tools zephyr) # targets for Zephyr are built by another build of the same files
   set(${result} "${tools}" PARENT_SCOPE)
 endfunction()
 
-# "Get it:" and, on a line of its own, the command, by the package manager of this computer if the tool has a command for it.
+# _epg_remedy(<result> <json>)
+#
+#   <result>  variable that is set to "Get it:" and, on the next line, the command that installs the tool: with the
+#             package manager of this computer if the tool has a command for it
+#   <json>    the text of targets/tools/<name>.json
 function(_epg_remedy result json)
   set(managers apt dnf pacman brew winget)
   set(command "")
@@ -122,7 +141,10 @@ function(_epg_remedy result json)
   set(${result} "Get it:\n  ${command}" PARENT_SCOPE)
 endfunction()
 
-# What makes a command of <manager> the administrator's, as epg/tools/remedy.py has it.
+# _epg_privileged(<result> <manager>)
+#
+# Sets <result> to "sudo " if a command of the package manager needs it, else to "".  epg/tools/remedy.py decides in the
+# same way.
 function(_epg_privileged result manager)
   set(${result} "" PARENT_SCOPE)
   if(CMAKE_HOST_UNIX AND NOT manager MATCHES "^(brew|winget)$")
@@ -133,7 +155,9 @@ function(_epg_privileged result manager)
   endif()
 endfunction()
 
-# Where the Pico SDK is, or the command that gets it will put it.
+# _epg_pico_sdk_folder(<result>)
+#
+# Sets <result> to the folder of the Pico SDK, or to the folder in which the command that installs it will put it.
 function(_epg_pico_sdk_folder result)
   _epg_find_sdk(sdk pico_sdk)
   if(NOT sdk)
@@ -147,6 +171,9 @@ function(_epg_pico_sdk_folder result)
   set(${result} "${sdk}" PARENT_SCOPE)
 endfunction()
 
+# _epg_quoted(<result> <path>)
+#
+# Sets <result> to <path> as a word of a command line: in quotes if it has a blank.
 function(_epg_quoted result path)
   if(path MATCHES " ")
     set(path "\"${path}\"")

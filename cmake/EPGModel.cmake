@@ -1,8 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 # epg_add_model(<name> MODEL <folder or file> [INSTANCES <n>])
 #
-# The library EPG::<name> with the code of one model and a typed header <name>.h.  The model's own files are compiled as
-# they are; several models, and the same one twice under two names, go together in one executable.
+# Makes the library EPG::<name> with the code of one model and a typed header <name>.h.  The model's own files are
+# compiled unchanged.  An executable may link several such libraries, also of the same model under two names.
+#
+#   <name>     name of the library; a prefix of its functions in C
+#   MODEL      the model: a folder or a file; a relative path begins at the current source folder
+#   INSTANCES  number of instances, 1 by default; only for a model without global state
+#
+# It stops with an error if an argument is missing or unknown.  A mistake in the model's files is reported, and the
+# configure run fails at its end, so that all mistakes are reported together.
 
 function(epg_add_model name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "MODEL;INSTANCES" "")
@@ -27,7 +34,10 @@ function(epg_add_model name)
   add_library(EPG::${name} ALIAS ${name})
 endfunction()
 
-# An empty library in place of one that could not be made, so that only the real mistake is reported.
+# _epg_placeholder(<name>)
+#
+# Makes an empty library EPG::<name> in place of one that could not be made.  Otherwise CMake would also report each use
+# of the missing library.
 function(_epg_placeholder name)
   if(NOT TARGET "${name}")
     add_library("${name}" INTERFACE)
@@ -36,7 +46,12 @@ function(_epg_placeholder name)
   endif()
 endfunction()
 
-# The static library of a model from the variables EPG_<name>_* of a generated .cmake file.
+# _epg_model_library(<name> <output>)
+#
+# Makes the static library of a model.  The caller must have included the generated .cmake file, which sets the
+# variables EPG_<name>_*.
+#   <name>    name of the library and of the model
+#   <output>  folder of the generated files
 function(_epg_model_library name output)
   set(language "${EPG_${name}_LANGUAGE}")
   _epg_require_language(${language} "model '${name}'")
@@ -46,7 +61,8 @@ function(_epg_model_library name output)
 
   set(objects "")
   if(exported)
-    # The exported files: their own include path, their symbols renamed, and their warnings nobody's business.
+    # Compile the exported files with their own include path, renamed symbols and no warnings: the user cannot change
+    # them.
     add_library(${name}_export OBJECT EXCLUDE_FROM_ALL ${exported})
     target_include_directories(${name}_export PRIVATE ${EPG_${name}_INCLUDES} "${output}" "${output}/${name}_headers")
     target_compile_options(${name}_export PRIVATE
@@ -66,6 +82,6 @@ function(_epg_model_library name output)
   target_include_directories(${name} PUBLIC "${output}")
   _epg_exact_arithmetic(${name})
   if(UNIX)
-    target_link_libraries(${name} PUBLIC m) # models compute sines; toolchains for microcontrollers link it anyway
+    target_link_libraries(${name} PUBLIC m) # the mathematical functions of C; embedded toolchains link them anyway
   endif()
 endfunction()

@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-# How CMake calls EPG's Python backend.
+# Calls EPG's Python code from CMake.
 
-# Finds the interpreter once per build tree: Python3_EXECUTABLE or Python_EXECUTABLE if set, else west's when west
-# configures, else what FindPython3 finds.
-# Another -DPython3_EXECUTABLE is heeded, and so is an interpreter that is gone.
+# _epg_find_python(<result>)
+#
+# Sets <result> to the path of the Python interpreter.  It is Python3_EXECUTABLE or Python_EXECUTABLE if one is set,
+# else west's interpreter if west configures, else the interpreter that FindPython3 finds.  Stops with an error if there
+# is none, or if it is older than 3.10.
+#
+# The interpreter is searched once per build tree, and again if these variables change or the interpreter is gone.
 function(_epg_find_python result)
   _epg_wanted_python(wanted)
   if(NOT EPG_PYTHON OR NOT EXISTS "${EPG_PYTHON}" OR NOT wanted STREQUAL EPG_PYTHON_WANTED)
@@ -14,7 +18,7 @@ function(_epg_find_python result)
     elseif(WEST_PYTHON)
       set(found "${WEST_PYTHON}")
     else()
-      # An activated virtual environment wins over newer interpreters of the system, as its user expects.
+      # The user expects an activated virtual environment to be used, even if the system has a newer interpreter.
       set(Python3_FIND_VIRTUALENV FIRST)
       set(Python3_FIND_STRATEGY LOCATION)
       find_package(Python3 3.10 QUIET COMPONENTS Interpreter)
@@ -24,7 +28,7 @@ function(_epg_find_python result)
     if(NOT found)
       message(FATAL_ERROR "EPG needs Python 3.10 or newer and found none.\n${remedy}")
     endif()
-    # What is found may be a launcher that looks for the real one each time (pyenv's takes 100 ms).
+    # The found program may be a launcher that searches the real interpreter at each start (pyenv's takes 100 ms).
     execute_process(COMMAND "${found}" -c "import sys; print('%d.%d' % sys.version_info[:2], sys.executable)"
       OUTPUT_VARIABLE answer OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_VARIABLE problem RESULT_VARIABLE status)
     if(NOT status STREQUAL "0" OR NOT answer MATCHES "^([0-9]+\\.[0-9]+) (.+)$")
@@ -40,8 +44,10 @@ function(_epg_find_python result)
   set(${result} "${EPG_PYTHON}" PARENT_SCOPE)
 endfunction()
 
-# What users say of the interpreter.  What a build system has put into the cache after EPG had found one,
-# EPG_PYTHON_FOUND_LATER, they have not said.
+# _epg_wanted_python(<result>)
+#
+# Sets <result> to the user's choice of an interpreter, as one text.  EPG_PYTHON_FOUND_LATER is an interpreter that a
+# build system has put into the cache after EPG had found one.  It is not a choice of the user, and does not count.
 function(_epg_wanted_python result)
   set(python3 "$CACHE{Python3_EXECUTABLE}")
   if(python3 STREQUAL "$CACHE{EPG_PYTHON_FOUND_LATER}")
@@ -50,8 +56,11 @@ function(_epg_wanted_python result)
   set(${result} "${python3}|$CACHE{Python_EXECUTABLE}|$CACHE{WEST_PYTHON}" PARENT_SCOPE)
 endfunction()
 
-# Runs `epg <argument>...`; its messages go to the terminal as they are (CMake would wrap their lines).
-# Sets <result> to TRUE or FALSE; the global property EPG_EXIT_STATUS holds the exit status (epg/cli/main.py lists them).
+# _epg_run(<result> <argument>...)
+#
+# Runs `epg <argument>...`.  Its messages go to the terminal directly, because CMake would wrap their lines.  The global
+# property EPG_EXIT_STATUS is set to the exit status; epg/cli/main.py lists the values.
+#   <result>  variable that is set to TRUE if the exit status is 0, else to FALSE
 function(_epg_run result)
   _epg_find_python(python)
   _epg_environment(environment)
@@ -68,10 +77,12 @@ function(_epg_run result)
   endif()
 endfunction()
 
-# What EPG's Python finds in its environment, as <variable>=<value>.
+# _epg_environment(<result>)
+#
+# Sets <result> to the environment variables for EPG's Python code: a list of <variable>=<value>.
 function(_epg_environment result)
   option(EPG_INSTALL_PYTHON_PACKAGES "Let EPG install Python packages it lacks into its own cache" ON)
-  # Paths are bytes to CMake, and UTF-8 in what EPG writes for it, whatever the locale.
+  # CMake treats paths as bytes.  EPG must write them as UTF-8 in every locale.
   set(environment PYTHONUTF8=1)
   if(NOT EPG_INSTALL_PYTHON_PACKAGES OR FETCHCONTENT_FULLY_DISCONNECTED)
     list(APPEND environment "EPG_NO_INSTALL=1")
@@ -88,7 +99,10 @@ function(_epg_environment result)
   set(${result} "${environment}" PARENT_SCOPE)
 endfunction()
 
-# The user's `targets` folders: the variable EPG_TARGETS_PATH (a list), else the environment variable.
+# _epg_user_folders(<result>)
+#
+# Sets <result> to the absolute paths of the user's folders of targets: the list in the variable EPG_TARGETS_PATH, else
+# the paths in the environment variable of this name.
 function(_epg_user_folders result)
   set(folders "${EPG_TARGETS_PATH}")
   if(NOT folders)
@@ -103,7 +117,10 @@ function(_epg_user_folders result)
   set(${result} "${absolute}" PARENT_SCOPE)
 endfunction()
 
-# The folder of the Python package `epg`: beside cmake/ in a checkout, around _data/cmake/ in a wheel.
+# _epg_python_folder(<result>)
+#
+# Sets <result> to the folder of the Python package `epg`: it is beside cmake/ in a checkout, and around _data/cmake/ in
+# a wheel.
 function(_epg_python_folder result)
   get_filename_component(above "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/.." ABSOLUTE)
   if(EXISTS "${above}/epg/__main__.py")
@@ -114,14 +131,23 @@ function(_epg_python_folder result)
   endif()
 endfunction()
 
-# The folder that holds targets/ and schemas/.
+# _epg_data_folder(<result>)
+#
+# Sets <result> to the folder that contains targets/ and schemas/.
 function(_epg_data_folder result)
   get_filename_component(above "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/.." ABSOLUTE)
   set(${result} "${above}" PARENT_SCOPE)
 endfunction()
 
-# Stops with a message that names the caller's arguments unless all of <required> are given.  <usage> is the rest of
-# the message: the arguments that the function takes.
+# _epg_require(<function> <usage> <name> <unparsed> <missing> <keyword>...)
+#
+# Checks the arguments of a public function, and stops with an error if they are wrong.
+#   <function>  name of the public function, for the message
+#   <usage>     its arguments after the name, for the message
+#   <name>      its first argument: the library or target to make, which must not exist yet
+#   <unparsed>  unknown arguments: <prefix>_UNPARSED_ARGUMENTS of cmake_parse_arguments()
+#   <missing>   keywords without a value: <prefix>_KEYWORDS_MISSING_VALUES
+#   <keyword>   keywords that are required; their values are in the caller's variables arg_<keyword>
 function(_epg_require function usage name unparsed missing)
   set(takes "\nIt takes: ${function}(<name> ${usage})")
   if(name IN_LIST ARGN)
@@ -146,7 +172,10 @@ function(_epg_require function usage name unparsed missing)
   _epg_check_folder_names()
 endfunction()
 
-# Stops where the name of a folder means something to CMake, Ninja or Make, as epg/check/names.py has it.
+# _epg_check_folder_names()
+#
+# Stops with an error if the path of the source folder, of the build folder or of EPG contains a text with a special
+# meaning for CMake, Ninja or Make.  epg/check/names.py has the same rules.
 function(_epg_check_folder_names)
   _epg_data_folder(data)
   foreach(folder "${CMAKE_CURRENT_SOURCE_DIR}" "${CMAKE_BINARY_DIR}" "${data}")
@@ -168,7 +197,11 @@ function(_epg_check_folder_names)
   endforeach()
 endfunction()
 
-# Stops unless the project has enabled <language>.
+# _epg_require_language(<language> <reason>)
+#
+# Stops with an error if the project has not enabled a language.
+#   <language>  C or CXX
+#   <reason>    the subject of the message that needs the language, such as: model 'jiwy'
 function(_epg_require_language language reason)
   get_property(languages GLOBAL PROPERTY ENABLED_LANGUAGES)
   if(NOT languages)
@@ -180,7 +213,9 @@ In an application of Zephyr, choose the .tcf of a target for Zephyr: 'epg target
   endif()
 endfunction()
 
-# The options of all compiled code: + - x / give the same bits on every target.
+# _epg_exact_arithmetic(<target>)
+#
+# Sets the compiler options of a CMake target so that + - * / give the same bits on every processor.
 function(_epg_exact_arithmetic target)
   target_compile_options(${target} PRIVATE
     $<$<OR:$<C_COMPILER_ID:GNU,Clang,AppleClang,ARMClang>,$<CXX_COMPILER_ID:GNU,Clang,AppleClang,ARMClang>>:-ffp-contract=off>)
@@ -188,7 +223,7 @@ function(_epg_exact_arithmetic target)
     C_STANDARD 11 C_STANDARD_REQUIRED ON C_EXTENSIONS OFF
     CXX_STANDARD 17 CXX_STANDARD_REQUIRED ON CXX_EXTENSIONS OFF)
   if(TARGET zephyr_interface)
-    # Zephyr keeps the flags that all code of an image must share, the processor's among them, in this target.
+    # This target has the flags that all code of a Zephyr image must share, such as those for the processor.
     target_link_libraries(${target} PRIVATE zephyr_interface)
   endif()
 endfunction()

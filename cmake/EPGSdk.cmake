@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-# Where SDKs and tools are: targets/tools/<name>.json says it, for this file and for `epg doctor` alike.
+# Finds SDKs and tools.  The files targets/tools/<name>.json describe them, for this file and for `epg doctor`.
 #
 # epg_import_pico_sdk()
 #
-# Before project(): finds the Pico SDK, the Arm toolchain and picotool, and includes the SDK, as pico_sdk_import.cmake does
-# for who has set PICO_SDK_PATH.  Afterwards, as always with the Pico SDK: project(... C CXX ASM) and pico_sdk_init().
+# Finds the Pico SDK, the Arm toolchain and picotool, and includes the SDK.  It must be called before project(), in
+# place of the SDK's pico_sdk_import.cmake, and does not need PICO_SDK_PATH.  After it, as always with the Pico SDK:
+# project(... C CXX ASM) and pico_sdk_init().  It is a macro, because the SDK's file sets variables in the caller.
+#
+# If a part is missing, it stops with an error that names all missing parts of the project.
 
 macro(epg_import_pico_sdk)
   _epg_find_compiler(_epg_toolchain)
@@ -20,7 +23,10 @@ macro(epg_import_pico_sdk)
   include("${_epg_sdk}/pico_sdk_init.cmake")
 endmacro()
 
-# Lets the SDK find picotool where its installers put it.  Without one the SDK builds it, which needs the network.
+# _epg_find_picotool()
+#
+# Sets picotool_DIR to the folder of an installed picotool.  Without one, the SDK downloads and builds picotool, which
+# needs the network.  Stops with an error if FETCHCONTENT_FULLY_DISCONNECTED forbids that.
 macro(_epg_find_picotool)
   if(NOT picotool_DIR AND NOT PICO_NO_PICOTOOL AND NOT TARGET picotool)
     _epg_find_sdk(_epg_picotool picotool)
@@ -32,14 +38,23 @@ macro(_epg_find_picotool)
   endif()
 endmacro()
 
+# _epg_tool_json(<result> <tool>)
+#
+# Sets <result> to the text of targets/tools/<tool>.json.
 function(_epg_tool_json result tool)
   _epg_data_folder(data)
   file(READ "${data}/targets/tools/${tool}.json" json)
   set(${result} "${json}" PARENT_SCOPE)
 endfunction()
 
-# Sets <result> to the folder of <tool> and <result>_VERSION to its version; or <result> to "" and <result>_PROBLEM to
-# sentences and the command that mends it.  A variable that leads to something else is not passed over.
+# _epg_find_sdk(<result> <tool>)
+#
+# Finds an SDK.  A folder that a variable names is always taken: if it is wrong, that is an error, and the search does
+# not go on in other places.  A library that is not found is downloaded if its file has "fetch".
+#   <result>          variable that is set to the folder of the SDK, or to ""
+#   <result>_VERSION  is set to its version, or to "" if that is not known
+#   <result>_PROBLEM  is set to "", or to sentences about the problem and the command against it
+#   <tool>            name of the SDK: the file targets/tools/<tool>.json
 function(_epg_find_sdk result tool)
   _epg_tool_json(json "${tool}")
   string(JSON title GET "${json}" title)
@@ -102,8 +117,12 @@ function(_epg_find_sdk result tool)
   set(${result}_VERSION "${version}" PARENT_SCOPE)
 endfunction()
 
-# Sets <result> to the folder of the Arm toolchain where its installer has put it, "" when it is on the PATH; when there is
-# none, <result>_PROBLEM to a sentence and the command that mends it.
+# _epg_find_compiler(<result>)
+#
+# Finds the Arm toolchain.
+#   <result>          variable that is set to its folder; "" if it is on the PATH, if PICO_TOOLCHAIN_PATH is set, or if
+#                     there is none
+#   <result>_PROBLEM  is set to "", or, if there is none, to a sentence and the command that installs it
 function(_epg_find_compiler result)
   set(${result} "" PARENT_SCOPE)
   set(${result}_PROBLEM "" PARENT_SCOPE)
@@ -128,8 +147,13 @@ function(_epg_find_compiler result)
   set(${result}_PROBLEM "${title} was not found. ${remedy}" PARENT_SCOPE)
 endfunction()
 
-# The folders that hold <tool>, the best first: those of its installers, those in CMake's package registry, those in EPG's
-# cache.  epg/tools/find_tool.py takes the same steps, and tests/tools compares the answers.
+# _epg_candidates(<result> <tool> <json>)
+#
+# Sets <result> to the folders in which the tool is installed, the best one first: the places of its installers, then
+# those in CMake's package registry, then those in EPG's cache.  epg/tools/find_tool.py does the same steps, and
+# tests/tools compares the answers.
+#   <tool>  name of the tool
+#   <json>  the text of targets/tools/<tool>.json
 function(_epg_candidates result tool json)
   string(JSON files ERROR_VARIABLE none GET "${json}" holds)
   if(none)
@@ -167,7 +191,9 @@ function(_epg_candidates result tool json)
   set(${result} ${found} ${folders} PARENT_SCOPE)
 endfunction()
 
-# Those of <folders> that hold one of the <file>s, the last by version first.
+# _epg_holding(<result> <folders> <file>...)
+#
+# Sets <result> to the folders of the list <folders> that contain at least one <file>, the newest version first.
 function(_epg_holding result folders)
   list(SORT folders COMPARE NATURAL ORDER DESCENDING)
   set(found "")
@@ -182,7 +208,11 @@ function(_epg_holding result folders)
   set(${result} "${found}" PARENT_SCOPE)
 endfunction()
 
-# The folders that the files in <registry> name, or the nearest one above each that holds one of the <file>s.
+# _epg_registered(<result> <registry> <file>...)
+#
+# Sets <result> to the folders that are registered in CMake's package registry and contain at least one <file>, the
+# newest version first.  If a registered folder has none, the nearest folder above it with one is taken.
+#   <registry>  folder of the registry for one package; each of its files names a folder
 function(_epg_registered result registry)
   set(found "")
   file(GLOB entries "${registry}/*")
@@ -204,7 +234,11 @@ function(_epg_registered result registry)
   set(${result} "${found}" PARENT_SCOPE)
 endfunction()
 
-# The version as the SDK in <folder> states it, or "".
+# _epg_sdk_version(<result> <json> <folder>)
+#
+# Sets <result> to the version that the SDK's own files state, or to "".
+#   <json>    the text of targets/tools/<name>.json, whose "version" names a file and patterns
+#   <folder>  folder of the SDK
 function(_epg_sdk_version result json folder)
   set(${result} "" PARENT_SCOPE)
   string(JSON name ERROR_VARIABLE none GET "${json}" version file)
@@ -217,7 +251,7 @@ function(_epg_sdk_version result json folder)
   set(parts "")
   foreach(index RANGE ${last})
     string(JSON pattern GET "${json}" version patterns ${index})
-    # Python's regular expressions, in what CMake has of them.
+    # The patterns are Python's: replace the parts that CMake's regular expressions do not have.
     string(REPLACE "\\d" "[0-9]" pattern "${pattern}")
     string(REPLACE "\\s" "[ \t]" pattern "${pattern}")
     string(REPLACE "(?:" "(" pattern "${pattern}")
@@ -230,7 +264,9 @@ function(_epg_sdk_version result json folder)
   set(${result} "${version}" PARENT_SCOPE)
 endfunction()
 
-# EPG's cache, as epg/bootstrap.py has it.
+# _epg_cache_folder(<result>)
+#
+# Sets <result> to the folder of EPG's cache, the same as in epg/bootstrap.py.
 function(_epg_cache_folder result)
   if(NOT "$ENV{EPG_CACHE}" STREQUAL "")
     file(TO_CMAKE_PATH "$ENV{EPG_CACHE}" folder)
@@ -245,8 +281,10 @@ function(_epg_cache_folder result)
   set(${result} "${folder}" PARENT_SCOPE)
 endfunction()
 
-# Stops where other users can change what is in EPG's cache: SDKs that are included, programs that are run.
-# epg/bootstrap.py, which runs later, looks at groups more closely.
+# _epg_check_cache(<folder>)
+#
+# Stops with an error if other users can change files in EPG's cache <folder>: CMake includes SDKs from there, and
+# builds run programs from there.  epg/bootstrap.py, which runs later, checks the permissions of groups in more detail.
 function(_epg_check_cache folder)
   get_property(checked GLOBAL PROPERTY EPG_CHECKED_CACHE)
   if(NOT CMAKE_HOST_UNIX OR checked STREQUAL folder OR NOT IS_DIRECTORY "${folder}")
@@ -262,7 +300,9 @@ Delete it, or set the environment variable EPG_CACHE to a folder of your own, or
   endif()
 endfunction()
 
-# The array at <key> as a list, empty when there is none.
+# _epg_json_list(<result> <json> <key>)
+#
+# Sets <result> to the elements of the array <key> in the JSON text <json>; empty if there is no such array.
 function(_epg_json_list result json key)
   set(values "")
   string(JSON count ERROR_VARIABLE none LENGTH "${json}" ${key})

@@ -1,9 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 # epg_add_simulation(<name> EXECUTABLE <executable> SCENARIO <file> [OUTPUT <folder>] [REALTIME])
 #
-# A target that builds a host executable, or Zephyr's application `app` for native_sim, runs it through a scenario, prints
-# a table and leaves <name>.csv and <name>.png in <folder> (default: the build folder).  It fails when the scenario's
-# limits do not hold.
+# Makes a CMake target that builds an executable and runs it through a scenario.  It prints a table of the results, and
+# writes <name>.csv and <name>.png.  The target fails if a limit of the scenario does not hold.
+#
+#   <name>      name of the CMake target; `cmake --build build --target <name>` runs the simulation
+#   EXECUTABLE  a host executable of epg_add_executable(), which must exist, or Zephyr's `app` on native_sim
+#   SCENARIO    the scenario; a relative path begins at the current source folder
+#   OUTPUT      folder of the results; a relative path begins at the current build folder, which is the default
+#   REALTIME    runs in real time instead of simulated time
 
 function(epg_add_simulation name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "REALTIME" "EXECUTABLE;SCENARIO;OUTPUT" "")
@@ -20,7 +25,7 @@ function(epg_add_simulation name)
   set(built "${arg_EXECUTABLE}")
   get_target_property(type "${arg_EXECUTABLE}" TYPE)
   if(NOT type STREQUAL "EXECUTABLE")
-    # Zephyr's `app` is a library, of which native_sim makes a program of this computer.
+    # Zephyr's `app` is a library; native_sim links it to a program for this computer.
     if(NOT TARGET native_runner_executable)
       message(FATAL_ERROR "epg_add_simulation(${name}): '${arg_EXECUTABLE}' is no program of this computer; of Zephyr's boards only native_sim is one")
     endif()

@@ -2,13 +2,28 @@
 # epg_add_target(<name> TCF <file> MODEL <folder> BINDINGS <file>
 #                [PLANT <folder> PLANT_BINDINGS <file>] [NODE <name>] [NAMESPACE <name>] [SET <key.key=value>...])
 #
-# The library EPG::<name>: model, tables and runtime, free of any SDK, and the port layer of its platform as sources of
-# whoever links it.  <file> of TCF is a path, or the name of one of EPG's predefined configurations.  The target
-# <name>_connect opens it in a browser.
+# Makes the library EPG::<name> for a target.  The library itself contains the model, the tables and the runtime, which
+# need no SDK.  The port layer of the platform is compiled in each executable that links the library.  Also makes the
+# CMake target <name>_connect, which opens the target in a browser.
+#
+#   <name>          name of the target and of its library; its header is <name>.h
+#   TCF             the target configuration: a path, or the name of one of EPG's predefined configurations
+#   MODEL           the model
+#   BINDINGS        the bindings file: which component port belongs to which model port
+#   PLANT           the model of the robot, for a simulation; needs PLANT_BINDINGS
+#   PLANT_BINDINGS  the bindings of the plant
+#   NODE            name of the ROS 2 node, instead of the one in the .tcf
+#   NAMESPACE       namespace of the ROS 2 node, instead of the one in the .tcf
+#   SET             other values of the .tcf, such as "control.period=2 ms"
+#
+# Relative paths begin at the current source folder.  It stops with an error if an argument is wrong.  A mistake in the
+# files is reported, and the configure run fails at its end, so that all mistakes are reported together.
 #
 # epg_add_executable(<executable> EPG::<name>)
 #
-# An executable with EPG's own main().
+# Makes an executable with EPG's own main().
+#   <executable>  name of the executable
+#   EPG::<name>   a library that epg_add_target() has made
 
 function(epg_add_target name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "TCF;MODEL;BINDINGS;PLANT;PLANT_BINDINGS;NODE;NAMESPACE" "SET")
@@ -61,7 +76,7 @@ function(epg_add_target name)
   if(NOT good)
     set(connect "")
     get_property(status GLOBAL PROPERTY EPG_EXIT_STATUS)
-    if(status STREQUAL "1") # a mistake in the target's files; else EPG itself does not run, so neither does the page
+    if(status STREQUAL "1") # a mistake in the target's files; after another error, `epg connect` would not run either
       _epg_connect_script(script "${name}" ${arguments})
       set(connect "\nIts ports can be connected in a browser:\n  cmake -P \"${script}\"")
     endif()
@@ -80,7 +95,7 @@ function(epg_add_target name)
     return()
   endif()
   include("${EPG_PLATFORM_CMAKE}")
-  # A platform whose compiler is chosen later, by what this target says of its hardware, makes the libraries then.
+  # Zephyr chooses its compiler later, after it has read this target's devicetree.  It makes the libraries then.
   if(COMMAND _epg_${EPG_PLATFORM}_before_build)
     cmake_language(CALL _epg_${EPG_PLATFORM}_before_build "${name}" "${output}")
   else()
@@ -88,7 +103,11 @@ function(epg_add_target name)
   endif()
 endfunction()
 
-# The libraries of target <name> from its generated files in <output>.
+# _epg_build_target(<name> <output>)
+#
+# Makes the libraries of a target.
+#   <name>    the target
+#   <output>  folder of its generated files
 function(_epg_build_target name output)
   _epg_require_language(C "EPG")
   _epg_data_folder(data)
@@ -99,7 +118,7 @@ function(_epg_build_target name output)
     _epg_model_library("${model}" "${output}")
   endforeach()
   set(generated ${EPG_GENERATED_SOURCES})
-  if(NOT COMMAND _epg_${EPG_PLATFORM}_before_build) # such a platform compiles its own ones with its SDK's settings
+  if(NOT COMMAND _epg_${EPG_PLATFORM}_before_build) # Zephyr compiles the sources of its platform with its own settings
     list(APPEND generated ${EPG_PLATFORM_SOURCES})
   endif()
   list(TRANSFORM generated PREPEND "${output}/")
@@ -137,7 +156,11 @@ function(epg_add_executable executable target)
   cmake_language(CALL _epg_${platform}_executable "${executable}" "${name}")
 endfunction()
 
-# A middleware that <name>.cmake names, compiled once per build.
+# _epg_middleware_library(<name> <middleware>)
+#
+# Links a middleware to a target.  Its library is made once per build.
+#   <name>        the target; the caller must have included its <name>.cmake, which sets EPG_MIDDLEWARE_<middleware>_*
+#   <middleware>  name of the middleware
 function(_epg_middleware_library name middleware)
   set(folder "${EPG_MIDDLEWARE_${middleware}_FOLDER}")
   if(NOT EPG_MIDDLEWARE_${middleware}_SOURCES)
@@ -149,16 +172,19 @@ function(_epg_middleware_library name middleware)
     target_include_directories(${library} PUBLIC "${folder}")
     target_link_libraries(${library} PUBLIC epg_runtime)
     _epg_exact_arithmetic(${library})
-    # What it needs besides: _epg_middleware_<middleware>(<library>).
+    # The middleware's own function _epg_middleware_<middleware>(<library>) links the other libraries that it needs.
     if(EXISTS "${folder}/middleware.cmake")
       include("${folder}/middleware.cmake")
       cmake_language(CALL _epg_middleware_${middleware} ${library})
     endif()
   endif()
-  target_link_libraries(${name} PRIVATE ${library}) # its headers are for generated code, not for the user's
+  target_link_libraries(${name} PRIVATE ${library}) # the middleware's headers are for generated code, not for the user
 endfunction()
 
-# The portable runtime, compiled once per build.
+# _epg_runtime_library(<folder>)
+#
+# Makes the library epg_runtime from EPG's portable runtime, once per build.
+#   <folder>  folder of the runtime
 function(_epg_runtime_library folder)
   if(TARGET epg_runtime)
     return()

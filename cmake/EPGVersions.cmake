@@ -1,11 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-# epg_use_versions([EPG <version>] [PICO_SDK <version>] [ARM_GCC <version>] [PICOTOOL <version>] [FREERTOS_KERNEL <version>])
+# epg_use_versions([EPG <version>] [PICO_SDK <version>] [ARM_GCC <version>] [PICOTOOL <version>]
+#                  [FREERTOS_KERNEL <version>])
 #
-# Before epg_import_pico_sdk(): from several versions beside each other these are taken, and where another one would be
-# taken the configure step stops.  Versions are written as the installers name their folders: 14_2_Rel1, 2.2.0-a4.
+# Fixes the versions of a project's tools.  It must be called before epg_import_pico_sdk().  If several versions of a
+# tool are installed, the given one is taken.  If another version would be taken, the configure run stops with an error.
 #
-# The compiler is taken from the folder of that name where the Raspberry Pi Pico extension of VS Code installs it; who
-# has another one on the PATH gets that.  A picotool of another version is no problem: the SDK says which it can use.
+#   EPG              version of EPG
+#   PICO_SDK         version of the Raspberry Pi Pico SDK
+#   ARM_GCC          version of the Arm toolchain in the folder where the Raspberry Pi Pico extension of VS Code
+#                    installs it.  If that does not exist, a compiler on the PATH is taken, in any version.
+#   PICOTOOL         version of picotool.  Another version is not an error: the SDK reports a picotool that it cannot
+#                    use.
+#   FREERTOS_KERNEL  version of the FreeRTOS kernel
+#
+# Versions are written as in the installers' names of folders: 14_2_Rel1, 2.2.0-a4.
+# It is a macro, because it sets variables in the caller.
 
 macro(epg_use_versions)
   cmake_parse_arguments(_epg_version "" "EPG;PICO_SDK;ARM_GCC;PICOTOOL;FREERTOS_KERNEL" "" ${ARGN})
@@ -26,7 +35,9 @@ macro(epg_use_versions)
   endforeach()
 endmacro()
 
-# Stops when this EPG is another version.
+# _epg_same_epg(<wanted>)
+#
+# Stops with an error if this EPG does not have the version <wanted>.
 function(_epg_same_epg wanted)
   set(PACKAGE_FIND_VERSION "${wanted}")
   include("${CMAKE_CURRENT_FUNCTION_LIST_DIR}/EPGConfigVersion.cmake")
@@ -37,8 +48,15 @@ Or write ${PACKAGE_VERSION} in place of ${wanted} in CMakeLists.txt.")
   endif()
 endfunction()
 
-# Sets <variable> and <folder> to what leads to version <wanted> of <tool>; <variable> to "" when nothing is to be set.
-# Stops when a variable, or everything that is installed, is another version.
+# _epg_select_version(<variable> <folder> <tool> <wanted>)
+#
+# Finds version <wanted> of a tool among the installed ones.  Stops with an error if a variable names another version,
+# or if only other versions are installed.
+#   <variable>  variable that is set to the name of the variable that selects the tool, such as PICO_SDK_PATH; to "" if
+#               a variable names the tool already, or if nothing is installed
+#   <folder>    variable that is set to the folder that this variable must get
+#   <tool>      name of the tool
+#   <wanted>    version
 function(_epg_select_version variable folder tool wanted)
   set(${variable} "" PARENT_SCOPE)
   _epg_data_folder(data)
@@ -73,11 +91,14 @@ function(_epg_select_version variable folder tool wanted)
     list(GET others 1 version)
     _epg_check_version("${json}" "${other}" "${version}" "${wanted}")
   endif()
-  # Nothing at all is found: whoever needs the tool says so.
+  # If no version is found, the function that needs the tool reports it.
 endfunction()
 
-# The folder that a variable of CMake or of the environment names, or "".  What the VS Code extension's file says is
-# passed over where there is nothing: it names the folder that the extension would fill.
+# _epg_stated_folder(<result> <json>)
+#
+# Sets <result> to the folder of a tool that a variable of CMake or of the environment names, or to "".  The VS Code
+# extension's file names a folder even before the extension has installed the tool there: such a folder does not count.
+#   <json>  the text of targets/tools/<name>.json
 function(_epg_stated_folder result json)
   set(${result} "" PARENT_SCOPE)
   _epg_json_list(variables "${json}" variables)
@@ -98,7 +119,13 @@ function(_epg_stated_folder result json)
   endforeach()
 endfunction()
 
-# Whether a folder is called <wanted>, or holds it: of 2.2.0-a4, a release of the tools around picotool, 2.2.0 counts.
+# _epg_is_version(<result> <folder> <version> <wanted>)
+#
+#   <result>   variable that is set to TRUE if the tool in <folder> has the version <wanted>, else to FALSE
+#   <folder>   folder of the tool; a folder in its path that is called <wanted> is enough
+#   <version>  version that the tool states, or ""
+#   <wanted>   wanted version.  Only the numbers at its begin are compared with <version>: 2.2.0-a4 is a release of the
+#              tools around picotool, and contains picotool 2.2.0.
 function(_epg_is_version result folder version wanted)
   string(REGEX MATCH "^[0-9.]+" numbers "${wanted}")
   string(REPLACE "/" ";" names "${folder}")
@@ -109,6 +136,13 @@ function(_epg_is_version result folder version wanted)
   endif()
 endfunction()
 
+# _epg_check_version(<json> <folder> <version> <wanted>)
+#
+# Stops with an error if the tool in <folder> does not have the version <wanted>.
+#   <json>     the text of targets/tools/<name>.json
+#   <folder>   folder of the tool
+#   <version>  version that the tool states
+#   <wanted>   wanted version
 function(_epg_check_version json folder version wanted)
   _epg_is_version(same "${folder}" "${version}" "${wanted}")
   if(NOT same)

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-# Installed as share/EPG/cmake/EPGConfig.cmake, where find_package() looks: leads to the package inside the Python
-# package, wherever the interpreter of this prefix keeps it.
+# Is installed as share/EPG/cmake/EPGConfig.cmake, where find_package() searches.  It includes the real file, which is
+# part of the Python package; each Python has another folder for that.
 get_filename_component(_epg_prefix "${CMAKE_CURRENT_LIST_DIR}/../../.." ABSOLUTE)
 file(GLOB _epg_configs
   "${_epg_prefix}/lib/python*/*-packages/epg/_data/cmake/EPGConfig.cmake"
   "${_epg_prefix}/local/lib/python*/*-packages/epg/_data/cmake/EPGConfig.cmake"
   "${_epg_prefix}/[Ll]ib/*-packages/epg/_data/cmake/EPGConfig.cmake")
 if(_epg_configs)
-  list(SORT _epg_configs COMPARE NATURAL ORDER DESCENDING) # several Pythons share a prefix: the newest
+  list(SORT _epg_configs COMPARE NATURAL ORDER DESCENDING) # if several Pythons share this prefix, take the newest
   list(GET _epg_configs 0 _epg_config)
   include("${_epg_config}")
 else()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Leads to the checkout of an editable install.
+# Includes the package from the checkout of an editable installation.  The installation writes the path below.
 set(_epg_config [==[@CHECKOUT@/cmake/EPGConfig.cmake]==])
 if(EXISTS "${_epg_config}")
   include("${_epg_config}")

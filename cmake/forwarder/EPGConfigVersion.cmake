@@ -1,4 +1,4 @@
 # SPDX-License-Identifier: Apache-2.0
-# Written when the wheel is built.
+# The build of a wheel writes the version below.
 set(PACKAGE_VERSION "@VERSION@")
 include("${CMAKE_CURRENT_LIST_DIR}/EPGCompatible.cmake")

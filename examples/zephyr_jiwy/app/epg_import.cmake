@@ -3,17 +3,22 @@
 #
 #   include(epg_import.cmake)
 #
-# It finds EPG, in this order: EPG_PATH (variable or environment: a checkout), EPG_DIR (variable or environment: the
-# folder of EPGConfig.cmake), the project epg of the west workspace (when west configures), an installed Python package
-# (the one of Python3_EXECUTABLE, else of python3 or python on the PATH, else of the program epg), CMake's own search.
-# It works before and after project(), and under toolchain files that confine find_package() to a sysroot, as the Pico
-# SDK's does.  What was found is kept in the cache.
+# It searches EPG in this order:
+#   1. EPG_PATH, a variable of CMake or of the environment: a checkout of EPG;
+#   2. EPG_DIR, a variable of CMake or of the environment: the folder of EPGConfig.cmake;
+#   3. the project epg of the west workspace, if west configures;
+#   4. an installed Python package: that of Python3_EXECUTABLE, else of python3 or python on the PATH, else of the
+#      program epg;
+#   5. CMake's own search.
+#
+# It works before and after project().  It also works with a toolchain file that confines find_package() to a sysroot,
+# such as the Pico SDK's.  The place of EPG is kept in CMake's cache.
 
-if(COMMAND epg_add_target) # a project around this one has brought EPG
+if(COMMAND epg_add_target) # a project around this one has found EPG already
   return()
 endif()
 
-# An image of Zephyr's sysbuild gets what was given on the command line in a file.
+# Zephyr's sysbuild passes the variables of its command line to its images in a file.
 if(SYSBUILD AND EXISTS "${SYSBUILD_CACHE}")
   file(STRINGS "${SYSBUILD_CACHE}" _epg_lines REGEX "^(EPG_PATH|EPG_DIR|WEST_PYTHON|Python3_EXECUTABLE):" ENCODING UTF-8)
   foreach(_epg_line IN LISTS _epg_lines)
@@ -23,7 +28,7 @@ if(SYSBUILD AND EXISTS "${SYSBUILD_CACHE}")
   endforeach()
 endif()
 
-# What an earlier run has found here gives way to an EPG_PATH or EPG_DIR that is set now.
+# An EPG_PATH or EPG_DIR that is set now comes before the result of an earlier run.
 if(EPG_DIR AND EPG_DIR STREQUAL EPG_IMPORTED_DIR)
   unset(EPG_DIR CACHE)
 endif()
