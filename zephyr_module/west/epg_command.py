@@ -1,9 +1,9 @@
 # Copyright (c) The EPG contributors
 # SPDX-License-Identifier: Apache-2.0
 
-"""``west epg ...``: the command line of the EPG that the workspace has.
+"""``west epg ...``: runs the command line of the EPG in the west workspace.
 
-It runs in the Python that west runs in.  Packages that this Python lacks, EPG installs into its own cache
+It runs with the same Python interpreter as west.  EPG installs packages that this interpreter lacks into its own cache
 (``epg/bootstrap.py``).
 """
 
@@ -18,7 +18,7 @@ PROGRAM = Path(__file__).resolve().parents[2] / "epg" / "__main__.py"
 
 
 class Epg(WestCommand):
-    """Hands all its words to EPG, whose exit status becomes west's."""
+    """Passes all its arguments to EPG, and ends with EPG's exit status."""
 
     def __init__(self):
         super().__init__(
@@ -28,7 +28,7 @@ class Epg(WestCommand):
         )
 
     def do_add_parser(self, parser_adder):
-        # No word begins with this prefix: so none is an option of west's, --help and -- included.
+        # No argument begins with this prefix.  So west takes none of them as its own option, not even --help or --.
         parser = parser_adder.add_parser(self.name, add_help=False, prefix_chars="\0", description=self.description)
         parser.add_argument("arguments", nargs=argparse.REMAINDER)
         return parser
@@ -39,6 +39,6 @@ class Epg(WestCommand):
                 try:
                     status = epg.wait()
                     break
-                except KeyboardInterrupt:  # EPG was interrupted too: `record` ends its file then
+                except KeyboardInterrupt:  # Ctrl-C reaches EPG, too: wait until `record` has completed its file
                     pass
         sys.exit(status if status >= 0 else 128 - status)

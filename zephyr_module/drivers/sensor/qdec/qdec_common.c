@@ -13,7 +13,11 @@
 #define DEGREES_PER_REVOLUTION 360
 #define MICRO                  1000000
 
-/* With the lock held. */
+/*
+ * Adds the movement since the last update to the count. The caller must hold the lock.
+ *
+ * Returns -EHOSTDOWN if the device is suspended, or the error of the driver's read function.
+ */
 static int follow(const struct device *dev)
 {
 	const struct qdec_common_config *config = dev->config;
@@ -31,7 +35,10 @@ static int follow(const struct device *dev)
 		return ret;
 	}
 
-	/* Modulo the counter's range, the shorter way round. */
+	/*
+	 * The counter wraps, so the difference is ambiguous. The shorter movement is the right one:
+	 * the counter has moved by less than half of its range.
+	 */
 	moved = sign_extend(counter - data->counter, config->counter_bits - 1);
 	data->counter = counter;
 	data->count += config->invert ? -(int64_t)moved : (int64_t)moved;
@@ -94,7 +101,10 @@ static int sample_fetch(const struct device *dev, enum sensor_channel chan)
 	return ret;
 }
 
-/* Towards zero: less than a micro-degree off. Both parts have the sign of the count. */
+/*
+ * Rounds towards zero, so the error is less than a micro-degree. Both parts of the value have the
+ * sign of the count. Returns -ERANGE if the degrees do not fit into 32 bits.
+ */
 static int count_to_degrees(int64_t count, int64_t counts_per_revolution, struct sensor_value *val)
 {
 	const int64_t turns = count / counts_per_revolution;

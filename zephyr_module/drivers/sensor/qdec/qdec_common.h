@@ -6,10 +6,12 @@
 
 /**
  * @file
- * @brief What quadrature decoders have in common: counts of 64 bits out of a narrower counter
+ * @brief Common part of the drivers of quadrature decoders: a count of 64 bits
  *
- * A driver gives a function that reads the hardware's counter, and sees to it that somebody calls
- * qdec_common_update() before the counter has moved by half its range.
+ * The hardware's counter has fewer bits and wraps. Each update reads it, and adds its movement
+ * since the last update to the count. A driver must provide a function that reads the counter. It
+ * must also call qdec_common_update() from an interrupt or a timer before the counter has moved by
+ * half of its range, so that the direction of the movement is unambiguous.
  */
 
 #ifndef EPG_ZEPHYR_DRIVERS_SENSOR_QDEC_COMMON_H_
@@ -24,23 +26,28 @@
 #include <zephyr/spinlock.h>
 #include <zephyr/sys/util.h>
 
-/** First member of a driver's configuration. */
+/** Constants of one decoder. Must be the first member of the driver's configuration. */
 struct qdec_common_config {
 	/**
-	 * Reads the counter, with its unused upper bits as they are, and counts up
-	 * qdec_common_data.skipped. Called with the lock held and while the device runs only.
+	 * Reads the counter. Its unused upper bits may have any value. If the hardware has noticed
+	 * that both phases changed at once, it also adds 1 to qdec_common_data.skipped. It is
+	 * called with the lock held, and only while the device runs. Returns 0, or a negative error
+	 * number.
 	 */
 	int (*read)(const struct device *dev, uint32_t *counter);
+	/** Edges of both phases in one revolution of the shaft, at least 1. */
 	uint32_t counts_per_revolution;
 	/** Width of the counter: 16 or 32. */
 	uint8_t counter_bits;
+	/** True if the count must fall while phase A leads phase B. */
 	bool invert;
-	/** Whether the hardware notices that both phases change at once. */
+	/** True if the hardware notices that both phases change at once. */
 	bool notices_skips;
 };
 
-/** First member of a driver's data. */
+/** State of one decoder. Must be the first member of the driver's data. */
 struct qdec_common_data {
+	/** Protects all members. */
 	struct k_spinlock lock;
 	/** Count at the last update. */
 	int64_t count;
@@ -48,7 +55,9 @@ struct qdec_common_data {
 	int64_t fetched;
 	/** The hardware's counter at the last update. */
 	uint32_t counter;
+	/** Number of times that both phases changed at once. */
 	uint32_t skipped;
+	/** False while the device is suspended. */
 	bool running;
 };
 
@@ -65,19 +74,28 @@ struct qdec_common_data {
 			     DT_INST_PROP(inst, counts_per_revolution) <= INT32_MAX,               \
 		     "counts-per-revolution must be 1 or more")
 
-/** Follows the counter; for drivers' interrupts and timers. */
+/**
+ * Reads the counter and updates the count. A driver calls it from its interrupt or timer.
+ *
+ * Returns 0, or a negative error number.
+ */
 int qdec_common_update(const struct device *dev);
 
-/** The hardware counts from now on, from what its counter shows; the count goes on where it was. */
+/**
+ * Starts counting after the driver has started the hardware. The present value of the counter is
+ * the beginning; the count is kept from before qdec_common_stop().
+ *
+ * Returns 0, or the error of the driver's read function.
+ */
 int qdec_common_start(const struct device *dev);
 
 /**
- * Follows the counter a last time. Until qdec_common_start() the hardware is not touched, and reads
- * are errors.
+ * Updates the count a last time, and stops. Until qdec_common_start() the hardware is not accessed,
+ * and reads of the count return -EHOSTDOWN.
  */
 void qdec_common_stop(const struct device *dev);
 
-/** The API of all decoders: by it epg_qdec_get_count() knows that a device is one. */
+/** Sensor API of all decoders. epg_qdec_get_count() recognises a decoder by its address. */
 extern const struct sensor_driver_api qdec_common_driver_api;
 
 #endif /* EPG_ZEPHYR_DRIVERS_SENSOR_QDEC_COMMON_H_ */

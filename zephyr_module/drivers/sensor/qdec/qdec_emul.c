@@ -20,7 +20,7 @@ struct qdec_emul_config {
 
 struct qdec_emul_data {
 	struct qdec_common_data common;
-	/* The emulated hardware: its counter, and how far it may move before it interrupts. */
+	/* The emulated hardware: its counter, and the edges in each direction until it interrupts. */
 	uint32_t register_value;
 	int64_t to_upper_compare;
 	int64_t to_lower_compare;
@@ -76,7 +76,7 @@ void epg_qdec_emul_move(const struct device *dev, int64_t edges)
 		}
 
 		if (interrupt && qdec_common_update(dev) < 0) {
-			/* As hardware whose interrupt is not served. */
+			/* The interrupt was not served: the next match is a whole range away. */
 			data->to_upper_compare = data->to_lower_compare = mask;
 		}
 	}

@@ -8,10 +8,13 @@
  * @file
  * @brief Quadrature decoders on the PIO of RP2040 and RP2350
  *
- * A state machine counts every edge and pushes its 32-bit count whenever the pins rest, or after 90
- * cycles at the latest. A read throws away what the FIFO has kept since the last one and waits for
- * the next count. A timer reads when nobody else does, at least once in a quarter of the count's
- * range at the highest rate: every 85 s at 125 MHz.
+ * A PIO block has four state machines: small processors that run a program on the pins without the
+ * cores. A state machine here counts every edge. It pushes its 32-bit count into its FIFO whenever
+ * the pins do not change, or after 90 cycles at the latest. A read discards the old counts in the
+ * FIFO, and waits for the next one.
+ *
+ * A timer reads the count even if the application does not. Its period is the time of a quarter of
+ * the count's range at the highest rate of edges: 85 s at 125 MHz.
  */
 
 #define DT_DRV_COMPAT epg_pico_pio_qdec
@@ -34,7 +37,7 @@
 
 LOG_MODULE_REGISTER(epg_qdec_pico_pio, CONFIG_SENSOR_LOG_LEVEL);
 
-/* So many looks at the FIFO take longer than the longest time between two pushes. */
+/* Polling the FIFO this number of times takes longer than the longest time between two pushes. */
 #define QDEC_PICO_PIO_POLLS 32U
 
 struct qdec_pico_pio_config {
@@ -58,7 +61,10 @@ static const struct pio_program qdec_pico_pio_program = {
 	.origin = EPG_PICO_QUADRATURE_ORIGIN,
 };
 
-/* Blocks that have the program, one bit each: it has a fixed place, and all decoders share it. */
+/*
+ * One bit for each PIO block whose instruction memory has the program. The program has a fixed
+ * place, and all decoders of a block share it.
+ */
 static uint32_t qdec_pico_pio_loaded;
 
 static int qdec_pico_pio_read(const struct device *dev, uint32_t *counter)
@@ -69,7 +75,7 @@ static int qdec_pico_pio_read(const struct device *dev, uint32_t *counter)
 	uint32_t stale = pio_sm_get_rx_fifo_level(data->pio, data->sm);
 
 	if ((data->pio->irq & skipped) != 0) {
-		data->pio->irq = skipped; /* cleared by a 1 */
+		data->pio->irq = skipped; /* writing a 1 clears the flag */
 		data->common.skipped++;
 	}
 
@@ -84,7 +90,7 @@ static int qdec_pico_pio_read(const struct device *dev, uint32_t *counter)
 		}
 	}
 
-	return -EIO; /* the state machine has been stopped */
+	return -EIO; /* the state machine was stopped by other code */
 }
 
 static void qdec_pico_pio_expired(struct k_timer *timer)
@@ -95,7 +101,7 @@ static void qdec_pico_pio_expired(struct k_timer *timer)
 	(void)qdec_common_update(data->dev);
 }
 
-/* A quarter of the count's range at the highest rate. */
+/* The time of a quarter of the count's range at the highest rate of edges. */
 static k_timeout_t qdec_pico_pio_period(void)
 {
 	return K_MSEC((1ULL << 30) * EPG_PICO_QUADRATURE_COUNT_EDGE_CYCLES * MSEC_PER_SEC /
@@ -124,7 +130,10 @@ static int qdec_pico_pio_resume(const struct device *dev)
 			   EPG_PICO_QUADRATURE_COUNT_WRAP);
 	pio_sm_init(data->pio, data->sm, EPG_PICO_QUADRATURE_COUNT_START, &sm_config);
 
-	/* Y is the count. OSR has the pins as they are, so that the first sample counts nothing. */
+	/*
+	 * Register Y is the count. OSR is the last sample of the pins: it gets their present levels,
+	 * so that the first sample is not counted as an edge.
+	 */
 	pio_sm_exec(data->pio, data->sm, pio_encode_set(pio_y, 0));
 	pio_sm_exec(data->pio, data->sm, pio_encode_mov(pio_isr, pio_null));
 	pio_sm_exec(data->pio, data->sm, pio_encode_in(pio_pins, 2));
@@ -228,7 +237,7 @@ static int qdec_pico_pio_init(const struct device *dev)
 #define QDEC_PICO_PIO_FUNC(n, idx)                                                                 \
 	RP2_GET_PIN_ALT_FUNC(DT_PROP_BY_IDX(QDEC_PICO_PIO_PINS(n), pinmux, idx))
 
-/* The lower pin is the state machine's phase A: with B there, it counts the other way. */
+/* The state machine takes the lower pin as phase A. If that is B, it counts in reverse. */
 #define QDEC_PICO_PIO_REVERSED(n) (QDEC_PICO_PIO_PIN(n, 0) > QDEC_PICO_PIO_PIN(n, 1))
 #define QDEC_PICO_PIO_LOWER(n)    MIN(QDEC_PICO_PIO_PIN(n, 0), QDEC_PICO_PIO_PIN(n, 1))
 #define QDEC_PICO_PIO_UPPER(n)    MAX(QDEC_PICO_PIO_PIN(n, 0), QDEC_PICO_PIO_PIN(n, 1))

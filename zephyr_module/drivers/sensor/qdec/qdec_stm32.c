@@ -8,11 +8,14 @@
  * @file
  * @brief Quadrature decoders on STM32 timers
  *
- * The timer counts every edge by itself. Its channels 3 and 4 compare with the count of the last
- * read plus and minus a quarter of the counter's range. When one matches, its interrupt reads the
- * counter, which moves both. So a read is never further from the last than a quarter of the range
- * and what passes until the interrupt is served, for which there is another quarter: 16384 counts
- * with 16 bits. A shaft that trembles anywhere causes no interrupts.
+ * In its encoder mode the timer itself counts every edge of both phases. Most timers have only 16
+ * bits, so their wraps must not be missed.
+ *
+ * Each read sets the compare values of channels 3 and 4: the present count plus and minus a quarter
+ * of the counter's range. When the shaft has moved so far, a channel matches and interrupts. The
+ * interrupt reads the counter, and so sets both compare values again. The count must be read before
+ * it has moved by half of the range. The interrupt may therefore be late by another quarter of the
+ * range: 16384 counts with 16 bits. A shaft that trembles in one place causes no interrupts.
  */
 
 #define DT_DRV_COMPAT epg_stm32_qdec
@@ -34,7 +37,7 @@
 
 LOG_MODULE_REGISTER(epg_qdec_stm32, CONFIG_SENSOR_LOG_LEVEL);
 
-/* Some series have 16-bit timers only, and no such macro. */
+/* Some series have only 16-bit timers, and do not define this macro. */
 #ifndef IS_TIM_32B_COUNTER_INSTANCE
 #define IS_TIM_32B_COUNTER_INSTANCE(instance) (0)
 #endif
@@ -54,7 +57,7 @@ struct qdec_stm32_data {
 	struct qdec_common_data common;
 };
 
-/* The highest count. */
+/* The highest value of the counter. */
 static uint32_t qdec_stm32_range(const struct qdec_stm32_config *config)
 {
 	return config->common.counter_bits == 32 ? UINT32_MAX : UINT16_MAX;
@@ -78,7 +81,7 @@ static void qdec_stm32_isr(const struct device *dev)
 {
 	const struct qdec_stm32_config *config = dev->config;
 
-	/* Before the read: a match after it must interrupt again. */
+	/* The flags are cleared before the read, so that a match after the read interrupts again. */
 	LL_TIM_ClearFlag_CC3(config->timer);
 	LL_TIM_ClearFlag_CC4(config->timer);
 
@@ -90,7 +93,7 @@ static void qdec_stm32_set_up_input(TIM_TypeDef *timer, uint32_t channel, uint32
 	LL_TIM_IC_SetActiveInput(timer, channel, LL_TIM_ACTIVEINPUT_DIRECTTI);
 	LL_TIM_IC_SetFilter(timer, channel, filter);
 	LL_TIM_IC_SetPolarity(timer, channel, LL_TIM_IC_POLARITY_RISING);
-	/* As LL_TIM_ENCODER_Init() does. */
+	/* LL_TIM_ENCODER_Init() enables the input channels, too. */
 	LL_TIM_CC_EnableChannel(timer, channel);
 }
 
@@ -132,7 +135,7 @@ static int qdec_stm32_resume(const struct device *dev)
 	qdec_stm32_set_up_compare(timer, LL_TIM_CHANNEL_CH3);
 	qdec_stm32_set_up_compare(timer, LL_TIM_CHANNEL_CH4);
 	LL_TIM_SetEncoderMode(timer, LL_TIM_ENCODERMODE_X4_TI12);
-	/* Takes over the prescaler, and sets the counter to 0. */
+	/* The update event activates the prescaler, and sets the counter to 0. */
 	LL_TIM_GenerateEvent_UPDATE(timer);
 
 	ret = qdec_common_start(dev);
@@ -210,7 +213,7 @@ static int qdec_stm32_init(const struct device *dev)
 
 #define QDEC_STM32_TIMER(n) ((TIM_TypeDef *)DT_REG_ADDR(DT_INST_PARENT(n)))
 
-/* Advanced timers have a line for the channels, the others one for all. */
+/* Advanced timers have a separate interrupt line for the channels; other timers have one line. */
 #define QDEC_STM32_IRQ(n, cell)                                                                    \
 	COND_CODE_1(DT_IRQ_HAS_NAME(DT_INST_PARENT(n), cc),                                        \
 		    (DT_IRQ_BY_NAME(DT_INST_PARENT(n), cc, cell)),                                 \

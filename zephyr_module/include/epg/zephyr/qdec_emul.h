@@ -6,7 +6,16 @@
 
 /**
  * @file
- * @brief Turning the shaft of an emulated quadrature decoder (epg,qdec-emul)
+ * @brief Emulated quadrature decoder (epg,qdec-emul)
+ *
+ * The emulated decoder has a counter of 16 or 32 bits without pins. A test or a simulated plant
+ * turns its shaft with the functions below. The firmware reads it like any other decoder, with
+ * epg/zephyr/qdec.h or the sensor API.
+ *
+ * @code{.c}
+ *	epg_qdec_emul_move(qdec, 2000);
+ *	epg_qdec_get_count(qdec, &count);
+ * @endcode
  */
 
 #ifndef EPG_ZEPHYR_QDEC_EMUL_H_
@@ -23,33 +32,38 @@ extern "C" {
 /**
  * @brief Turn the shaft
  *
- * The counter wraps as often as it must, and interrupts as the hardware would. Nothing is counted
- * while the device is suspended.
+ * The counter wraps and interrupts as a hardware counter would, also several times during one call.
+ * Nothing is counted while the device is suspended.
  *
  * @param dev Emulated decoder
- * @param edges How far: positive when A leads B
+ * @param edges Number of edges of both phases: positive if A leads B, negative if B leads A
  */
 void epg_qdec_emul_move(const struct device *dev, int64_t edges);
 
 /**
- * @brief Let both phases change at once, which counts nothing
+ * @brief Let both phases change at once
+ *
+ * The direction of such a change is not known, so the count stays. The next read of the counter
+ * adds 1 to SENSOR_ATTR_EPG_QDEC_SKIPPED.
  *
  * @param dev Emulated decoder
  */
 void epg_qdec_emul_skip(const struct device *dev);
 
 /**
- * @brief Let reads of the hardware fail
+ * @brief Make reads of the emulated hardware fail
  *
  * @param dev Emulated decoder
- * @param error What a read returns: 0, or a negative error number
+ * @param error Error that reads return from now on: a negative error number, or 0 for no error
  */
 void epg_qdec_emul_set_error(const struct device *dev, int error);
 
 /**
- * @brief How often the counter has interrupted
+ * @brief Get the number of interrupts of the counter
  *
  * @param dev Emulated decoder
+ *
+ * @return Number of interrupts since the start, modulo 2^32
  */
 uint32_t epg_qdec_emul_interrupts(const struct device *dev);
 

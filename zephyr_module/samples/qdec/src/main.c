@@ -22,7 +22,7 @@ static const struct device *const qdec = DEVICE_DT_GET(DT_ALIAS(qdec0));
 #if DT_NODE_HAS_COMPAT(DT_ALIAS(qdec0), epg_qdec_emul)
 #include <epg/zephyr/qdec_emul.h>
 
-/* A shaft that turns backwards, three counts a millisecond. */
+/* The emulated shaft turns backwards: three counts per millisecond. */
 static void turn(struct k_timer *timer)
 {
 	ARG_UNUSED(timer);
@@ -54,7 +54,7 @@ static int show(void)
 		return ret;
 	}
 
-	/* Both parts have the sign of the angle. */
+	/* val1 and val2 both have the sign of the angle: print the sign once. */
 	printk("count %" PRId64 ", angle %s%d.%06d degrees\n", count,
 	       angle.val1 < 0 || angle.val2 < 0 ? "-" : "", abs(angle.val1), abs(angle.val2));
 
@@ -70,7 +70,7 @@ int main(void)
 		return 0;
 	}
 
-	/* Where the shaft stands now is 0. */
+	/* The present position of the shaft becomes 0. */
 	ret = epg_qdec_set_count(qdec, 0);
 	if (ret < 0) {
 		printk("%s cannot be preset (%d)\n", qdec->name, ret);
