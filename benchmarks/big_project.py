@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A project of any size: axes with an encoder, a motor, a setpoint and a published value each.
+"""Writes a project of any size.  Each axis has an encoder, a motor, a setpoint and a published value.
 
-The chip it is for grows with it and is built as an RP2350 is: slices of two PWM channels whose users agree on a
-frequency, each reached through two pairs of pins, one of which times the control loop; blocks of four state machines
-for encoders on neighbouring pins.  The controller is written by hand, with a ``model.yaml``.
+The project's chip grows with the number of axes.  It is similar to an RP2350.  A PWM slice has two channels with a
+common frequency, and each channel can use one of two pins; one slice times the control loop.  A PIO block has four
+state machines for encoders on adjacent pins.  The controller is written by hand, with a ``model.yaml``.
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 KINDS = 4
-"""Components of one axis."""
+"""The number of components of one axis."""
 
 
 @dataclass(frozen=True)
 class BigProject:
-    """The files of a project, as ``epg generate`` is given them."""
+    """The files of a project.  ``arguments`` are the options of ``epg generate`` for them."""
 
     folder: Path
 
@@ -54,7 +54,7 @@ def write_big_project(folder: Path, components: int) -> BigProject:
 
 
 def _slices(axes: range) -> int:
-    """Two motors each, and one for the control loop."""
+    """The number of PWM slices: one for each two motors, and one for the control loop."""
     return (len(axes) + 1) // 2 + 1
 
 
@@ -70,7 +70,7 @@ def _configuration(axes: range) -> str:
     lines = ["version: 1", "target: big_plain", "node: big", "control: {period: 1 ms, enable_at_start: false}"]
     lines += ["communication: {middleware: none, period: 33 ms}", "components:"]
     for axis in axes:
-        pwm = axis if axis % 4 < 2 else axis + 2 * _slices(axes)  # slices are reached through both pairs of pins
+        pwm = axis if axis % 4 < 2 else axis + 2 * _slices(axes)  # use both pairs of pins of the slices
         a, direction = _first_encoder(axes) + 2 * axis, _first_direction(axes) + 2 * axis
         pins = f"value: {pwm}, direction_a: {direction}, direction_b: {direction + 1}"
         frequency = "20 kHz" if axis % 6 < 2 else "25 kHz"

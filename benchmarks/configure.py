@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What EPG adds to CMake: configuring JIWY for the host against two projects without EPG.
+"""Measures the time that EPG adds to a CMake configure run: JIWY for the host against two projects without EPG.
 
-One is empty but for an executable; the other builds the files that EPG generated, with the same libraries, as if
-somebody had copied them: what CMake itself takes for these.  Configured again, none has anything to do.
+The first project has only one executable.  The second one builds copies of the files that EPG has generated, with the
+same libraries; it shows the time that CMake itself needs for them.  If nothing has changed, no project has any work in
+a second configure run.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ def main() -> None:
 
 
 def write_projects(folder: Path) -> Mapping[str, Path]:
-    """The projects, which differ in what their CMakeLists.txt says between project() and the executable."""
+    """Writes the projects.  They differ only in the lines of CMakeLists.txt between project() and the executable."""
     head = "cmake_minimum_required(VERSION 3.22)\nproject(bench LANGUAGES C)\n"
     body = "add_executable(bench main.c)\n"
     epg = f'include("{(ROOT / "cmake" / "EPGConfig.cmake").as_posix()}")\n'
@@ -54,7 +55,7 @@ def write_projects(folder: Path) -> Mapping[str, Path]:
 
 
 def copied(output: Path) -> str:
-    """Libraries with the sources that EPG's have, in CMake as one would write it without EPG."""
+    """CMake code for libraries with the same sources as EPG's, as a user would write it without EPG."""
     command: list[str | Path] = [sys.executable, EPG, "generate", "jiwy", "--tcf", "host_jiwy.tcf"]
     command += ["--model", JIWY / "model", "--bindings", JIWY / "jiwy.bindings.yaml"]
     run([*command, "--output", output])
@@ -100,7 +101,7 @@ def new_build(project: Path) -> None:
 
 
 def edit(project: Path) -> Callable[[], None]:
-    """Each call changes the configuration, whether the project knows of it or not."""
+    """A function that changes the .tcf file and configures.  Projects without EPG do not read that file."""
     number = 0
 
     def action() -> None:

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Prints how long one operation of the exchange takes, in nanoseconds, for values of several sizes: alone, and while
- * another thread does the opposite as fast as it can.
+ * Prints the time of one operation of the exchange in nanoseconds, for values of several sizes: alone, and while
+ * another thread does the opposite operation as fast as it can.
  *
  *   exchange <thousands of operations>
  */
@@ -48,7 +48,7 @@ static void *oppose(void *operation)
     return NULL;
 }
 
-/** Nanoseconds for one operation: the best of five times `count`. */
+/** Time of one operation in nanoseconds: the best of five series of `count` operations. */
 static double measure(operation_t *operation, unsigned long count)
 {
     unsigned char value[LARGEST] = {1};
@@ -67,7 +67,7 @@ static double measure(operation_t *operation, unsigned long count)
     return best / (double)count;
 }
 
-/** As measure(), against another thread. */
+/** The same as measure(), while another thread does the operation `opposite`. */
 static double measure_opposed(operation_t *operation, operation_t *opposite, unsigned long count)
 {
     pthread_t thread;
@@ -95,7 +95,7 @@ int main(int argc, char **argv)
         const double write = measure(write_value, count);
         const double read = measure(read_value, count);
         (void)measure(take_value, 1);
-        const double take = measure(take_value, count); /* nothing new */
+        const double take = measure(take_value, count); /* there is no new value to take */
         const double write_opposed = measure_opposed(write_value, read_value, count);
         const double read_opposed = measure_opposed(read_value, write_value, count);
         printf("%zu %.2f %.2f %.2f %.2f %.2f\n", sizes[i], write, read, take, write_opposed, read_opposed);

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How long a value takes through the exchange, by its size: the writer's and the reader's part."""
+"""Measures the time to write a value into the exchange and to read it, for several sizes of the value."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What EPG's Python costs when a project is configured: JIWY, from nothing, after an edit, and for no reason.
+"""Measures the time of EPG's Python code for JIWY: with a new folder, after an edit, and without any change.
 
-The unit is ``python -c pass`` of the same interpreter, taken in turns with everything else.  ``.pyc`` files are there:
-cold means a new output folder.
+The unit is the time of ``python -c pass`` with the same interpreter, measured in turns with everything else.
+Python's ``.pyc`` files exist already: "cold" means a new output folder.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def main() -> None:
 
 
 def actions(folder: Path) -> Mapping[str, Callable[[], object]]:
-    """What is timed, by the name it has in the table."""
+    """The functions to be timed, by their names in the table."""
     python = [sys.executable]
     tcf = folder / "edited.tcf"
 
@@ -97,7 +97,7 @@ def cost_table(times: Mapping[str, list[float]]) -> Table:
     return Table("Generator", ["what", "ms", "ratio"], rows, notes)
 
 
-# Where the time goes ---------------------------------------------------------------------------------------------
+# Shares of the time ----------------------------------------------------------------------------------------------
 
 GROUPS = (
     (r"frozen importlib|marshal|/importlib/|imp\.|io\.open_code|builtins\.exec", "finding and loading modules"),
@@ -118,8 +118,11 @@ GROUPS = (
 
 
 def where_the_time_goes(folder: Path) -> dict[str, float]:
-    """Shares of a cold run after the interpreter's own start, by a profile of which the built-in functions are told
-    apart by their callers.  A profiler slows calls more than it slows other work: shares, not times."""
+    """The share of each part in a cold run, after the start of the interpreter, from a profile.
+
+    The time of a built-in function counts for its callers.  A profiler slows down calls more than other work, so the
+    result is shares and not times.
+    """
     profile = folder / "profile"
     command: list[str | Path] = [sys.executable, "-m", "cProfile", "-o", profile, EPG]
     run([*command, *PICO_ARGUMENTS, "--output", folder / "profiled"])
@@ -141,7 +144,7 @@ OTHERS = "the rest of the standard library"
 
 
 def group(place: str) -> str:
-    """Whose a file or built-in function is."""
+    """The name of the part to which a file or a built-in function belongs."""
     return next((name for pattern, name in GROUPS if re.search(pattern, place.replace("\\", "/"))), OTHERS)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Wall times of things that are to be compared: taken in turns, so that all of them see the same machine.
+"""Measures wall times for a comparison: the actions run in turns, so the load of the computer affects all of them.
 
 >>> times = in_turns({"nothing": lambda: None, "sum": lambda: sum(range(1000))}, rounds=5)
 >>> sorted(times)
@@ -23,15 +23,15 @@ JIWY = ROOT / "examples" / "jiwy"
 def in_turns(actions: Mapping[str, Callable[[], object]], rounds: int) -> dict[str, float]:
     """Median wall time in seconds of each action.
 
-    Every action runs once to warm caches and is then timed ``rounds`` times; within a round all actions run, each
-    round beginning with another one, so that a machine that grows slower burdens all alike.
+    Every action runs once to warm caches.  Then ``rounds`` rounds are timed.  All actions run in each round, and each
+    round begins with another action, so a computer that becomes slower affects all of them equally.
     """
     times = all_in_turns(actions, rounds)
     return {name: statistics.median(values) for name, values in times.items()}
 
 
 def all_in_turns(actions: Mapping[str, Callable[[], object]], rounds: int) -> dict[str, list[float]]:
-    """As :func:`in_turns`, with every single time."""
+    """All times that :func:`in_turns` takes the median of, in seconds."""
     for action in actions.values():
         action()
     names = list(actions)
@@ -46,15 +46,15 @@ def all_in_turns(actions: Mapping[str, Callable[[], object]], rounds: int) -> di
 
 
 def median_ratio(times: Mapping[str, Sequence[float]], name: str, reference: str) -> float:
-    """Median of the ratios within the rounds: a slow moment of the machine slows both of a pair."""
+    """Median of the ratios of ``name`` to ``reference`` within the rounds: a slow moment affects both times."""
     return statistics.median(a / b for a, b in zip(times[name], times[reference]))
 
 
 def run(command: Sequence[str | Path], **environment: str) -> str:
-    """Runs a program that must succeed, and returns what it prints.
+    """Runs a program, and returns its output.  Raises RuntimeError if it fails.
 
-    Python programs may write and use ``.pyc`` files, whatever this shell says: cold means a new output folder, not a
-    new installation.
+    Python programs always write and use ``.pyc`` files, even if the shell's environment forbids it: "cold" means a new
+    output folder, not a new installation.
     """
     variables = {**os.environ, **environment}
     variables.pop("PYTHONDONTWRITEBYTECODE", None)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The thesis's network situations through DDS: robots in real time on this computer, lags as in its tables 5.5 and 5.6.
+"""Measures lags in the thesis's network situations through DDS, as in its tables 5.5 and 5.6, in real time.
 
-Setpoints every 33 ms, best effort.  The robots are simulated, the network is the loopback interface, and there is no
-agent: what is compared with the thesis is the whole chain from setpoint to position, most of which is the robot's own
-dynamics and the two intervals of 33 ms.
+Setpoints are sent every 33 ms, best effort.  The robots are simulated on this computer, the network is the loopback
+interface, and there is no agent.  The whole chain from setpoint to position is compared with the thesis.  Most of the
+lag is due to the dynamics of the robot and to the two intervals of 33 ms.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ from tests.ros2.situations import JIWY as JIWY_AXES
 from tests.ros2.situations import RELBOT, SITUATIONS, Follower, Logs, run
 
 RELBOT_FOLDER = ROOT / "examples" / "relbot"
-FROM = {"JIWY": 4.5, "RELbot": 0.5}  # s: from here on errors and lags are taken; JIWY homes before
+FROM = {"JIWY": 4.5, "RELbot": 0.5}  # s: errors and lags are measured from this time on; JIWY homes before it
 
 THESIS_SHARED = {1: ("66", "99"), 2: ("66", "66"), 3: ("99", "133"), 4: ("99", "99")}
-"""Table 5.5, pan and tilt in ms: Pico on Pi 4, Pico on Pi 5, Pico 2 on Pi 4, Pico 2 on Pi 5."""
+"""The thesis's table 5.5, pan and tilt in ms: Pico on Pi 4, Pico on Pi 5, Pico 2 on Pi 4, Pico 2 on Pi 5."""
 THESIS_TELEOPERATION = {"setpoint to robot 1": ("66", "100"), "robot 1 to robot 3": ("0", "0")}
 THESIS_TELEOPERATION |= {"setpoint to robot 3": ("99", "133")}
-"""Table 5.6."""
+"""The thesis's table 5.6, pan and tilt in ms."""
 
 RESOLUTION = (
     "The thesis's table 5.5 has real JIWYs behind agents on two Raspberry Pis. Its resolution, and that of the columns "
@@ -58,7 +58,7 @@ def main() -> None:
 
 
 def profiles_of(example: Path) -> dict[str, Profile]:
-    """Of the example's scenario, by axis."""
+    """The motion profiles of the example's scenario, by axis."""
     scenario = load_scenario(example / "tracking.yaml", Diagnostics())
     assert scenario is not None
     return {topic.removesuffix("_subscriber"): profile for topic, profile in scenario.profiles.items()}
@@ -77,7 +77,7 @@ def profiles_for(number: int) -> dict[str, Profile]:
 
 
 def smaller(profile: Profile) -> Profile:
-    """Another profile: of 0.6 times the size, each part half a second later."""
+    """A similar profile with 0.6 times the size; each part begins half a second later."""
     parts = tuple(
         type(part)(part.shape, part.start + 0.5, part.duration, 0.6 * part.target, part.frequency)
         for part in profile.parts
@@ -107,7 +107,7 @@ def after_begin(logs: Logs, robot: Follower, log: Sequence[tuple[float, float]])
 
 
 def lags(logs: Logs, robot: Follower, source: str) -> list[tuple[float, float]]:
-    """For each axis the lag of a robot's position behind ``source`` in ms, as in the thesis and finer."""
+    """The lag of a robot's position behind ``source`` for each axis, in ms: with the thesis's resolution, and finer."""
     found = []
     for axis in robot.axes:
         logged = logs.setpoints | logs.positions

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""JIWY's RP2040 images through the motion profile of examples/jiwy in EPG's emulator, beside the host's run.
+"""Runs JIWY's RP2040 images in EPG's emulator through the profile of examples/jiwy, and compares them with the host.
 
-The emulator reads the PWM and direction pins, moves both motors, and drives the encoders' edges; setpoints go over the
-console every 33 ms.
+The emulator reads the PWM and direction pins, moves both motors, and produces the edges of the encoders.  Setpoints are
+sent over the console every 33 ms.
 """
 
 from __future__ import annotations
@@ -103,7 +103,7 @@ def differing_cycles(comparison: Comparison) -> int:
 
 
 def draw(comparison: Comparison) -> None:
-    """As `epg simulate` draws a run, of the image."""
+    """Draws the run of an image, in the same way as `epg simulate`."""
     trackings = comparison.tracking({name: array("d", values) for name, values in comparison.image.columns.items()})
     diagnostics = Diagnostics()
     if not plot(trackings, PLOT, diagnostics):

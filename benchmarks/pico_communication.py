@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What communication takes on a Pico: size of JIWY's images by middleware, and the stack of the communication side.
+"""Measures the memory of communication on a Pico: size of JIWY's images by middleware, and the stack that is used.
 
-All four targets with no middleware, the console, xrce, and xrce with the console beside it, which is the predefined
-one; on FreeRTOS also micro_ros with the console, if EPG_TEST_MICRO_ROS_PICO names a libmicroros.  Stacks are those of
-RP2040 images that ran in EPG's emulator, with an agent and a person at the other ends.
+Each of the four targets is built without middleware, with the console, with xrce, and with xrce and the console, which
+is the predefined choice.  On FreeRTOS micro_ros with the console is added if EPG_TEST_MICRO_ROS_PICO names a
+libmicroros.  The stack is measured in RP2040 images in EPG's emulator, with an agent and a user at the other ends.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ TARGETS = {
     ("pico2", "freertos"): "Pico 2, FreeRTOS",
 }
 RAM = {"pico": 256 * 1024, "pico2": 512 * 1024}
-"""Bytes that images share with the user's data: SRAM without the two banks of stacks."""
+"""Bytes of RAM for images and the user's data: the SRAM without the two banks for stacks."""
 COMMANDS = ("help", "ports", "stats", "get", "watch", "capture 1")
 
 
@@ -84,7 +84,7 @@ def row(board: str, platform: str, middleware: str) -> list[str]:
 
 
 def stack(platform: str, middleware: str) -> tuple[str, str]:
-    """Bytes used and reserved, as the firmware counts them."""
+    """Bytes of stack that are used and reserved, as the firmware itself reports them."""
     elf = firmware("pico", platform, middleware)
     with Emulator(elf, usb={"seed": 3, "open": middleware == "console"}) as pico:
         pico.run(milliseconds=50)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a control cycle of JIWY costs on a Pico: instructions and time by part, and the size of images.
+"""Measures the cost of a control cycle of JIWY on a Pico: instructions and time of each part, and the size of images.
 
-RP2040: EPG's images and JIWY written by hand on the bare SDK (pico/handwritten.c) in EPG's emulator.  RP2350: EPG's
-image on an emulated Cortex-M33, which counts instructions and knows no time.
+RP2040: EPG's images, and a program written by hand for the SDK alone (pico/handwritten.c), in EPG's emulator.
+RP2350: EPG's image on an emulated Cortex-M33, which counts instructions but not time.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ GENERATED = {
 }
 HANDWRITTEN = {"inputs": ("read_inputs",), "model": ("step_model",), "outputs": ("write_outputs",)}
 HOMED = 900
-"""ms from reset, after which both axes have homed from 0.12 rad."""
+"""Time from reset in ms, after which both axes have homed from 0.12 rad."""
 SETPOINTS = "pan_subscriber=0.8 tilt_subscriber=0.5\n"
 SIMULATED = (
     "Simulated, with the compiler's doubles: a board has those of the boot ROM (RP2040) or a coprocessor (RP2350), "
@@ -46,7 +46,7 @@ SIMULATED = (
 
 @dataclass(frozen=True)
 class Cost:
-    """Of one control cycle, the mean: instructions and time by part; "all" from tick to end."""
+    """The mean cost of one control cycle: instructions and time of each part.  "all" is from the tick to the end."""
 
     instructions: Mapping[str, float]
     microseconds: Mapping[str, float]
@@ -73,7 +73,7 @@ def main() -> None:
 
 
 def rp2040(program: Program, parts: Mapping[str, Sequence[str]], count: int) -> Cost:
-    """The mean of ``count`` cycles in which both axes move to a setpoint."""
+    """The mean cost of ``count`` cycles in which both axes move to a setpoint."""
     with Emulator(program.image(), usb={"seed": 1}) as pico:
         connect(pico, {"pan": 0.12, "tilt": 0.12})
         pico.run(milliseconds=HOMED)
@@ -147,7 +147,7 @@ def rp2350_table(count: int) -> Table:
 
 
 def motion(count: int) -> dict[str, list[float]]:
-    """A host's trace, as far as it is needed: positions that change."""
+    """Inputs for ``count`` cycles in the form of a trace of the host: only the positions change."""
     columns: dict[str, list[float]] = {"time": [number / 1000 for number in range(count)]}
     columns |= {f"inputs.{name}": [0.0] * count for name in INPUTS}
     for axis in AXES:
@@ -157,7 +157,7 @@ def motion(count: int) -> dict[str, list[float]]:
 
 
 class Parts:
-    """Tells whose an instruction is: the part whose function was called last and has not returned."""
+    """Counts instructions by part: an instruction belongs to the part whose function was called last and still runs."""
 
     def __init__(self, processor: Processor) -> None:
         self.processor = processor

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Round trip of a Float64 through a Pico: ``examples/ping_pong`` in the emulator, in the four combinations of QoS.
+"""Measures the round trip of a Float64 through a Pico: ``examples/ping_pong`` in the emulator, for each pair of QoS.
 
-In simulated time, with the tests' agent on USB: the host's packets, the board's poll, the echo and the way back.  An
-agent's own work, an operating system and DDS, which all take longer than the board, are not part of it.
+The time is simulated, with the tests' agent on USB.  It consists of the host's packets, the board's poll, the echo and
+the way back.  The work of an agent, an operating system and DDS is not part of it, although they take longer than the
+board.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""When ticks, encoder reads and outputs of JIWY come on an RP2040: EPG's images, and other sorts of tick.
+"""Measures the jitter of ticks, encoder reads and outputs of JIWY on an RP2040: EPG's images, and other kinds of tick.
 
-Everything runs in EPG's emulator, which times every control cycle from outside.  Simulated are both cores to the cycle,
-PIO, PWM and USB; not simulated are contention for the bus and the flash cache.
+Everything runs in EPG's emulator, which times every control cycle from outside.  The emulator simulates both cores with
+the exact number of processor cycles, PIO, PWM and USB.  It does not simulate contention for the bus or the flash cache.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ NOT_HARDWARE = (
 )
 AIM_ENTRY, AIM_OUTPUT = 3, 0
 FEWEST_CHANGES = 1000
-"""Of levels, in a row of the table, from which on it says something of outputs."""
+"""The least number of changes of an output level in a row of the table for a statement about outputs."""
 
 
 def main() -> None:
     options = arguments(__doc__, seeds=20, comparison=20, milliseconds=3000, programs=5, loads=4)
-    seeds = {True: range(options.seeds), False: range(options.comparison)}  # of EPG's programs, of those by hand
+    seeds = {True: range(options.seeds), False: range(options.comparison)}  # True: EPG's programs, False: by hand
     try:
         for need in (pico_sdk, arm_gcc, node, rp2040js, freertos_kernel):
             need()
@@ -64,7 +64,7 @@ def main() -> None:
 
 
 def chosen(programs: int, loads: int) -> Iterator[tuple[Program, Load]]:
-    """The first ``programs`` of all, under the first ``loads``."""
+    """The first ``programs`` programs, each with the first ``loads`` loads."""
     ours = [lambda load, platform=platform: generated(platform, load.period) for platform in ("bare_metal", "freertos")]
     others = ("by_hand_alarm_core0", "by_hand_alarm_core1", "by_hand_smp")
     hands = [lambda load, executable=executable: by_hand(executable) for executable in others]

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Round trip of a Float64 through a target: ``examples/ping_pong`` on this computer, in the four combinations of QoS.
+"""Measures the round trip of a Float64 through a target: ``examples/ping_pong`` on this computer, for each pair of QoS.
 
     python benchmarks/ping_pong.py [--pings 300] [--flat 5000] [--write]
 
-Through the middleware dds; and through xrce, by UDP, and eProsima's agent where one is found (``EPG_XRCE_AGENT``, or
-``MicroXRCEAgent`` on PATH).  The first row is an echo in Python instead of a target: what peer and DDS take.
+The middlewares are dds, and xrce by UDP.  The latter needs eProsima's agent (``EPG_XRCE_AGENT``, or ``MicroXRCEAgent``
+on PATH) and is left out without it.  The first row is an echo in Python instead of a target: it shows the time that
+the peer and DDS take.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ QOS = {"best": "best_effort", "default": "reliable"}
 COMBINATIONS = [(publisher, subscriber) for publisher in QOS for subscriber in QOS]
 PORT = 8899
 DOMAIN = 92
-"""Of this benchmark: agents with Fast DDS know nothing of the tags that keep tests apart."""
+"""The DDS domain of this benchmark.  Agents with Fast DDS do not know the tags that separate tests from each other."""
 
 THESIS = """\
 bare-metal Pico 2 RPi5 best/best	1.92	0.05	1.42	10.79	1.92
@@ -43,13 +44,13 @@ FreeRTOS Pico 2 RPi5 best/best	3.55	0.48	2.46	12.83	3.85
 FreeRTOS Pico 2 RPi5 best/default	3.98	0.27	2.54	12.36	3.91
 FreeRTOS Pico 2 RPi5 default/best	4.59	0.44	3.41	11.66	4.85
 FreeRTOS Pico 2 RPi5 default/default	4.96	0.24	3.61	10.72	4.90"""
-"""Of its table E.1: name, mean, standard deviation, minimum, maximum, median in ms."""
+"""The thesis's table E.1: name, mean, standard deviation, minimum, maximum, median in ms."""
 
 HARDWARE = "Boards on USB, micro-ROS, its agent and the peer on a Raspberry Pi 5: here for the order of size only."
 
 
 def build(folder: Path, middleware: str) -> Path:
-    """The folder with the four programs, optimised."""
+    """Builds the four programs, optimised, and returns their folder."""
     options = [f"-DPING_PONG_MIDDLEWARE={middleware}", "-DCMAKE_BUILD_TYPE=Release"]
     run(["cmake", "-S", EXAMPLE, "-B", folder / middleware, f"-DPython3_EXECUTABLE={sys.executable}", *options])
     run(["cmake", "--build", folder / middleware, "--parallel"])
@@ -69,7 +70,7 @@ def process(command: Sequence[str | Path], environment: dict[str, str]) -> Itera
 
 
 def measure(name: str, options: Sequence[str], environment: dict[str, str], pings: int, flat: int) -> list[list[str]]:
-    """The rows of 30 Hz and of flat out."""
+    """The rows of the table for 30 Hz and for pings without a pause."""
     cells = []
     with tempfile.TemporaryDirectory() as folder:
         for rate, count in ((30, pings), (0, flat)):
@@ -99,12 +100,12 @@ def main() -> int:
                 program = programs / f"ping_pong_{publisher}_{subscriber}_host"
                 own = ["--agent", f"127.0.0.1:{PORT}"] if middleware == "xrce" else []
                 qos = ["--publisher", QOS[publisher], "--subscriber", QOS[subscriber]]
-                # a new agent each time: none has to clear up after the client before
+                # A new agent each time has no entities of the previous client.
                 listening = [agent, "udp4", "-p", str(PORT)] if own else ["sleep", "infinity"]
                 outer = {**environment, "XRCE_DOMAIN_ID_OVERRIDE": str(net.domain)}
                 with process(listening, outer), process([program, "--realtime", "--quiet", *own], environment):
                     found += measure(f"host, {middleware}", qos, environment, options.pings, options.flat)
-    shown = [[*row[:5], *row[6:]] for row in found]  # what a mean is compared with depends on the rate
+    shown = [[*row[:5], *row[6:]] for row in found]  # without the comparison of the mean, which depends on the rate
     columns = ["what, publisher/subscriber, rate", *head()[1:5], *head()[6:]]
     load = os.getloadavg()[0]
     notes = [f"The load average of this computer was {load:.0f}: where it is high, maxima are other programs'."]

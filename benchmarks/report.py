@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tables on the terminal and in ``docs/benchmarks.md``, with the machine they were measured on."""
+"""Prints tables on the terminal, and writes them with a description of the computer into ``docs/benchmarks.md``."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ PAGE = ROOT / "docs" / "benchmarks.md"
 
 @dataclass(frozen=True)
 class Table:
-    """Rows of text below a head; numbers stand to the right."""
+    """Rows of text below a head.  Columns of numbers are aligned to the right."""
 
     title: str
     head: Sequence[str]
@@ -29,7 +29,7 @@ class Table:
     notes: Sequence[str] = ()
 
     def plain(self) -> str:
-        """For the terminal."""
+        """The table as text for the terminal."""
         lines = [list(self.head), *map(list, self.rows)]
         widths = [max(len(line[column]) for line in lines) for column in range(len(self.head))]
         right = [column > 0 and all(_is_number(row[column]) for row in self.rows) for column in range(len(widths))]
@@ -40,7 +40,7 @@ class Table:
         return "\n".join([*out, *self.notes])
 
     def markdown(self) -> str:
-        """For the page."""
+        """The table in Markdown for the page."""
         right = [column > 0 and all(_is_number(row[column]) for row in self.rows) for column in range(len(self.head))]
         out = [f"### {self.title}", "", _row(self.head), _row(["---:" if r else "---" for r in right])]
         out += [_row(row) for row in self.rows]
@@ -48,7 +48,7 @@ class Table:
 
 
 def arguments(description: str, **counts: int) -> argparse.Namespace:
-    """The command line that all benchmarks have: ``--write`` and a few counts."""
+    """Parses the command line of a benchmark: ``--write``, and an option with a default for each of ``counts``."""
     parser = argparse.ArgumentParser(description=description.split("\n\n")[0])
     parser.add_argument("--write", action="store_true", help="put the tables into docs/benchmarks.md")
     for name, value in counts.items():
@@ -57,7 +57,7 @@ def arguments(description: str, **counts: int) -> argparse.Namespace:
 
 
 def show(name: str, tables: Sequence[Table], write: bool, command: str) -> None:
-    """Prints ``tables``; with ``write``, puts them in place of the page's section ``name``."""
+    """Prints ``tables``.  With ``write``, also replaces the section ``name`` of the page."""
     print("\n\n".join(table.plain() for table in tables))
     if not write:
         return
@@ -72,7 +72,7 @@ def show(name: str, tables: Sequence[Table], write: bool, command: str) -> None:
 
 
 def machine() -> str:
-    """What the numbers depend on: processor, system, Python, and the tools that are there."""
+    """The facts on which the numbers depend: processor, system, Python, and the installed tools."""
     parts = [f"{_processor()}, {os.cpu_count()} of its threads, shared", platform.system() + " " + platform.machine()]
     parts.append(f"Python {platform.python_version()}")
     for program, pattern in (("cmake", r"version (\S+)"), ("gcc", r"(\d+\.\d+\.\d+)\s*$"), ("valgrind", r"-(\S+)")):
@@ -113,5 +113,5 @@ def _is_number(cell: str) -> bool:
 
 
 def command_line(program: str) -> str:
-    """``python benchmarks/<program>.py`` with the arguments given, without ``--write``."""
+    """``python benchmarks/<program>.py`` with the arguments of this run, without ``--write``."""
     return " ".join(["python", f"benchmarks/{program}.py", *(a for a in sys.argv[1:] if a != "--write")])

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What generated code costs at run time: JIWY generated, against JIWY written by hand (runtime/handwritten.c).
+"""Measures the cost of generated code at run time: JIWY generated, and JIWY written by hand (runtime/handwritten.c).
 
-Both are compiled for this machine with the same options, linked with the same model and the same driver, and must give
-the same trace: every signal, every published value and every counter of every cycle, through faults, overruns and
-values that are not finite.  Instructions per control cycle come from callgrind, which counts exactly and the same in
-every run.  The robot has neither motion guards nor a middleware there; what guards cost is measured beside.
+Both programs are compiled for this computer with the same options, and linked with the same model and the same driver.
+They must give the same trace: every signal, every published value and every counter of every cycle, also with faults,
+overruns and values that are not finite.  callgrind counts the instructions of a control cycle; its counts are exact,
+and the same in every run.  Both programs are without motion guards and middleware.  The cost of motion guards is
+measured separately.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ components:
   pwm_pan: {dead_time: 0 s}
   pwm_tilt: {dead_time: 0 s}
 """
-# All checks run, and nothing that the driver's robot does is a fault.
+# All checks of the guards run, but with limits so large that the driver's robot never causes a fault.
 GUARD = (
     "{stall: {duty: 1, time: 1000 s}, runaway: {duty: 1, angle: 1000 rev}, homing: {travel: 1000 rev, time: 1000 s}}"
 )
@@ -55,7 +56,10 @@ components:
 
 @dataclass(frozen=True)
 class Program:
-    """A linked driver.  ``glue`` are the objects that stand between model and port layer."""
+    """A linked driver.  ``cycle`` is the function of a control cycle.
+
+    ``glue`` are the object files between the model and the port layer; ``model`` are those of the model.
+    """
 
     path: Path
     cycle: str
@@ -86,7 +90,7 @@ GLUE = ("jiwy_app.c", "jiwy_model.c", "jiwy_version.c")
 
 
 def build_generated(folder: Path, configuration: str) -> Program:
-    """JIWY as ``epg generate`` writes it, without the host's own port layer."""
+    """Builds JIWY as ``epg generate`` writes it, with the driver's port layer instead of the host's."""
     folder.mkdir()
     output = folder / "generated"
     (folder / "robot.tcf").write_text(configuration, encoding="utf-8")
@@ -113,7 +117,7 @@ def build_generated(folder: Path, configuration: str) -> Program:
 
 
 def linked_from(library: Sequence[Path], objects: Sequence[Path]) -> list[Path]:
-    """The objects of a library that a linker takes for ``objects``: those that define what is missing."""
+    """The objects of a library that a linker would take for ``objects``: those that define missing symbols."""
     taken: list[Path] = []
     while True:
         present = [*objects, *taken]
@@ -125,7 +129,7 @@ def linked_from(library: Sequence[Path], objects: Sequence[Path]) -> list[Path]:
 
 
 def symbols(path: Path, sorts: str) -> set[str]:
-    """Names of an object file of these sorts, as ``nm`` calls them."""
+    """The symbols of an object file whose type is one of the letters ``sorts`` of ``nm``."""
     return {line.split()[-1] for line in run(["nm", path]).splitlines() if line.split()[-2] in sorts}
 
 
@@ -161,7 +165,7 @@ def compiler() -> str:
 
 
 def compare_traces(generated: Program, written: Program, cycles: int) -> str:
-    """Says what was compared; the program ends here if the two differ."""
+    """Compares the traces of both programs, and returns a sentence about it.  Ends the benchmark if they differ."""
     one, other = (run([program.path, str(cycles), "trace"]).splitlines() for program in (generated, written))
     for number, (a, b) in enumerate(zip(one, other, strict=True)):
         if a != b:
@@ -175,7 +179,11 @@ def compare_traces(generated: Program, written: Program, cycles: int) -> str:
 
 
 def cycle_costs(program: Program, folder: Path, cycles: int) -> dict[str, float]:
-    """Instructions per control cycle by whose they are; the first cycles, which initialise the model, do not count."""
+    """Instructions per control cycle of model, port layer and glue.
+
+    They are the difference between a long and a short run, so the first cycles, which initialise the model, do not
+    count.
+    """
     few, many = (collected(program, folder, count) for count in (cycles // 2, cycles + cycles // 2))
     model = defined_in(program.model)
     result = {"model": 0.0, "port layer": 0.0, "glue": 0.0}
@@ -186,7 +194,7 @@ def cycle_costs(program: Program, folder: Path, cycles: int) -> dict[str, float]
 
 
 def collected(program: Program, folder: Path, cycles: int) -> dict[str, int]:
-    """Instructions within the control cycle by function."""
+    """Instructions of each function within control cycles."""
     output = folder / "callgrind.out"
     command = ["valgrind", "--tool=callgrind", f"--toggle-collect={program.cycle}", "--compress-strings=no"]
     run([*command, "--compress-pos=no", f"--callgrind-out-file={output}", program.path, str(cycles)])
@@ -196,7 +204,7 @@ def collected(program: Program, folder: Path, cycles: int) -> dict[str, int]:
         if line.startswith("fn="):
             function = line[3:].partition("'")[0]
         elif line.startswith("calls="):
-            called = True  # the next line is the cost of what was called, which is counted there
+            called = True  # the next line is the cost of the called function, which is counted in that function
         elif re.match(r"\d+ \d+$", line):
             costs[function] = costs.get(function, 0) + (0 if called else int(line.split()[1]))
             called = False
@@ -235,7 +243,7 @@ def memory_table(generated: Program, written: Program, folder: Path) -> Table:
 
 
 def section_sizes(path: Path) -> tuple[int, int, int, int]:
-    """Code, constants, initialised and cleared memory of an object file."""
+    """Sizes of code, constants, initialised data and cleared data of an object file, in bytes."""
     sums = {"text": 0, "rodata": 0, "data": 0, "bss": 0}
     for line in run(["size", "-A", path]).splitlines():
         found = re.match(r"\.(text|rodata|data\.rel\.ro|data|bss)\S*\s+(\d+)", line)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How EPG's time grows: 1000 components against 100 in one target, and 100 targets in one build.
+"""Measures the growth of EPG's time: 1000 components against 100 in one target, and 100 targets in one build.
 
-The components are axes of :mod:`big_project`, on a chip with enough pins for them.  Besides the whole time the growth
-beyond the start is given, since the start of Python would hide what is worse than linear.
+The components are axes of :mod:`big_project`, on a chip with enough pins for them.  The table has the growth of the
+whole time, and the growth without the start of Python: otherwise the start would hide growth that is worse than linear.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def main() -> None:
 
 
 def components_table(folder: Path, largest: int, rounds: int) -> Table:
-    """Times for a twentieth, a tenth, a half and all of ``largest`` components."""
+    """The times for 5 %, 10 %, 50 % and 100 % of ``largest`` components."""
     counts = sorted({4 * max(1, largest * share // 400) for share in (5, 10, 50, 100)})
     projects = {count: write_big_project(folder / f"big{count}", count) for count in counts}
     names = {count: f"{count} components" for count in counts}
@@ -69,7 +69,7 @@ def generate(project: BigProject) -> None:
 
 
 def targets_table(folder: Path, largest: int, rounds: int) -> Table:
-    """Configures projects with a tenth, a half and all of ``largest`` targets, each in a new build folder."""
+    """Configures projects with 10 %, 50 % and 100 % of ``largest`` targets, each in a new build folder."""
     counts = sorted({max(1, largest * share // 100) for share in (10, 50, 100)})
     for count in counts:
         write_targets_project(folder / f"targets{count}", count)

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""From a setpoint at the agent to the output that it changes, in control cycles of 1 ms: the host, and Picos.
+"""Measures the time from a setpoint at the agent to the change of the output, in control cycles of 1 ms.
 
-What is expected: the output changes in the next cycle that begins after the setpoint has been given to the control
-side, and there when the cycle has computed, or ``control.output_delay`` after its tick; a level of PWM then acts at the
-PWM's next period.  The host runs in real time, its agent in this process; Picos are emulated, in simulated time.
+Expected: the communication side gives the setpoint to the control side.  The output changes in the next control cycle
+after that: at the end of its computation, or ``control.output_delay`` after its tick.  A PWM level then takes effect at
+the next period of the PWM.
+
+The host runs in real time, with its agent in this process.  Picos are emulated, in simulated time.
 """
 
 from __future__ import annotations
@@ -61,7 +63,7 @@ def main() -> None:
 
 
 def build(folder: Path) -> None:
-    """The host's programs."""
+    """Builds the programs for the host."""
     settings = [f"-DEPG_PATH={ROOT}", f"-DPython3_EXECUTABLE={sys.executable}", "-DCMAKE_BUILD_TYPE=Release"]
     run(["cmake", "-S", ROOT / PROJECT, "-B", folder, *settings])
     run(["cmake", "--build", folder, "--parallel", "2"])

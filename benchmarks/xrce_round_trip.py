@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Round trips over XRCE: a Float64 to a board and back, at 30 Hz and as fast as answers come.
+"""Measures round trips over XRCE: a Float64 to a board and back, at 30 Hz and as fast as the answers arrive.
 
-Boards are the ping-pong example on this computer and eProsima's client without EPG; agents are the one of the tests, in
-Python, with the measuring program in the same process, and eProsima's with Fast DDS, with a CycloneDDS peer behind it.
+The boards are the ping-pong example on this computer, and eProsima's client without EPG.  The agents are the tests'
+agent in Python, with the measuring program in the same process, and eProsima's agent with Fast DDS, behind which a
+CycloneDDS peer measures.
 """
 
 from __future__ import annotations
@@ -36,18 +37,21 @@ from tests.xrce_agent.topics import Endpoint as Writer
 EXAMPLE = ROOT / "examples" / "ping_pong"
 QOS = {"best effort": "best", "reliable": "default"}
 WARM_UP = 50
-PATIENCE = 1.0  # s, until a ping is lost
+PATIENCE = 1.0  # s, after which a ping without an answer counts as lost
 
 THESIS = (
     ("thesis: Pico 2, bare metal", "1.92", "10.8"),
     ("thesis: Pico 2, FreeRTOS", "3.55", "12.8"),
     ("thesis: Nucleo-H743ZI, Zephyr", "5.39", ""),
 )
-"""Mean and largest in ms: USB serial, agent and peer on a Raspberry Pi, best effort; reliable took 1 to 4 ms more."""
+"""Mean and largest time in ms of the thesis: boards on USB, agent and peer on a Raspberry Pi, QoS best effort.
+
+Reliable took 1 to 4 ms more.
+"""
 
 
 def example_peer() -> ModuleType:
-    """The example's measuring program, whose module has the name of one of the benchmarks'."""
+    """The example's measuring program, loaded under another name: one of the benchmarks' modules has its name, too."""
     spec = importlib.util.spec_from_file_location("ping_pong_measure", EXAMPLE / "peer" / "measure.py")
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
@@ -56,7 +60,7 @@ def example_peer() -> ModuleType:
 
 
 class Peer(Protocol):
-    """Sends pings and takes pongs."""
+    """The measuring side: sends pings and receives pongs."""
 
     def write(self, value: float) -> None: ...
 
@@ -64,7 +68,7 @@ class Peer(Protocol):
 
 
 class InProcess:
-    """A peer at the Python agent."""
+    """A peer in the process of the Python agent."""
 
     def __init__(self, agent: Agent, reliable: bool) -> None:
         self._agent, self._reliable = agent, reliable
@@ -119,7 +123,7 @@ def round_trips(folder: Path, count: int) -> Table:
 
 
 def build(folder: Path) -> dict[str, Path]:
-    """The example's executables by QoS of both topics."""
+    """Builds the example's executables, and returns them by the QoS of both topics."""
     made = folder / "ping_pong"
     options = ["-DPING_PONG_MIDDLEWARE=xrce", "-DCMAKE_BUILD_TYPE=Release", f"-DPython3_EXECUTABLE={sys.executable}"]
     run(["cmake", "-S", str(EXAMPLE), "-B", str(made), "-G", "Ninja", *options])
@@ -129,7 +133,7 @@ def build(folder: Path) -> dict[str, Path]:
 
 
 def one(agent: str, board: Path, qos: str, rate: float, count: int, folder: Path) -> Summary:
-    """``count`` round trips, or ten times as many where that takes no time."""
+    """Measures ``count`` round trips, or ten times as many without a rate."""
     reliable = qos == "reliable"
     measure = example_peer().measure
     with peer_behind(agent, board, reliable, folder) as peer:

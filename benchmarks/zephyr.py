@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What EPG adds to a Zephyr application: time to configure, and size of the image.
+"""Measures what EPG adds to a Zephyr application: the time to configure, and the size of the image.
 
-Configuring is compared with the same application whose overlay, configuration and C files are those that EPG
-generated, as if somebody had written them: what Zephyr and CMake take for these. It is the processor's time of CMake
-and all that it starts, one after the other: other work on the machine makes that longer by little.
+The time to configure is compared with that of the same application without EPG, with copies of the generated overlay,
+configuration and C files. The latter is the time that Zephyr and CMake themselves need. Both times are processor times
+of CMake and of all programs that it starts, one after the other, so other work on the computer has little influence.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from tests.zephyr.workspace import Workspace, build, c_library, run, workspace
 BOARDS = ("rpi_pico", "nucleo_h743zi", "rpi_pico2/rp2350a/m33")
 COPIED, EPG = "files copied", "EPG"
 BORDER = 3.0
-"""Per cent of the time to configure that EPG may add."""
+"""The largest time that EPG may add to a configure run, in per cent."""
 
 MAIN = """#include <zephyr/kernel.h>
 #include "jiwy.h"
@@ -51,7 +51,7 @@ target_sources(app PRIVATE main.c)
 
 def main() -> None:
     options = arguments(__doc__, rounds=5, boards=len(BOARDS))
-    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # modules and templates are compiled once, as for every user
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # Python compiles modules and templates only once, as for users
     try:
         here = workspace(*BOARDS)
         c_library()
@@ -70,7 +70,7 @@ def main() -> None:
 
 
 def times(folder: Path, board: str, here: Workspace, rounds: int) -> list[list[str]]:
-    """Rows of a board: a new build folder, and one in which nothing has changed."""
+    """The rows of a board: for a new build folder, and for one in which nothing has changed."""
     projects = write_projects(folder, board, here)
     again = {name: partial(configure, path, board, here) for name, path in projects.items()}
     cold = {name: partial(new_build, path, board, here) for name, path in projects.items()}
@@ -79,7 +79,10 @@ def times(folder: Path, board: str, here: Workspace, rounds: int) -> list[list[s
 
 
 def processor_times(actions: Mapping[str, Callable[[], object]], rounds: int) -> dict[str, list[float]]:
-    """Seconds of the processor that each action takes with all that it starts, by turns; caches are warm."""
+    """Processor time in seconds of each action with all programs that it starts.  The actions run in turns.
+
+    Caches must be warm.
+    """
     taken: dict[str, list[float]] = {name: [] for name in actions}
     for _ in range(rounds):
         for name, action in actions.items():
@@ -98,7 +101,10 @@ def cost(board: str, what: str, taken: Mapping[str, Sequence[float]]) -> list[st
 
 
 def write_projects(folder: Path, board: str, here: Workspace) -> Mapping[str, Path]:
-    """The application with EPG, built once, and the one with its files; both images have the same code."""
+    """Writes and builds the application with EPG and the one with copied files.
+
+    Ends the benchmark if their images differ in size by more than 0.5 %.
+    """
     projects = {name: folder / name.replace(" ", "_") for name in (EPG, COPIED)}
     for path in projects.values():
         path.mkdir(parents=True)
@@ -122,7 +128,7 @@ def write_projects(folder: Path, board: str, here: Workspace) -> Mapping[str, Pa
 
 
 def copy_files(built: Path, project: Path, board: str, here: Workspace) -> None:
-    """The application with the files of ``built``, a build with EPG: in its CMakeLists.txt, overlay and prj.conf."""
+    """Writes CMakeLists.txt, overlay and prj.conf of ``project``, with the files of ``built``, a build with EPG."""
     defaults = (built / "epg" / "jiwy" / "jiwy.Kconfig").read_text(encoding="utf-8")
     symbols = {f"CONFIG_{symbol}" for symbol in re.findall(r"^configdefault (\w+)", defaults, re.MULTILINE)}
     final = (built / "zephyr" / ".config").read_text(encoding="utf-8").splitlines()
@@ -157,7 +163,7 @@ def _is_below(path: str, folders: Sequence[Path]) -> bool:
 
 
 def compiled(folder: Path) -> dict[str, str]:
-    """Every source of a build that is none of Zephyr's own, with its command."""
+    """Every source file of a build except the application's main.c, with its compiler command."""
     entries = json.loads((folder / "compile_commands.json").read_text(encoding="utf-8"))
     return {entry["file"]: entry["command"] for entry in entries if not entry["file"].endswith("main.c")}
 
@@ -168,7 +174,7 @@ def new_build(project: Path, board: str, here: Workspace) -> None:
 
 
 def configure(project: Path, board: str, here: Workspace) -> None:
-    """As west does it, with west's Python; Zephyr's own caches, in the user's folder, are warm."""
+    """Configures as west does, with west's Python.  Zephyr's own caches in the user's folder are warm."""
     modules = ";".join(str(path) for path in here.modules)
     command = ["cmake", "-G", "Ninja", "-S", str(project), "-B", str(project / "build"), f"-DBOARD={board}"]
     settings = [f"-D{name}={value}" for name, value in {"WEST_PYTHON": str(here.python), **c_library()}.items()]
@@ -176,7 +182,7 @@ def configure(project: Path, board: str, here: Workspace) -> None:
 
 
 def sizes(board: str) -> list[list[str]]:
-    """An application that does nothing, and JIWY's."""
+    """The rows of a board: an empty application, and JIWY's."""
     rows = []
     for what, application in (
         ("Zephyr alone", "tests/zephyr/empty"),
@@ -188,7 +194,7 @@ def sizes(board: str) -> list[list[str]]:
 
 
 def size_of(folder: Path) -> tuple[int, ...]:
-    """Bytes of text, data and bss."""
+    """The sizes of text, data and bss in bytes."""
     program = arm_gcc().with_name("arm-none-eabi-size")
     done = subprocess.run(
         [str(program), str(folder / "zephyr" / "zephyr.elf")], capture_output=True, text=True, check=True

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""When Zephyr's control cycles of JIWY come, and what they take, on the one core of a Pico that runs everything.
+"""Measures jitter and cost of JIWY's control cycles with Zephyr, which runs everything on one core of a Pico.
 
-The example's application as it is shipped, in EPG's RP2040 emulator, which times every control cycle from outside.
-Simulated are the core to the cycle, PIO, PWM and USB; not simulated is the flash cache, through which this image runs.
+The example's unchanged application runs in EPG's RP2040 emulator, which times every control cycle from outside.  The
+emulator simulates the core with the exact number of processor cycles, PIO, PWM and USB.  It does not simulate the flash
+cache, although this image runs from flash.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ from tests.zephyr.workspace import build, c_library, workspace
 
 FREQUENT = "tests/zephyr/proof/application"
 AIM = 2500
-"""Cycles of 8 ns: 20 us."""
+"""The aim in processor cycles of 8 ns: 20 us."""
 PARTS = {
     "reading in the interrupt": ("epg_zephyr_inputs_sample",),
     "inputs": ("sample", "read_inputs", "inputs_finite"),
@@ -44,7 +45,10 @@ SIMULATED = (
 
 @dataclass(frozen=True)
 class Load:
-    """``period`` of setpoints and of what is published in ms; ``flooded``: packets on both ports all the time."""
+    """Load by communication.  ``period`` is that of setpoints and published values, in ms.
+
+    ``flooded`` sends packets on both serial ports all the time.
+    """
 
     period: int
     flooded: bool = False
@@ -65,8 +69,11 @@ LOADS = (Load(33), Load(33, flooded=True), Load(10))
 
 @dataclass
 class Measured:
-    """``timing`` by the emulator's clock; ``interrupt``, ``cycle``: how late the tick's interrupt was entered and the
-    control thread's cycle began, ``locked``: for how long interrupts were locked, in cycles of 8 ns."""
+    """Times by the emulator's clock, in processor cycles of 8 ns, with the number of times that each occurred.
+
+    ``interrupt`` and ``cycle`` are the lateness of the tick's interrupt and of the cycle in the control thread.
+    ``locked`` is the time for which interrupts were locked.
+    """
 
     timing: Timing
     interrupt: Counter[int]
@@ -92,7 +99,10 @@ def main() -> None:
 
 
 def measure(load: Load, seeds: int, milliseconds: int) -> Measured:
-    """The sum over USB hosts with other times of packets; an agent and, when flooded, somebody at the console."""
+    """The sum over ``seeds`` USB hosts, whose packets have different times.
+
+    An agent is connected, and with a flooded load also a user at the console.
+    """
     total = Measured(Timing(), Counter(), Counter(), Counter())
     image = load.image()
     for seed in range(1, seeds + 1):
@@ -155,11 +165,11 @@ def timing_table(measured: dict[Load, Measured], seeds: int, milliseconds: int) 
     return Table("Deviation of a 1 ms control cycle, Zephyr on RP2040, simulated", head, rows, notes)
 
 
-# Split ----------------------------------------------------------------------------------------------------------------
+# Parts of a cycle -----------------------------------------------------------------------------------------------------
 
 
 def split_table(count: int) -> Table:
-    """Means of cycles in which both axes move."""
+    """The mean cost of each part of the cycles in which both axes move."""
     functions = [name for names in PARTS.values() for name in names]
     with ZephyrJiwy(elf=LOADS[0].image()) as jiwy:
         jiwy.home()

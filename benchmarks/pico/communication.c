@@ -10,7 +10,7 @@
 #include "handwritten.h"
 #include "pico/stdlib.h"
 
-volatile uint32_t communication_period_us = 33000; /* a harness may change it */
+volatile uint32_t communication_period_us = 33000; /* a debugger or a test may change it */
 
 static char line[128];
 static size_t length;

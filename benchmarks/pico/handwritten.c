@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * JIWY's control cycle by somebody who has this one robot, the Pico SDK, and no generator.
+ * JIWY's control cycle as an engineer would write it for this one robot with the Pico SDK, without a generator.
  *
- * It does what the generated target does for the same configuration: encoders with a reset, H-bridges with a direction,
- * tests for values that are not finite, a disabled state, counted overruns, values passed between the cores.  That is
- * done the SDK's way, with a spin lock, and parameters, capture, moving by hand, motion guards and stacks are left out.
+ * It has the same functions as the generated target: encoders with a reset, H-bridges with a direction, tests for
+ * values that are not finite, a disabled state, a count of overruns, and values that are passed between the cores.  The
+ * cores share values in the SDK's way, under a spin lock.  Parameters, capture, moving by hand, motion guards and the
+ * measurement of stacks are left out.
  */
 #include "handwritten.h"
 
@@ -43,7 +44,7 @@ static double u[INPUTS], y[OUTPUTS];
 static bool model_valid;
 static uint32_t overruns_in_a_row;
 
-/* Between the cores, under the lock. */
+/* Shared by the cores; protected by the lock. */
 static critical_section_t lock;
 static double setpoints_given[AXES], positions_shown[AXES];
 static statistics_t statistics;
@@ -100,7 +101,7 @@ static void encoder_reset(size_t n, double signal)
     reset_levels[n] = level;
 }
 
-/* Not inlined, so that a harness can tell the parts of a cycle. */
+/* Not inlined, so that the benchmark can measure the parts of a cycle separately. */
 #define PART __attribute__((noinline))
 
 static PART bool read_inputs(void)
@@ -165,7 +166,7 @@ static void count(uint32_t begin_us, uint32_t due_us)
     critical_section_exit(&lock);
 }
 
-/* Called through no pointer and from one place: it would be inlined, and its name lost. */
+/* The compiler would inline this function, because it is called in one place only.  The benchmark needs its name. */
 __attribute__((noinline)) void control_cycle(uint32_t due_us)
 {
     const uint32_t begin_us = time_us_32();

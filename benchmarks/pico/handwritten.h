@@ -3,8 +3,8 @@
  * @file
  * JIWY's control and communication, written by hand for the Pico SDK.
  *
- * handwritten.c is what happens in a control cycle, communication.c a line protocol over the SDK's stdio; main_*.c say
- * what makes the tick.  The model and the encoder library are those of the generated target.
+ * handwritten.c is the control cycle, communication.c a line protocol over the SDK's stdio, and each main_*.c another
+ * source of the tick.  The model and the encoder library are the same as in the generated target.
  */
 #ifndef HANDWRITTEN_H
 #define HANDWRITTEN_H
@@ -24,18 +24,21 @@ typedef struct statistics {
     bool enabled;
 } statistics_t;
 
-/** Encoders, PWM, model.  On the core that controls; the slices start with one write, those in `more` with them. */
+/**
+ * Starts encoders and PWM, on the core that runs the control cycles.  All PWM slices start in one write, together with
+ * the slices whose bits are set in `more`.
+ */
 void control_start(uint32_t more);
-/** One cycle, of the tick at `due_us`. */
+/** Runs one cycle.  `due_us` is the time of its tick. */
 void control_cycle(uint32_t due_us);
 
-/* From the other side. */
+/* Functions for the communication side. */
 void control_setpoints(const double setpoints[AXES]);
 void control_positions(double positions[AXES]);
 void control_statistics(statistics_t *statistics);
 void control_enable(bool enable);
 
-/** Serves the serial port once: commands that have come, positions every `communication_period_us`. */
+/** Serves the serial port once: reads commands, and prints positions every `communication_period_us`. */
 void communicate(void);
 extern volatile uint32_t communication_period_us;
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The tick by a repeating timer of the SDK's alarm pool, on core 0 beside communication, or on core 1.
+ * The tick is a repeating timer of the SDK's alarm pool: on core 0 beside communication, or with ON_CORE_1 on core 1.
  */
 #include "handwritten.h"
 #include "pico/multicore.h"
@@ -20,7 +20,7 @@ static bool __attribute__((noinline)) on_tick(repeating_timer_t *repeating)
 
 static void start(void)
 {
-    /* Negative: between the starts of two calls. */
+    /* A negative time is the time between the starts of two calls. */
     control_start(0);
     alarm_pool_t *pool = alarm_pool_create_with_unused_hardware_alarm(4);
     due_us = time_us_32();

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The tick by the wrap of a PWM slice, on a core 1 that the FreeRTOS kernel of both cores has parked in a task.
+ * The tick is the wrap of a PWM slice.  The FreeRTOS kernel runs on both cores; core 1 only runs one task, which waits
+ * for the interrupts of this slice.
  */
 #include "FreeRTOS.h"
 #include "handwritten.h"
@@ -34,7 +35,7 @@ static void run_control(void *argument)
     pwm_set_irq_enabled(TICK_SLICE, true);
     irq_set_exclusive_handler(PWM_IRQ_WRAP, on_tick);
     irq_set_priority(PWM_IRQ_WRAP, PICO_HIGHEST_IRQ_PRIORITY);
-    irq_set_enabled(PWM_IRQ_WRAP, true); /* in this core's NVIC */
+    irq_set_enabled(PWM_IRQ_WRAP, true); /* in the NVIC of this core only */
     due_us = time_us_32();
     control_start(1u << TICK_SLICE);
     for (;;) {

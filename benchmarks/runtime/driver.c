@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Drives a target against a small simulated robot: cycles to be counted, or everything that happens to be compared.
+ * Runs a target against a small simulated robot, to count the instructions of its cycles or to compare its signals.
  *
- *   driver <cycles>          runs that many cycles, with setpoints every 33 of them, and prints nothing
- *   driver <cycles> trace    the same with mishaps, and prints every signal of every cycle
+ *   driver <cycles>          runs that number of cycles, with setpoints in every 33rd, and prints nothing
+ *   driver <cycles> trace    does the same with disturbances, and prints every signal of every cycle
  */
 #include <math.h>
 #include <stdio.h>
@@ -18,10 +18,10 @@ enum { AXES = 2, PINS = 10, SETPOINT_EVERY = 33 };
 
 static const uint64_t period_ns = 1000000;
 
-/* Port layer: time that passes by itself a little, and signals the robot below reads and writes. */
+/* Port layer.  Each read of the clock takes some time.  The simulated robot reads and writes the signals. */
 
 static uint64_t now_ns;
-static uint64_t reading_ns = 700; /* how long it takes to read the clock */
+static uint64_t reading_ns = 700; /* time that a read of the clock takes */
 static uint32_t counts[AXES];
 static uint32_t levels[AXES];
 static bool pins[PINS];
@@ -35,7 +35,7 @@ uint64_t epg_port_time_ns(void)
 
 void epg_port_wait_until(uint64_t time_ns)
 {
-    now_ns = time_ns; /* nobody asks for it: there is no output delay */
+    now_ns = time_ns; /* is not called: there is no output delay */
 }
 
 void epg_port_quadrature_start(const epg_port_quadrature_t *decoder)
@@ -76,7 +76,7 @@ void epg_port_output_write(uint8_t pin, bool level)
     port_writes++;
 }
 
-/* A robot: two motors with friction and end stops, and encoders. */
+/* The robot: two motors with friction and end stops, and their encoders. */
 
 static double angle[AXES];
 static double speed[AXES];
@@ -98,7 +98,7 @@ static void move(void)
     }
 }
 
-/* Communication, and in a trace the mishaps of a long life. */
+/* Communication.  A trace also has disturbances: wrong setpoints, requests to disable, and overruns. */
 
 static void communicate(unsigned long cycle, bool mishaps)
 {
@@ -114,7 +114,7 @@ static void communicate(unsigned long cycle, bool mishaps)
         glue_receive(cycle % 2, cycle % 3 == 0 ? (double)NAN : (double)INFINITY, now_ns, true);
     }
     if (cycle % 12007 == 9000) {
-        glue_receive(0, 1e308, now_ns, true); /* the model makes infinity of it */
+        glue_receive(0, 1e308, now_ns, true); /* the model computes infinity from this setpoint */
     }
     if (cycle % 15013 == 11000) {
         glue_request(false);
@@ -123,7 +123,7 @@ static void communicate(unsigned long cycle, bool mishaps)
         glue_request(true);
     }
     if (cycle % 7001 == 5000) {
-        reading_ns = 600000; /* each cycle ends too late */
+        reading_ns = 600000; /* so each cycle ends after the next tick */
     }
     if (cycle % 7001 == 5030) {
         reading_ns = 700;
@@ -158,7 +158,7 @@ int main(int argc, char **argv)
     const unsigned long cycles = strtoul(argv[1], NULL, 10);
     const bool trace = argc > 2 && strcmp(argv[2], "trace") == 0;
     glue_start();
-    port_writes = 0; /* how often a signal is made safe at the start is nobody's business */
+    port_writes = 0; /* the number of writes at the start need not be the same in both programs */
     uint64_t tick_ns = 0;
     for (unsigned long cycle = 0; cycle < cycles; cycle++) {
         tick_ns += period_ns;

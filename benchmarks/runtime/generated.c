@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The driver's view of the generated target.
+ * The functions of glue.h for the generated target.
  */
 #include "epg/control.h"
 #include "epg/target.h"

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * JIWY written by hand, as somebody would who has this one robot and needs no generator.
+ * JIWY written by hand, as an engineer would write it for this one robot without a generator.
  *
- * Pan and tilt with an encoder and an H-bridge each, two setpoints, two published values; control cycle of 1 ms.  What
- * it does is what the generated target does for the same configuration: the same wait-free exchanges, statistics,
- * status, faults, and tests for values that are not finite.  What this robot has not configured is not here: no age
- * and no rate limit of setpoints, no fail-safe input, no conversion, no step divider.  Numbers are constants, all that
- * the cycle needs stands in this file, and the model's functions and arrays are used directly.
+ * Pan and tilt have an encoder and an H-bridge each.  There are two setpoints and two published values; the control
+ * period is 1 ms.  The program does the same as the generated target with the same configuration: wait-free exchanges,
+ * statistics, status, faults, and tests for values that are not finite.  Functions that this robot does not configure
+ * are left out: timeout and rate limit of setpoints, fail-safe inputs, conversions, step dividers.  Numbers are
+ * constants, everything for the cycle is in this file, and the model's functions and arrays are used directly.
  */
 #include <stdatomic.h>
 #include <stdbool.h>
@@ -25,7 +25,7 @@
 #define PAN_RAD_PER_COUNT 0.002825173249631109  /* 180 degrees in 1112 counts */
 #define TILT_RAD_PER_COUNT 0.007107675686854735 /* 90 degrees in 221 counts */
 
-/* The model, as 20-sim exported it (xxsubmod.c, xxmodel.c). */
+/* The model that 20-sim has exported (xxsubmod.c, xxmodel.c). */
 extern void XXInitializeSubmodel(double *u, double *y, double t);
 extern void XXCalculateSubmodel(double *u, double *y, double t);
 extern double xx_I[22], xx_P[30], xx_R[STATES], xx_V[56], xx_s[STATES];
@@ -46,7 +46,7 @@ typedef struct bridge {
     int8_t direction;
 } bridge_t;
 
-/* The control words of a four-buffer exchange (Simpson). */
+/* The control words of an exchange with four buffers, after H. Simpson. */
 typedef struct exchange {
     atomic_uint latest;
     atomic_uint reading;
@@ -71,7 +71,7 @@ static uint32_t consecutive_overruns;
 static unsigned int request_seen, alive_seen;
 static uint32_t silence;
 
-/* Between the sides. */
+/* Shared by both sides. */
 static atomic_uint request, dropped, reconnects, alive;
 static exchange_t setpoint_exchange, monitor_exchange, status_exchange;
 static double setpoint_buffers[4][GLUE_SETPOINTS];
@@ -88,7 +88,10 @@ static bool is_finite(double value)
     return (bits >> 52 & 0x7FFu) != 0x7FFu;
 }
 
-/* Exchange: the buffer to write to, then the announcement; the buffer to read from, or -1. */
+/*
+ * Exchange.  write_begin() returns the buffer to write to, and write_end() announces it.  read_begin() returns the
+ * buffer to read from, or -1 before the first write.
+ */
 
 static unsigned int write_begin(exchange_t *exchange)
 {
@@ -305,7 +308,7 @@ static void count_cycle(uint64_t tick_ns, uint64_t begin_ns, uint64_t end_ns, ui
     }
 }
 
-/** How long the communication side has shown no life: a watchdog asks. */
+/** Counts the cycles since the last sign of life of the communication side, for a watchdog. */
 static void count_silence(void)
 {
     const unsigned int newest = atomic_load(&alive);

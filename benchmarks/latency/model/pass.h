@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * A controller that passes its setpoint on.
+ * A controller that copies its setpoint to its output.
  */
 #ifndef PASS_H
 #define PASS_H

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The FreeRTOS kernel on both cores, with core 1 for one task.
+ * Configuration of the FreeRTOS kernel on both cores; core 1 is for one task only.
  */
 #ifndef FREERTOS_CONFIG_H
 #define FREERTOS_CONFIG_H

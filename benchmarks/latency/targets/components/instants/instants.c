@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Instants are kept in memory while the loop runs, and written when the program ends.
+ * The records are kept in memory while the control loop runs, and written to the file when the program ends.
  */
 #include "instants.h"
 
@@ -63,7 +63,7 @@ void instants_cycle(void)
     atomic_store(&cycle, atomic_load(&cycle) + 1U);
 }
 
-/* exact: a value is either the one of before or another one */
+/* The values are compared for a change, so an exact comparison is right. */
 #pragma GCC diagnostic ignored "-Wfloat-equal"
 
 void instants_write(double value)

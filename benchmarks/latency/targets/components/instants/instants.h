@@ -1,23 +1,26 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * When a value arrived, when the control cycle that used it began, and when it was written.
+ * Records the times at which a value arrived, the control cycle that used it began, and the value was written.
  *
- * There is one; at the program's end its records go to the file that the environment's LATENCY_FILE names, a line each:
- * value, arrival, cycles begun before it, begin of the cycle, cycles begun, write.  Times are ns of the monotonic clock.
+ * A program can have one such recorder, with at most 100000 records.  At its end the records are written to the file
+ * that the environment variable LATENCY_FILE names.  Each line is a record: value, time of arrival, number of cycles
+ * that had begun then, begin of the cycle of the write, number of cycles that had begun then, time of the write.
+ * Times are in ns of the monotonic clock.
  */
 #ifndef INSTANTS_H
 #define INSTANTS_H
 
+/** Before the first cycle: deletes all records. */
 void instants_start(void);
 
-/** Communication side: the control side has been given a value. */
+/** Communication side, right after it has given a value to the control side. */
 void instants_arrival(void);
 
-/** Control side: a cycle begins. */
+/** Control side, at the begin of a cycle. */
 void instants_cycle(void);
 
-/** Control side: `value` goes to the actuator; kept if it is another one than before. */
+/** Control side, in place of a write to an actuator: adds a record if `value` differs from the last one. */
 void instants_write(double value);
 
 #endif
