@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The equations of the submodel `%SUBMODEL_NAME%`, as 20-sim writes them, in a frame of EPG's.
+ * The equations of the submodel `%SUBMODEL_NAME%`.  20-sim has written the equations into a file of EPG.
  *
  *  subm:  %SUBMODEL_NAME%
  *  build: %GENERATION_BUILD%
@@ -13,14 +13,14 @@
 #include <string.h>
 
 %IF%%EPG_SINGLE%
-/* The equations hold double constants: with single precision, each of them is converted. */
+/* The constants in the equations are doubles.  With single precision each of them is converted. */
 #ifdef __GNUC__
 #pragma GCC diagnostic ignored "-Wconversion"
 #pragma GCC diagnostic ignored "-Wfloat-conversion"
 #pragma GCC diagnostic ignored "-Wdouble-promotion"
 #endif
 %ENDIF%
-/* 20-sim keeps truth values in reals, which clang tells of. */
+/* 20-sim stores truth values in real variables; clang warns about these conversions. */
 #ifdef __clang__
 #pragma clang diagnostic ignored "-Wfloat-conversion"
 #endif
@@ -45,7 +45,7 @@ typedef int XXInteger;
 typedef char XXBoolean;
 typedef const char *XXString;
 
-/* what the equations call the members of the instance */
+/* The equations use these names for the members of the instance. */
 %IF%%NUMBER_CONSTANTS%
 #define %VARPREFIX%%XX_CONSTANT_ARRAY_NAME% self->%XX_CONSTANT_ARRAY_NAME%
 %ENDIF%
@@ -97,7 +97,7 @@ const char *const %SUBMODEL_NAME%_parameter_names[] = {
 %ENDIF%
 
 %IF%%NUMBEROF_DELAYFUNCTION%
-/* the value of `x` one step ago, at first `initial` */
+/* Returns the value of `x` one step ago; in the first step `initial`. */
 static XXDouble delay_of(%SUBMODEL_NAME%_ModelInstance *self, XXDouble x, XXDouble initial, XXInteger id)
 {
     const XXDouble value = self->initialize ? initial : self->delayed[id];
@@ -111,7 +111,7 @@ static XXDouble delay_of(%SUBMODEL_NAME%_ModelInstance *self, XXDouble x, XXDoub
 
 %ENDIF%
 %IF%%NUMBEROF_INITIALFUNCTION%
-/* the value of `x` at the start */
+/* Returns the value of `x` at the start. */
 static XXDouble initial_value_of(%SUBMODEL_NAME%_ModelInstance *self, XXDouble x, XXInteger id)
 {
     if (self->initialize) {
@@ -210,7 +210,7 @@ static void %INTEGRATION_METHOD_NAME%Step(%SUBMODEL_NAME%_ModelInstance *self)
     const XXDouble time = self->time;
     const XXDouble half = self->step_size / 2;
     XXDouble start[%NUMBER_STATES%];
-    XXDouble k[4][%NUMBER_STATES%]; /* slopes of the classical method, times the step */
+    XXDouble k[4][%NUMBER_STATES%]; /* the four slopes of the classical method, multiplied by the step size */
 
     memcpy(start, self->%XX_STATE_ARRAY_NAME%, sizeof start);
     for (int stage = 0; stage < 4; stage++) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The submodel `%SUBMODEL_NAME%` of 20-sim as re-entrant C: everything it remembers is in an instance.
+ * The submodel `%SUBMODEL_NAME%` of 20-sim as re-entrant C: its complete state is in an instance.
  *
  *  subm:  %SUBMODEL_NAME%
  *  build: %GENERATION_BUILD%
@@ -10,13 +10,16 @@
  *     double u[] = {...}, y[...];
  *
  *     %SUBMODEL_NAME%_ModelInitialize(&model);           constants, parameters, initial values as in 20-sim
- *     model.%XX_PARAMETER_ARRAY_NAME%[2] = ...;          change some, if you like
+ *     model.%XX_PARAMETER_ARRAY_NAME%[2] = ...;          optional: other values of parameters
  *     %SUBMODEL_NAME%_InitializeSubmodel(&model, u, y, 0.0);
  *     for (;;) {                                         every %TIME_STEP_SIZE% s
  *         %SUBMODEL_NAME%_CalculateSubmodel(&model, u, y);
  *     }
  *
- * 20-sim numbers the inputs `u`, the outputs `y` and the parameters by their names: adding one renumbers the others.
+ * 20-sim numbers the inputs `u`, the outputs `y` and the parameters in the order of their names.  A new one can
+ * therefore change the numbers of the others.
+ *
+ * All functions of one instance must be called by one thread at a time.  Different instances are independent.
  */
 #ifndef %SUBMODEL_NAME%_H
 #define %SUBMODEL_NAME%_H
@@ -47,27 +50,27 @@ typedef struct %SUBMODEL_NAME%_ModelInstance {
 %ENDIF%
 %IF%%NUMBER_STATES%
     %SUBMODEL_NAME%_real %XX_STATE_ARRAY_NAME%[%NUMBER_STATES%]; /* states */
-    %SUBMODEL_NAME%_real %XX_RATE_ARRAY_NAME%[%NUMBER_STATES%]; /* their rates; of a discrete model, the next states */
+    %SUBMODEL_NAME%_real %XX_RATE_ARRAY_NAME%[%NUMBER_STATES%]; /* rates of the states; in a discrete model next states */
 %ENDIF%
 %IF%%NUMBER_UNNAMED%
     %SUBMODEL_NAME%_real %XX_UNNAMED_ARRAY_NAME%[%NUMBER_UNNAMED%]; /* intermediate results */
 %ENDIF%
 %IF%%NUMBEROF_DELAYFUNCTION%
-    %SUBMODEL_NAME%_real delayed[%NUMBEROF_DELAYFUNCTION%]; /* what delay() returns in this step */
-    %SUBMODEL_NAME%_real delay_inputs[%NUMBEROF_DELAYFUNCTION%]; /* and in the next one */
+    %SUBMODEL_NAME%_real delayed[%NUMBEROF_DELAYFUNCTION%]; /* values that delay() returns in this step */
+    %SUBMODEL_NAME%_real delay_inputs[%NUMBEROF_DELAYFUNCTION%]; /* values that delay() returns in the next step */
 %ENDIF%
 %IF%%NUMBEROF_INITIALFUNCTION%
-    %SUBMODEL_NAME%_real first_values[%NUMBEROF_INITIALFUNCTION%]; /* what initial() returns */
+    %SUBMODEL_NAME%_real first_values[%NUMBEROF_INITIALFUNCTION%]; /* values that initial() returns */
 %ENDIF%
     %SUBMODEL_NAME%_real time; /* s */
     %SUBMODEL_NAME%_real start_time; /* s, of the experiment */
-    %SUBMODEL_NAME%_real finish_time; /* s, of the experiment: nothing ends there */
+    %SUBMODEL_NAME%_real finish_time; /* s, of the experiment; the steps continue after it */
     %SUBMODEL_NAME%_real step_size; /* s */
-    long steps; /* evaluations of the dynamic equations */
-    unsigned random_state; /* of random(); never 0 */
+    long steps; /* number of evaluations of the dynamic equations */
+    unsigned random_state; /* state of the generator of random(); never 0 */
     char initialize; /* 1 while the submodel is being initialised */
-    char major; /* 0 within a step of a Runge Kutta method */
-    char stop_simulation; /* 1: the model has executed stopsimulation */
+    char major; /* 0 during the intermediate evaluations of a Runge-Kutta method */
+    char stop_simulation; /* 1 after the model has executed stopsimulation */
 } %SUBMODEL_NAME%_ModelInstance;
 
 %IF%%NUMBER_INPUTS%
@@ -83,36 +86,36 @@ extern const char *const %SUBMODEL_NAME%_output_names[];
 extern const char *const %SUBMODEL_NAME%_parameter_names[];
 %ENDIF%
 
-/** Sets all inputs to zero; and tells the index, the name and the {unit} of each. */
+/** Sets all inputs to zero.  Its body lists the index, the name and the {unit} of each input. */
 static inline void %SUBMODEL_NAME%_ClearInputs(%SUBMODEL_NAME%_real *u)
 {
     (void)u;
 %INITIALIZE_INPUTS%
 }
 
-/** Sets all outputs to zero; and tells the index, the name and the {unit} of each. */
+/** Sets all outputs to zero.  Its body lists the index, the name and the {unit} of each output. */
 static inline void %SUBMODEL_NAME%_ClearOutputs(%SUBMODEL_NAME%_real *y)
 {
     (void)y;
 %INITIALIZE_OUTPUTS%
 }
 
-/** Gives constants, parameters and initial values the values they have in 20-sim, and clears everything else. */
+/** Sets constants, parameters and initial values to their values in 20-sim, and the rest to 0.  Call it first. */
 void %SUBMODEL_NAME%_ModelInitialize(%SUBMODEL_NAME%_ModelInstance *self);
 
-/** Starts at time `t` in seconds: initial equations, static equations, the first outputs. */
+/** Starts at time `t` in seconds: runs the initial and static equations, and computes the first outputs. */
 void %SUBMODEL_NAME%_InitializeSubmodel(%SUBMODEL_NAME%_ModelInstance *self, const %SUBMODEL_NAME%_real *u,
                                         %SUBMODEL_NAME%_real *y, %SUBMODEL_NAME%_real t);
 
-/** One step: reads the inputs, moves time on by `step_size`, writes the outputs. */
+/** Runs one step: reads the inputs `u`, advances the time by `step_size`, and writes the outputs `y`. */
 void %SUBMODEL_NAME%_CalculateSubmodel(%SUBMODEL_NAME%_ModelInstance *self, const %SUBMODEL_NAME%_real *u,
                                        %SUBMODEL_NAME%_real *y);
 
-/** The final equations. */
+/** Ends the model: runs its final equations. */
 void %SUBMODEL_NAME%_TerminateSubmodel(%SUBMODEL_NAME%_ModelInstance *self, const %SUBMODEL_NAME%_real *u,
                                        %SUBMODEL_NAME%_real *y);
 
-/** What the model derives from its parameters: call it after changing one between two steps. */
+/** Runs the static equations, which compute values from the parameters.  Call it after a change of a parameter. */
 void %SUBMODEL_NAME%_CalculateStatic(%SUBMODEL_NAME%_ModelInstance *self);
 
 #ifdef __cplusplus

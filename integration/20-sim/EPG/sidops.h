@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The functions of 20-sim's equation language (SIDOPS+) that C has not.
+ * The functions of 20-sim's equation language (SIDOPS+) that are missing in C.
  *
- * For `%SUBMODEL_NAME%.c` alone, which defines XXDouble, XXInteger, XXBoolean and XXString before.  Whole numbers
- * arrive as XXDouble wherever an equation computes with them.
+ * Only `%SUBMODEL_NAME%.c` includes this file, after it has defined XXDouble, XXInteger, XXBoolean and XXString.
+ * Equations compute with whole numbers as XXDouble, so the arguments of these functions have that type, too.
  */
 #ifndef %SUBMODEL_NAME%_SIDOPS_H
 #define %SUBMODEL_NAME%_SIDOPS_H
@@ -12,7 +12,7 @@
 #define XXTRUE 1
 #define XXFALSE 0
 
-/* texts are read by dll() functions only, which run inside 20-sim */
+/* Only dll() functions use texts, and these run only inside of 20-sim. */
 #define XXString2Double(text) ((XXDouble)0)
 
 static inline XXDouble XXAbsolute(XXDouble x)
@@ -103,7 +103,7 @@ static inline XXDouble XXXor(XXDouble a, XXDouble b)
     return (XXDouble)((a < (XXDouble)0 || a > (XXDouble)0) != (b < (XXDouble)0 || b > (XXDouble)0));
 }
 
-/* to the nearest whole number, halves away from zero */
+/* Rounds to the nearest whole number, and halves away from zero. */
 static inline XXDouble XXRound(XXDouble x)
 {
     if (fabs((double)x - (XXInteger)x) < 0.5) {
@@ -173,7 +173,10 @@ static inline XXInteger XXSwapBytes(XXDouble a)
     return (XXInteger)(x << 24 | (x & 0xFF00u) << 8 | (x >> 8 & 0xFF00u) | x >> 24);
 }
 
-/* uniform between -range and range: 31 bits of a xorshift generator (G. Marsaglia, J. Stat. Software 8(14), 2003) */
+/*
+ * Returns a uniformly distributed number between -range and range: 31 bits of a xorshift generator (G. Marsaglia,
+ * J. Stat. Software 8(14), 2003).
+ */
 static inline XXDouble random_between(unsigned *state, XXDouble range)
 {
     unsigned x = *state & 0xFFFFFFFFu;
@@ -200,7 +203,7 @@ static inline XXBoolean XXWarning(XXString message, XXInteger id)
     return XXFALSE;
 }
 
-/* Files with numbers, and events between two steps, are 20-sim's own: these functions do nothing. */
+/* Files with numbers, and events between two steps, exist only inside of 20-sim.  These functions return 0. */
 
 static inline XXDouble XXData(XXString name, XXInteger column, XXInteger id)
 {
