@@ -50,7 +50,7 @@ typedef struct %SUBMODEL_NAME%_ModelInstance {
 %ENDIF%
 %IF%%NUMBER_STATES%
     %SUBMODEL_NAME%_real %XX_STATE_ARRAY_NAME%[%NUMBER_STATES%]; /* states */
-    %SUBMODEL_NAME%_real %XX_RATE_ARRAY_NAME%[%NUMBER_STATES%]; /* rates of the states; in a discrete model next states */
+    %SUBMODEL_NAME%_real %XX_RATE_ARRAY_NAME%[%NUMBER_STATES%]; /* rates of the states; if discrete, the next states */
 %ENDIF%
 %IF%%NUMBER_UNNAMED%
     %SUBMODEL_NAME%_real %XX_UNNAMED_ARRAY_NAME%[%NUMBER_UNNAMED%]; /* intermediate results */
