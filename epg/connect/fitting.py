@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Finds the component ports that fit a model port without a conversion.  The page and the terminal offer them first.
+"""Finds the component ports that fit a model port in type and unit.  The page and the terminal offer them first.
 
 Nothing is refused here: :mod:`epg.resolve.wires` checks the wires.
 """

@@ -44,7 +44,7 @@ class Job:
 
 
 def find_jobs(folder: Path, diagnostics: Diagnostics) -> list[Job]:
-    """The targets of the project in ``folder``.  ``folder`` may be inside of a larger project, too.
+    """The targets of the project in ``folder``, or of the part ``folder`` of a larger project.
 
     The list is empty, without a message, if there is no epg_add_target().  A call that only CMake can evaluate is an
     error if there is no other target, else a warning.
