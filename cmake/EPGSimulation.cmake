@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # epg_add_simulation(<name> EXECUTABLE <executable> SCENARIO <file> [OUTPUT <folder>] [REALTIME])
 #
-# Makes a CMake target that builds an executable and runs it through a scenario.  It prints a table of the results, and
-# writes <name>.csv and <name>.png.  The target fails if a limit of the scenario does not hold.
+# Makes a CMake target that builds an executable and runs it through a scenario.  It prints a table of the results.  It
+# writes trace.csv, topics.csv, statistics.json, tracking.csv and other files; epg/simulate/run.py lists them.  The
+# target fails if a limit of the scenario does not hold.
 #
 #   <name>      name of the CMake target; `cmake --build build --target <name>` runs the simulation
 #   EXECUTABLE  a host executable of epg_add_executable(), which must exist, or Zephyr's `app` on native_sim

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page's HTTP server.  It serves this computer only, and only pages with an address that it has announced.
+"""The page's HTTP server.  It serves this computer only, and only pages that were opened with an address from it.
 
 The static files of the page are public.  All data and actions need a secret in a header.  The page gets the secret
 once, for the token in its address (``keys.py``).  The token is behind ``#``, so the browser does not send it by

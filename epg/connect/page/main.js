@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draws the page for every new state of the session, and handles the keys and events of the whole page.
+//
+// The state from the server (server.js) is the only data about the project; ui.js has the state of the view. An action
+// is sent to the server, which answers with a new state. After each change of either state the whole page is described
+// again with h(), and render() changes only the differences (dom.js).
 
 import { bars } from "./bars.js";
 import { followBuild } from "./build.js";
