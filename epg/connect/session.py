@@ -94,7 +94,7 @@ class Session:
             return shown | {"build": self._runs.state(places)}
 
     def wait(self, after: int, timeout: float) -> State:
-        """The state.  Waits for a version other than ``after``, or the end of the session, at most ``timeout`` seconds."""
+        """The state, once its version differs from ``after``, the session ends, or ``timeout`` seconds have passed."""
         until = time.monotonic() + timeout
         while True:
             self._look()
