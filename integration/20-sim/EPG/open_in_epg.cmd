@@ -1,8 +1,8 @@
 @echo off
-rem 20-sim runs this in the folder of the export, in which it has put it.  No token stands in it: a folder's name
-rem may hold any character.  XXSIM_SCRIPT_MODE is 1 when a script of 20-sim exports: nobody looks at a window then.
+rem 20-sim copies this file into the folder of the export and runs it there.  It has no token of 20-sim, because the
+rem name of a folder may have any character.  XXSIM_SCRIPT_MODE is 1 if a script of 20-sim exports: no window may open.
 setlocal
-rem The folder is named only where it must be, as on a network: inside of it, no character of its name matters.
+rem The name of the folder is used only if it is needed, as on a network, because it may have any character.
 set "epg_folder=."
 cd /d "%~dp0." 2>nul
 if not exist .\open_in_epg.cmd set "epg_folder=%~dp0."
