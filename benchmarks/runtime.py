@@ -128,9 +128,9 @@ def linked_from(library: Sequence[Path], objects: Sequence[Path]) -> list[Path]:
         taken += more
 
 
-def symbols(path: Path, sorts: str) -> set[str]:
-    """The symbols of an object file whose type is one of the letters ``sorts`` of ``nm``."""
-    return {line.split()[-1] for line in run(["nm", path]).splitlines() if line.split()[-2] in sorts}
+def symbols(path: Path, letters: str) -> set[str]:
+    """The symbols of an object file whose type is one of the ``letters`` of ``nm``."""
+    return {line.split()[-1] for line in run(["nm", path]).splitlines() if line.split()[-2] in letters}
 
 
 def build_handwritten(folder: Path) -> Program:
@@ -174,7 +174,7 @@ def compare_traces(generated: Program, written: Program, cycles: int) -> str:
     faults = {line.split()[10] for line in one} - {"0"}
     return (
         f"Both gave the same {len(one):,} lines of trace, in {disabled:,} of which the target was disabled, "
-        f"and {len(faults)} sorts of fault occurred."
+        f"and {len(faults)} kinds of fault occurred."
     )
 
 

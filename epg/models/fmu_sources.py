@@ -304,7 +304,7 @@ class _Reader:
             self.told.add(name)
             message, hint = f"'{name}' is not among the FMU's sources", "export the FMU again, with all its sources"
             if places:
-                message = f"'{name}' lies in {len(places)} folders of the FMU, and it is open which of them is meant"
+                message = f"'{name}' is in {len(places)} folders of the FMU, and EPG cannot know which one is meant"
                 hint = f"write the folder into the #include: {', '.join(one_line(place) for place in places[:4])}"
             self.diagnostics.error("fmu-file-missing", span, message, hint=hint)
         return None

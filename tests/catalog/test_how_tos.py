@@ -128,7 +128,7 @@ def test_tutorial_on_a_board(tmp_path: Path) -> None:
 
 
 def test_tutorial_in_real_time(tmp_path: Path) -> None:
-    """Its first light is held with the simulated robot."""
+    """Its bring-up is held with the simulated robot."""
     here, board = read("tutorial")
     (session,) = re.findall(r"^```session\n(.*?)^```$", board, re.MULTILINE | re.DOTALL)
     follow([step for step in steps(here) if "build/stop" not in step.command], tmp_path)

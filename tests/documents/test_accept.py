@@ -104,14 +104,14 @@ def test_what_is_not_known_is_not_accepted(keyword: str) -> None:
 
 def test_epgs_own_files_are_accepted_without_jsonschema() -> None:
     targets = data_folder("targets")
-    sorts = {"soc": "socs", "board": "boards", "platform": "platforms", "family": "families"}
-    sorts |= {"component": "components"}
-    for sort, folder in sorts.items():
-        found = sorted((targets / folder).glob(f"*/{sort}.yaml"))
+    categories = {"soc": "socs", "board": "boards", "platform": "platforms", "family": "families"}
+    categories |= {"component": "components"}
+    for category, folder in categories.items():
+        found = sorted((targets / folder).glob(f"*/{category}.yaml"))
         assert found
         for path in found:
             node = load_yaml(path, Diagnostics())
-            assert node is not None and accepts(node.plain(), load_schema(sort)), path
+            assert node is not None and accepts(node.plain(), load_schema(category)), path
     for path in sorted(Path(targets / "robots").glob("*/*.tcf")):
         node = load_yaml(path, Diagnostics())
         assert node is not None and accepts(node.plain(), load_schema("tcf"), partial=True), path

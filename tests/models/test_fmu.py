@@ -172,7 +172,7 @@ def test_headers_of_one_name_in_several_folders(tmp_path: Path) -> None:
         (folder / "sources" / name / "law.h").write_text((folder / "sources" / "law.h").read_text() + f"int {name};\n")
     (folder / "sources" / "law.h").unlink()
     id, message = only_error(folder)
-    assert id == "fmu-file-missing" and "'law.h' lies in 2 folders of the FMU" in message
+    assert id == "fmu-file-missing" and "'law.h' is in 2 folders of the FMU" in message
 
 
 def test_memory_that_steps_keep_is_one_error(tmp_path: Path) -> None:
