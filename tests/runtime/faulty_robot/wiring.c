@@ -44,7 +44,7 @@ void __wrap_epg_plant_quadrature_set(uint8_t slot, int64_t count)
 {
     static int64_t last; /* of the pan axis, while everything was right */
     int64_t seen = count;
-    if (unit == PAN) {
+    if (slot == PAN) {
         if (wired("encoder-dead")) {
             seen = last;
         } else if (wired("encoder-swapped")) {
@@ -57,16 +57,16 @@ void __wrap_epg_plant_quadrature_set(uint8_t slot, int64_t count)
             last = count;
         }
     }
-    __real_epg_plant_quadrature_set(unit, seen);
+    __real_epg_plant_quadrature_set(slot, seen);
 }
 
 double __wrap_epg_plant_pwm_duty(uint8_t slot)
 {
-    const double duty = __real_epg_plant_pwm_duty(unit);
-    if (unit == PAN && wired("motor-swapped")) {
+    const double duty = __real_epg_plant_pwm_duty(slot);
+    if (slot == PAN && wired("motor-swapped")) {
         return -duty;
     }
-    return unit == PAN && wired("motor-unplugged") ? 0.0 : duty;
+    return slot == PAN && wired("motor-unplugged") ? 0.0 : duty;
 }
 
 bool __wrap_epg_port_quadrature_healthy(const epg_port_quadrature_t *decoder)
