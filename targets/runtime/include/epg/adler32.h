@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Adler-32 (RFC 1950, section 8.2): finds records in flash that were programmed in part.
+ * The checksum Adler-32 (RFC 1950, section 8.2).  It detects a record in flash that was only partly programmed.
  */
 #ifndef EPG_ADLER32_H
 #define EPG_ADLER32_H
@@ -9,7 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/** Goes on from `sum`, at first 1, with `size` bytes. */
+/** Continues the checksum `sum` with `size` bytes.  The first call must pass 1. */
 static inline uint32_t epg_adler32(uint32_t sum, const void *data, size_t size)
 {
     const uint8_t *bytes = data;

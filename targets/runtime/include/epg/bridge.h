@@ -1,10 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * A motor on an H-bridge, whatever the bridge's pins are: what a signed duty asks of it.
+ * A DC motor on an H-bridge: from a signed duty to a state and a PWM level.
  *
- * Limits the duty, decides between driving, coasting and braking, and keeps a dead time between the two directions.
- * Drivers of bridges turn the state and the level that epg_bridge_command() leaves into signals.
+ * An H-bridge connects each of the two terminals of a motor to the supply, to ground, or to nothing.  It can therefore
+ * drive the motor in both directions, let it coast, or brake it.  A PWM switches the drive on and off; the *duty* is
+ * the share of the time for which it is on.  Its sign is the direction: -1 is full speed backwards, 1 full speed
+ * forwards.
+ *
+ * This file does the part that does not depend on the pins of a bridge.  It limits the duty, selects driving, coasting
+ * or braking, and keeps a dead time between the two directions.  The driver of a bridge then turns `state` and `level`
+ * into the signals of its pins.
+ *
+ * Not thread-safe: all calls must come from one context.
  */
 #ifndef EPG_BRIDGE_H
 #define EPG_BRIDGE_H
@@ -14,47 +22,51 @@
 
 #include "epg/finite.h"
 
-/** What a bridge does with its motor. */
+/** The state of a bridge. */
 typedef enum epg_bridge_state {
-    EPG_BRIDGE_COAST, /**< all switches open: no torque but friction */
-    EPG_BRIDGE_BRAKE, /**< the motor's terminals are connected to each other */
+    EPG_BRIDGE_COAST, /**< all switches are open; only friction slows the motor down */
+    EPG_BRIDGE_BRAKE, /**< the terminals of the motor are connected to each other */
     EPG_BRIDGE_FORWARDS,
     EPG_BRIDGE_BACKWARDS
 } epg_bridge_state_t;
 
 typedef struct epg_bridge_config {
-    bool invert;             /**< a positive duty drives backwards */
-    double max_duty;         /**< 0 ... 1 */
-    epg_bridge_state_t zero; /**< at duty 0: coast or brake */
-    epg_bridge_state_t safe; /**< before the first cycle, while disabled, and for a duty that is not finite */
-    uint32_t dead_writes;    /**< commands for which the bridge coasts between two directions; 0: none */
+    bool invert;             /**< true: a positive duty drives backwards */
+    double max_duty;         /**< limit of the duty's magnitude, 0 ... 1 */
+    epg_bridge_state_t zero; /**< state at duty 0: coast or brake */
+    epg_bridge_state_t safe; /**< state before the first cycle, while disabled, and for a duty that is not finite */
+    uint32_t dead_writes;    /**< dead time: commands for which the bridge coasts between two directions; 0: none */
 } epg_bridge_config_t;
 
-/** Zero-initialised memory is a bridge that coasts and has never driven. */
+/** The present state of one bridge.  Zero-initialised memory is a bridge that coasts and has never driven. */
 typedef struct epg_bridge {
-    double duty;               /**< applied now, -1 ... 1, positive as asked for; 0 unless the motor is driven */
-    uint32_t level;            /**< of the PWM now, in clocks; while braking all of a period */
-    epg_bridge_state_t state;  /**< now */
-    epg_bridge_state_t driven; /**< direction of the last drive; EPG_BRIDGE_COAST before the first */
-    uint32_t coasted;          /**< commands in a row that left it coasting; stops at `dead_writes` */
+    double duty;    /**< applied duty, -1 ... 1, with the sign of the command; 0 if not driven */
+    uint32_t level; /**< PWM level in clocks; while braking, the whole period */
+    epg_bridge_state_t state;
+    epg_bridge_state_t driven; /**< direction of the last drive; EPG_BRIDGE_COAST before the first one */
+    uint32_t coasted;          /**< commands in a row that left the bridge coasting; stops at `dead_writes` */
 } epg_bridge_t;
 
-/** Not driven from now on: coasts or brakes, with a PWM period of `clocks`. */
+/** Stops driving.  `state` is EPG_BRIDGE_COAST or EPG_BRIDGE_BRAKE, `clocks` the PWM period in clocks. */
 void epg_bridge_rest(epg_bridge_t *bridge, const epg_bridge_config_t *config, uint32_t clocks,
                      epg_bridge_state_t state);
 
-/** Takes a direction; false, and coasting, unless the dead time since the other one is over. */
+/**
+ * Changes to `direction`.  Returns false, and lets the motor coast, while the dead time since the other direction is
+ * not over.
+ */
 bool epg_bridge_turn(epg_bridge_t *bridge, const epg_bridge_config_t *config, epg_bridge_state_t direction);
 
-/** State and level for the safe value, with a PWM period of `clocks`. */
+/** Sets state and level for the safe value.  `clocks` is the PWM period in clocks. */
 static inline void epg_bridge_make_safe(epg_bridge_t *bridge, const epg_bridge_config_t *config, uint32_t clocks)
 {
     epg_bridge_rest(bridge, config, clocks, config->safe);
 }
 
 /**
- * State and level for `duty` (-1 ... 1), rounded to whole clocks of a PWM period of `clocks`.  Returns true if it had
- * to be limited to +-max_duty.  A duty that is not finite is made safe, and counts as limited.
+ * Sets state and level for `duty` (-1 ... 1).  The level is rounded to whole clocks of a PWM period of `clocks`.
+ * Returns true if the duty was limited to +-max_duty.  A duty that is not finite gives the safe state, and counts as
+ * limited.
  */
 static inline bool epg_bridge_command(epg_bridge_t *bridge, const epg_bridge_config_t *config, uint32_t clocks,
                                       double duty)

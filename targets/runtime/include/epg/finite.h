@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Finds NaN and infinity by their bits.
+ * Detects NaN and infinity by their bits.
  *
- * Comparisons and isfinite() are no help everywhere: limiters hide NaN, `-ffast-math` lets a compiler assume there is
- * none, and the RP2040's ROM routines turn it into infinity.
+ * Comparisons and isfinite() do not detect them everywhere.  Limiters hide NaN.  `-ffast-math` lets a compiler assume
+ * that NaN does not occur.  The floating-point routines in the RP2040's ROM turn NaN into infinity.
  */
 #ifndef EPG_FINITE_H
 #define EPG_FINITE_H
@@ -16,7 +16,7 @@
 
 static_assert(sizeof(double) == sizeof(uint64_t), "a double is IEEE 754 binary64");
 
-/** True unless `value` is NaN or infinite: those have all exponent bits set (IEEE 754-2019, 3.4). */
+/** Returns false if `value` is NaN or infinite: both have all exponent bits set (IEEE 754-2019, 3.4). */
 static inline bool epg_is_finite(double value)
 {
     uint64_t bits;
@@ -24,7 +24,7 @@ static inline bool epg_is_finite(double value)
     return (bits >> 52 & 0x7FFU) != 0x7FFU;
 }
 
-/** Puts `value` into `place`; one that is not finite (a conversion that overflows) leaves the one before it there. */
+/** Stores `value` in `*place` if it is finite.  Otherwise (a conversion overflowed) `*place` keeps its value. */
 static inline void epg_assign_finite(double *place, double value)
 {
     if (epg_is_finite(value)) {

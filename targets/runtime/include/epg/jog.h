@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Moving one actuator of a disabled target for a short time: first light on a new robot.
+ * Moving one actuator of a disabled target by hand, for a short time: the first test of a new robot's wiring.
  *
- * While it lasts the model rests and nothing else is driven; afterwards the model is initialised again.  Any request
- * to enable or disable, any fault, and the fail-safe input end it within one cycle.
+ * During a movement the model is not stepped, and no other actuator is driven.  Afterwards the model is initialised
+ * again.  A request to enable or disable, a fault, or the fail-safe input ends the movement within one cycle.  The
+ * encoders are read before and after it, so that the user sees which encoder has moved, and how far.
  */
 #ifndef EPG_JOG_H
 #define EPG_JOG_H
@@ -15,69 +16,75 @@
 
 #include "epg/handover.h"
 
-/** An actuator that can be moved.  Functions of both run on the control side. */
+/** An actuator that can be moved.  The function runs on the control side. */
 typedef struct epg_jog_actuator {
-    const char *name;           /**< of the component */
-    void (*drive)(double duty); /**< as the model would; every cycle while it lasts */
+    const char *name; /**< name of the component */
+    void (*drive)(
+        double duty); /**< drives with `duty`, -1 ... 1, as the model would; runs in every cycle of a movement */
 } epg_jog_actuator_t;
 
-/** A sensor whose movement is reported. */
+/** An encoder whose movement is reported.  The functions run on the control side. */
 typedef struct epg_jog_encoder {
-    const char *name;         /**< of the component */
-    int64_t (*count)(void);   /**< edges so far, as sampled last */
-    double (*position)(void); /**< what they mean, in `unit` */
+    const char *name;         /**< name of the component */
+    int64_t (*count)(void);   /**< number of edges, as sampled last */
+    double (*position)(void); /**< position in `unit`, as sampled last */
     const char *unit;
 } epg_jog_encoder_t;
 
-/** Where an encoder was. */
+/** The reading of an encoder. */
 typedef struct epg_jog_reading {
     int64_t count;
     double position;
 } epg_jog_reading_t;
 
+/** How a movement ended. */
 typedef enum epg_jog_end {
-    EPG_JOG_DONE,
-    EPG_JOG_REFUSED, /**< the target is enabled, or its fail-safe input inactive */
-    EPG_JOG_STOPPED  /**< a request, a fault or the fail-safe input ended it */
+    EPG_JOG_DONE,    /**< after the requested time */
+    EPG_JOG_REFUSED, /**< never started: the target is enabled, or its fail-safe input is inactive */
+    EPG_JOG_STOPPED  /**< early: by a request, a fault or the fail-safe input */
 } epg_jog_end_t;
 
-/** The generator sets the first block of members. */
+/** The state of movements.  The generator sets the first block of members. */
 typedef struct epg_jog {
     size_t actuator_count;
     const epg_jog_actuator_t *actuators;
     size_t encoder_count;
     const epg_jog_encoder_t *encoders;
-    epg_jog_reading_t *first; /**< `encoder_count`: readings at the beginning and at the end */
-    epg_jog_reading_t *last;
+    epg_jog_reading_t *first; /**< `encoder_count` readings at the begin of the movement */
+    epg_jog_reading_t *last;  /**< `encoder_count` readings at its end */
 
-    epg_handover_t handover; /**< of the readings and of what follows, but for `stop` */
+    epg_handover_t handover; /**< of the readings and of the members below, except `stop` */
     size_t actuator;
     double duty;
-    uint32_t cycles; /**< that it lasts; at the end: that it lasted */
+    uint32_t cycles; /**< requested duration in control cycles; after the end, the real duration */
     epg_jog_end_t end;
 
-    bool stop;        /**< the control side's: nothing may be driven in this cycle */
-    bool running;     /**< the control side's */
-    uint32_t elapsed; /**< the control side's: cycles driven so far */
+    bool stop;        /**< control side: no actuator may be driven in this cycle */
+    bool running;     /**< control side: a movement is in progress */
+    uint32_t elapsed; /**< control side: cycles driven so far */
 } epg_jog_t;
 
-/** Ends a movement that a stop of the control loop has left.  While neither side is active. */
+/** Ends a movement that was left when the control loop stopped.  Must be called only while neither side is active. */
 void epg_jog_clear(epg_jog_t *jog);
 
 /* Control side ----------------------------------------------------------------------------------------------- */
 
 /**
- * After sensors have been sampled: drives the actuator, if one is to be.  `enabled`: the target is.  Returns true if
- * it drove, and then no model may step and no other output be written.
+ * Drives the requested actuator, if there is a request.  Called in every cycle after the sensors were sampled.
+ * `enabled` is true while the target is enabled.  If the result is true, the actuator was driven; the caller must then
+ * neither step the model nor write another output.
  */
 bool epg_jog_cycle(epg_jog_t *jog, bool enabled);
 
 /* Communication side ----------------------------------------------------------------------------------------- */
 
-/** True while nothing is being moved; after epg_jog_start() that is when the result can be read. */
+/** Returns true while no movement is requested or in progress.  Only then can the result of the last one be read. */
 bool epg_jog_idle(epg_jog_t *jog);
 
-/** Asks to drive actuator `index` with `duty` for `cycles` control cycles; false while one is moving. */
+/**
+ * Requests to drive actuator `index` with `duty` (-1 ... 1) for `cycles` control cycles.  Returns false if there is no
+ * such actuator, or while a movement is in progress.
+ */
 bool epg_jog_start(epg_jog_t *jog, size_t index, double duty, uint32_t cycles);
 
 #endif

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * A middleware: how setpoints reach a target and its values leave it.
+ * A middleware: the way by which setpoints reach a target and its values leave it.
  *
- * `targets/middlewares/<name>` holds one each, written once and free of any SDK; a platform gives it a stream (or a
- * socket of the middleware's own) and calls it.  All of it runs on the communication side: it may take its time, but
- * it never waits for the other end, and a broken connection is its own business.
+ * Each folder `targets/middlewares/<name>` holds one middleware.  It is written once and uses no SDK.  The platform
+ * gives it a stream of bytes (epg/stream.h), unless it opens a socket itself, and calls its functions.
+ *
+ * A middleware runs on the communication side.  It may compute for long, but it must not wait for the other end
+ * (epg/port_wait.h names the exception).  It must also recover from a broken connection without help.
  */
 #ifndef EPG_MIDDLEWARE_H
 #define EPG_MIDDLEWARE_H
@@ -16,21 +18,23 @@
 #include "epg/target.h"
 
 typedef struct epg_middleware {
-    /** Once, before the first poll().  `stream` stays valid; NULL for a middleware that needs none. */
+    /** Runs once, before the first poll().  `stream` stays valid; it is NULL for a middleware that needs none. */
     void (*start)(const epg_target_t *target, const epg_stream_t *stream);
     /**
-     * Does what is due at `now_ns` (epg_port_time_ns()) and returns.  Called again and again, at least once per
-     * millisecond; setpoints that have arrived are delivered, values that are due are sent.
+     * Delivers the setpoints that have arrived, sends the values that are due at `now_ns` (board time), and returns.
+     * Called at least once per millisecond.
      */
     void (*poll)(uint64_t now_ns);
-    /** The program ends: takes leave of the other end, without waiting for it.  NULL: there is nothing to do. */
+    /** Runs when the program ends.  Closes the connection, without waiting for the other end.  May be NULL. */
     void (*stop)(void);
     /**
-     * For a middleware with a connection of its own, on a platform that can sleep: returns when something has arrived,
-     * at `until_ns` at the latest.  NULL: the platform waits for the stream.
+     * Sleeps until data have arrived, until `until_ns` (board time) at the latest.  For a middleware that has opened
+     * its connection itself, on a platform that can sleep.  NULL: the platform waits for the stream.
      */
     void (*wait)(uint64_t until_ns);
-    /** How its connection stands, in a word: "waiting", "running".  The same pointer while it is the same. */
+    /**
+     * Returns the state of the connection as a word, such as "waiting" or "running".  The pointer changes only with it.
+     */
     const char *(*state)(void);
 } epg_middleware_t;
 

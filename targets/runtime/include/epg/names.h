@@ -1,10 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Names of a node: as generated or as stored, with the board's serial number in the place of "$serial".
+ * The name and the namespace of a target's ROS 2 node.
  *
- * The rules are those of ROS 2: letters, digits and '_', no digit first; a namespace is "/" or parts that begin with '/'.
- * "$serial" may stand behind the first character of a part, because serial numbers begin with digits too.
+ * A name is the generated one, unless the user has stored another one on the board (epg/store.h).  It can contain the
+ * word "$serial", which is replaced by the board's serial number; so one firmware gives each board its own name.
+ *
+ * The rules are those of ROS 2.  A name consists of letters, digits and '_', and does not begin with a digit.  A
+ * namespace is "/", or parts that each begin with '/'.  "$serial" must not be at the begin of a part, because a serial
+ * number can begin with a digit.
  */
 #ifndef EPG_NAMES_H
 #define EPG_NAMES_H
@@ -15,28 +19,34 @@
 #include "epg/target.h"
 
 /**
- * Writes `pattern` to `name` with every "$serial" replaced by epg_port_serial(); a name that does not fit into `size`
- * bytes with its terminating zero is cut.  Returns whether it fitted.
+ * Writes `pattern` to `name`, and replaces every "$serial" by epg_port_serial().  Returns false, with a shortened name,
+ * if it does not fit into `size` bytes with its terminating zero.
  */
 bool epg_names_expand(const char *pattern, char *name, size_t size);
 
-/** Whether `text` can name a node: with this board's serial number, EPG_STORE_NAME_SIZE - 1 characters at most. */
+/**
+ * Returns true if `text` can be the name of a node.  It must have at most EPG_STORE_NAME_SIZE - 1 characters, also with
+ * this board's serial number in it.
+ */
 bool epg_names_is_node(const char *text);
 
-/** Whether `text` can be a namespace: "/", or such as "/fleet/robot_$serial". */
+/** Returns true if `text` can be a namespace, such as "/" or "/fleet/robot_$serial". */
 bool epg_names_is_space(const char *text);
 
-/** The name of the node, "$serial" not yet replaced: as stored or set, else as generated. */
+/** Returns the name of the node: the stored or set one, otherwise the generated one.  "$serial" is not replaced. */
 const char *epg_names_node(const epg_target_t *target);
 
-/** Its namespace, the same: "" or "/robot1". */
+/** Returns the namespace of the node in the same way: "" or "/robot1". */
 const char *epg_names_space(const epg_target_t *target);
 
 /**
- * Changes a name from the next start on, if it is saved (epg_store_save()); false, and nothing happens, if it is none or
- * if the target has no store.  What is as generated is not stored.  Communication side.
+ * Sets the name of the node.  It takes effect at the next start, if it was stored (epg_store_save()).  Returns false,
+ * and changes nothing, if `text` is not a name or if the target has no store.  A name equal to the generated one is not
+ * stored.  Communication side.
  */
 bool epg_names_set_node(const epg_target_t *target, const char *text);
+
+/** Sets the namespace of the node, in the same way.  "/" removes it. */
 bool epg_names_set_space(const epg_target_t *target, const char *text);
 
 #endif

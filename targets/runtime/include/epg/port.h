@@ -1,12 +1,19 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The port layer: what EPG's portable code asks of a platform.
+ * The port layer: the functions by which EPG's portable code uses the hardware.
  *
- * Each folder `targets/platforms/<name>` implements these functions once.  The portable code (runtime, component
- * drivers, generated tables, model) includes no header of any SDK, so it can be compiled into a static library
- * before the SDK's settings are known.  All functions are called from the control side unless stated otherwise, and
- * none may block, allocate or fail: what can be wrong (pins, peripherals, ranges) was checked by the generator.
+ * Each platform implements these functions once, in `targets/platforms/<name>` or, for its registers, in
+ * `targets/families/<name>`.  The portable code (runtime, component drivers, generated tables, model) includes no
+ * header of an SDK.  It can therefore be compiled into a static library before the SDK's settings are known.
+ *
+ * All functions are called from the control side unless their comment names another context.  None of them may
+ * allocate memory or report an error, because the generator has already checked pins, peripherals and ranges.  None of
+ * them may block, except epg_port_wait_until() and epg_port_store_write().
+ *
+ * Peripherals are described by constant structures, which the generator fills.  In them, `instance` is the number of
+ * the hardware unit (a PIO block, a PWM slice, a timer), and `slot` is the number of the part of that unit that is used
+ * (a state machine, a channel).  Pins have the numbers of the board's SoC.
  */
 #ifndef EPG_PORT_H
 #define EPG_PORT_H
@@ -19,39 +26,52 @@
 extern "C" {
 #endif
 
-/** Monotonic time in nanoseconds.  Callable from every context. */
+/** Returns the board time: monotonic, in nanoseconds.  May be called from every context. */
 uint64_t epg_port_time_ns(void);
 
 /**
- * Returns when epg_port_time_ns() is `time_ns` or more.  Called within a control cycle with a time less than a period
- * ahead.  In simulated time it returns at once: there outputs act at the instant of their tick.
+ * Waits until epg_port_time_ns() has reached `time_ns`.  Called within a control cycle; `time_ns` is less than one
+ * control period ahead.  In simulated time it returns at once, because outputs act at the instant of their tick there.
  */
 void epg_port_wait_until(uint64_t time_ns);
 
-/** A quadrature decoder.  `instance` and `slot` name the peripheral (PIO block and state machine, timer, ...). */
+/**
+ * A quadrature decoder: hardware that counts the edges of an incremental encoder.
+ *
+ * The encoder has two outputs, A and B.  Both are square waves, a quarter of a period apart.  The order of their edges
+ * is the direction of the movement.  The decoder counts every edge of both signals, which is four counts per period of
+ * A (x4 decoding).
+ */
 typedef struct epg_port_quadrature {
     uint8_t pin_a;
     uint8_t pin_b;
     uint8_t instance;
     uint8_t slot;
-    bool pull_up; /**< enable the pins' pull-up resistors */
+    bool pull_up; /**< enables the pull-up resistors of both pins */
 } epg_port_quadrature_t;
 
+/** Configures the pins and starts counting. */
 void epg_port_quadrature_start(const epg_port_quadrature_t *decoder);
 
 /**
- * Free-running count, one per edge of A or B (x4), modulo 2^32; wraps without a trace.  Called at least once per
- * control cycle, so that the caller's signed differences are unambiguous.
+ * Returns the free-running count of edges (x4), modulo 2^32.  A wrap is not reported.  The caller takes signed
+ * differences between two calls, so it must call this at least once per control cycle.
  */
 uint32_t epg_port_quadrature_count(const epg_port_quadrature_t *decoder);
 
 /**
- * False: the decoder has stopped (a state machine that left its program, a timer whose clock is gone) and its count
- * means nothing any more.  Called once per control cycle.  A port whose decoders cannot stop returns true.
+ * Returns false if the decoder has stopped and its count is therefore meaningless: for example, a state machine has
+ * left its program, or a timer has lost its clock.  Called once per control cycle.  A port whose decoders cannot stop
+ * always returns true.
  */
 bool epg_port_quadrature_healthy(const epg_port_quadrature_t *decoder);
 
-/** One PWM output.  The period is `prescaler * (top + 1)` clocks; `instance` and `slot` name slice and channel. */
+/**
+ * A PWM output: a pin that is high for an adjustable share of each period.
+ *
+ * A prescaler divides the clock of the peripheral.  A counter counts the divided clock from 0 to `top` and then starts
+ * the next period, so a period lasts `prescaler * (top + 1)` clocks of the peripheral.
+ */
 typedef struct epg_port_pwm {
     uint8_t pin;
     uint8_t instance;
@@ -60,35 +80,50 @@ typedef struct epg_port_pwm {
     uint16_t top;
 } epg_port_pwm_t;
 
-/** Starts with level 0. */
+/** Configures the pin and starts the PWM with level 0 (always low). */
 void epg_port_pwm_start(const epg_port_pwm_t *pwm);
 
-/** Sets the high time in clocks, 0 ... `top + 1` (always high); takes effect at the next period. */
+/**
+ * Sets the high time in clocks after the prescaler, from 0 (always low) to `top + 1` (always high).  It takes effect at
+ * the next PWM period.
+ */
 void epg_port_pwm_write(const epg_port_pwm_t *pwm, uint32_t level);
 
+/** The pull resistor of an input.  It sets the level of the pin while no circuit drives it. */
 typedef enum epg_port_pull { EPG_PULL_NONE, EPG_PULL_UP, EPG_PULL_DOWN } epg_port_pull_t;
 
+/** Makes `pin` an output.  Its first level is `level` (true: high). */
 void epg_port_output_start(uint8_t pin, bool level);
+
+/** Sets the level of an output (true: high). */
 void epg_port_output_write(uint8_t pin, bool level);
+
+/** Makes `pin` an input with the pull resistor `pull`. */
 void epg_port_input_start(uint8_t pin, epg_port_pull_t pull);
+
+/** Returns the present level of an input (true: high). */
 bool epg_port_input_read(uint8_t pin);
 
 /**
- * Copies up to `size` bytes of what epg_port_store_write() has stored last, also before the last restart, to `data`;
- * returns how many, 0 when nothing is stored.  Before the control loop starts.
+ * Copies up to `size` bytes of the newest record to `data`.  The record is the one that epg_port_store_write() stored
+ * last, also before a restart.  Returns the number of bytes copied, 0 if nothing is stored.  Called before the control
+ * loop starts.
  */
 size_t epg_port_store_read(void *data, size_t size);
 
 /**
- * Stores `size` bytes in place of what was stored before, so that it is either there whole or not there; returns
- * whether that could be done.  Called from the communication side, while outputs are safe: it may block, and delay the
- * control cycle too.  A platform that has nothing to store in returns false.
+ * Stores a record of `size` bytes, which replaces the record before it.  If power fails meanwhile, the new record is
+ * either complete or absent.  Returns true if the record was stored; a platform without non-volatile memory returns
+ * false.
+ *
+ * Called from the communication side, and only while the outputs are safe: it may block, and it may delay control
+ * cycles.
  */
 bool epg_port_store_write(const void *data, size_t size);
 
 /**
- * What tells this board from all others: letters and digits, the same after every start ("E6616407E3A51B2C").  From the
- * communication side, and before the control loop starts.
+ * Returns the serial number of the board, which no other board has: letters and digits, the same after every start
+ * ("E6616407E3A51B2C").  Called from the communication side, and before the control loop starts.
  */
 const char *epg_port_serial(void);
 

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The part of the port layer that is for middlewares which wait for the other end.
+ * The part of the port layer for middlewares that wait for an answer.
  *
- * Most never do (epg/middleware.h).  A platform implements this where communication is a thread or a task of its own:
- * there a middleware may wait, because control goes on, and so does what else the communication side does.
+ * Most middlewares never wait (epg/middleware.h).  Some libraries, however, block until the other end has answered.  A
+ * platform implements this function if its communication side is a thread or a task.  The control loop then continues
+ * while the middleware waits, and this function does the remaining work of the communication side.
  */
 #ifndef EPG_PORT_WAIT_H
 #define EPG_PORT_WAIT_H
@@ -14,9 +15,9 @@ extern "C" {
 #endif
 
 /**
- * Returns when something may have arrived, after a millisecond or two at the latest.  Meanwhile the transports have
- * moved their bytes, a console beside the middleware has been served, and the communication side counts as alive.  From
- * the middleware's poll().
+ * Waits until bytes may have arrived, at most one or two milliseconds.  Meanwhile it serves the transports and a
+ * console that runs beside the middleware, and it reports the communication side as alive.  May be called from the
+ * middleware's poll() only.
  */
 void epg_port_wait_for_bytes(void);
 

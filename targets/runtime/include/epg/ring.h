@@ -1,10 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * A ring of bytes between an interrupt and the communication side: one puts in, the other takes out, neither waits.
+ * A ring of bytes between an interrupt handler and the communication side.
  *
- * Positions run on modulo 2^32 and are each written by one side only, so that loads and stores of single words do:
- * what is ahead of `put` is not read, and what is behind `taken` is not written.
+ * One side, the writer, puts bytes in; the other side, the reader, takes them out in the same order.  Neither waits.
+ *
+ * `put` and `taken` count bytes modulo 2^32, and only one side writes each of them.  Loads and stores of single words
+ * are therefore sufficient: the reader never reads beyond `put`, and the writer never overwrites a byte that the reader
+ * has not yet taken.
  */
 #ifndef EPG_RING_H
 #define EPG_RING_H
@@ -16,28 +19,28 @@
 
 typedef struct epg_ring {
     unsigned char *bytes;
-    uint32_t size;     /**< of `bytes`, at most 2^31 */
-    atomic_uint put;   /**< bytes that were ever put in: the writer's */
-    atomic_uint taken; /**< bytes that were ever taken out: the reader's */
-    uint32_t put_at;   /**< index of the next byte to write: the writer's */
-    uint32_t taken_at; /**< index of the next byte to read: the reader's */
-    atomic_uint lost;  /**< bytes that there was no room for: the writer's */
+    uint32_t size;     /**< number of `bytes`, at most 2^31 */
+    atomic_uint put;   /**< number of bytes ever put in; written by the writer */
+    atomic_uint taken; /**< number of bytes ever taken out; written by the reader */
+    uint32_t put_at;   /**< index of the next byte to write; belongs to the writer */
+    uint32_t taken_at; /**< index of the next byte to read; belongs to the reader */
+    atomic_uint lost;  /**< number of bytes that found no room; written by the writer */
 } epg_ring_t;
 
-/** How many bytes there are to take.  Either side. */
+/** Returns the number of bytes in the ring.  For both sides. */
 static inline uint32_t epg_ring_count(const epg_ring_t *ring)
 {
     return (uint32_t)(atomic_load_explicit(&ring->put, memory_order_acquire) -
                       atomic_load_explicit(&ring->taken, memory_order_acquire));
 }
 
-/** How many bytes there is room for.  Either side. */
+/** Returns the number of bytes for which there is room.  For both sides. */
 static inline uint32_t epg_ring_room(const epg_ring_t *ring)
 {
     return ring->size - epg_ring_count(ring);
 }
 
-/** Puts a byte in, or counts it as lost when there is no room.  The writer's. */
+/** Puts a byte in, or counts it as lost if there is no room.  For the writer. */
 static inline void epg_ring_put(epg_ring_t *ring, unsigned char byte)
 {
     if (epg_ring_room(ring) == 0U) {
@@ -51,7 +54,7 @@ static inline void epg_ring_put(epg_ring_t *ring, unsigned char byte)
                           memory_order_release);
 }
 
-/** Takes a byte out; false when there is none.  The reader's. */
+/** Takes a byte out.  Returns false if the ring is empty.  For the reader. */
 static inline bool epg_ring_take(epg_ring_t *ring, unsigned char *byte)
 {
     if (epg_ring_count(ring) == 0U) {
@@ -64,7 +67,7 @@ static inline bool epg_ring_take(epg_ring_t *ring, unsigned char *byte)
     return true;
 }
 
-/** Takes out up to `size` bytes; returns how many.  The reader's. */
+/** Takes out up to `size` bytes and returns their number.  For the reader. */
 static inline size_t epg_ring_read(epg_ring_t *ring, void *data, size_t size)
 {
     unsigned char *bytes = data;
@@ -75,7 +78,10 @@ static inline size_t epg_ring_read(epg_ring_t *ring, void *data, size_t size)
     return count;
 }
 
-/** Puts in as many of `size` bytes as there is room for; returns how many.  The rest is not lost, but the caller's. */
+/**
+ * Puts in as many of `size` bytes as there is room for, and returns their number.  The others do not count as lost: the
+ * caller keeps them.  For the writer.
+ */
 static inline size_t epg_ring_write(epg_ring_t *ring, const void *data, size_t size)
 {
     const unsigned char *bytes = data;

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * What every platform with transports does with them and with its middlewares, on the communication side.
+ * The turn of the communication side, which all platforms with transports share: start, poll and flush.
  *
- * Inline, so that it lies where the platform's own code does.  A middleware or a transport that is NULL is not there.
+ * The functions are inline, so that their code is in the same memory (flash or RAM) as the platform's code that calls
+ * them.  A middleware or a transport that does not exist is NULL.
  */
 #ifndef EPG_SERVE_H
 #define EPG_SERVE_H
@@ -16,12 +17,13 @@
 #include "epg/target.h"
 #include "epg/transport.h"
 
-/** False when the transport cannot be started; `title` as in epg_transport_t. */
+/** Starts a transport.  Returns false if that is impossible.  `title` is as in epg_transport_t. */
 static inline bool epg_serve_start_transport(const epg_transport_t *transport, const char *title)
 {
     return transport == NULL || transport->start(transport->stream.context, title);
 }
 
+/** Starts a middleware on the stream of `transport`. */
 static inline void epg_serve_start_middleware(const epg_target_t *target, const epg_middleware_t *middleware,
                                               const epg_transport_t *transport)
 {
@@ -30,7 +32,7 @@ static inline void epg_serve_start_middleware(const epg_target_t *target, const 
     }
 }
 
-/** What the middleware has written goes out. */
+/** Sends the bytes that the middleware has written. */
 static inline void epg_serve_flush(const epg_transport_t *transport)
 {
     if (transport != NULL && transport->flush != NULL) {
@@ -38,7 +40,7 @@ static inline void epg_serve_flush(const epg_transport_t *transport)
     }
 }
 
-/** One turn of a middleware and its transport. */
+/** Makes one turn: serves the transport, then the middleware, then sends the written bytes. */
 static inline void epg_serve(const epg_middleware_t *middleware, const epg_transport_t *transport)
 {
     if (transport != NULL && transport->poll != NULL) {

@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * What every target counts.
+ * Statistics of the control loop, which every target counts.
+ *
+ * A hardware timer gives a tick once per control period.  A tick starts a control cycle.  Three things can go wrong,
+ * and each is counted: the cycle begins late (`lateness_max`), it ends after the next tick (`overruns`), or a tick
+ * passes without a cycle (`missed`).
  */
 #ifndef EPG_STATISTICS_H
 #define EPG_STATISTICS_H
@@ -12,31 +16,31 @@
 extern "C" {
 #endif
 
-/** Stacks that are watched: of the two cores, threads or tasks. */
+/** The stacks that are measured: those of the control side and of the communication side. */
 enum { EPG_STACK_CONTROL, EPG_STACK_COMMUNICATION, EPG_STACKS };
 
-/** Bytes of a stack; both are 0 where the platform does not know them. */
+/** Use of a stack, in bytes.  Both numbers are 0 on a platform that does not measure stacks. */
 typedef struct epg_stack {
-    uint32_t used; /**< at most so far */
+    uint32_t used; /**< the most that was ever in use */
     uint32_t size;
 } epg_stack_t;
 
-/** Times are in nanoseconds; 32-bit times saturate at 4.29 s.  Counters wrap at 2^32. */
+/** Times are in nanoseconds.  32-bit times saturate at 4.29 s.  Counters wrap at 2^32. */
 typedef struct epg_statistics {
     uint32_t cycles;            /**< control cycles run */
-    uint32_t overruns;          /**< cycles that ended after the next one was due, or before which ticks were missed */
-    uint32_t missed;            /**< ticks at which no cycle ran */
-    uint32_t lateness_max;      /**< largest delay from tick to start of a cycle */
-    uint32_t computation_min;   /**< shortest cycle */
-    uint32_t computation_max;   /**< longest cycle */
-    uint64_t computation_total; /**< sum over all cycles: divide by `cycles` for the mean */
-    uint32_t outputs_late;      /**< cycles whose outputs were not ready at the output delay, and came later */
+    uint32_t overruns;          /**< cycles that ended after the next tick, or that began after missed ticks */
+    uint32_t missed;            /**< ticks without a cycle */
+    uint32_t lateness_max;      /**< longest time from a tick to the begin of its cycle */
+    uint32_t computation_min;   /**< duration of the shortest cycle, without its wait for the output delay */
+    uint32_t computation_max;   /**< duration of the longest cycle, the same */
+    uint64_t computation_total; /**< sum of the durations of all cycles; the mean is this divided by `cycles` */
+    uint32_t outputs_late;      /**< cycles that wrote their outputs after the output delay */
     uint32_t clamped;           /**< values limited by a conversion, `max_duty` or the range of an actuator */
-    uint32_t setpoints_dropped; /**< setpoints refused because they were not finite */
-    uint32_t setpoint_timeouts; /**< times a setpoint became too old */
-    uint32_t faults;            /**< times a fault was latched */
-    uint32_t reconnects;        /**< times communication was lost and came back */
-    uint32_t silence_max;       /**< most control cycles in a row in which the communication side showed no life */
+    uint32_t setpoints_dropped; /**< setpoints that were refused because they were NaN or infinite */
+    uint32_t setpoint_timeouts; /**< how often a setpoint became older than its timeout */
+    uint32_t faults;            /**< how often a fault was latched */
+    uint32_t reconnects;        /**< how often communication was lost and came back */
+    uint32_t silence_max;       /**< most control cycles between two reports that the communication side is alive */
     epg_stack_t stacks[EPG_STACKS];
 } epg_statistics_t;
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * What a target says about itself.
+ * The status of a target: enabled or disabled, its fault, and its statistics.
  */
 #ifndef EPG_STATUS_H
 #define EPG_STATUS_H
@@ -16,12 +16,12 @@
 extern "C" {
 #endif
 
-/** State and fault of a target at one moment. */
+/** The status of a target at the end of one control cycle. */
 typedef struct epg_status {
     bool enabled;
-    uint16_t fault_component; /**< index of the component that has the fault; EPG_NO_COMPONENT: none in particular */
-    epg_fault_t fault;        /**< why it is disabled; EPG_FAULT_NONE: by request */
-    uint64_t time_ns;         /**< tick of the cycle that wrote this */
+    uint16_t fault_component; /**< index of the component with the fault; EPG_NO_COMPONENT: the whole target */
+    epg_fault_t fault;        /**< the latched fault; EPG_FAULT_NONE: a disabled target was disabled by request */
+    uint64_t time_ns;         /**< tick of the cycle that wrote this status, in board time */
     epg_statistics_t statistics;
 } epg_status_t;
 

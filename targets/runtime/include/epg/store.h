@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * What a board keeps over a restart (epg_port_store_write()): its names, and parameters that were changed.
+ * The store: data that a board keeps over a restart, in non-volatile memory (epg_port_store_write()).
  *
- * Names belong to the board: they are there under a new firmware too, if it has a store.  Parameters belong to a model
- * and its generated values, which the store names: under another model they are refused.
+ * It holds the names of the node (epg/names.h) and changed parameters (epg/parameters.h).  Names belong to the board: a
+ * new firmware uses them, too, if it has a store.  Parameters belong to a model with its generated values, which the
+ * store identifies; another model refuses them.
  */
 #ifndef EPG_STORE_H
 #define EPG_STORE_H
@@ -14,32 +15,33 @@
 
 #include "epg/parameters.h"
 
-/** Bytes of a stored name of a node, or of its namespace, with the terminating zero. */
+/** Bytes of a stored node name or namespace, with the terminating zero. */
 #define EPG_STORE_NAME_SIZE 64
 
-/** Bytes of a store that holds `count` changed values. */
+/** Bytes of a store with `count` changed parameters. */
 #define EPG_STORE_SIZE(count) (16U + 2U * EPG_STORE_NAME_SIZE + 12U + 12U * (count))
 
 typedef struct epg_store {
-    /* The generator's. */
-    unsigned char *bytes;         /**< EPG_STORE_SIZE(parameters->count); the communication side's */
-    epg_parameters_t *parameters; /**< NULL: there are none */
+    /* The generator sets these members. */
+    unsigned char *bytes;         /**< EPG_STORE_SIZE(parameters->count) bytes; they belong to the communication side */
+    epg_parameters_t *parameters; /**< NULL: the target has no changeable parameters */
 
-    /* As stored, or as set since: epg/names.h. */
-    char node[EPG_STORE_NAME_SIZE];       /**< "": as generated */
-    char name_space[EPG_STORE_NAME_SIZE]; /**< "": as generated; "/": none */
+    /* The names that were stored, or that epg/names.h has set since. */
+    char node[EPG_STORE_NAME_SIZE];       /**< "": the generated name */
+    char name_space[EPG_STORE_NAME_SIZE]; /**< "": the generated namespace; "/": no namespace */
 } epg_store_t;
 
 /**
- * Sets all parameters as generated, then those that are stored for this model, all or none of them, and names that are
- * stored.  Before the control loop and the communication start.
+ * Loads the stored names, and the parameters if they belong to this model.  Parameters are loaded completely or not at
+ * all; those that were not stored have their generated values.  Must be called before the control loop and the
+ * communication start.
  */
 void epg_store_load(epg_store_t *store);
 
 /**
- * Stores names, and all parameters that are not as generated.  May take as long as epg_port_store_write() does: only
- * while outputs are safe.  Communication side.  Returns whether that could be done; `*values` is how many parameters
- * there were.
+ * Stores the names, and all parameters that differ from their generated values.  Returns true if that was possible;
+ * `*values` is the number of these parameters.  May take as long as epg_port_store_write(), and must therefore be
+ * called only while the outputs are safe.  Communication side.
  */
 bool epg_store_save(epg_store_t *store, size_t *values);
 

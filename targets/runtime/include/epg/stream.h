@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * A stream of bytes in both directions, such as a USB serial port: what a transport gives to a middleware.
+ * A stream of bytes in both directions, such as a USB serial port or a UART.
  *
- * All functions belong to the communication side and return at once.
+ * A transport (epg/transport.h) offers a stream, and a middleware (epg/middleware.h) uses it.  So a middleware does not
+ * depend on the hardware.  All functions belong to the communication side and return at once; each is called with
+ * `context` as its first argument.
  */
 #ifndef EPG_STREAM_H
 #define EPG_STREAM_H
@@ -12,16 +14,17 @@
 #include <stddef.h>
 
 typedef struct epg_stream {
-    /** Whether somebody is at the other end, as far as the transport can know (USB: DTR). */
+    /** Returns true if a program is at the other end, as far as the transport can know (USB: the signal DTR). */
     bool (*connected)(void *context);
-    /** Copies up to `size` bytes that have arrived to `data`; returns how many, 0 if there are none. */
+    /** Copies up to `size` bytes that have arrived to `data`.  Returns their number, 0 if there are none. */
     size_t (*read)(void *context, void *data, size_t size);
-    /** Takes up to `size` bytes; returns how many, 0 if there is no room. */
+    /** Accepts up to `size` bytes for sending.  Returns their number, 0 if there is no room. */
     size_t (*write)(void *context, const void *data, size_t size);
-    /** How many bytes write() would take now. */
+    /** Returns the number of bytes that write() would accept now. */
     size_t (*writable)(void *context);
     void *context;
-    bool datagrams; /**< one write() is one packet, and one read() gives one, whole if `size` is large enough (UDP) */
+    bool
+        datagrams; /**< UDP: one write() sends one packet; one read() gives one packet, cut to `size` if it is longer */
 } epg_stream_t;
 
 #endif

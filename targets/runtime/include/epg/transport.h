@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * A transport: a stream of bytes with what a platform has to do for it, such as a USB serial port or a UART.
+ * A transport: the carrier of a middleware's bytes, such as a USB serial port, a UART or UDP.
  *
- * A platform calls it on the communication side.  None of the functions waits.
+ * It consists of a stream for the middleware (epg/stream.h), and of functions that the platform calls to serve it.  All
+ * of them belong to the communication side, and none of them waits.
  */
 #ifndef EPG_TRANSPORT_H
 #define EPG_TRANSPORT_H
@@ -15,15 +16,19 @@
 
 typedef struct epg_transport {
     /**
-     * Before the control loop starts; false when that is impossible.  `title` says what the stream is for, to people
-     * who see it from the other side ("EPG console"), and stays valid.  Called again after a target was stopped.
+     * Starts the transport.  Returns false if that is impossible.  `title` names the purpose of the stream for the user
+     * at the other end ("EPG console"); it stays valid.  Called before the control loop starts, and again after a
+     * target was stopped.
      */
     bool (*start)(void *context, const char *title);
-    void (*poll)(void *context);  /**< at least once per millisecond, before the middleware; or NULL */
-    void (*flush)(void *context); /**< after the middleware: what it has written goes out; or NULL */
-    /** Bytes that came and were lost because nobody took them, or because they were damaged; or NULL: none can be. */
+    void (*poll)(void *context);  /**< called at least once per millisecond, before the middleware; may be NULL */
+    void (*flush)(void *context); /**< called after the middleware: sends the bytes that it has written; may be NULL */
+    /**
+     * Returns the number of received bytes that were lost, because they were damaged or because they were not read in
+     * time.  NULL: bytes cannot be lost.
+     */
     uint32_t (*lost)(const void *context);
-    epg_stream_t stream; /**< its `context` is that of all these functions */
+    epg_stream_t stream; /**< its `context` is the argument of all these functions */
 } epg_transport_t;
 
 #endif
