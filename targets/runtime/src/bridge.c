@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * H-bridges: what happens less often than every cycle.
+ * The functions of H-bridges that not every control cycle calls.
  */
 #include "epg/bridge.h"
 

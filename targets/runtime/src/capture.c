@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Recording on both sides.
+ * Recording of signals: the control side's part and the communication side's part.
  *
- * A row is the tick, in the bits of a double's place, and the values.  Rows form a ring, of which the trigger fixes
- * the end.
+ * A row is an array of doubles.  The first one holds the bits of the tick (a 64-bit whole number), the others hold the
+ * values.  The rows form a ring, which is overwritten until the trigger.  The trigger then fixes the last row.
  */
 #include "epg/capture.h"
 
@@ -20,7 +20,7 @@ static double *row_at(const epg_capture_t *capture, size_t index)
     return &capture->memory[index * (capture->request.columns + 1U)];
 }
 
-/** What the trigger says of this cycle. */
+/** Returns true if this cycle is the trigger. */
 static bool fires(epg_capture_t *capture, bool fault)
 {
     const epg_capture_request_t *request = &capture->request;

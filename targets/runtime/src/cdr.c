@@ -7,7 +7,9 @@
 
 #include <string.h>
 
-/** Place for a number of `size` bytes, after zeros up to its alignment; NULL if it does not fit. */
+/**
+ * Returns the place for a number of `size` bytes, after padding with zeros to its alignment; NULL if it does not fit.
+ */
 static unsigned char *reserve(epg_cdr_writer_t *writer, size_t size, size_t alignment)
 {
     const size_t start = (writer->length + alignment - 1) / alignment * alignment;
@@ -20,7 +22,7 @@ static unsigned char *reserve(epg_cdr_writer_t *writer, size_t size, size_t alig
     return writer->data + start;
 }
 
-/** The same of a number to read. */
+/** Returns the place of the next number to read; NULL if the message is too short. */
 static const unsigned char *take(epg_cdr_reader_t *reader, size_t size, size_t alignment)
 {
     const size_t start = (reader->position + alignment - 1) / alignment * alignment;
@@ -129,7 +131,7 @@ size_t epg_cdr_read_sequence(epg_cdr_reader_t *reader, size_t size, size_t *firs
     const size_t start = (reader->position + size - 1) / size * size;
     *first = start;
     if (count == 0 || reader->failed) {
-        return 0; /* without elements there is no padding to their alignment either */
+        return 0; /* an empty sequence has no padding to the alignment of its elements */
     }
     if (start > reader->size || count > (reader->size - start) / size) {
         reader->failed = true;

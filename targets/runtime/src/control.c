@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The control cycle.
+ * The control cycle: its order, the latching of faults, and its statistics.
  */
 #include "epg/control.h"
 
@@ -32,7 +32,7 @@ void epg_control_start(epg_control_t *control, const epg_application_t *applicat
         epg_jog_clear(application->jog);
     }
     application->start();
-    application->safe(); /* whatever the peripherals start with */
+    application->safe(); /* the first level of a peripheral need not be the safe one */
 }
 
 static void stop_jog(epg_control_t *control)
@@ -53,13 +53,13 @@ void epg_control_fault(epg_control_t *control, epg_fault_t fault, uint16_t compo
     stop_jog(control);
 }
 
-/** A fault that belongs to no component in particular. */
+/** Latches a fault of the whole target. */
 static void latch(epg_control_t *control, epg_fault_t fault)
 {
     epg_control_fault(control, fault, EPG_NO_COMPONENT);
 }
 
-/** Acts on a new request; `permitted` is what the fail-safe input says. */
+/** Carries out a new request.  `permitted` is true if the fail-safe input allows enabling. */
 static void handle_request(epg_control_t *control, bool permitted, uint64_t now_ns)
 {
     const unsigned int request = atomic_load(&control->request);
@@ -85,7 +85,7 @@ static void handle_request(epg_control_t *control, bool permitted, uint64_t now_
     }
 }
 
-/** Everything that may enable or disable before a sensor is read, and the setpoints the model will see. */
+/** Takes new setpoints and requests, and does all checks that can disable the target before a sensor is read. */
 static void command(epg_control_t *control, const epg_application_t *application, uint64_t now_ns)
 {
     const bool taken = application->setpoint_exchange != NULL &&
@@ -104,7 +104,7 @@ static void command(epg_control_t *control, const epg_application_t *application
     }
 }
 
-/** Runs the model if it is its turn; true if it ran and all its values are finite. */
+/** Steps the model if its step is due.  Returns true if it was stepped and all its values are finite. */
 static bool run_model(epg_control_t *control)
 {
     const epg_application_t *application = control->application;
@@ -144,19 +144,20 @@ static bool run_model(epg_control_t *control)
     return true;
 }
 
-/** Drives what is moved by hand; true if something is, and the model rests meanwhile. */
+/** Drives the actuator that is moved by hand.  Returns true if there is one; the model must not be stepped then. */
 static bool move_by_hand(epg_control_t *control, epg_jog_t *jog)
 {
     if (jog == NULL || !epg_jog_cycle(jog, control->enabled)) {
         return false;
     }
-    control->initialise = control->initialise || control->model_valid; /* one that rests after a fault goes on to */
+    /* Initialise the model after the movement.  A model that stopped after a fault stays stopped. */
+    control->initialise = control->initialise || control->model_valid;
     return true;
 }
 
 /**
- * Outputs act at one instant after every tick, though computing them does not take the same time in each cycle.  Returns
- * how long that took, in nanoseconds.
+ * Waits for the output delay.  The time to compute the outputs varies from cycle to cycle; with this wait, they always
+ * change at the same time after the tick.  Returns the duration of the wait in nanoseconds.
  */
 static uint64_t wait_for_outputs(epg_control_t *control, const epg_application_t *application, uint64_t tick_ns)
 {
@@ -183,7 +184,10 @@ static void count_lateness(epg_control_t *control, uint64_t tick_ns, uint64_t be
     }
 }
 
-/** Counts a cycle that computed from `begin_ns` to `end_ns`; true if it was an overrun, not over at `next_ns`. */
+/**
+ * Counts a cycle that computed from `begin_ns` to `end_ns`.  Returns true if it was an overrun: it ended after the next
+ * tick `next_ns`, or ticks before it were missed.
+ */
 static bool count_cycle(epg_control_t *control, uint64_t next_ns, uint64_t begin_ns, uint64_t end_ns, uint32_t missed)
 {
     epg_statistics_t *statistics = &control->statistics;
@@ -205,7 +209,7 @@ static bool count_cycle(epg_control_t *control, uint64_t next_ns, uint64_t begin
     return overrun;
 }
 
-/** How long the communication side has shown no life; when it has, what it knows of the stacks. */
+/** Counts the cycles since the communication side was alive.  If it was alive now, copies its report of the stacks. */
 static void count_silence(epg_control_t *control)
 {
     const unsigned int alive = atomic_load(&control->alive);
@@ -250,7 +254,7 @@ void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed
     const bool jogging = move_by_hand(control, application->jog);
     const bool stepped = !jogging && run_model(control);
     if (jogging) {
-        /* nothing but the actuator that is moved by hand: the others are safe since before */
+        /* Only the actuator that is moved by hand is driven.  The others are safe, because the target is disabled. */
     } else if (!control->enabled) {
         application->safe();
     } else if (stepped) {
@@ -258,7 +262,7 @@ void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed
             application->prepare();
         }
         if (application->output_delay_ns > 0U) {
-            begin_ns += wait_for_outputs(control, application, tick_ns); /* it is no computation */
+            begin_ns += wait_for_outputs(control, application, tick_ns); /* waiting is not computation time */
         }
         application->write();
     }

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Doubles to text and back, by numbers with at least 161 bits.
+ * Conversions between doubles and decimal text, with intermediate numbers of at least 161 bits.
  *
- * A decimal number of 17 digits names one double (IEEE 754-2019, 5.12.2), and so do the 15 or 16 digits of most that
- * people write: the fewest that read back as the same double are taken.  Scaling by a power of ten cuts off less than
- * one part in 2^160 at each of at most 45 steps.  What is left of half the distance between two doubles, a tenth of
- * one part in 2^54, is far more: what is written always reads back.
+ * 17 decimal digits identify every double (IEEE 754-2019, 5.12.2).  For most numbers that people write, 15 or 16 digits
+ * do.  The code therefore tries 15, 16 and 17 digits, and takes the first text that reads back as the same double.
+ *
+ * Scaling by a power of ten takes at most 45 steps.  Each step cuts off less than one part in 2^160.  A text of 17
+ * digits is nearer to its double than half the distance to the next one; the margin is a tenth of one part in 2^54.
+ * This is far more than the error of all steps, so a written number always reads back.
  */
 #include "epg/decimal.h"
 
@@ -14,13 +16,13 @@
 
 enum {
     WORDS = 6,
-    FRACTION = 52,       /* bits of the significand behind its leading 1 (IEEE 754-2019, table 3.5) */
+    FRACTION = 52,       /* bits of the significand after its leading 1 (IEEE 754-2019, table 3.5) */
     LEAST = -1074,       /* binary exponent of the smallest double above zero */
-    INFINITE = 0x7FF,    /* biased exponent */
-    LARGEST_POWER = 310, /* a decimal exponent above it makes any number too large for a double, */
-    LEAST_POWER = -365,  /* and one below it less than half of the smallest, with EPG_DECIMAL_DIGITS digits */
-    EXACT_DIGITS = 15,   /* of a decimal number, which a double and back leaves as they are */
-    MOST_DIGITS = 17     /* of a double, which a decimal number and back leaves as it is */
+    INFINITE = 0x7FF,    /* biased exponent of infinity and NaN */
+    LARGEST_POWER = 310, /* above this decimal exponent, every number is too large for a double */
+    LEAST_POWER = -365,  /* below it, EPG_DECIMAL_DIGITS digits give less than half of the smallest double */
+    EXACT_DIGITS = 15,   /* a decimal number with so many digits is unchanged after conversion to double and back */
+    MOST_DIGITS = 17     /* a double is unchanged after conversion to so many digits and back */
 };
 
 #define SIGN ((uint64_t)1 << 63)
@@ -33,7 +35,7 @@ static size_t put(char *text, size_t length, const char *more)
     return length;
 }
 
-/** Digits of a whole number at the end of `text`'s first 20 places; returns where they begin. */
+/** Writes the digits of a whole number to the end of `text`.  Returns the index of the first one. */
 static size_t digits_of(char text[20], uint64_t value)
 {
     size_t begin = 20;
@@ -53,13 +55,13 @@ static size_t put_whole(char *text, size_t length, uint64_t value)
     return length;
 }
 
-/** words * 2^exponent, the least significant word first. */
+/** The number words * 2^exponent; the least significant word is the first. */
 typedef struct wide {
     uint32_t words[WORDS];
     int exponent;
 } wide_t;
 
-/** value = value * factor + summand, where a summand needs exponent 0 */
+/** value = value * factor + summand; unless the summand is 0, the exponent must be 0. */
 static void multiply(wide_t *value, uint32_t factor, uint32_t summand)
 {
     uint64_t carry = summand;
@@ -75,7 +77,7 @@ static void multiply(wide_t *value, uint32_t factor, uint32_t summand)
     }
 }
 
-/** Makes the last word of a value above zero hold something, so that a division leaves at least 161 bits. */
+/** Shifts a value above zero until its last word is not 0, so that at least 161 bits remain after a division. */
 static void fill(wide_t *value)
 {
     while (value->words[WORDS - 1] == 0) {
@@ -91,7 +93,7 @@ static void divide(wide_t *value, uint32_t divisor)
     fill(value);
     uint64_t rest = value->words[WORDS - 1] % divisor;
     uint32_t above = value->words[WORDS - 1] / divisor;
-    const bool shifted = above == 0; /* then there is room for one word more behind the others */
+    const bool shifted = above == 0; /* true: the result has room for one more word at its low end */
     for (size_t i = WORDS - 1; i > 0; i--) {
         rest = rest << 32 | value->words[i - 1];
         const uint32_t digit = (uint32_t)(rest / divisor);
@@ -125,10 +127,10 @@ static unsigned int bit(const wide_t *value, int place)
     return place >= 0 && place < 32 * WORDS ? value->words[place / 32] >> (place % 32) & 1U : 0U;
 }
 
-/** The whole number nearest to value / 2^exponent, which is below 2^64; of two the even one. */
+/** Returns the whole number nearest to value / 2^exponent, which must be below 2^64; a tie goes to the even one. */
 static uint64_t rounded(const wide_t *value, int exponent)
 {
-    const int one = exponent - value->exponent; /* the bit that counts 1 */
+    const int one = exponent - value->exponent; /* index of the bit with weight 1 */
     uint64_t result = 0;
     for (int i = 63; i >= 0; i--) {
         result = result << 1 | bit(value, one + i);
@@ -140,7 +142,7 @@ static uint64_t rounded(const wide_t *value, int exponent)
     return result + (more ? bit(value, one - 1) : 0U);
 }
 
-/** Bits of the double nearest to a value above zero; SIGN if it is too large for one. */
+/** Returns the bits of the double nearest to a value above zero; SIGN if the value is too large. */
 static uint64_t nearest(wide_t *value)
 {
     fill(value);
@@ -148,12 +150,12 @@ static uint64_t nearest(wide_t *value)
     while (bit(value, top) == 0) {
         top--;
     }
-    /* The result has 53 bits, one for the leading 1; fewer below the smallest normal number. */
+    /* The result has 53 bits with its leading 1, or fewer below the smallest normal number. */
     int binary = value->exponent + top - FRACTION;
     if (binary < LEAST) {
         binary = LEAST;
     }
-    /* Added, not put together: the leading 1 makes the biased exponent one more, and so does a carry into bit 53. */
+    /* An addition, not an OR: the leading 1 increments the biased exponent, and so does a carry into bit 53. */
     const uint64_t biased = (uint64_t)(binary - LEAST);
     return biased >= INFINITE ? SIGN : (biased << FRACTION) + rounded(value, binary);
 }
@@ -163,13 +165,13 @@ static wide_t wide(uint64_t value, int exponent)
     return (wide_t){{(uint32_t)(value & 0xFFFFFFFFU), (uint32_t)(value >> 32)}, exponent};
 }
 
-/** floor(log10(2^exponent)), or one less: log10(2) lies between 1233 / 4096 and 1234 / 4096. */
+/** Returns floor(log10(2^exponent)) or one less.  log10(2) is between 1233 / 4096 and 1234 / 4096. */
 static int power_of_ten(int exponent)
 {
     return exponent >= 0 ? exponent * 1233 / 4096 : -((-exponent * 1234 + 4095) / 4096);
 }
 
-/** `count` digits of significand * 2^exponent as a whole number, and the power of ten it is multiplied with. */
+/** Returns `count` digits of significand * 2^exponent as a whole number; the value is this number * 10^*power. */
 static uint64_t decimal(uint64_t significand, int exponent, int count, int *power)
 {
     uint64_t limit = 1;
@@ -181,7 +183,7 @@ static uint64_t decimal(uint64_t significand, int exponent, int count, int *powe
         bits++;
     }
     *power = power_of_ten(exponent + bits - 1) - count + 1;
-    for (;; ++*power) { /* the estimate may be too small */
+    for (;; ++*power) { /* the first estimate may be too small */
         wide_t value = wide(significand, exponent);
         scale(&value, -*power);
         const uint64_t result = rounded(&value, 0);
@@ -191,7 +193,7 @@ static uint64_t decimal(uint64_t significand, int exponent, int count, int *powe
     }
 }
 
-/** The fewest digits that read back as the double with `bits` (without sign, above zero), and their power of ten. */
+/** Returns the fewest digits that read back as the double `bits` (above zero, without sign), and their power of ten. */
 static uint64_t shortest(uint64_t bits, int *power)
 {
     const uint64_t fraction = bits & (((uint64_t)1 << FRACTION) - 1U);
@@ -199,7 +201,7 @@ static uint64_t shortest(uint64_t bits, int *power)
     const uint64_t significand = biased == 0 ? fraction : fraction | (uint64_t)1 << FRACTION;
     const int exponent = LEAST + (biased == 0 ? 0 : biased - 1);
     uint64_t result = 0;
-    /* The smallest doubles have fewer bits than others, and may need one digit only. */
+    /* The smallest doubles have fewer bits than the others; one digit can be sufficient. */
     for (int count = biased == 0 ? 1 : EXACT_DIGITS; count <= MOST_DIGITS; count++) {
         result = decimal(significand, exponent, count, power);
         wide_t back = wide(result, 0);
@@ -214,7 +216,7 @@ static uint64_t shortest(uint64_t bits, int *power)
     return result;
 }
 
-/** `digits` with the point where it belongs; with an exponent below 1e-4 and from 1e17 on, as C's "%.17g". */
+/** Writes `digits` with their point, or with an exponent below 1e-4 and from 1e17 on, as C's "%.17g" does. */
 static size_t lay_out(char *text, size_t length, const char *digits, size_t count, int point)
 {
     if (point < -4 || point >= 17) {
@@ -280,7 +282,7 @@ size_t epg_decimal_write_seconds(char *text, uint64_t time_ns)
     const uint64_t rest = time_ns % 1000000000U;
     if (rest != 0) {
         char digits[20];
-        digits_of(digits, 1000000000U + rest); /* a 1, and all nine places */
+        digits_of(digits, 1000000000U + rest); /* a 1 before the nine decimal places keeps their leading zeros */
         size_t end = sizeof digits;
         while (digits[end - 1] == '0') {
             end--;
@@ -302,14 +304,14 @@ size_t epg_decimal_write_integer(char *text, int64_t value)
     return put_whole(text, length, value < 0 ? 0U - (uint64_t)value : (uint64_t)value);
 }
 
-/** What a text says: digits without point, and the power of ten they are multiplied with. */
+/** A number that was read: digits * 10^exponent. */
 typedef struct number {
     wide_t digits;
     bool negative;
     int exponent;
 } number_t;
 
-/** Reads an exponent behind its "e"; false if it is none.  One beyond +-9999 is cut to that. */
+/** Reads the exponent after an "e".  Returns false if it is malformed.  Beyond +-9999 it is limited to +-9999. */
 static bool read_exponent(const char *text, size_t length, int *exponent)
 {
     size_t i = 0;

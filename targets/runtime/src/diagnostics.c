@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * State and statistics as a message.
+ * The status of a target as a diagnostic_msgs/msg/DiagnosticArray of ROS 2 Jazzy.
  *
- * Layout: diagnostic_msgs/msg/DiagnosticArray of ROS 2 Jazzy: header (stamp, frame_id), then a sequence of one
- * DiagnosticStatus: level, name, message, hardware_id, and a sequence of pairs of texts.
+ * Layout: a header (stamp, frame_id), then a sequence of one DiagnosticStatus.  It consists of level, name, message,
+ * hardware_id, and a sequence of pairs of texts.
  */
 #include "epg/diagnostics.h"
 
@@ -13,9 +13,9 @@
 
 enum { LEVEL_OK, LEVEL_WARN, LEVEL_ERROR };
 
-enum { DECIMAL_SIZE = 21 }; /* of the largest 64-bit number, with the terminating zero */
+enum { DECIMAL_SIZE = 21 }; /* bytes of the largest 64-bit number, with the terminating zero */
 
-/** A whole number as text, at the end of `text`. */
+/** Writes a whole number to the end of `text`.  Returns its begin. */
 static const char *decimal(uint64_t value, char text[DECIMAL_SIZE])
 {
     char *place = &text[DECIMAL_SIZE - 1];

@@ -3,9 +3,10 @@
  * @file
  * Simpson's four-slot mechanism; his slots are called buffers here.
  *
- * Four buffers form two pairs.  The writer avoids the pair that the reader works on, and within a pair the buffer that was
- * written last.  The reader announces the pair before it asks which of its buffers is the newest.  tests/runtime/exchange.pml
- * is the same algorithm, statement by statement, for the model checker.
+ * Four buffers form two pairs.  The writer avoids the pair that the reader uses, and within the other pair it avoids
+ * the buffer that was written last.  The reader announces its pair before it looks up the newest buffer in it.
+ *
+ * tests/runtime/exchange.pml is the same algorithm, statement by statement, for a model checker.
  */
 #include "epg/exchange.h"
 
@@ -50,7 +51,10 @@ bool epg_exchange_read(epg_exchange_t *exchange, void *value)
 
 bool epg_exchange_take(epg_exchange_t *exchange, void *value)
 {
-    /* Asked for before the value: a write that finishes in between is given now, and once more with the next call. */
+    /*
+     * The counter must be read before the value.  If a write finishes in between, this call gives its value, and the
+     * next call gives it once more.  In the other order, the value could be lost.
+     */
     const unsigned int writes = atomic_load(&exchange->writes);
     if (writes == exchange->taken) {
         return false;

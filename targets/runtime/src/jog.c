@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Moving one actuator by hand.
+ * Moving one actuator by hand: the control side's part and the communication side's part.
  */
 #include "epg/jog.h"
 

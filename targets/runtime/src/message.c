@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Messages that hold one number.
+ * Messages of std_msgs that hold one number.
  */
 #include "epg/message.h"
 
@@ -59,7 +59,7 @@ static bool read_float32(const epg_topic_t *topic, const void *data, size_t size
     return !reader.failed;
 }
 
-/** The nearest whole number, halves away from zero; NaN is 0. */
+/** Returns the nearest whole number; halves are rounded away from zero, and NaN is 0. */
 static int32_t whole(double value)
 {
     const double moved = value < 0.0 ? value - 0.5 : value + 0.5;

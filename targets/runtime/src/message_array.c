@@ -3,7 +3,7 @@
  * @file
  * std_msgs/msg/Float64MultiArray: a layout of dimensions (label, size, stride) and an offset, then the numbers.
  *
- * A publication is one-dimensional and says no more about it: its `dim` is empty, which std_msgs allows.
+ * A publication is one-dimensional.  It does not describe its dimension: its `dim` is empty, which std_msgs allows.
  */
 #include "epg/message.h"
 

@@ -12,7 +12,7 @@
 
 enum { QUANTITIES = 3 }; /* positions, velocities, efforts */
 
-/** Whether any value of `topic` is of a quantity. */
+/** Returns true if a value of `topic` belongs to `quantity`. */
 static bool has(const epg_topic_t *topic, size_t quantity)
 {
     const epg_message_layout_t *layout = topic->layout;
@@ -50,7 +50,7 @@ static size_t write_joint_state(const epg_topic_t *topic, const double *values, 
     return writer.failed ? 0 : writer.length;
 }
 
-/** Reads the names; `places` of our joints among them, SIZE_MAX for one that is not there. */
+/** Reads the names, and sets the places of the layout's joints among them; SIZE_MAX for a joint that is missing. */
 static void read_names(epg_cdr_reader_t *reader, const epg_message_layout_t *layout, size_t *places)
 {
     const size_t count = epg_cdr_read_u32(reader);
@@ -67,7 +67,7 @@ static void read_names(epg_cdr_reader_t *reader, const epg_message_layout_t *lay
     }
 }
 
-/** Reads the values of a quantity; false if one is not there. */
+/** Reads the values of a quantity.  Returns false if one is missing. */
 static bool read_sort(epg_cdr_reader_t *reader, const epg_topic_t *topic, size_t quantity, const size_t *places,
                       double *values)
 {

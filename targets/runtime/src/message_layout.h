@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * What messages of several numbers have in common: which of their numbers are values of a topic.
+ * Messages of several numbers, of which only some are values of a topic.
+ *
+ * The layout of a topic lists the places of its values in the message, in ascending order.
  */
 #ifndef EPG_MESSAGE_LAYOUT_H
 #define EPG_MESSAGE_LAYOUT_H
@@ -9,7 +11,7 @@
 #include "epg/cdr.h"
 #include "epg/target.h"
 
-/** Values of a topic in the order of the message, some of whose numbers are none of them. */
+/** A walk through the numbers of a message, which finds the topic's value for each. */
 typedef struct epg_layout_walk {
     const epg_topic_t *topic;
     const epg_message_layout_t *layout;
@@ -22,7 +24,7 @@ static inline epg_layout_walk_t epg_layout_walk(const epg_topic_t *topic, const 
     return (epg_layout_walk_t){.topic = topic, .layout = topic->layout, .values = values};
 }
 
-/** The value of number `field`, or `otherwise`; from call to call, `field` grows. */
+/** Returns the value of number `field`, or `otherwise` if it has none.  `field` must grow from call to call. */
 static inline double epg_layout_value(epg_layout_walk_t *walk, size_t field, double otherwise)
 {
     while (walk->next < walk->topic->count && walk->layout->fields[walk->next] < field) {
@@ -32,7 +34,7 @@ static inline double epg_layout_value(epg_layout_walk_t *walk, size_t field, dou
     return there ? walk->values[walk->next] : otherwise;
 }
 
-/** std_msgs/msg/Header. */
+/** Writes a std_msgs/msg/Header. */
 static inline void epg_write_header(epg_cdr_writer_t *writer, epg_stamp_t stamp, const char *frame_id)
 {
     epg_cdr_write_i32(writer, stamp.seconds);
@@ -40,7 +42,7 @@ static inline void epg_write_header(epg_cdr_writer_t *writer, epg_stamp_t stamp,
     epg_cdr_write_string(writer, frame_id);
 }
 
-/** The stamp of a message that arrives is its sender's, of whose clock nothing is known; so is the frame. */
+/** Skips a std_msgs/msg/Header.  Its stamp is ignored, because the sender's clock is unknown; so is its frame. */
 static inline void epg_skip_header(epg_cdr_reader_t *reader)
 {
     (void)epg_cdr_read_i32(reader);

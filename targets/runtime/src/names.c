@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Names of a node.
+ * The name and the namespace of a node.
  */
 #include "epg/names.h"
 
@@ -12,7 +12,9 @@
 
 static const char serial_word[] = "$serial";
 
-/** Appends `text` behind `*length` characters of `name`; false if it does not fit. */
+/**
+ * Appends `count` characters of `text` to the `*length` characters of `name`.  Returns false if not all of them fit.
+ */
 static bool append(char *name, size_t size, size_t *length, const char *text, size_t count)
 {
     const size_t room = size - 1 - *length;
@@ -51,7 +53,7 @@ static bool is_digit(char c)
     return c >= '0' && c <= '9';
 }
 
-/** Length of the part of a name that `text` begins with; 0 if there is none. */
+/** Returns the length of the part of a name at the begin of `text`; 0 if there is none. */
 static size_t part(const char *text)
 {
     size_t length = 0;
@@ -62,7 +64,7 @@ static size_t part(const char *text)
     return length;
 }
 
-/** Whether `text` is not too long, as it stands and with the serial number. */
+/** Returns true if `text` is short enough, both as it is written and with the serial number. */
 static bool has_room(const char *text)
 {
     char name[EPG_STORE_NAME_SIZE];
@@ -106,7 +108,7 @@ const char *epg_names_space(const epg_target_t *target)
     return strcmp(stored, "/") == 0 ? "" : stored;
 }
 
-/** Keeps `text`, which fits, in `name`, unless it is as `generated`. */
+/** Copies `text`, which must fit, to `name`; clears `name` if `text` equals the generated name. */
 static void keep(char *name, const char *text, const char *generated)
 {
     const size_t size = strlen(text) + 1;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * What all ROS 2 middlewares have in common.
+ * A ROS 2 node without its transport: which publications are due, and messages to values and back.
  */
 #include "epg/node.h"
 
@@ -14,7 +14,7 @@
 
 #define SECOND_NS 1000000000
 
-/** Copies the newest cycle's values; they stay as they are until the next call. */
+/** Copies the monitoring values of the newest cycle.  They stay the same until the next call. */
 static void take_values(epg_node_t *node)
 {
     const epg_target_t *target = node->target;
@@ -30,7 +30,9 @@ static epg_stamp_t stamp_of(const epg_node_t *node)
     return (epg_stamp_t){.seconds = (int32_t)(time_ns / SECOND_NS), .nanoseconds = (uint32_t)(time_ns % SECOND_NS)};
 }
 
-/** The first instant of a schedule that began at `due_ns` with `period_ns` which lies after `time_ns`. */
+/**
+ * Returns the first instant after `time_ns` of a schedule that has an instant at `due_ns` and the period `period_ns`.
+ */
 static uint64_t next_after(uint64_t due_ns, uint64_t period_ns, uint64_t time_ns)
 {
     return due_ns + ((time_ns - due_ns) / period_ns + 1) * period_ns;
@@ -42,7 +44,7 @@ static bool changed(const epg_node_t *node, const epg_topic_t *topic, const epg_
     return !state->sent || memcmp(&node->values[topic->index], &node->sent_values[topic->index], size) != 0;
 }
 
-/** Whether publication `topic` is due, for the values at hand; its schedule goes on then. */
+/** Returns true if publication `topic` is due with the present values, and advances its schedule then. */
 static bool is_due(epg_node_t *node, const epg_topic_t *topic, epg_node_publication_t *state, uint64_t now_ns)
 {
     if (topic->role == EPG_TOPIC_ECHO || (topic->role == EPG_TOPIC_VALUES && !node->valid)) {
@@ -69,14 +71,14 @@ static size_t write_message(epg_node_t *node, const epg_topic_t *topic)
     return topic->message->write(topic, &node->values[topic->index], stamp_of(node), node->buffer, node->buffer_size);
 }
 
-/** Hands publication `index` over if there is room; else it waits for the next turn. */
+/** Sends publication `index`; if the middleware has no room, the publication waits for the next call. */
 static void publish(epg_node_t *node, size_t index)
 {
     const epg_topic_t *topic = &node->target->publications[index];
     epg_node_publication_t *state = &node->publications[index];
     const size_t size = write_message(node, topic);
     if (size == 0) {
-        state->waiting = false; /* nothing to say yet */
+        state->waiting = false; /* there are no data yet */
         return;
     }
     if (!state->waiting) {
@@ -118,7 +120,7 @@ void epg_node_connected(epg_node_t *node, uint64_t now_ns)
 void epg_node_poll(epg_node_t *node, uint64_t now_ns)
 {
     const size_t count = node->target->publication_count;
-    /* One cycle's values for all that is due now. */
+    /* All publications that are due now get values of the same cycle. */
     take_values(node);
     for (size_t i = 0; i < count; i++) {
         epg_node_publication_t *state = &node->publications[i];
@@ -138,7 +140,7 @@ static void receive_values(epg_node_t *node, const epg_topic_t *topic, uint64_t 
             refused = i;
         }
     }
-    if (refused < topic->count) { /* the message counts as a whole: this drops and counts it */
+    if (refused < topic->count) { /* one value that is not finite drops the whole message, which counts once */
         (void)epg_control_receive(node->target->control, topic->index + refused, node->received[refused], now_ns,
                                   false);
         return;

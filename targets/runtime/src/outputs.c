@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Safe states of components whose outputs refuse writes.
+ * The way to a safe state for a component whose output refused a write.
  */
 #include "epg/outputs.h"
 
 #include "epg/fault.h"
 
-/** Steps until a safe state is reached: each output is taken over twice at most, or refuses once. */
+/** Largest number of steps to a safe state: each output is taken over at most twice, or refuses once. */
 #define STEPS (3U * EPG_OUTPUTS_MAX)
 
-/** What is known of a component's outputs, one bit each. */
+/** The known levels of a component's outputs, one bit for each. */
 typedef struct levels {
     unsigned int low;
     unsigned int high;
@@ -49,13 +49,13 @@ static levels_t levels_of(const epg_outputs_t *outputs, const epg_output_group_t
     return levels;
 }
 
-/** Outputs that do not have the levels of a state. */
+/** Returns the outputs whose levels differ from those of a state. */
 static unsigned int different(const epg_safe_state_t *state, levels_t levels)
 {
     return (state->low & ~levels.low) | (state->high & ~levels.high);
 }
 
-/** The state that changes the fewest outputs, and needs none of `lost`; NULL: there is none. */
+/** Returns the state that changes the fewest outputs and does not need one of `lost`; NULL if there is none. */
 static const epg_safe_state_t *nearest(const epg_output_group_t *group, unsigned int lost, levels_t levels)
 {
     const epg_safe_state_t *found = NULL;
@@ -71,11 +71,11 @@ static const epg_safe_state_t *nearest(const epg_output_group_t *group, unsigned
     return found;
 }
 
-/** `refused` is the bit of the output that has.  Returns false if no safe state can be reached. */
+/** `refused` is the bit of the output that refused a write.  Returns false if no safe state can be reached. */
 static bool make_safe(const epg_output_group_t *group, unsigned int refused, levels_t levels, epg_take_over_t take_over)
 {
-    unsigned int unknown = refused; /* not taken over yet */
-    unsigned int lost = 0;          /* cannot be taken over */
+    unsigned int unknown = refused; /* outputs of unknown level that are not taken over yet */
+    unsigned int lost = 0;          /* outputs that cannot be taken over */
     for (unsigned int step = 0; step < STEPS; step++) {
         const epg_safe_state_t *state = nearest(group, lost, levels);
         if (state == NULL) {
@@ -86,7 +86,7 @@ static bool make_safe(const epg_output_group_t *group, unsigned int refused, lev
         if (pending == 0U) {
             return true;
         }
-        const unsigned int bit = pending & (~pending + 1U); /* the lowest */
+        const unsigned int bit = pending & (~pending + 1U); /* the lowest bit of `pending` */
         const bool high = (state->high & bit) != 0U;
         unknown &= ~bit;
         if (!take_over(group->first + count_bits(bit - 1U), high)) {
@@ -101,7 +101,7 @@ static bool make_safe(const epg_output_group_t *group, unsigned int refused, lev
 
 void epg_outputs_refused(epg_outputs_t *outputs, size_t row, epg_take_over_t take_over)
 {
-    if (row >= EPG_OUTPUTS_ROWS || outputs->group_count == 0U) { /* nothing is known of it */
+    if (row >= EPG_OUTPUTS_ROWS || outputs->group_count == 0U) { /* the output belongs to an unknown component */
         outputs->component = EPG_NO_COMPONENT;
         outputs->refused = true;
         outputs->unsafe = true;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Parameters on both sides.
+ * Model parameters: the control side's part and the communication side's part.
  */
 #include "epg/parameters.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The simulated plant on the time line of a run.
+ * The steps of a simulated plant in simulated time.
  */
 #include "epg/plant.h"
 
@@ -34,7 +34,7 @@ void epg_plant_advance(epg_plant_run_t *run, uint64_t time_ns)
     if (run->plant == NULL) {
         return;
     }
-    /* Counted in steps and not in nanoseconds: a plant step need not be a whole number of nanoseconds. */
+    /* Time is counted in steps, because a plant step need not be a whole number of nanoseconds. */
     const uint64_t per_period = run->plant->steps_per_period;
     const uint64_t due = time_ns / run->period_ns * per_period + time_ns % run->period_ns * per_period / run->period_ns;
     for (; run->steps < due; run->steps++) {

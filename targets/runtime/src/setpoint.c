@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Setpoints on the control side.
+ * Setpoints: their age and rate limit on the control side, and their reception on the communication side.
  */
 #include "setpoint.h"
 
@@ -44,7 +44,7 @@ void epg_setpoints_enable(const epg_application_t *application, uint64_t now_ns)
 {
     for (size_t i = 0; i < application->setpoint_count; i++) {
         epg_setpoint_state_t *state = &application->setpoint_states[i];
-        /* Enabling must not revive a command whose sender has gone. */
+        /* Enabling must not bring back an old value whose sender is gone. */
         if (state->timed_out && application->setpoints[i].action == EPG_TIMEOUT_DISABLE) {
             state->target = application->setpoints[i].initial;
         }
@@ -53,14 +53,14 @@ void epg_setpoints_enable(const epg_application_t *application, uint64_t now_ns)
     }
 }
 
-/** False before the first sample: `initial` has no age. */
+/** Returns true if the newest sample is older than its timeout.  `initial`, before the first sample, has no age. */
 static bool too_old(const epg_setpoint_t *setpoint, const epg_setpoint_state_t *state, uint64_t now_ns)
 {
-    /* A sample received while this cycle was starting is younger than the cycle. */
+    /* `fresh_ns` can be after `now_ns`: the sample was then received after the begin of this cycle. */
     return state->count > 0 && now_ns > state->fresh_ns && now_ns - state->fresh_ns > setpoint->timeout_ns;
 }
 
-/** `target`, or as near to it as one period allows. */
+/** Returns `target`, or the nearest value to it that the rate limit allows in one control period. */
 static double limited(const epg_application_t *application, const epg_setpoint_t *setpoint, double value, double target)
 {
     const double largest = setpoint->rate_limit * ((double)application->period_ns * 1e-9);
@@ -112,9 +112,9 @@ bool epg_control_receive(epg_control_t *control, size_t index, double value, uin
         epg_setpoint_sample_t *sample = &application->received[index];
         sample->value = value;
         sample->received_ns = received_ns;
-        sample->count = sample->count == UINT32_MAX ? 1U : sample->count + 1U; /* 0 means none yet */
+        sample->count = sample->count == UINT32_MAX ? 1U : sample->count + 1U; /* 0 means that there is none yet */
     } else {
-        /* Not a read-modify-write, which the Cortex-M0+ lacks: only the communication side writes this word. */
+        /* The Cortex-M0+ has no atomic read-modify-write.  None is needed: only this side writes the word. */
         atomic_store(&control->dropped, atomic_load(&control->dropped) + 1U);
     }
     if (publish) {

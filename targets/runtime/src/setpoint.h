@@ -8,19 +8,23 @@
 
 #include "epg/control.h"
 
-/** All setpoints to their initial values, all samples forgotten.  True if one has a timeout or a rate limit. */
+/**
+ * Sets all setpoints to their initial values and drops all samples.  Returns true if a setpoint has a timeout or a rate
+ * limit.
+ */
 bool epg_setpoints_start(const epg_application_t *application);
 
-/** Takes over samples that have been read from the exchange; false when none of them is new. */
+/** Takes the samples that were read from the exchange.  Returns false if none of them is new. */
 bool epg_setpoints_take(const epg_application_t *application);
 
-/** Their ages count from `now_ns` on: the target is being enabled. */
+/** Restarts the ages of all setpoints at `now_ns`.  Must be called when the target is enabled. */
 void epg_setpoints_enable(const epg_application_t *application, uint64_t now_ns);
 
 /**
- * Applies timeouts and rate limits: one control period's worth, however late the cycle is.  Returns the first
- * setpoint that is too old and whose action is to disable, NULL if there is none.  Changes nothing when no sample is
- * new and none has either of them.
+ * Applies timeouts and rate limits.  A value changes by at most one control period's rate limit, however late the cycle
+ * is.  Returns the first setpoint that is too old and whose action is to disable; NULL if there is none.
+ *
+ * The call has no effect, and can be omitted, if no sample is new and no setpoint has a timeout or a rate limit.
  */
 const epg_setpoint_t *epg_setpoints_update(const epg_application_t *application, uint64_t now_ns,
                                            epg_statistics_t *statistics);

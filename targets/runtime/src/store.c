@@ -1,21 +1,22 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Names and parameters that outlive a restart.
+ * The store: names and parameters that are kept over a restart.  Its layout:
  *
- * | bytes | what                                                                         |
+ * | bytes | meaning                                                                      |
  * |-------|------------------------------------------------------------------------------|
  * | 4     | "EPGP"                                                                       |
  * | 4     | version of this layout, 2                                                    |
- * | 64    | name of the node, zero-padded; empty: as generated                           |
- * | 64    | its namespace, the same                                                      |
- * | 4     | CRC-32 of everything before it (IEEE 802.3, reflected): names stand alone    |
- * | 8     | the model                                                                    |
+ * | 64    | name of the node, zero-padded; empty: the generated one                      |
+ * | 64    | its namespace, in the same way                                               |
+ * | 4     | CRC-32 of everything before it (IEEE 802.3, reflected), so that the names    |
+ * |       | are valid even if the parameters are not                                     |
+ * | 8     | identification of the model                                                  |
  * | 4     | number of values                                                             |
  * | 12    | for each: index (4), value (8, IEEE 754 binary64)                            |
  * | 4     | CRC-32 of everything before it                                               |
  *
- * Numbers are little-endian, so that a store reads the same wherever it was written.
+ * Numbers are little-endian on every processor.
  */
 #include "epg/store.h"
 
@@ -72,7 +73,7 @@ static uint64_t bits_of(double value)
     return bits;
 }
 
-/** Without a table: a store is some hundred bytes, and written by hand. */
+/** Computes a CRC-32 without a table.  A store has a few hundred bytes and is written only at a user's command. */
 static uint32_t crc32(const unsigned char *bytes, size_t size)
 {
     uint32_t crc = 0xFFFFFFFFU;
@@ -85,7 +86,7 @@ static uint32_t crc32(const unsigned char *bytes, size_t size)
     return ~crc;
 }
 
-/** Writes the CRC of everything before `place` there. */
+/** Writes the CRC of all bytes before `place` to `place`. */
 static void seal(unsigned char *bytes, size_t place)
 {
     put(bytes + place, crc32(bytes, place), CHECK);
@@ -96,7 +97,7 @@ static bool is_sealed(const unsigned char *bytes, size_t place)
     return get(bytes + place, CHECK) == crc32(bytes, place);
 }
 
-/** Number of values in a store of `size` bytes that is whole, of whatever model; SIZE_MAX for any other. */
+/** Returns the number of values in a complete store of `size` bytes, of any model; SIZE_MAX if it is damaged. */
 static size_t whole(const unsigned char *bytes, size_t size)
 {
     if (size < HEADER + CHECK) {
@@ -109,7 +110,7 @@ static size_t whole(const unsigned char *bytes, size_t size)
     return is_sealed(bytes, HEADER + count * ENTRY) ? count : SIZE_MAX;
 }
 
-/** True when every entry names a parameter and has a finite value. */
+/** Returns true if every entry has the index of a parameter and a finite value. */
 static bool sound(const epg_store_t *store, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
@@ -121,7 +122,7 @@ static bool sound(const epg_store_t *store, size_t count)
     return true;
 }
 
-/** What became of parameters in a store of `size` bytes; `*count` of them are right if they belong to this model. */
+/** Checks the parameters in a store of `size` bytes.  If the result is EPG_STORED_LOADED, `*count` is their number. */
 static epg_parameters_stored_t judge(const epg_store_t *store, size_t size, size_t *count)
 {
     if (size < HEADER || get(store->bytes, 4) != MAGIC || get(store->bytes + 4, 4) != VERSION) {
@@ -165,7 +166,7 @@ static void load_names(epg_store_t *store, size_t size)
     memcpy(store->name_space, bytes + NAME_SPACE, sizeof store->name_space - 1);
     store->node[sizeof store->node - 1] = '\0';
     store->name_space[sizeof store->name_space - 1] = '\0';
-    /* What another firmware took for names need be none for this one. */
+    /* Another firmware may have stored names that are not valid for this one. */
     if (!epg_names_is_node(store->node)) {
         store->node[0] = '\0';
     }
@@ -184,7 +185,7 @@ void epg_store_load(epg_store_t *store)
     }
 }
 
-/** Copies a name, whose rest is zeros: what was in it before tells nobody anything. */
+/** Copies a name and fills the rest of its field with zeros, so that no part of an older name stays there. */
 static void put_name(unsigned char *bytes, const char *name)
 {
     const size_t length = strlen(name);

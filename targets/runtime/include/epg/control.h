@@ -108,7 +108,7 @@ typedef struct epg_application {
     bool (*model_finite)(void);  /**< true if all states and outputs of the model are finite */
     bool (*model_stopped)(void); /**< true if the model has asked to stop; NULL: it never does */
     void (*prepare)(void);       /**< the part of writing that is not time-critical (arithmetic, resets); may be NULL */
-    void (*write)(void); /**< writes the model's outputs to the actuators, after each step, at the output delay */
+    void (*write)(void); /**< writes the model's outputs to the actuators: after each step, at the output delay */
     void (*safe)(void);  /**< sets every actuator to its safe value; runs in every cycle while disabled */
     void (*monitor)(double *values); /**< fills `monitor_count` values, after the actuators are written; may be NULL */
     bool (*fail_safe)(void);         /**< true: the target may be enabled; runs before read(); NULL: no such input */

@@ -18,9 +18,8 @@
 
 /** An actuator that can be moved.  The function runs on the control side. */
 typedef struct epg_jog_actuator {
-    const char *name; /**< name of the component */
-    void (*drive)(
-        double duty); /**< drives with `duty`, -1 ... 1, as the model would; runs in every cycle of a movement */
+    const char *name;           /**< name of the component */
+    void (*drive)(double duty); /**< drives with `duty`, -1 ... 1; runs in every cycle of a movement */
 } epg_jog_actuator_t;
 
 /** An encoder whose movement is reported.  The functions run on the control side. */

@@ -52,7 +52,7 @@ typedef struct epg_message_layout {
 extern const epg_message_t epg_message_float64; /**< std_msgs/msg/Float64 */
 extern const epg_message_t epg_message_float32; /**< std_msgs/msg/Float32; a value beyond its range becomes infinite */
 extern const epg_message_t epg_message_int32;   /**< std_msgs/msg/Int32; values are rounded and limited to its range */
-extern const epg_message_t epg_message_bool; /**< std_msgs/msg/Bool; a value above 0.5 is true, and true is read as 1 */
+extern const epg_message_t epg_message_bool;    /**< std_msgs/msg/Bool; a value above 0.5 is true; true is read as 1 */
 
 /**
  * std_msgs/msg/Float64MultiArray.  A field is the index of an element.  Elements without a value are written as 0.  An

@@ -23,8 +23,7 @@ typedef struct epg_stream {
     /** Returns the number of bytes that write() would accept now. */
     size_t (*writable)(void *context);
     void *context;
-    bool
-        datagrams; /**< UDP: one write() sends one packet; one read() gives one packet, cut to `size` if it is longer */
+    bool datagrams; /**< UDP: one write() sends one packet; one read() gives one packet, cut to `size` if longer */
 } epg_stream_t;
 
 #endif

@@ -71,9 +71,9 @@ typedef struct epg_signal {
 typedef struct epg_target {
     epg_control_t *control;
     const epg_application_t *application;
-    const char *node;       /**< name of the node; can contain "$serial", the board's serial number: epg/names.h */
-    const char *name_space; /**< "" or "/robot1"; can contain "$serial", too */
-    uint8_t domain;         /**< ROS_DOMAIN_ID; EPG_DOMAIN_DEFAULT: that of the agent or the environment */
+    const char *node;                 /**< name of the node; can contain "$serial", the serial number (epg/names.h) */
+    const char *name_space;           /**< "" or "/robot1"; can contain "$serial", too */
+    uint8_t domain;                   /**< ROS_DOMAIN_ID; EPG_DOMAIN_DEFAULT: that of the agent or the environment */
     uint64_t communication_period_ns; /**< time between two publications */
     size_t component_count;
     const char *const *components; /**< names of all components; the component of a fault is an index into them */
