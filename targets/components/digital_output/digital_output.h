@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * A digital output driven by a number: on above 0.5.
+ * A digital output that follows a number: on above 0.5, otherwise off.
  *
  * Needs only the port layer.
  */
@@ -15,21 +15,23 @@
 
 typedef struct epg_digital_output_config {
     uint8_t pin;
-    bool invert; /**< on is a low level */
-    bool safe;   /**< on (true) or off from the start and while disabled */
+    bool invert; /**< true: a low level is on */
+    bool safe;   /**< state before the first cycle and while disabled; true: on */
 } epg_digital_output_config_t;
 
+/** Configures the pin with its safe level. */
 static inline void epg_digital_output_start(const epg_digital_output_config_t *config)
 {
     epg_port_output_start(config->pin, config->safe != config->invert);
 }
 
-/** On if `value` > 0.5; NaN is off. */
+/** Switches the output on if `value` > 0.5, otherwise off.  NaN switches it off. */
 static inline void epg_digital_output_write(const epg_digital_output_config_t *config, double value)
 {
     epg_port_output_write(config->pin, (value > 0.5) != config->invert);
 }
 
+/** Sets the safe level. */
 static inline void epg_digital_output_safe(const epg_digital_output_config_t *config)
 {
     epg_port_output_write(config->pin, config->safe != config->invert);

@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * An H-bridge with two PWM inputs, one for each direction: signed duty.
+ * An H-bridge with two PWM inputs, one for each direction, as an actuator with a signed duty.
+ *
+ * An H-bridge connects each terminal of a DC motor to the supply or to ground, so it can drive the motor in both
+ * directions (epg/bridge.h).  Its two inputs select the state of the motor:
  *
  * | forwards input | backwards input | motor    |
  * |----------------|-----------------|----------|
@@ -10,11 +13,16 @@
  * | 0              | 0               | coasts   |
  * | 1              | 1               | brakes   |
  *
- * No level of one input alone is safe: the other one decides.  So both are in each of the safe_states in component.yaml.
+ * This is the table of DRV8833, DRV8871, DRV8212, L9110 and similar bridges.
  *
- * This is the table of DRV8833, DRV8871, DRV8212 and L9110 and their relatives.  `slow_decay` says what the motor does
- * in the rest of each PWM period: coast (the current decays fast) or brake (it decays slowly, which makes speed more
- * nearly proportional to duty).  Needs only the port layer.  Not thread-safe: all calls from one context.
+ * A PWM drives the motor for the share `duty` of each period.  `slow_decay` selects its state in the rest of the
+ * period: coast, in which the current decays fast, or brake, in which it decays slowly.  Slow decay makes the speed
+ * more nearly proportional to the duty.
+ *
+ * The level of one input alone is never safe, because the other input decides.  Each of the safe_states in
+ * component.yaml therefore lists both inputs.
+ *
+ * Needs only the port layer.  Not thread-safe: all calls must come from one context.
  */
 #ifndef EPG_DUAL_PWM_H_BRIDGE_H
 #define EPG_DUAL_PWM_H_BRIDGE_H
@@ -27,20 +35,22 @@
 
 typedef struct epg_dual_pwm_h_bridge_config {
     epg_port_pwm_t forwards;
-    epg_port_pwm_t backwards; /**< with the same period */
-    bool slow_decay;          /**< brakes (true) or coasts between the pulses */
+    epg_port_pwm_t backwards; /**< must have the same period */
+    bool slow_decay;          /**< state between the pulses; true: brake, false: coast */
     epg_bridge_config_t bridge;
 } epg_dual_pwm_h_bridge_config_t;
 
-/** State of one bridge; set by epg_dual_pwm_h_bridge_start(). */
+/** The state of one bridge; epg_dual_pwm_h_bridge_start() sets it. */
 typedef struct epg_dual_pwm_h_bridge {
     epg_bridge_t bridge;
 } epg_dual_pwm_h_bridge_t;
 
 /**
- * Both levels as the bridge's state says.  When a PWM period ends between the two writes, or the second one fails, the
- * motor is not driven against the direction of its last drive and of the next one: an input that ends a drive, or holds
- * with slow decay, comes first.
+ * Writes the levels of both inputs for the state of the bridge.
+ *
+ * A PWM period can end between the two writes, and the second write can fail.  Even then the motor must not be driven
+ * in a direction that is neither that of its last drive nor that of the next one.  The input that ends a drive, or that
+ * is held high with slow decay, is therefore written first.
  */
 static inline void epg_dual_pwm_h_bridge_set(const epg_dual_pwm_h_bridge_t *bridge,
                                              const epg_dual_pwm_h_bridge_config_t *config)
@@ -67,7 +77,7 @@ static inline void epg_dual_pwm_h_bridge_set(const epg_dual_pwm_h_bridge_t *brid
     }
 }
 
-/** Lets the motor coast, or brakes it. */
+/** Makes the bridge safe: the motor coasts or brakes, as configured. */
 static inline void epg_dual_pwm_h_bridge_safe(epg_dual_pwm_h_bridge_t *bridge,
                                               const epg_dual_pwm_h_bridge_config_t *config)
 {
@@ -75,7 +85,7 @@ static inline void epg_dual_pwm_h_bridge_safe(epg_dual_pwm_h_bridge_t *bridge,
     epg_dual_pwm_h_bridge_set(bridge, config);
 }
 
-/** Configures both PWMs; the motor coasts until this ends, and is safe then. */
+/** Configures both PWMs.  The motor coasts meanwhile; afterwards it is in its safe state. */
 static inline void epg_dual_pwm_h_bridge_start(epg_dual_pwm_h_bridge_t *bridge,
                                                const epg_dual_pwm_h_bridge_config_t *config)
 {
@@ -86,9 +96,9 @@ static inline void epg_dual_pwm_h_bridge_start(epg_dual_pwm_h_bridge_t *bridge,
 }
 
 /**
- * What the bridge is to do for `duty` (-1 ... 1), rounded to a whole number of timer clocks: epg_dual_pwm_h_bridge_set()
- * does it.  Returns true if it had to be limited to +-max_duty.  A duty that is not finite makes the bridge safe, and
- * counts as limited.
+ * Computes the state of the bridge for `duty` (-1 ... 1), rounded to a whole number of timer clocks.  No pin changes
+ * before epg_dual_pwm_h_bridge_set() is called.  Returns true if the duty was limited to +-max_duty.  A duty that is
+ * not finite gives the safe state, and counts as limited.
  */
 static inline bool epg_dual_pwm_h_bridge_command(epg_dual_pwm_h_bridge_t *bridge,
                                                  const epg_dual_pwm_h_bridge_config_t *config, double duty)

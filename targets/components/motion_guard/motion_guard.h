@@ -1,23 +1,23 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Watches a motor and the encoder of what it moves.
+ * A guard that compares the duty of a motor with the encoder on its axis, and finds broken wires and blocked motors.
  *
- * | found                  | fault           | what it is                                                           |
- * |------------------------|-----------------|----------------------------------------------------------------------|
- * | no counts while driving| STALL           | encoder dead or unplugged, motor blocked, unplugged or without power |
- * | counts against the     | RUNAWAY         | wires of encoder or motor swapped: feedback that should brake drives |
- * | drive                  |                 |                                                                      |
- * | homing too far         | HOMING_TRAVEL   | the end stop is not where it should be, or nothing sees it           |
- * | homing too long        | HOMING_TIME     | the same; or encoder dead, motor too weak                            |
+ * | found                  | fault           | possible cause                                                        |
+ * |------------------------|-----------------|-----------------------------------------------------------------------|
+ * | no counts while driving| STALL           | encoder dead or unplugged; motor blocked, unplugged or without power  |
+ * | counts against the     | RUNAWAY         | wires of encoder or motor swapped: the feedback then drives, though   |
+ * | drive                  |                 | it should brake                                                       |
+ * | homing too far         | HOMING_TRAVEL   | the end stop is at the wrong place, or its switch does not work       |
+ * | homing too long        | HOMING_TIME     | the same; or the encoder is dead, or the motor too weak               |
  *
- * Armed while the target is enabled: an axis that is moved by hand while disabled is no fault.  *Homing* lasts from
- * enabling to the encoder's first reset; an axis that stands at its end stop then is no stall.
+ * The guard is armed while the target is enabled, so an axis that is moved by hand while disabled is not a fault.
+ * *Homing* lasts from enabling to the encoder's first reset.  An axis that is at its end stop meanwhile is not a stall.
  *
- * The guard sees the duty that is applied, and not what a model asked for; a positive one must make the angle grow
- * (what `invert` of encoder and bridge is for).  Times are counted in control cycles.
+ * The guard uses the applied duty, which can differ from the duty that the model has computed.  A positive duty must
+ * make the angle grow; the parameter `invert` of encoder and bridge serves this.  Times are counted in control cycles.
  *
- * Needs nothing but its arguments.  Not thread-safe: all calls from one context.
+ * Needs only its arguments.  Not thread-safe: all calls must come from one context.
  */
 #ifndef EPG_MOTION_GUARD_H
 #define EPG_MOTION_GUARD_H
@@ -29,45 +29,46 @@
 
 typedef struct epg_motion_guard_config {
     struct {
-        double duty;    /**< > 0: from this duty on the axis has to move */
-        double angle;   /**< rad: less than this is no motion */
-        int32_t cycles; /**< for which it may stand still; 0: no such check */
+        double duty;    /**< at this duty or more (> 0) the axis must move */
+        double angle;   /**< rad; a smaller movement counts as standing still */
+        int32_t cycles; /**< how long the axis may stand still; 0: no such check */
     } stall;
     struct {
-        double duty;  /**< > 0: from this duty on the axis must not move the other way */
-        double angle; /**< rad: by so much; 0: no such check */
+        double duty;  /**< at this duty or more (> 0) the axis must not move the other way */
+        double angle; /**< rad; movement the other way that is a runaway; 0: no such check */
     } runaway;
     struct {
-        double travel;   /**< rad, either way from where it stood when the target was enabled */
-        uint32_t cycles; /**< for which the motor may be driven; 0: no such check */
+        double travel;   /**< rad; largest distance, in both directions, from the angle at enabling */
+        uint32_t cycles; /**< how long the motor may be driven; 0: no such check */
     } homing;
 } epg_motion_guard_config_t;
 
-/** State of one guard; set by epg_motion_guard_start(). */
+/** The state of one guard; epg_motion_guard_start() sets it. */
 typedef struct epg_motion_guard {
     bool armed;
-    uint32_t resets; /**< of the encoder, as seen last */
+    uint32_t resets; /**< number of resets of the encoder at the last check */
 
-    double stall_origin; /**< where motion is measured from */
+    double stall_origin; /**< angle from which the stall check measures motion */
     int32_t stalled;     /**< cycles driven without motion: forwards positive, backwards negative */
 
-    int8_t direction;      /**< of the drive that the runaway check looks at; 0: none */
-    double best;           /**< farthest in that direction */
-    uint32_t cycles;       /**< since then */
-    uint32_t half_cycles;  /**< after how many of them half the angle was reached; 0: not yet */
-    double half_travelled; /**< and how far it was then */
+    int8_t direction;      /**< direction of the drive in the runaway check; 0: none */
+    double best;           /**< the angle farthest in that direction */
+    uint32_t cycles;       /**< cycles since that angle */
+    uint32_t half_cycles;  /**< cycles from that angle until half of `runaway.angle` was reached; 0: not yet */
+    double half_travelled; /**< distance from that angle at that moment */
 
     bool homing;
     double homing_origin;
     uint32_t driven; /**< cycles of homing in which the motor was driven */
 } epg_motion_guard_t;
 
+/** Starts with a guard that is not armed. */
 static inline void epg_motion_guard_start(epg_motion_guard_t *guard)
 {
     *guard = (epg_motion_guard_t){0};
 }
 
-/** Motion is measured from `angle` on: the guard is armed, or the angle has jumped. */
+/** Makes `angle` the origin of all measurements.  Called when the guard is armed, and when a reset moved the angle. */
 static inline void epg_motion_guard_begin(epg_motion_guard_t *guard, double angle)
 {
     guard->stall_origin = angle;
@@ -75,15 +76,17 @@ static inline void epg_motion_guard_begin(epg_motion_guard_t *guard, double angl
     guard->direction = 0;
 }
 
-/** 1, -1, or 0 while the duty is too small to tell. */
+/** Returns the direction of the drive: 1, -1, or 0 if the duty is smaller than `least`. */
 static inline int8_t epg_motion_guard_direction(double duty, double least)
 {
     return (int8_t)(duty >= least ? 1 : duty <= -least ? -1 : 0);
 }
 
 /**
- * True when the axis has not moved though it was driven one way for long enough.  Cycles in which it is driven less,
- * or the other way, take back as many: a duty that dithers or shakes is no drive, one with short gaps is.
+ * Returns true if the axis was driven in one direction for long enough without motion.
+ *
+ * Each cycle in which it is driven less, or in the other direction, cancels one cycle of the count.  A duty that
+ * dithers around zero therefore never counts as a stall, but a drive with short gaps does.
  */
 static inline bool epg_motion_guard_stalls(epg_motion_guard_t *guard, const epg_motion_guard_config_t *config,
                                            double angle, double duty)
@@ -104,8 +107,9 @@ static inline bool epg_motion_guard_stalls(epg_motion_guard_t *guard, const epg_
 }
 
 /**
- * True when the axis has moved against the drive by `angle`, the second half of it not slower than the first.  An axis
- * that brakes moves against the drive too, but slower and slower; one that runs away does not.
+ * Returns true if the axis has moved against the drive by `runaway.angle`, and was not slower in the second half of
+ * this distance than in the first.  An axis that brakes moves against the drive, too, but it becomes slower.  An axis
+ * that runs away does not.
  */
 static inline bool epg_motion_guard_runs_away(epg_motion_guard_t *guard, const epg_motion_guard_config_t *config,
                                               double angle, double duty)
@@ -129,10 +133,11 @@ static inline bool epg_motion_guard_runs_away(epg_motion_guard_t *guard, const e
     }
     const double first = guard->half_travelled * (double)(guard->cycles - guard->half_cycles);
     const double second = (against - guard->half_travelled) * (double)guard->half_cycles;
-    guard->direction = 0; /* if it is slower: from here on again */
+    guard->direction = 0; /* if it is slower, the check begins again from here */
     return second >= first;
 }
 
+/** Checks distance and time of homing. */
 static inline epg_fault_t epg_motion_guard_homes(epg_motion_guard_t *guard, const epg_motion_guard_config_t *config,
                                                  double angle, double duty)
 {
@@ -147,8 +152,11 @@ static inline epg_fault_t epg_motion_guard_homes(epg_motion_guard_t *guard, cons
 }
 
 /**
- * What is wrong, if anything is.  Once per control cycle, after sampling: `angle` in rad as sampled, `resets` how often
- * it has jumped by a reset so far, `duty` as applied since the last cycle (-1 ... 1), `enabled` in this cycle.
+ * Makes all checks.  Must be called once per control cycle, after the sensors were sampled.  Returns EPG_FAULT_NONE or
+ * the fault.
+ *
+ * `enabled`: the target is enabled in this cycle.  `angle`: the sampled angle in rad.  `resets`: how often a reset has
+ * moved this angle so far.  `duty`: the duty applied since the last cycle, -1 ... 1.
  */
 static inline epg_fault_t epg_motion_guard_check(epg_motion_guard_t *guard, const epg_motion_guard_config_t *config,
                                                  bool enabled, double angle, uint32_t resets, double duty)

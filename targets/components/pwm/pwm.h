@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * A PWM output: the share of the time that a pin is active.
+ * A PWM output as an actuator: a pin that is active for the share `duty` of each PWM period.
  *
- * Needs only the port layer.  Not thread-safe: all calls from one context.
+ * The duty is rounded to a whole number of timer clocks, so a period of `top + 1` clocks has `top + 2` different
+ * levels.
+ *
+ * Needs only the port layer.  Not thread-safe: all calls must come from one context.
  */
 #ifndef EPG_PWM_H
 #define EPG_PWM_H
@@ -16,12 +19,12 @@
 
 typedef struct epg_pwm_config {
     epg_port_pwm_t pwm;
-    bool invert;      /**< active low: duty 0 is a pin that is always high */
-    double max_duty;  /**< 0 ... 1 */
-    double safe_duty; /**< 0 ... 1; `max_duty` does not limit it */
+    bool invert;      /**< true: a low level is active, so the pin is always high at duty 0 */
+    double max_duty;  /**< largest duty, 0 ... 1 */
+    double safe_duty; /**< duty while disabled, 0 ... 1; `max_duty` does not limit it */
 } epg_pwm_config_t;
 
-/** `duty` 0 ... 1 as the level of the pin, rounded to a whole number of timer clocks. */
+/** Returns the level (high time in timer clocks) for `duty`, 0 ... 1, rounded to a whole number of clocks. */
 static inline uint32_t epg_pwm_level(const epg_pwm_config_t *config, double duty)
 {
     const uint32_t clocks = config->pwm.top + 1U;
@@ -29,20 +32,21 @@ static inline uint32_t epg_pwm_level(const epg_pwm_config_t *config, double duty
     return config->invert ? clocks - level : level;
 }
 
-/** Sets a level as epg_pwm_level() and epg_pwm_command() give it. */
+/** Writes a level from epg_pwm_level() or epg_pwm_command(). */
 static inline void epg_pwm_apply(const epg_pwm_config_t *config, uint32_t level)
 {
     epg_port_pwm_write(&config->pwm, level);
 }
 
+/** Writes the level of the safe duty. */
 static inline void epg_pwm_safe(const epg_pwm_config_t *config)
 {
     epg_pwm_apply(config, epg_pwm_level(config, config->safe_duty));
 }
 
 /**
- * Starts with the safe duty, and returns its level; an inverted output is low until the port takes the level over, at
- * the next period.
+ * Starts the PWM with the safe duty and returns its level.  An inverted output is low until this level takes effect at
+ * the next PWM period.
  */
 static inline uint32_t epg_pwm_start(const epg_pwm_config_t *config)
 {
@@ -52,8 +56,8 @@ static inline uint32_t epg_pwm_start(const epg_pwm_config_t *config)
 }
 
 /**
- * `level` for `duty`.  Returns true if that had to be limited to 0 ... max_duty.  A duty that is not finite gives the
- * safe duty, and counts as limited.
+ * Computes `*level` for `duty`.  Returns true if the duty was limited to 0 ... max_duty.  A duty that is not finite
+ * gives the safe duty, and counts as limited.
  */
 static inline bool epg_pwm_command(const epg_pwm_config_t *config, double duty, uint32_t *level)
 {

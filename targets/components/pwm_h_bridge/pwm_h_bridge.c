@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * What an H-bridge with two direction pins does less often than every cycle.
+ * An H-bridge with two direction pins: the functions that not every control cycle calls.
  */
 #include "pwm_h_bridge.h"
 
-/** From a bridge that is off. */
+/** Sets the direction pins for the state of the bridge.  The bridge must be off. */
 static void set_pins(epg_pwm_h_bridge_t *bridge, const epg_pwm_h_bridge_config_t *config)
 {
     const epg_bridge_state_t state = bridge->bridge.state;

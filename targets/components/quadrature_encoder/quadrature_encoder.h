@@ -1,9 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * A quadrature encoder as an angle: counts accumulated into 64 bits, scaled, with a reset that loses no counts.
+ * An incremental (quadrature) encoder as an angle in rad at the load.
  *
- * Needs only the port layer.  Not thread-safe: all calls from one context.
+ * The encoder has two outputs, A and B, that are square waves a quarter of a period apart.  A decoder counts every edge
+ * of both (x4), upwards in one direction and downwards in the other.  Its count has 32 bits and wraps; this driver
+ * accumulates the differences into 64 bits and scales them.
+ *
+ * An incremental encoder does not know its absolute angle.  The angle is 0 at the start.  A reset signal, for example
+ * from an end switch during homing, sets it to a known value; the counts during the reset are not lost.
+ *
+ * Needs only the port layer.  Not thread-safe: all calls must come from one context.
  */
 #ifndef EPG_QUADRATURE_ENCODER_H
 #define EPG_QUADRATURE_ENCODER_H
@@ -17,21 +24,21 @@
 
 typedef struct epg_quadrature_encoder_config {
     epg_port_quadrature_t decoder;
-    double rad_per_count; /**< at the load, after x4; negative: counts fall as the angle rises */
-    double preset;        /**< rad; the position that a reset loads */
+    double rad_per_count; /**< at the load, for one count (x4); negative: counts fall as the angle rises */
+    double preset;        /**< rad; the position after a reset */
 } epg_quadrature_encoder_config_t;
 
-/** State of one encoder; set by epg_quadrature_encoder_start(). */
+/** The state of one encoder; epg_quadrature_encoder_start() sets it. */
 typedef struct epg_quadrature_encoder {
     double position;     /**< rad at the load, as sampled last */
-    double origin;       /**< rad at `counts` = 0: 0 until the first reset, `preset` after it */
-    int64_t counts;      /**< since the start or the last reset */
-    uint32_t last_count; /**< of the decoder, modulo 2^32 */
-    uint32_t resets;     /**< so far, modulo 2^32: at each of them the position jumped */
-    bool reset_level;    /**< of the reset signal, for its edge */
+    double origin;       /**< rad at `counts` = 0: 0 before the first reset, then `preset` */
+    int64_t counts;      /**< counts since the start or the last reset */
+    uint32_t last_count; /**< count of the decoder at the last sample, modulo 2^32 */
+    uint32_t resets;     /**< number of resets, modulo 2^32; at each of them the position can jump */
+    bool reset_level;    /**< last level of the reset signal, to find its edge */
 } epg_quadrature_encoder_t;
 
-/** Starts the decoder; the position is 0 where the shaft stands, as an incremental encoder does not know better. */
+/** Starts the decoder.  The present position of the shaft becomes 0. */
 static inline void epg_quadrature_encoder_start(epg_quadrature_encoder_t *encoder,
                                                 const epg_quadrature_encoder_config_t *config)
 {
@@ -39,20 +46,22 @@ static inline void epg_quadrature_encoder_start(epg_quadrature_encoder_t *encode
     *encoder = (epg_quadrature_encoder_t){.last_count = epg_port_quadrature_count(&config->decoder)};
 }
 
-/** Updates `position`.  Once per control cycle: between two calls fewer than 2^31 counts may pass. */
+/**
+ * Updates `position`.  Must be called once per control cycle, and before 2^31 counts have passed since the last call.
+ */
 static inline void epg_quadrature_encoder_sample(epg_quadrature_encoder_t *encoder,
                                                  const epg_quadrature_encoder_config_t *config)
 {
     const uint32_t count = epg_port_quadrature_count(&config->decoder);
-    /* The difference modulo 2^32, taken as signed (two's complement, as on every compiler supported). */
+    /* The difference modulo 2^32 as a signed number (two's complement, as with every supported compiler). */
     encoder->counts += (int32_t)(count - encoder->last_count);
     encoder->last_count = count;
     encoder->position = encoder->origin + (double)encoder->counts * config->rad_per_count;
 }
 
 /**
- * The reset signal: its rising edge through 0.5 makes the angle sampled last `preset`.  The decoder counts on, so
- * counts since that sample are kept, and `position` follows with the next sample.
+ * Takes the reset signal.  When it rises above 0.5, the angle that was sampled last becomes `preset`.  The decoder
+ * continues to count, so the counts since that sample are not lost.  `position` changes with the next sample.
  */
 static inline void epg_quadrature_encoder_reset(epg_quadrature_encoder_t *encoder,
                                                 const epg_quadrature_encoder_config_t *config, double signal)
@@ -66,21 +75,23 @@ static inline void epg_quadrature_encoder_reset(epg_quadrature_encoder_t *encode
     encoder->reset_level = level;
 }
 
-/** EPG_FAULT_SENSOR when the decoder has stopped: then the position stands still, and is wrong. */
+/**
+ * Returns EPG_FAULT_SENSOR if the decoder has stopped, because the position is wrong then; otherwise EPG_FAULT_NONE.
+ */
 static inline epg_fault_t epg_quadrature_encoder_check(const epg_quadrature_encoder_config_t *config)
 {
     return epg_port_quadrature_healthy(&config->decoder) ? EPG_FAULT_NONE : EPG_FAULT_SENSOR;
 }
 
-/** While disabled: resets are withheld, and the first high signal afterwards is an edge. */
+/** Ignores the reset signal while the target is disabled.  A signal that is high afterwards counts as an edge. */
 static inline void epg_quadrature_encoder_withhold_reset(epg_quadrature_encoder_t *encoder)
 {
     encoder->reset_level = false;
 }
 
 /**
- * The inverse, for simulation: count of the edges passed at `angle` (rad at the load), rounded down.  An angle that
- * is not finite gives 0, one beyond +-2^62 counts the nearest of these.
+ * Returns the count at `angle` (rad at the load), rounded down.  This inverse is for simulation.  An angle that is not
+ * finite gives 0; the result is limited to +-2^62 counts.
  */
 static inline int64_t epg_quadrature_encoder_count_at(double angle, double rad_per_count)
 {
@@ -91,7 +102,7 @@ static inline int64_t epg_quadrature_encoder_count_at(double angle, double rad_p
         return 0;
     }
     edges = edges > limit ? limit : edges < -limit ? -limit : edges;
-    int64_t count = (int64_t)edges; /* towards zero */
+    int64_t count = (int64_t)edges; /* rounds towards zero */
     if ((double)count > edges) {
         count--;
     }

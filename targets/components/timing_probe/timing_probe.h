@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * A pin that is toggled at a point of the program, for a logic analyser.
+ * A timing probe: a pin that is toggled at one point of the program.
  *
- * Needs only the port layer.  Not thread-safe: all calls from one context.
+ * A logic analyser or an oscilloscope on the pin shows when the program reaches this point.
+ *
+ * Needs only the port layer.  Not thread-safe: all calls must come from one context.
  */
 #ifndef EPG_TIMING_PROBE_H
 #define EPG_TIMING_PROBE_H
@@ -13,19 +15,20 @@
 
 #include "epg/port.h"
 
-/** State of one probe; set by epg_timing_probe_start(). */
+/** The state of one probe; epg_timing_probe_start() sets it. */
 typedef struct epg_timing_probe {
     uint8_t pin;
     bool level;
 } epg_timing_probe_t;
 
-/** The pin is low until it is toggled first. */
+/** Configures the pin.  It is low until it is toggled for the first time. */
 static inline void epg_timing_probe_start(epg_timing_probe_t *probe, uint8_t pin)
 {
     *probe = (epg_timing_probe_t){.pin = pin};
     epg_port_output_start(pin, false);
 }
 
+/** Changes the level of the pin. */
 static inline void epg_timing_probe_toggle(epg_timing_probe_t *probe)
 {
     probe->level = !probe->level;

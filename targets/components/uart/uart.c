@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * A UART as a transport.
+ * A UART as the transport of a middleware.
  */
 #include "uart.h"
 
 bool epg_uart_start(void *context, const char *title)
 {
-    (void)title; /* a wire has no name */
+    (void)title; /* a UART cannot report a name to the other end */
     epg_uart_t *uart = context;
     return epg_port_uart_start(&uart->port);
 }
@@ -29,7 +29,7 @@ uint32_t epg_uart_lost(const void *context)
 bool epg_uart_connected(void *context)
 {
     (void)context;
-    return true; /* nothing tells */
+    return true; /* a UART cannot detect whether the other end is connected */
 }
 
 size_t epg_uart_read(void *context, void *data, size_t size)

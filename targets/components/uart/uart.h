@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * A UART as a transport: rings between its interrupt and the communication side.
+ * A UART as the transport of a middleware.
+ *
+ * Two rings (epg/ring.h) hold the bytes between the UART's interrupt handler and the communication side, so no function
+ * waits for the wire.
  */
 #ifndef EPG_UART_H
 #define EPG_UART_H
@@ -14,7 +17,7 @@ typedef struct epg_uart {
     epg_port_uart_lines_t lines;
 } epg_uart_t;
 
-/** The transport over `uart`, an epg_uart_t. */
+/** Initialiser of an epg_transport_t over `uart`, a pointer to an epg_uart_t. */
 #define EPG_UART_TRANSPORT(uart)                                                                                       \
     {                                                                                                                  \
         .start = epg_uart_start, .flush = epg_uart_flush, .lost = epg_uart_lost, .stream = {                           \
@@ -26,7 +29,7 @@ typedef struct epg_uart {
         }                                                                                                              \
     }
 
-/* The transport's functions. */
+/* The functions of the transport; epg/transport.h and epg/stream.h describe them. */
 bool epg_uart_start(void *context, const char *title);
 void epg_uart_flush(void *context);
 uint32_t epg_uart_lost(const void *context);
