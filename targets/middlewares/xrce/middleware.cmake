@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-# What the middleware xrce needs besides its own sources: eProsima's Micro-CDR and Micro XRCE-DDS client, of the versions
-# that it was written and tested with, compiled here for whatever this build compiles for.  Their own CMake files would
-# bring transports, options and install rules of theirs, and a compiler check that a cross build does not pass.
+# The libraries of the middleware xrce: eProsima's Micro-CDR and Micro XRCE-DDS client, in the versions with which it
+# was written and tested.  They are compiled here, for the processor of this build.  Their own CMake files are not used,
+# because they add transports, options and install rules, and a compiler check that fails in a cross build.
 
 function(_epg_middleware_xrce library)
   foreach(tool micro_cdr micro_xrce_dds_client)
@@ -44,8 +44,8 @@ function(_epg_middleware_xrce library)
   target_link_libraries(epg_micro_xrce_dds_client PRIVATE ${library}) # its clock is xrce_clock.c
 endfunction()
 
-# The two headers that the libraries' own CMake files would write, with what is used of them: one stream of each kind,
-# no transport (EPG's platforms bring them), no threads.
+# Writes the two configuration headers that the libraries' own CMake files would write.  They select one stream of each
+# kind, no transport (EPG's platforms have their own), and no threads.
 function(_epg_xrce_configure headers cdr cdr_version client client_version)
   set(PROJECT_VERSION "${cdr_version}")
   _epg_xrce_version_parts("${cdr_version}")

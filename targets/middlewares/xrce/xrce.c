@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * ROS 2 through an agent.
+ * The states of the connection to the agent.
  *
- * | state    | what is done                                                     | and then                             |
- * |----------|------------------------------------------------------------------|--------------------------------------|
- * | waiting  | asks for a session, every 0.2 s, later every 0.5 s               | accepted: creating                   |
- * | creating | node, topics, writers and readers, one after another             | all there: running; refused or none  |
- * |          |                                                                  | answered within 2 s: waiting, with   |
- * |          |                                                                  | more patience                        |
- * | running  | topics; a ping every 0.1 s, the time every 10 s                  | the agent does not know us, or is    |
- * |          |                                                                  | silent for 1 s: waiting              |
+ * | state    | action                                                     | next state                                |
+ * |----------|------------------------------------------------------------|-------------------------------------------|
+ * | waiting  | requests a session every 0.2 s, later every 0.5 s          | accepted: creating                        |
+ * | creating | requests node, topics, writers and readers, one by one     | all exist: running; refused, or no answer |
+ * |          |                                                            | within 2 s: waiting, with longer          |
+ * |          |                                                            | intervals                                 |
+ * | running  | exchanges messages; pings every 0.1 s; asks for the time   | the session is unknown to the agent, or   |
+ * |          | every 10 s                                                 | the agent silent for 1 s: waiting         |
  *
- * The client library is used so that none of its functions waits: a timeout of 0 sends what is to be sent and takes
- * one frame if there is one.
+ * The client library is called so that none of its functions waits.  With a timeout of 0, a function sends the frames
+ * that are ready, takes one frame if there is one, and returns.
  */
 #include "xrce.h"
 
@@ -27,28 +27,28 @@
 
 #define MS ((uint64_t)1000000)
 
-static const uint64_t FIRST_ATTEMPT_NS = 200 * MS;  /* from one request for a session to the next */
-static const uint64_t LAST_ATTEMPT_NS = 500 * MS;   /* the same after some of them */
-static const uint64_t MOST_PATIENCE_NS = 2000 * MS; /* the same for an agent that has accepted and then was too slow */
-static const uint64_t REFUSED_NS = 2000 * MS;       /* the same after the agent has refused something */
-static const uint64_t ANSWER_NS = 2000 * MS;        /* that the agent has for one answer while creating */
+static const uint64_t FIRST_ATTEMPT_NS = 200 * MS;  /* interval between two requests for a session */
+static const uint64_t LAST_ATTEMPT_NS = 500 * MS;   /* the same after several requests */
+static const uint64_t MOST_PATIENCE_NS = 2000 * MS; /* the same for an agent that accepted and then was too slow */
+static const uint64_t REFUSED_NS = 2000 * MS;       /* the same after the agent has refused a request */
+static const uint64_t ANSWER_NS = 2000 * MS;        /* longest time for one answer in the state `creating` */
 static const uint64_t PING_NS = 100 * MS;
-static const uint64_t SILENCE_NS = 1000 * MS;   /* of an agent that is lost; ten pings: of ten, noise leaves one */
-static const uint64_t STUCK_NS = 2000 * MS;     /* without progress of a stream, though the agent answers pings */
-static const uint64_t HEARTBEAT_NS = 50 * MS;   /* from a frame that is not acknowledged to the question for it */
-static const uint64_t SYNC_NS = 10000 * MS;     /* from one question for the time to the next */
+static const uint64_t SILENCE_NS = 1000 * MS;   /* silence of a lost agent: even with noise, one of ten pings arrives */
+static const uint64_t STUCK_NS = 2000 * MS;     /* time without progress of a stream, though the agent answers pings */
+static const uint64_t HEARTBEAT_NS = 50 * MS;   /* time from an unacknowledged frame to the request for its ACKNACK */
+static const uint64_t SYNC_NS = 10000 * MS;     /* interval between two requests for the time */
 static const uint64_t SYNC_AGAIN_NS = 500 * MS; /* the same while the clock is not set */
-static const int64_t LONGEST_ROUND_NS = 100 * 1000000; /* of an answer with the time that is good enough */
+static const int64_t LONGEST_ROUND_NS = 100 * 1000000; /* longest round trip of an answer that sets the clock */
 
 enum { FRAMES_PER_POLL = 32, DROPPED_PER_FRAME = 8 };
 
-/** Of a reliable stream: a number that goes up until nothing is outstanding. */
+/** The progress of a reliable stream: a number that grows until all frames are acknowledged or received. */
 typedef struct progress {
     uint16_t number;
-    uint64_t since_ns; /* when it last went up; 0: nothing is outstanding */
+    uint64_t since_ns; /* last instant at which the number grew; 0: no frame is outstanding */
 } progress_t;
 
-/** There is one client. */
+/** The only client of an executable. */
 static struct {
     const epg_target_t *target;
     const epg_stream_t *stream;
@@ -61,21 +61,21 @@ static struct {
     uxrSession session;
     uxrStreamId reliable; /* output streams */
     uxrStreamId best_effort;
-    size_t buffered; /* bytes of frames that wait in the streams, as they will be on the line */
+    size_t buffered; /* bytes that the frames in the streams will take on the line */
     epg_xrce_status_t status;
 
-    uint64_t now_ns;       /* of this poll */
-    uint64_t attempt_ns;   /* when a session is asked for next */
-    uint64_t interval_ns;  /* from that to the one after it */
-    uint64_t patience_ns;  /* the least of those intervals, FIRST_ATTEMPT_NS ... MOST_PATIENCE_NS */
-    uint64_t answer_ns;    /* by when the agent has to answer */
-    uint64_t ping_ns;      /* the next */
-    uint64_t alive_ns;     /* when the agent has last shown life */
-    uint64_t sync_ns;      /* the next */
-    progress_t sent;       /* of our reliable stream: until all of it is acknowledged */
-    progress_t received;   /* of the agent's: until all that it has announced is here */
-    uint16_t asked_for;    /* what was acknowledged when `heartbeat_ns` was set */
-    uint64_t heartbeat_ns; /* the next */
+    uint64_t now_ns;       /* board time of this poll */
+    uint64_t attempt_ns;   /* next request for a session */
+    uint64_t interval_ns;  /* interval from that request to the one after it */
+    uint64_t patience_ns;  /* shortest interval between requests, FIRST_ATTEMPT_NS ... MOST_PATIENCE_NS */
+    uint64_t answer_ns;    /* deadline of the agent's answer */
+    uint64_t ping_ns;      /* next ping */
+    uint64_t alive_ns;     /* last sign of life of the agent */
+    uint64_t sync_ns;      /* next request for the time */
+    progress_t sent;       /* our reliable stream, until the agent has acknowledged all frames */
+    progress_t received;   /* the agent's reliable stream, until all announced frames are here */
+    uint16_t asked_for;    /* last acknowledged number when `heartbeat_ns` was set */
+    uint64_t heartbeat_ns; /* next request for an acknowledgement */
 } client;
 
 /* The library's transport -------------------------------------------------------------------------------------- */
@@ -84,14 +84,14 @@ static bool send_frame(void *instance, const uint8_t *data, size_t size)
 {
     (void)instance;
     const bool sent = epg_xrce_link_send(&client.link, data, size);
-    client.status.unsent += sent ? 0U : 1U; /* what is reliable is sent again when it is missed */
+    client.status.unsent += sent ? 0U : 1U; /* a reliable frame is sent again when the agent asks for it */
     return sent;
 }
 
 static bool receive_frame(void *instance, uint8_t **data, size_t *size, int timeout)
 {
     (void)instance;
-    (void)timeout; /* always 0 */
+    (void)timeout; /* it is always 0 */
     for (int i = 0; i < DROPPED_PER_FRAME; i++) {
         const size_t received = epg_xrce_link_receive(&client.link);
         if (received == 0) {
@@ -112,7 +112,7 @@ static uint8_t transport_error(void)
     return 0;
 }
 
-/* What the library calls --------------------------------------------------------------------------------------- */
+/* Callbacks of the library ------------------------------------------------------------------------------------- */
 
 static void on_status(uxrSession *session, uxrObjectId object, uint16_t request, uint8_t status, void *context)
 {
@@ -136,7 +136,10 @@ static void on_sample(uxrSession *session, uxrObjectId object, uint16_t request,
     }
 }
 
-/** Times in nanoseconds: of this clock when the answer came and when it was asked for, of the agent's in between. */
+/**
+ * Sets the clock from the agent's answer.  All times are in nanoseconds.  `asked` and `came` are in board time, the two
+ * others in the agent's time.  As in NTP, both ways are taken to be equally long.
+ */
 static void on_time(uxrSession *session, int64_t came, int64_t agent_received, int64_t agent_sent, int64_t asked,
                     void *context)
 {
@@ -153,7 +156,7 @@ static void on_time(uxrSession *session, int64_t came, int64_t agent_received, i
 
 /* Reliable streams --------------------------------------------------------------------------------------------- */
 
-/** Whether a stream has been where it is for `longest_ns`, though something is outstanding. */
+/** Returns true if frames of a stream are outstanding and it has made no progress for `longest_ns`. */
 static bool is_stuck(progress_t *progress, uint16_t number, bool outstanding, uint64_t longest_ns)
 {
     if (!outstanding) {
@@ -166,8 +169,8 @@ static bool is_stuck(progress_t *progress, uint16_t number, bool outstanding, ui
 }
 
 /**
- * An agent that answers pings and yet does not go on has lost what this side believes it has: then only a new session
- * helps.
+ * Returns true if a stream makes no progress, though the agent answers pings.  The agent has then lost frames that this
+ * side takes for delivered, and only a new session helps.
  */
 static bool streams_are_stuck(void)
 {
@@ -180,8 +183,8 @@ static bool streams_are_stuck(void)
 }
 
 /**
- * Lets the library ask for an acknowledgement in time: by itself it does so only when it was not called for 100 ms.
- * The agent's answer names what is missing, and the library sends that again.
+ * Makes the library ask for an acknowledgement in time.  On its own it asks only if it was not called for 100 ms.  The
+ * agent's answer names the missing frames, and the library sends them again.
  */
 static void time_heartbeat(void)
 {
@@ -214,8 +217,10 @@ static void lose_agent(uint64_t first_ns)
 }
 
 /**
- * The agent has accepted and not answered since.  One that takes long to make a session is still busy with the requests
- * that followed the first, each of which ends the session before: it gets more time between two of them.
+ * Gives up an agent that accepted the session and then did not answer.
+ *
+ * Each request for a session ends the session before.  A slow agent may still be busy with a queue of such requests, so
+ * the interval between them becomes longer.
  */
 static void lose_slow_agent(void)
 {
@@ -225,8 +230,8 @@ static void lose_slow_agent(void)
 }
 
 /**
- * Takes leave, by the client's key in place of the session, so that an agent finds the client under whatever address
- * it knows it.  An agent that has no such client does nothing.
+ * Ends the session at the agent.  The message contains the client's key instead of the session's id, so the agent finds
+ * the client under any address.  An agent that does not know the client ignores the message.
  */
 static void say_goodbye(void)
 {
@@ -236,8 +241,8 @@ static void say_goodbye(void)
 }
 
 /**
- * Asks for a session.  An agent that still has an older one of this client gives up its entities first: readers that
- * were kept would deliver what has gathered in them.
+ * Requests a session.  Before that, it ends an older session of this client: readers that the agent had kept would
+ * deliver the old samples that they have collected.
  */
 static void ask_for_session(void)
 {
@@ -271,14 +276,14 @@ static void poll_waiting(void)
     }
 }
 
-/** False: the session is gone. */
+/** Pings the agent when that is due.  Returns false if the session is lost. */
 static bool check_agent(void)
 {
     if (client.guard.pong) {
         client.guard.pong = false;
         client.alive_ns = client.now_ns;
     }
-    /* while creating, ANSWER_NS says how long */
+    /* In the state `creating`, ANSWER_NS is the limit instead. */
     const bool lost = client.status.state == EPG_XRCE_RUNNING &&
                       (client.now_ns >= client.alive_ns + SILENCE_NS || streams_are_stuck());
     if (client.guard.unknown || lost) {
@@ -336,7 +341,7 @@ static void poll_running(void)
 
 /* Topics ------------------------------------------------------------------------------------------------------- */
 
-/** The node's: hands a message to the streams, whole or not at all. */
+/** The `send` function of the node: puts a message into a stream, completely or not at all. */
 static bool send_message(size_t publication, const void *message, size_t size)
 {
     const bool reliable = client.target->publications[publication].qos == EPG_QOS_RELIABLE;
@@ -350,7 +355,7 @@ static bool send_message(size_t publication, const void *message, size_t size)
     uint8_t *bytes = (uint8_t *)(uintptr_t)message; /* the library only reads it */
     uint16_t request = uxr_buffer_topic(&client.session, stream, writer, bytes, size);
     if (request == UXR_INVALID_REQUEST_ID && !reliable) {
-        uxr_flash_output_streams(&client.session); /* the frame is full: here begins another */
+        uxr_flash_output_streams(&client.session); /* the frame is full: send it and begin another one */
         client.buffered = 0;
         request = uxr_buffer_topic(&client.session, stream, writer, bytes, size);
     }
@@ -367,7 +372,7 @@ static void start_session(void)
         .send_msg = send_frame,
         .recv_msg = receive_frame,
         .comm_error = transport_error,
-        /* The library tells the agent 4 bytes less. */
+        /* The library reports 4 bytes less than this to the agent. */
         .mtu = (uint16_t)(options->input_frame + 4),
     };
     uxr_init_session(&client.session, &client.communication, epg_node_key(client.node));
@@ -406,7 +411,7 @@ static void start(const epg_target_t *target, const epg_stream_t *stream)
     wait_for_agent(0);
 }
 
-/** Takes what has arrived, sends what waits. */
+/** Handles the frames that have arrived, and sends the frames that are ready. */
 static void exchange_frames(void)
 {
     client.buffered = 0;

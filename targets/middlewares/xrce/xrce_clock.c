@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The clock that the client library asks for, in place of its own, which needs an operating system.
+ * The clock of the client library.  It replaces the library's clock, which needs an operating system.
  */
 #include <uxr/client/util/time.h>
 

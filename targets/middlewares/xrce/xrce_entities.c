@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * What a target asks an agent for.
+ * The entities of a target in DDS, which the agent creates on request.
  */
 #include "xrce_entities.h"
 
 #include <string.h>
 
 enum {
-    ONLY = 1, /* number of what there is one of; topics, writers and readers are numbered from 1 on */
-    /* What an agent has kept of an earlier session under the same number gives way. */
+    ONLY = 1, /* id of the participant, the publisher and the subscriber; topics, writers and readers begin at 1 */
+    /* Entities with the same id that the agent has kept of an earlier session must be replaced. */
     MODE = UXR_REPLACE
 };
 
-/** Before the topics: participant, publisher, subscriber. */
+/** The steps before those of the topics. */
 enum { PARTICIPANT, PUBLISHER, SUBSCRIBER, FIRST_TOPIC };
 
 static size_t topic_count(const epg_node_t *node)
@@ -21,7 +21,7 @@ static size_t topic_count(const epg_node_t *node)
     return node->target->publication_count + node->target->subscription_count;
 }
 
-/** The step at which the first sample is asked for: each topic takes two. */
+/** Returns the step that requests the samples of the first reader.  Before it, each topic has two steps. */
 static size_t first_reading(const epg_node_t *node)
 {
     return FIRST_TOPIC + 2 * topic_count(node);
@@ -64,7 +64,7 @@ static uint16_t create_endpoint(const epg_xrce_entities_t *entities, size_t inde
                                             uxr_object_id(ONLY, UXR_SUBSCRIBER_ID), of, qos, MODE);
 }
 
-/** Samples of subscription `index`, until the session ends. */
+/** Requests the samples of subscription `index`, until the session ends. */
 static uint16_t ask_for_samples(const epg_xrce_entities_t *entities, size_t index)
 {
     const uxrDeliveryControl control = {.max_samples = UXR_MAX_SAMPLES_UNLIMITED};
@@ -114,13 +114,13 @@ bool epg_xrce_entities_exist(const epg_xrce_entities_t *entities)
     return entities->step >= first_reading(entities->node);
 }
 
-/** Asks for samples of all readers that are left; an agent answers with samples only. */
+/** Requests the samples of all remaining readers.  The agent's answer consists of the samples only. */
 static epg_xrce_progress_t ask_for_all_samples(epg_xrce_entities_t *entities)
 {
     const size_t first = first_reading(entities->node);
     while (entities->step - first < entities->node->target->subscription_count) {
         if (ask_for_samples(entities, entities->step - first) == UXR_INVALID_REQUEST_ID) {
-            return EPG_XRCE_UNDERWAY; /* no room in the stream until the agent has acknowledged what is there */
+            return EPG_XRCE_UNDERWAY; /* the stream is full until the agent has acknowledged its frames */
         }
         entities->step++;
     }

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * What a target asks an agent for: a participant, a publisher and a subscriber, and for each topic the topic and its
- * writer or reader; last the samples of the readers.
+ * The entities of a target in DDS, which the agent creates on request.
+ *
+ * They are a participant, a publisher and a subscriber, and for each topic the topic itself and its writer or reader.
+ * At the end, the samples of the readers are requested.
  */
 #ifndef EPG_XRCE_ENTITIES_H
 #define EPG_XRCE_ENTITIES_H
@@ -18,36 +20,40 @@
 typedef struct epg_xrce_entities {
     const epg_node_t *node;
     uxrSession *session;
-    uxrStreamId requests; /**< the output stream on which is asked */
-    uxrStreamId reliable; /**< input streams that samples come on */
-    uxrStreamId best_effort;
-    size_t step;      /**< what is asked for next */
-    uint16_t request; /**< that is not answered yet; UXR_INVALID_REQUEST_ID: none */
-    uint8_t status;   /**< the answer; UXR_STATUS_NONE: there is none yet */
+    uxrStreamId requests;    /**< output stream for the requests */
+    uxrStreamId reliable;    /**< input stream for samples of reliable topics */
+    uxrStreamId best_effort; /**< input stream for samples of the other topics */
+    size_t step;             /**< number of the next request */
+    uint16_t request;        /**< request that is not answered yet; UXR_INVALID_REQUEST_ID: none */
+    uint8_t status;          /**< answer of the agent; UXR_STATUS_NONE: there is none yet */
 } epg_xrce_entities_t;
 
+/** The progress of the creation. */
 typedef enum epg_xrce_progress {
     EPG_XRCE_UNDERWAY,
-    EPG_XRCE_REFUSED, /**< the agent has said no */
-    EPG_XRCE_COMPLETE /**< all has been created, and samples have been asked for */
+    EPG_XRCE_REFUSED, /**< the agent refused a request */
+    EPG_XRCE_COMPLETE /**< all entities exist, and all samples are requested */
 } epg_xrce_progress_t;
 
-/** Number of a writer: that of its publication, from 1 on.  Readers count apart. */
+/** Returns the id of a writer: the index of its publication, plus 1.  Readers are numbered separately. */
 static inline uxrObjectId epg_xrce_writer(size_t publication)
 {
     return uxr_object_id((uint16_t)(publication + 1), UXR_DATAWRITER_ID);
 }
 
-/** From the beginning. */
+/** Restarts the creation with the first entity. */
 void epg_xrce_entities_start(epg_xrce_entities_t *entities);
 
-/** The agent has answered request `request`. */
+/** Must be called when the agent has answered request `request`. */
 void epg_xrce_entities_answer(epg_xrce_entities_t *entities, uint16_t request, uint8_t status);
 
-/** Asks for what comes next when the last request has been granted.  One at a time: what follows refers to it. */
+/**
+ * Sends the next request if the last one was granted.  Only one request is sent at a time, because the next entities
+ * refer to this one.
+ */
 epg_xrce_progress_t epg_xrce_entities_poll(epg_xrce_entities_t *entities);
 
-/** Samples are being asked for, all else is there. */
+/** Returns true if all entities exist; only samples may still have to be requested. */
 bool epg_xrce_entities_exist(const epg_xrce_entities_t *entities);
 
 #endif

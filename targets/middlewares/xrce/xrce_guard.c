@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * What of a received frame the client library gets to see.
+ * The guard: checks each received frame before the client library gets it.
  *
  * Source: OMG, "DDS for Extremely Resource Constrained Environments" 1.0, 8.3 (messages) and annex A (payloads).
  */
@@ -10,14 +10,14 @@
 #include <string.h>
 
 enum {
-    HEADER = 4, /* of a frame: session, stream, sequence number */
+    HEADER = 4, /* bytes of a frame's header: session, stream, sequence number */
     SUBHEADER = 4,
     NO_STREAM = 0x00,
-    BEST_EFFORT = 0x01, /* the only streams there are in this session */
+    BEST_EFFORT = 0x01, /* this and the next one are the only streams of this session */
     RELIABLE = 0x80,
-    LARGEST_HISTORY = 16, /* what an ACKNACK can speak of */
-    OLDEST = 4096,        /* numbers further behind are none of this session: the library would take them for new */
-    MOST_BEHIND = 10,     /* heartbeats in a row that end before what has been handled: one may be late, ten are not */
+    LARGEST_HISTORY = 16, /* number of frames that an ACKNACK can name */
+    OLDEST = 4096,        /* older numbers do not belong to this session; the library would take them for new ones */
+    MOST_BEHIND = 10,     /* heartbeats in a row that end before the handled frames: one can be late, ten cannot */
     PING_REQUEST = GET_INFO_REQUEST_PING_ID,
 };
 
@@ -29,7 +29,7 @@ enum {
     ACKNACK = 0x0A,
     HEARTBEAT = 0x0B,
     TIMESTAMP_REPLY = 0x0F,
-    NOTHING = 0xFF /* an id that nobody uses */
+    NOTHING = 0xFF /* an id that the protocol does not use */
 };
 
 enum { LITTLE_ENDIAN_FLAG = 0x01, FORMAT_FLAGS = 0x0E };
@@ -39,14 +39,14 @@ static uint16_t number_at(const uint8_t *bytes)
     return (uint16_t)(bytes[0] | bytes[1] << 8);
 }
 
-/** How far sequence number `to` lies after `from`, -32768 ... 32767. */
+/** Returns the distance from sequence number `from` to `to`, -32768 ... 32767. */
 static int distance(uint16_t from, uint16_t to)
 {
     const unsigned int ahead = (uint16_t)(to - from);
     return ahead < 0x8000U ? (int)ahead : (int)ahead - 0x10000;
 }
 
-/** Whether a frame of the agent's reliable stream fits into the history, or has been there before. */
+/** Returns true if a frame of the agent's reliable stream fits into the history, or was received before. */
 static bool fits(const epg_xrce_guard_t *guard, uint16_t number)
 {
     const uxrInputReliableStream *stream = &guard->session->streams.input_reliable[0];
@@ -54,7 +54,9 @@ static bool fits(const epg_xrce_guard_t *guard, uint16_t number)
     return ahead <= (int)stream->base.history && ahead >= -OLDEST;
 }
 
-/** Late acknowledgements speak of what was acknowledged long ago, false ones of what was never sent. */
+/**
+ * Returns false for a late acknowledgement, of frames acknowledged before, and for a false one, of frames never sent.
+ */
 static bool is_timely(const epg_xrce_guard_t *guard, uint16_t first_missing)
 {
     const uxrOutputReliableStream *stream = &guard->session->streams.output_reliable[0];
@@ -63,11 +65,12 @@ static bool is_timely(const epg_xrce_guard_t *guard, uint16_t first_missing)
 }
 
 /**
- * The library answers with one bit for each frame that it has not got; there are 16.  False: the number is too old.
+ * Limits the last number of a heartbeat.  The library answers a heartbeat with one bit for each missing frame, and has
+ * 16 bits for that.  Returns false if the number is too old.
  *
- * An agent that has sent less than has been handled here has not sent all of that: a forged or damaged frame has taken
- * the number of one of its own.  Acknowledgements of numbers that it has not reached mean nothing to it, so that its
- * stream may stand still for ever: the session is no good any more.
+ * An agent cannot have sent fewer frames than were handled here, unless a forged or damaged frame has taken the number
+ * of one of its frames.  The agent ignores acknowledgements of numbers that it has not reached, so its stream may stop
+ * for ever.  The session is not usable any more then.
  */
 static bool limit_heartbeat(epg_xrce_guard_t *guard, uint8_t *last)
 {
@@ -83,7 +86,9 @@ static bool limit_heartbeat(epg_xrce_guard_t *guard, uint8_t *last)
     return ahead >= -OLDEST;
 }
 
-/** The answer to a ping: request, object, status, whether the agent knows the session, and what the agent is. */
+/**
+ * Reads the answer to a ping: request, object, status, a flag if the agent knows the session, properties of the agent.
+ */
 static void read_info(epg_xrce_guard_t *guard, const uint8_t *payload, size_t length)
 {
     if (length >= 6 && payload[0] == 0 && payload[1] == PING_REQUEST && payload[4] == UXR_STATUS_OK) {
@@ -92,12 +97,12 @@ static void read_info(epg_xrce_guard_t *guard, const uint8_t *payload, size_t le
     }
 }
 
-/** Whether the library may see a submessage that came on `stream`. */
+/** Returns true if the library may get a submessage that came on `stream`. */
 static bool passes(epg_xrce_guard_t *guard, uint8_t stream, uint8_t id, uint8_t flags, uint8_t *payload, size_t length)
 {
     if (!guard->open) {
         guard->behind = 0;
-        /* With properties, whose names the library would write to where no pointer leads. */
+        /* A STATUS_AGENT with properties must not pass: the library would write their names to an invalid pointer. */
         return id == STATUS_AGENT && stream == NO_STREAM && length >= 11 && payload[10] == 0;
     }
     switch (id) {
@@ -105,25 +110,25 @@ static bool passes(epg_xrce_guard_t *guard, uint8_t stream, uint8_t id, uint8_t 
         return length >= 6;
     case INFO:
         read_info(guard, payload, length);
-        return false; /* the library would read names without end in it */
+        return false; /* the library would read names without a limit from it */
     case DATA: {
         const unsigned int kind = length >= 4 ? payload[3] & 0x0FU : 0U;
         return guard->reading && stream != NO_STREAM && kind == UXR_DATAREADER_ID && (flags & FORMAT_FLAGS) == 0;
     }
     case ACKNACK:
-        /* On a stream the library might keep it, and look at it when it is timely no longer. */
+        /* On another stream, the library could keep the ACKNACK and read it when it is not timely any more. */
         return stream == NO_STREAM && length >= 5 && payload[4] == RELIABLE && is_timely(guard, number_at(payload));
     case HEARTBEAT:
         return length >= 5 && payload[4] == RELIABLE && limit_heartbeat(guard, payload + 2);
     case TIMESTAMP_REPLY:
         return length >= 24;
     default:
-        /* Of fragments there are none in what fits into a frame, and no other message is for this target. */
+        /* All messages fit into one frame, so there are no fragments.  No other message is for a client. */
         return false;
     }
 }
 
-/** Bytes of a payload that the library reads; the rest it would take for the next submessage. */
+/** Returns the bytes of a payload that the library reads.  It would take the rest for the next submessage. */
 static size_t known_part(uint8_t id, size_t length)
 {
     switch (id) {
@@ -141,20 +146,20 @@ static size_t known_part(uint8_t id, size_t length)
     }
 }
 
-/** The stream goes on after a frame of which nothing is let through. */
+/** Replaces the content of a frame by two unknown submessages, so that the stream continues after its number. */
 static size_t make_empty(uint8_t *frame)
 {
     static const uint8_t nothing[2 * SUBHEADER] = {NOTHING, LITTLE_ENDIAN_FLAG, 0, 0, NOTHING, LITTLE_ENDIAN_FLAG};
     memcpy(frame + HEADER, nothing, sizeof nothing);
-    return HEADER + sizeof nothing; /* one would be too short for the library */
+    return HEADER + sizeof nothing; /* one submessage would be too short for the library */
 }
 
-/** Moves the submessages that pass to the front; returns where they end, 0 if the frame is none. */
+/** Moves the submessages that pass to the front.  Returns the end of the last one, 0 if the frame is malformed. */
 static size_t sift(epg_xrce_guard_t *guard, uint8_t *frame, size_t size)
 {
     size_t end = HEADER;
     size_t position = HEADER;
-    bool acknowledged = false; /* by an ACKNACK in this frame: what is timely has changed */
+    bool acknowledged = false; /* an ACKNACK in this frame has passed; a second one may not be timely any more */
     while (size - position >= SUBHEADER) {
         const uint8_t id = frame[position];
         const uint8_t flags = frame[position + 1];

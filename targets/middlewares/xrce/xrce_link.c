@@ -11,13 +11,13 @@
 
 enum { BEGIN = 0x7E, ESCAPE = 0x7D, XOR = 0x20 };
 
-/* Addresses as all clients and agents have them. */
+/* Addresses that all clients and all agents use. */
 enum { CLIENT = 1, AGENT = 0 };
 
-/* Of one call of epg_xrce_link_receive(). */
+/* Largest number of bytes in one call of epg_xrce_link_receive(). */
 enum { MOST_BYTES = 4096 };
 
-/** What comes next of a frame. */
+/** The field of a frame that comes next. */
 enum { OUTSIDE, SOURCE, DESTINATION, LENGTH_LOW, LENGTH_HIGH, PAYLOAD, CRC_LOW, CRC_HIGH };
 
 static uint16_t crc_of_byte(uint16_t crc, uint8_t byte)
@@ -57,7 +57,7 @@ size_t epg_xrce_link_cost(const epg_xrce_link_t *link, const void *data, size_t 
     for (size_t i = 0; i < size; i++) {
         cost += is_special(bytes[i]) ? 1U : 0U;
     }
-    return cost + 1 + 2 * 6; /* the begin; addresses, length and CRC if each of them is stuffed */
+    return cost + 1 + 2 * 6; /* the first byte; two addresses, length and CRC if each of their bytes is stuffed */
 }
 
 size_t epg_xrce_link_room(const epg_xrce_link_t *link)
@@ -67,6 +67,7 @@ size_t epg_xrce_link_room(const epg_xrce_link_t *link)
 
 /* Sending ------------------------------------------------------------------------------------------------------ */
 
+/** Collects stuffed bytes and writes them to the stream in chunks. */
 typedef struct stuffing {
     epg_xrce_link_t *link;
     size_t length;
@@ -76,7 +77,7 @@ typedef struct stuffing {
 static void put_out(stuffing_t *stuffing)
 {
     const epg_stream_t *stream = stuffing->link->stream;
-    /* There is room: epg_xrce_link_send() has asked.  If the line dies now, the rest of the frame does so too. */
+    /* epg_xrce_link_send() has checked the room.  If the connection breaks now, the rest of the frame is lost, too. */
     (void)stream->write(stream->context, stuffing->bytes, stuffing->length);
     stuffing->length = 0;
 }
@@ -127,7 +128,7 @@ bool epg_xrce_link_send(epg_xrce_link_t *link, const void *data, size_t size)
 
 /* Receiving ---------------------------------------------------------------------------------------------------- */
 
-/** Takes one byte of a frame; true: it was the last, and the frame is good. */
+/** Decodes one byte of a frame.  Returns true if it was the last one and the frame is valid. */
 static bool take(epg_xrce_link_t *link, uint8_t byte)
 {
     switch (link->part) {
@@ -168,10 +169,10 @@ static bool take(epg_xrce_link_t *link, uint8_t byte)
     return false;
 }
 
-/** Takes one byte of the stream; true: a frame is complete. */
+/** Decodes one byte of the stream.  Returns true if a frame is complete. */
 static bool take_stuffed(epg_xrce_link_t *link, uint8_t byte)
 {
-    if (byte == BEGIN) { /* nowhere else: a frame that was not complete never will be */
+    if (byte == BEGIN) { /* it occurs only at the begin of a frame, so the frame before it stays incomplete */
         link->broken += link->part > SOURCE ? 1U : 0U;
         link->part = SOURCE;
         link->escaped = false;
