@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The participant: one reader for each subscription, one writer for each publication.
+ * The DDS participant, with one reader for each subscription and one writer for each publication.
  *
- * CycloneDDS has threads of its own, which receive and send again what was lost.  What is here runs on the
- * communication side and does not wait for them.
+ * CycloneDDS has its own threads, which receive messages and send lost ones again.  The code in this file runs on the
+ * communication side and does not wait for these threads.
  */
 #include "dds.h"
 
@@ -19,9 +19,9 @@
 #include "message.h"
 
 enum {
-    BATCH = 16,         /* messages taken of a reader at once; more wait for the next turn, which is soon */
-    CLOCK_TRIES = 5,    /* readings of the clocks, of which the best counts */
-    PREFIX = 2,         /* "rt" before names of topics */
+    BATCH = 16,         /* messages taken from a reader in one poll; the others wait for the next poll */
+    CLOCK_TRIES = 5,    /* readings of the two clocks; the best one is used */
+    PREFIX = 2,         /* length of "rt" before the names of topics */
     SECOND = 1000000000 /* ns */
 };
 
@@ -36,8 +36,8 @@ static struct {
     epg_node_t *node;
     uint32_t domain_id;
     char configuration[EPG_DDS_CONFIGURATION_SIZE];
-    bool failed_before; /* it has been said why there is no connection */
-    uint64_t due_ns;    /* of the next attempt to connect, or of the next look at clock and matches */
+    bool failed_before; /* the reason of a failed connection has been reported */
+    uint64_t due_ns;    /* next attempt to connect, or next check of the clock and of QoS */
     dds_entity_t domain;
     dds_entity_t participant; /* 0: not connected */
     dds_entity_t waitset;
@@ -51,9 +51,9 @@ static bool send_message(size_t publication, const void *data, size_t size)
     return epg_dds_write(writer->entity, writer->type, data, size) == DDS_RETCODE_OK;
 }
 
-/* Making it ---------------------------------------------------------------------------------------------------- */
+/* Creation of the entities ------------------------------------------------------------------------------------- */
 
-/** Reliable is never waiting: beyond the depth the oldest message is dropped, and a write that would block fails. */
+/** Even a reliable writer never waits: a full history drops its oldest message, and a write that would block fails. */
 static dds_qos_t *qos_of(const epg_topic_t *topic)
 {
     dds_qos_t *qos = dds_create_qos();
@@ -66,7 +66,7 @@ static dds_qos_t *qos_of(const epg_topic_t *topic)
     return qos;
 }
 
-/** Reader or writer of `topic`; a negative return code if there is none. */
+/** Creates the reader or writer of `topic`.  Returns it, or a negative return code. */
 static dds_return_t create_endpoint(endpoint_t *endpoint, const epg_topic_t *topic, bool writes)
 {
     endpoint->topic[0] = 'r';
@@ -85,7 +85,7 @@ static dds_return_t create_endpoint(endpoint_t *endpoint, const epg_topic_t *top
     return endpoint->entity;
 }
 
-/** All of `topics`; the name of the topic at which it failed is said. */
+/** Creates the readers or writers of all `topics`.  If one fails, prints the name of its topic. */
 static dds_return_t create_endpoints(endpoint_t *endpoints, const epg_topic_t *topics, size_t count, bool writes)
 {
     for (size_t i = 0; i < count; i++) {
@@ -100,7 +100,7 @@ static dds_return_t create_endpoints(endpoint_t *endpoints, const epg_topic_t *t
     return DDS_RETCODE_OK;
 }
 
-/** As rmw_cyclonedds makes it: the security enclave, which there is none of, is "/". */
+/** Creates the participant as rmw_cyclonedds does.  There is no security enclave, so its name is "/". */
 static dds_entity_t create_participant(uint32_t domain)
 {
     static const char user_data[] = "enclave=/;";
@@ -141,7 +141,7 @@ static dds_return_t publish_graph(void)
     return code;
 }
 
-/** In `dds.participant`, which exists. */
+/** Creates all other entities of `dds.participant`, which must exist. */
 static dds_return_t create_all(void)
 {
     dds_return_t code = create_endpoints(dds.readers, dds.target->subscriptions, dds.target->subscription_count, false);
@@ -169,7 +169,7 @@ static void leave(void)
 static dds_return_t join_domain(void)
 {
     const dds_entity_t made = dds_create_domain(dds.domain_id, dds.configuration);
-    if (made < 0 && made != DDS_RETCODE_PRECONDITION_NOT_MET) { /* not met: the program has one, which will do */
+    if (made < 0 && made != DDS_RETCODE_PRECONDITION_NOT_MET) { /* not met: the program has made this domain already */
         return made;
     }
     dds.domain = made > 0 ? made : 0;
@@ -177,7 +177,7 @@ static dds_return_t join_domain(void)
     return code < 0 ? code : create_all();
 }
 
-/** Both clocks are read at once, or nearly: of some tries the one counts between whose readings the least time passed. */
+/** Sets the clock.  Of several readings of both clocks, the one during which the least time passed is used. */
 static void set_clock(void)
 {
     uint64_t shortest_ns = UINT64_MAX;
@@ -192,7 +192,7 @@ static void set_clock(void)
     }
 }
 
-/** There may be no network yet: it is tried again, and the control loop goes on meanwhile. */
+/** Tries to join the domain.  The network may not be up yet, so the attempt is repeated while the control loop runs. */
 static void try_to_join(uint64_t now_ns)
 {
     const dds_return_t code = join_domain();
@@ -214,11 +214,11 @@ static void try_to_join(uint64_t now_ns)
     epg_node_connected(dds.node, now_ns);
 }
 
-/* Running it --------------------------------------------------------------------------------------------------- */
+/* The middleware ----------------------------------------------------------------------------------------------- */
 
 static void start(const epg_target_t *target, const epg_stream_t *stream)
 {
-    (void)stream; /* it has a connection of its own */
+    (void)stream; /* CycloneDDS opens its own sockets */
     dds.target = target;
     dds.node = target->node_state;
     dds.failed_before = false;
@@ -234,7 +234,7 @@ static void start(const epg_target_t *target, const epg_stream_t *stream)
     }
     if (!epg_dds_domain(target->domain, &dds.domain_id) ||
         !epg_dds_configuration(dds.configuration, sizeof dds.configuration)) {
-        dds.due_ns = UINT64_MAX; /* the environment will not change */
+        dds.due_ns = UINT64_MAX; /* a new attempt would fail, too: the environment does not change */
         return;
     }
     try_to_join(epg_port_time_ns());
@@ -257,7 +257,7 @@ static void receive(size_t subscription, uint64_t now_ns)
     }
 }
 
-/** Once a second: the computer's clock may have been set, and somebody may have come whose QoS does not fit. */
+/** Runs once a second: the computer's clock may have been set, and an endpoint with other QoS may have appeared. */
 static void look_around(uint64_t now_ns)
 {
     dds.due_ns = now_ns + SECOND;
@@ -298,7 +298,7 @@ static void wait_for_message(uint64_t until_ns)
     }
 }
 
-/** Others see at once that the node is gone; without this, after the lease of 10 s. */
+/** Leaves the domain, so that other nodes see this at once, and not only when the lease of 10 s is over. */
 static void stop(void)
 {
     leave();

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Domain and discovery as the environment says them.
+ * The DDS domain and the discovery of other nodes, from the environment variables of ROS 2.
  *
  * Source: rmw_cyclonedds_cpp 2.2 (ROS 2 Jazzy), rmw_node.cpp, check_create_domain(); rcl 9.2, discovery_options.c.
  */
@@ -23,13 +23,13 @@
 #include "dds/features.h"
 #include "epg/target.h"
 
-enum { DOMAIN_LARGEST = 232 }; /* ports of higher ones lie beyond 65535: RTPS 2.5, 9.6.2 */
+enum { DOMAIN_LARGEST = 232 }; /* higher domains would have ports above 65535: RTPS 2.5, 9.6.2 */
 
 typedef struct text {
     char *data;
     size_t size;
     size_t length;
-    bool failed; /* something did not fit */
+    bool failed; /* the text did not fit */
 } text_t;
 
 static void add_bytes(text_t *text, const char *bytes, size_t count)
@@ -47,7 +47,7 @@ static void add(text_t *text, const char *more)
     add_bytes(text, more, strlen(more));
 }
 
-/** A variable of the environment; "" if it is not set. */
+/** Returns an environment variable; "" if it is not set. */
 static const char *variable(const char *name)
 {
     const char *value = getenv(name);
@@ -73,7 +73,7 @@ bool epg_dds_domain(uint8_t configured, uint32_t *domain)
     return true;
 }
 
-/** An address has letters, digits and few signs: none that means something in XML. */
+/** Returns true if `text` consists of the characters of addresses.  None of them has a meaning in XML. */
 static bool is_address(const char *text, size_t length)
 {
     for (size_t i = 0; i < length; i++) {
@@ -91,7 +91,7 @@ static void add_peer(text_t *text, const char *address, size_t length)
     add(text, "\"/>");
 }
 
-/** ROS_STATIC_PEERS: addresses with semicolons between them. */
+/** Adds the addresses in ROS_STATIC_PEERS, which are separated by semicolons. */
 static bool add_peers(text_t *text, const char *peers)
 {
     while (*peers != '\0') {
@@ -109,7 +109,7 @@ static bool add_peers(text_t *text, const char *peers)
     return true;
 }
 
-/** Nobody is found and nobody finds: only a participant with the same tag could. */
+/** Switches discovery off: the tag is unique, and participants find only others with the same tag. */
 static void add_discovery_off(text_t *text)
 {
     char tag[64];
@@ -140,7 +140,7 @@ static bool add_discovery(text_t *text, bool localhost, const char *peers)
     return good;
 }
 
-/** What ROS 2 puts before CYCLONEDDS_URI. */
+/** Adds the part of the configuration that ROS 2 puts before CYCLONEDDS_URI. */
 static bool add_range(text_t *text)
 {
     const char *range = variable("ROS_AUTOMATIC_DISCOVERY_RANGE");
@@ -150,7 +150,7 @@ static bool add_range(text_t *text)
     }
     bool good = true;
     add(text, "<CycloneDDS><Domain>");
-    if (localhost_only) { /* deprecated, but as long as it is set it is obeyed, and peers are not */
+    if (localhost_only) { /* this deprecated variable still has priority, and peers are ignored then */
         good = add_discovery(text, true, "");
     } else if (strcmp(range, "OFF") == 0) {
         add_discovery_off(text);
@@ -177,7 +177,7 @@ bool epg_dds_configuration(char *data, size_t size)
     }
     add(&text, variable("CYCLONEDDS_URI"));
 #ifdef DDS_HAS_SHM
-    /* Messages of unknown content (message.h) do not go through shared memory. */
+    /* Messages without a described type (message.h) cannot use shared memory. */
     add(&text, ",<CycloneDDS><Domain><SharedMemory><Enable>false</Enable></SharedMemory></Domain></CycloneDDS>");
 #endif
     if (text.failed) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The node in the ROS graph.
+ * The ROS graph: makes a DDS participant visible as a ROS 2 node.
  */
 #include "graph.h"
 
@@ -46,7 +46,7 @@ static bool write_gids(epg_cdr_writer_t *message, const dds_entity_t *entities, 
     return good;
 }
 
-/** Reliable, and what was said last is kept for those who come later: as rmw_dds_common has it. */
+/** Creates the writer with the QoS of rmw_dds_common: reliable, and the last message is kept for later readers. */
 static dds_entity_t create_writer(dds_entity_t participant, struct ddsi_sertype **type)
 {
     const dds_entity_t topic = epg_dds_topic(participant, "ros_discovery_info", TYPE, type);
@@ -78,7 +78,7 @@ dds_entity_t epg_dds_publish_graph(dds_entity_t participant, const epg_node_t *n
     }
     epg_cdr_writer_t message = {.data = data, .size = size};
     bool good = write_gid(&message, participant);
-    epg_cdr_write_u32(&message, 1); /* node */
+    epg_cdr_write_u32(&message, 1); /* number of nodes */
     epg_cdr_write_string(&message, node->name_space[0] == '\0' ? "/" : node->name_space);
     epg_cdr_write_string(&message, node->name);
     good = write_gids(&message, readers, reader_count) && good;

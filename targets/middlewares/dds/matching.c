@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Topics whose other end does not fit.
+ * Warnings about incompatible QoS.
  */
 #include "matching.h"
 
 #include <stdio.h>
 
-/** What does not fit, as ROS 2 calls it. */
+/** Returns ROS 2's name of the incompatible policy. */
 static const char *policy_name(uint32_t policy)
 {
     switch (policy) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Messages as CycloneDDS carries them.
+ * Messages for CycloneDDS as bytes, with their encapsulation header.
  */
 #include "message.h"
 
@@ -10,18 +10,20 @@
 
 #include "dds/ddsi/q_radmin.h"
 
-enum { HEADER = 4 }; /* bytes of the encapsulation header: identifier, then options */
+enum { HEADER = 4 }; /* bytes of the encapsulation header: an identifier and options, two bytes each */
 
-/** Identifier of what ROS 2 sends, as the two bytes on the wire read as a big-endian number. */
+/** The identifier in all messages of ROS 2; on the wire it is big endian. */
 enum { LITTLE_ENDIAN_CDR = 0x0001 };
 
 typedef struct message {
-    struct ddsi_serdata base; /* first, so that a pointer to one is a pointer to the other */
-    size_t size;              /* with header, rounded up to 4 */
+    struct ddsi_serdata base; /* the first member, so that a pointer to the message is also a pointer to it */
+    size_t size;              /* size with the header, rounded up to a multiple of 4 */
     unsigned char bytes[];
 } message_t;
 
-/** Room for `size` bytes, header included, set to zero; NULL if there is no memory, or if it is too large. */
+/**
+ * Allocates a message of `size` bytes with its header, all zero.  Returns NULL without memory, or if it is too large.
+ */
 static message_t *new_message(const struct ddsi_sertype *type, enum ddsi_serdata_kind kind, size_t size)
 {
     const size_t rounded = (size + 3U) & ~(size_t)3U;
@@ -43,7 +45,7 @@ static struct ddsi_serdata *base_of(message_t *message)
 
 /* Operations of a message -------------------------------------------------------------------------------------- */
 
-/** No type here has keys: all messages of a topic are of one instance. */
+/** The types here have no keys, so all messages of a topic belong to one instance. */
 static bool equal_keys(const struct ddsi_serdata *a, const struct ddsi_serdata *b)
 {
     (void)a;
@@ -56,7 +58,7 @@ static uint32_t size_of(const struct ddsi_serdata *base)
     return (uint32_t)((const message_t *)base)->size;
 }
 
-/** From what the network has brought, in fragments that may overlap. */
+/** Makes a message from the received fragments, which may overlap. */
 static struct ddsi_serdata *from_fragments(const struct ddsi_sertype *type, enum ddsi_serdata_kind kind,
                                            const struct nn_rdata *fragment, size_t size)
 {
@@ -65,7 +67,7 @@ static struct ddsi_serdata *from_fragments(const struct ddsi_sertype *type, enum
     for (; message != NULL && fragment != NULL; fragment = fragment->nextfrag) {
         const uint32_t end = fragment->maxp1 < size ? fragment->maxp1 : (uint32_t)size;
         if (fragment->min > filled) {
-            break; /* a gap: CycloneDDS hands none over */
+            break; /* a gap; CycloneDDS never passes an incomplete message */
         }
         if (end > filled) {
             const unsigned char *payload = NN_RMSG_PAYLOADOFF(fragment->rmsg, NN_RDATA_PAYLOAD_OFF(fragment));
@@ -98,7 +100,7 @@ static struct ddsi_serdata *from_keyhash(const struct ddsi_sertype *type, const 
     return base_of(new_message(type, SDK_KEY, 0));
 }
 
-/** Only for what has no content: structures do not exist here. */
+/** Makes a message without content only, because there are no structures for samples here. */
 static struct ddsi_serdata *from_sample(const struct ddsi_sertype *type, enum ddsi_serdata_kind kind,
                                         const void *sample)
 {
@@ -114,7 +116,7 @@ static void to_bytes(const struct ddsi_serdata *base, size_t offset, size_t size
 static struct ddsi_serdata *to_reference(const struct ddsi_serdata *base, size_t offset, size_t size,
                                          ddsrt_iovec_t *reference)
 {
-    /* CycloneDDS only reads what it points to. */
+    /* CycloneDDS only reads these bytes. */
     reference->iov_base = (void *)(uintptr_t)(((const message_t *)base)->bytes + offset);
     reference->iov_len = (ddsrt_iov_len_t)size;
     return ddsi_serdata_ref(base);
@@ -192,7 +194,7 @@ static const struct ddsi_serdata_ops message_operations = {
     .free = free_message,
     .print = print,
     .get_keyhash = get_keyhash,
-    /* Shared memory is switched off (domain.c): its operations are NULL where there are any. */
+    /* Shared memory is switched off (domain.c), so its operations, if this version has any, can be NULL. */
 };
 
 /* Operations of a type ----------------------------------------------------------------------------------------- */
@@ -203,7 +205,7 @@ static void free_type(struct ddsi_sertype *type)
     free(type);
 }
 
-/** These four are for structures, loans and filters, of which there are none. */
+/** This function and the next two are for structures, loans and filters, which are not used here. */
 static void zero_samples(const struct ddsi_sertype *type, void *samples, size_t count)
 {
     (void)type;
@@ -228,7 +230,7 @@ static void free_samples(const struct ddsi_sertype *type, void **samples, size_t
     (void)operation;
 }
 
-/** Of two types with these operations and one name. */
+/** CycloneDDS compares only types with the same operations and the same name; these are equal. */
 static bool equal_types(const struct ddsi_sertype *a, const struct ddsi_sertype *b)
 {
     (void)a;
@@ -252,7 +254,7 @@ static const struct ddsi_sertype_ops type_operations = {
     .hash = hash_of,
 };
 
-/* What others call --------------------------------------------------------------------------------------------- */
+/* Functions for the other files -------------------------------------------------------------------------------- */
 
 dds_entity_t epg_dds_topic(dds_entity_t participant, const char *name, const char *type_name,
                            struct ddsi_sertype **type)
@@ -263,7 +265,7 @@ dds_entity_t epg_dds_topic(dds_entity_t participant, const char *name, const cha
     }
     ddsi_sertype_init_flags(*type, type_name, &type_operations, &message_operations,
                             DDSI_SERTYPE_FLAG_TOPICKIND_NO_KEY);
-    (*type)->allowed_data_representation = DDS_DATA_REPRESENTATION_FLAG_XCDR1; /* which is what ROS 2 has */
+    (*type)->allowed_data_representation = DDS_DATA_REPRESENTATION_FLAG_XCDR1; /* as in ROS 2 */
     struct ddsi_sertype *own = *type;
     const dds_entity_t topic = dds_create_topic_sertype(participant, name, type, NULL, NULL, NULL);
     if (topic < 0) {
@@ -280,7 +282,7 @@ dds_return_t epg_dds_write(dds_entity_t writer, const struct ddsi_sertype *type,
     }
     message->bytes[1] = LITTLE_ENDIAN_CDR;
     memcpy(message->bytes + HEADER, data, size);
-    return dds_writecdr(writer, &message->base); /* whose the message is from here on */
+    return dds_writecdr(writer, &message->base); /* from here on, the message belongs to CycloneDDS */
 }
 
 const void *epg_dds_content(const struct ddsi_serdata *base, size_t *size)

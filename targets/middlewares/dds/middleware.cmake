@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-# CycloneDDS 0.10: Debian's and Ubuntu's package, and ROS 2 Jazzy's, whose environment puts it on CMAKE_PREFIX_PATH.
-# Later versions have other headers for messages that no generated code describes.
+# The library of the middleware dds: CycloneDDS 0.10, from Debian's or Ubuntu's package, or from ROS 2 Jazzy, whose
+# environment adds it to CMAKE_PREFIX_PATH.  Later versions have another interface for messages without a described
+# type.
 
 function(_epg_middleware_dds library)
   if(NOT TARGET CycloneDDS::ddsc)
@@ -17,11 +18,11 @@ function(_epg_middleware_dds library)
       message(FATAL_ERROR
         "${CycloneDDS_DIR} holds CycloneDDS ${CycloneDDS_VERSION}; EPG's middleware 'dds' needs 0.10.")
     endif()
-    # The folder that asked first is not the only one that links it.
+    # Other folders than the first one that finds the package must be able to link it, too.
     set_target_properties(CycloneDDS::ddsc PROPERTIES IMPORTED_GLOBAL TRUE)
   endif()
   target_link_libraries(${library} PRIVATE CycloneDDS::ddsc)
-  # CycloneDDS's headers say `asm`, which is no word of C11.
+  # CycloneDDS's headers use `asm`, which is not a keyword of C11.
   target_compile_definitions(${library} PRIVATE asm=__asm__)
   set_target_properties(${library} PROPERTIES C_STANDARD 11 C_STANDARD_REQUIRED ON)
 endfunction()

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * ROS 2 through an agent, by rcl and libmicroros.
+ * The states of the connection to the agent.
  *
- * | state    | what is done                                                | and then                                 |
+ * | state    | action                                                      | next state                               |
  * |----------|-------------------------------------------------------------|------------------------------------------|
- * | waiting  | a ping every 0.2 s                                          | answered: session and node; creating     |
- * | creating | publishers and subscriptions, one per poll                  | all there: running; refused: waiting     |
- * | running  | topics; a ping every 0.2 s, the time every 10 s             | silent for 1 s, or stuck for 2: waiting  |
+ * | waiting  | pings every 0.2 s; after an answer, requests session, node  | granted: creating                        |
+ * | creating | requests publishers and subscriptions, one per poll         | all exist: running; refused: waiting     |
+ * | running  | exchanges messages; pings every 0.2 s; asks for the time    | the agent is silent for 1 s, or a stream |
+ * |          | every 10 s                                                  | is full for 2 s: waiting                 |
  */
 #include "micro_ros.h"
 
@@ -25,13 +26,13 @@
 #define MS ((uint64_t)1000000)
 
 static const uint64_t PING_NS = 200 * MS;
-static const uint64_t SILENCE_NS = 1000 * MS; /* of an agent that is lost */
-static const uint64_t REFUSED_NS = 2000 * MS; /* from a refusal to the next attempt */
-static const uint64_t SYNC_NS = 10000 * MS;   /* from one question for the time to the next */
-static const uint64_t SYNC_AGAIN_NS = 500 * MS;
-static const uint64_t FULL_NS = 150 * MS; /* without room for a reliable message, until what is missing is asked for */
-static const uint64_t STUCK_NS = 2000 * MS; /* the same, until the session is given up */
-/* The client library asks what the agent has missed only if it was not called for 100 ms. */
+static const uint64_t SILENCE_NS = 1000 * MS;   /* silence after which the agent counts as lost */
+static const uint64_t REFUSED_NS = 2000 * MS;   /* time from a refusal to the next attempt */
+static const uint64_t SYNC_NS = 10000 * MS;     /* interval between two requests for the time */
+static const uint64_t SYNC_AGAIN_NS = 500 * MS; /* the same after a request without an answer */
+static const uint64_t FULL_NS = 150 * MS;       /* time with a full reliable stream until a pause of REST_NS */
+static const uint64_t STUCK_NS = 2000 * MS;     /* time with a full reliable stream until the session is given up */
+/* The client library asks the agent for missing frames only if the library was not called for 100 ms. */
 static const uint64_t REST_NS = 105 * MS;
 
 enum { ANSWER_MS = 50, FRAMES_PER_POLL = 32 };
@@ -40,7 +41,7 @@ static const char WAITING[] = "waiting";
 static const char CREATING[] = "creating";
 static const char RUNNING[] = "running";
 
-/** There is one node. */
+/** The only node of an executable. */
 static struct {
     const epg_target_t *target;
     const epg_stream_t *stream;
@@ -48,16 +49,16 @@ static struct {
     epg_node_t *node;
     epg_micro_ros_entities_t entities;
     const char *state;
-    bool usable; /* libmicroros has taken the stream */
-    bool again;  /* it has been running before */
+    bool usable; /* libmicroros has accepted the memory and the stream */
+    bool again;  /* the node was running before */
 
-    uint64_t now_ns;   /* of this poll */
-    uint64_t ping_ns;  /* the next */
-    uint64_t alive_ns; /* when the agent has last answered */
-    uint64_t sync_ns;  /* the next */
-    uint64_t full_ns;  /* since when reliable messages find no room; 0: they do */
-    uint64_t asked_ns; /* when it has rested last for that */
-    uint64_t rest_ns;  /* until when it rests */
+    uint64_t now_ns;   /* board time of this poll */
+    uint64_t ping_ns;  /* next ping */
+    uint64_t alive_ns; /* last answer of the agent */
+    uint64_t sync_ns;  /* next request for the time */
+    uint64_t full_ns;  /* since then, the reliable stream has been full; 0: it has room */
+    uint64_t asked_ns; /* end of the last pause, or begin of the full stream */
+    uint64_t rest_ns;  /* end of the present pause, in which the library is not called */
 } ros;
 
 static bool agent_answers(void)
@@ -75,7 +76,7 @@ static void lose_agent(uint64_t pause_ns)
 
 /* Topics ------------------------------------------------------------------------------------------------------- */
 
-/** The node's: hands a message to a stream of libmicroros, whole or not at all. */
+/** The `send` function of the node: puts a message into a stream of libmicroros, completely or not at all. */
 static bool send_message(size_t publication, const void *message, size_t size)
 {
     bool taken = false;
@@ -83,7 +84,7 @@ static bool send_message(size_t publication, const void *message, size_t size)
     if (ros.state != RUNNING) {
         return false;
     }
-    /* It says "error" too when the agent has not confirmed yet. */
+    /* rcl_publish() also returns an error if the agent has not confirmed yet. */
     if (rcl_publish(&ros.options->publishers[publication], &sent, NULL) != RCL_RET_OK) {
         rcl_reset_error();
     }
@@ -104,12 +105,12 @@ static void take_message(size_t index)
     if (rcl_take(&ros.options->subscriptions[index], &message, NULL, NULL) == RCL_RET_OK) {
         epg_node_receive(ros.node, index, message.data, message.size, ros.now_ns);
     } else {
-        ros.node->malformed++; /* larger than any that its topics can use */
+        ros.node->malformed++; /* the message is larger than any valid one */
         rcl_reset_error();
     }
 }
 
-/** One frame at most; true: there may be more. */
+/** Handles at most one frame.  Returns true if there may be more. */
 static bool take_frame(void)
 {
     static const rmw_time_t AT_ONCE = {0, 0};
@@ -163,7 +164,7 @@ static void poll_creating(void)
     }
 }
 
-/** False: the agent is given up. */
+/** Pings the agent when that is due.  Returns false if the session was given up. */
 static bool check_agent(void)
 {
     if (ros.now_ns >= ros.ping_ns && agent_answers()) {
@@ -210,7 +211,7 @@ static void poll_running(void)
 
 static void start(const epg_target_t *target, const epg_stream_t *stream)
 {
-    /* Of a run before this one, which may have ended anywhere. */
+    /* A run before this one may have ended in any state. */
     epg_micro_ros_entities_drop(&ros.entities);
     memset(&ros, 0, sizeof ros);
     ros.target = target;

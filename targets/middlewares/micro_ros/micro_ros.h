@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * ROS 2 through an agent: the middleware `micro_ros`, on rcl and micro-ROS's libmicroros.  docs/micro-ros.md says what
- * of it waits, and for how long.
+ * The middleware `micro_ros`: ROS 2 through an agent, with rcl and micro-ROS's library libmicroros.
  *
- * There is one in an executable.  Messages are serialised by epg/node.h; libmicroros carries their bytes.
+ * epg/node.h serialises the messages, and libmicroros carries their bytes.  Some calls of libmicroros wait for the
+ * agent; docs/micro-ros.md lists them with their longest times.  An executable can contain one such node.
  */
 #ifndef EPG_MICRO_ROS_H
 #define EPG_MICRO_ROS_H
@@ -15,16 +15,16 @@
 #include "epg/middleware.h"
 #include "micro_ros_type.h"
 
-/** Memory of the generator's. */
+/** The memory that the generator defines for the node. */
 typedef struct epg_micro_ros_options {
     rcl_publisher_t *publishers;       /**< one per publication */
     rcl_subscription_t *subscriptions; /**< one per subscription */
-    void **ready;                      /**< one per subscription: those that a message has come for */
+    void **ready;                      /**< one per subscription: not NULL if a message has arrived for it */
     epg_micro_ros_type_t *types;       /**< one per publication, then one per subscription */
     size_t received_size;
-    unsigned char *received; /**< `received_size` bytes: of the largest message that a subscription takes */
+    unsigned char *received; /**< `received_size` bytes: room for the largest message of a subscription */
     size_t memory_size;
-    void *memory; /**< `memory_size` bytes for what rcl allocates */
+    void *memory; /**< `memory_size` bytes, from which rcl allocates */
 } epg_micro_ros_options_t;
 
 extern const epg_middleware_t epg_micro_ros;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * What a target is for rcl: a context, a node, and a publisher or subscription for each topic.
+ * The rcl objects of a target: a context, a node, and a publisher or subscription for each topic.
  */
 #include "micro_ros_entities.h"
 
@@ -12,11 +12,11 @@
 
 #ifdef EPG_MICRO_ROS_TIMEOUTS
 
-/* Milliseconds that one entity may take to be made; libmicroros itself has 1000. */
+/* Longest time in milliseconds for the creation of one entity.  The default of libmicroros is 1000. */
 enum { CREATION_MS = 500 };
 
-/* Of a reliable publication: a negative time is none at all.  With 0 the client library waits to the end of the
-   millisecond. */
+/* Timeout of a reliable publication.  A negative time means no wait.  With 0, the client library waits until the end of
+   the millisecond. */
 enum { PUBLISH_MS = -1 };
 
 static void set_context_timeouts(rmw_context_t *context)
@@ -32,7 +32,7 @@ static bool set_publisher_timeout(const rcl_publisher_t *publisher)
 
 #else
 
-/* Galactic: all are those that libmicroros was built with. */
+/* In ROS 2 Galactic, the timeouts are fixed when libmicroros is built. */
 static void set_context_timeouts(const rmw_context_t *context)
 {
     (void)context;
@@ -46,7 +46,7 @@ static bool set_publisher_timeout(const rcl_publisher_t *publisher)
 
 #endif
 
-/** Of what is given back: an error says only that the agent has not confirmed, which nobody waits for. */
+/** Ignores the result of a destruction.  An error only means that the agent has not confirmed, which is not awaited. */
 static void ignore(rcl_ret_t result)
 {
     if (result != RCL_RET_OK) {
@@ -72,7 +72,7 @@ static bool start_context(epg_micro_ros_entities_t *entities, uint32_t client_ke
 bool epg_micro_ros_entities_connect(epg_micro_ros_entities_t *entities, uint32_t client_key)
 {
     const epg_node_t *node = entities->node;
-    entities->session = true; /* before there is one: who is stopped meanwhile gives that back too */
+    entities->session = true; /* set before the context exists: a stop meanwhile must free a half-made context, too */
     if (start_context(entities, client_key)) {
         rmw_context_t *context = rcl_context_get_rmw_context(&entities->context);
         rcl_node_options_t options = rcl_node_get_default_options();

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * What libmicroros was built for: its pools are as large as they were when it was compiled.
+ * Checks of the options with which libmicroros was built.  They fix its transport and the sizes of its memory pools.
  */
 #ifndef EPG_MICRO_ROS_POOLS_H
 #define EPG_MICRO_ROS_POOLS_H
@@ -12,12 +12,12 @@
 #error "libmicroros was built for a transport of its own: rebuild it with -DRMW_UXRCE_TRANSPORT=custom"
 #endif
 
-/* A ping has a frame on its stack, and middleware.yaml says how large that stack is. */
+/* A ping puts a frame on the stack, and middleware.yaml states how large the stack must be. */
 #if UXR_CONFIG_CUSTOM_TRANSPORT_MTU > 2048
 #error "libmicroros was built for frames of more than 2048 bytes: rebuild it with -DUCLIENT_CUSTOM_TRANSPORT_MTU=1536"
 #endif
 
-/** Bytes around a message in a frame: header of the frame, of the submessage, and whose it is. */
+/** Bytes around a message in a frame: the headers of frame and submessage, and the ids of request and writer. */
 #define EPG_MICRO_ROS_OVERHEAD 16
 
 #endif

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * What libmicroros asks of an operating system: memory and, on a microcontroller, the time.
+ * The services of an operating system that libmicroros needs: memory and, on a microcontroller, the time.
  *
- * The memory is a row of blocks, each with its size before it; the first free one that is large enough is taken.  A
- * connection has a few dozen blocks, and nothing is allocated once it is there.
+ * The memory is a row of blocks, each with its size before it.  An allocation takes the first free block that is large
+ * enough.  This simple search is fast enough: a connection has a few dozen blocks, and nothing is allocated while it is
+ * up.
  */
 #include "micro_ros_system.h"
 
@@ -13,10 +14,10 @@
 
 #include "epg/port.h"
 
-/** Stands before each block; as large as the strictest alignment asks for. */
+/** The header before each block.  Its size is a multiple of the strictest alignment. */
 typedef union block {
     struct {
-        size_t size; /* bytes behind this */
+        size_t size; /* bytes after this header */
         bool used;
     } is;
     max_align_t align;
@@ -37,7 +38,7 @@ static bool is_last(block_t *block)
     return (char *)behind(block) == arena.end;
 }
 
-/** Makes one of `block` and the free ones behind it. */
+/** Joins `block` with the free blocks after it. */
 static void join_free(block_t *block)
 {
     while (!is_last(block) && !behind(block)->is.used) {
@@ -45,7 +46,7 @@ static void join_free(block_t *block)
     }
 }
 
-/** Leaves what `block` has more than `size` bytes to a free one behind it. */
+/** Cuts `block` to `size` bytes.  The rest becomes a free block after it. */
 static void split(block_t *block, size_t size)
 {
     if (block->is.size - size > sizeof *block) {
@@ -132,7 +133,7 @@ bool epg_micro_ros_memory_start(void *bytes, size_t size)
     arena.end = arena.begin + size / sizeof(block_t) * sizeof(block_t);
     epg_micro_ros_memory_free();
 #ifdef EPG_MICRO_ROS_DEFAULT_ALLOCATOR
-    /* Some of rcl allocates by its default allocator whatever it is given. */
+    /* Some functions of rcl use its default allocator, whatever allocator they are given. */
     rcutils_allocator_t ours = epg_micro_ros_memory();
     return rcutils_set_default_allocator(&ours);
 #else
@@ -146,7 +147,10 @@ bool epg_micro_ros_memory_start(void *bytes, size_t size)
 
 int clock_gettime(clockid_t clock, struct timespec *time);
 
-/** A C library for microcontrollers has none.  All clocks are the board's; a clock of the user's goes before this one. */
+/**
+ * Returns the board time for every clock.  C libraries for microcontrollers lack this function.  The symbol is weak, so
+ * that a user's function replaces it.
+ */
 __attribute__((weak)) int clock_gettime(clockid_t clock, struct timespec *time)
 {
     (void)clock;

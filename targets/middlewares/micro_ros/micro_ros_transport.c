@@ -3,7 +3,7 @@
  * @file
  * EPG's stream as a custom transport of libmicroros.
  *
- * libmicroros asks for bytes with a time that it is willing to wait.  The stream never waits, so this does.
+ * libmicroros reads bytes with a timeout.  A stream never waits, so this transport waits until the timeout is over.
  */
 #include "micro_ros_transport.h"
 
@@ -20,7 +20,7 @@ static bool heard;
 static bool open_or_close(struct uxrCustomTransport *transport)
 {
     (void)transport;
-    return true; /* the stream is the platform's */
+    return true; /* the platform has opened the stream */
 }
 
 static size_t write_bytes(struct uxrCustomTransport *transport, const uint8_t *data, size_t size, uint8_t *error)

@@ -10,10 +10,10 @@
 
 #include "epg/stream.h"
 
-/** Once; false: libmicroros has refused it. */
+/** Registers the transport.  Must be called once.  Returns false if libmicroros refuses it. */
 bool epg_micro_ros_transport_start(const epg_stream_t *stream);
 
-/** Whether anything has been read since the last call. */
+/** Returns true if bytes have been read since the last call. */
 bool epg_micro_ros_transport_heard(void);
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * A type support for messages that are bytes already.
+ * A type support for messages that are already serialised.
  */
 #include "micro_ros_type.h"
 
@@ -35,11 +35,11 @@ static uint32_t size_of(const void *untyped)
 
 static size_t size_behind(const void *untyped, size_t alignment)
 {
-    (void)alignment; /* a message begins where its bytes do */
+    (void)alignment; /* the alignment inside a message is counted from its own begin */
     return size_of(untyped);
 }
 
-/** Nobody asks before there is a message. */
+/** Not needed: libmicroros asks for a size only when there is a message. */
 static size_t largest_size(void)
 {
     return 0;
