@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Who is there, which command has come in, and what goes out.
+ * The console: the connection, the commands, and the order of the answers.
  */
 #include "console.h"
 
@@ -11,11 +11,11 @@
 #include "session.h"
 
 enum {
-    LINES = 4,          /* of an answer, written in one poll */
-    ANSWER_ROOM = 256,  /* free bytes of output before a command is carried out, */
-    PATIENCE_MS = 100,  /* unless nobody reads for that long: what is sent must act all the same */
-    ABANDON_MS = 2000,  /* an answer of several lines that nobody reads ends */
-    NO_CYCLE_MS = 1000, /* a control loop that has not run for that long does not run */
+    LINES = 4,          /* lines of an answer that are written in one poll */
+    ANSWER_ROOM = 256,  /* free bytes of output that a command needs before it is carried out, */
+    PATIENCE_MS = 100,  /* unless the other end has not read for this time: commands must act all the same */
+    ABANDON_MS = 2000,  /* an answer of several lines ends if the other end has not read for this time */
+    NO_CYCLE_MS = 1000, /* a control loop without a cycle for this time counts as stopped */
     MS = 1000000        /* ns */
 };
 
@@ -34,7 +34,7 @@ static const handler_t handlers[] = {
 
 static epg_console_session_t session;
 
-/** A new reader, or none any more: nothing of the session before is left, and nothing moves by hand. */
+/** Handles the begin or the end of a connection: clears all state of the last one, and stops a jog. */
 static void begin_session(bool connected)
 {
     if (session.jogging) {
@@ -65,7 +65,7 @@ static void begin_session(bool connected)
     epg_console_end_or_drop(&session.output);
 }
 
-/** Tells of a change of state that nobody asked for. */
+/** Reports each change of the target's state, whatever its reason. */
 static void poll_status(void)
 {
     epg_status_t status;
@@ -84,7 +84,7 @@ static void poll_status(void)
     }
 }
 
-/** Ends what keeps the next command waiting, if it is over. */
+/** Answers the command that the next command waits for, if it has taken effect. */
 static void poll_wait(void)
 {
     bool over = false;
@@ -127,7 +127,7 @@ static void poll_wait(void)
     session.wait = EPG_CONSOLE_READY;
 }
 
-/** Goes on with an answer of several lines. */
+/** Writes the next lines of an answer of several lines. */
 static void poll_list(void)
 {
     for (int i = 0; i < LINES && session.list != NULL; i++) {
@@ -140,7 +140,7 @@ static void poll_list(void)
             if (!empty) {
                 return;
             }
-            session.output.dropped++; /* longer than all of the output */
+            session.output.dropped++; /* the line is longer than the whole output */
         }
         session.list_index++;
         if (!more) {
@@ -159,7 +159,7 @@ static const handler_t *find_handler(const char *name)
     return NULL;
 }
 
-/** The line must act at once, whatever is being answered: setpoints, enable, disable. */
+/** Returns true for a line that must act at once, even during another answer: setpoints, enable, disable. */
 static bool urgent(void)
 {
     const char *line = session.input.line;

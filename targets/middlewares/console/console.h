@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The console: a target by lines of text, for people at a terminal and for programs.  docs/console.md defines it.
+ * The middleware `console`: commands and answers as lines of text, for users at a terminal and for programs.
+ * docs/console.md defines them.
  *
- * There is one console in an executable.  It needs no heap, never waits, and does a bounded amount of work per poll:
- * it reads at most 64 bytes, carries out at most one command and writes at most four lines.
+ * An executable can contain one console.  It does not need a heap, never waits, and does a bounded amount of work per
+ * poll: it reads at most 64 bytes, carries out at most one command and writes at most four lines of an answer.
  */
 #ifndef EPG_CONSOLE_H
 #define EPG_CONSOLE_H
@@ -14,13 +15,13 @@
 
 #include "epg/middleware.h"
 
-/** What a generated target gives to its console; the arrays are the generator's. */
+/** The options of a console.  The generator defines the arrays. */
 typedef struct epg_console_options {
-    char *output; /**< `output_size`: answers that wait to be read */
+    char *output; /**< `output_size` bytes: room for answers that are not yet sent */
     size_t output_size;
-    double *values;       /**< room for the monitoring values */
-    double jog_duty;      /**< largest size of a duty */
-    uint64_t jog_time_ns; /**< longest time */
+    double *values;       /**< room for all monitoring values */
+    double jog_duty;      /**< largest magnitude of the duty of `jog` */
+    uint64_t jog_time_ns; /**< longest time of `jog` */
 } epg_console_options_t;
 
 extern const epg_middleware_t epg_console;

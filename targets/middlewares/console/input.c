@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Lines from outside, whatever bytes they are made of.
+ * Received lines and their words.  The input can be any sequence of bytes.
  */
 #include <string.h>
 

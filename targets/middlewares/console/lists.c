@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Commands that tell: help, version, stats, ports.
+ * The commands that give information: help, version, stats, ports.
  */
 #include <stddef.h>
 #include <string.h>
@@ -77,7 +77,7 @@ void epg_console_version(epg_console_session_t *session, const epg_console_comma
 
 static const struct {
     const char *name;
-    size_t offset; /* of a uint32_t */
+    size_t offset; /* place of a uint32_t in epg_statistics_t */
 } counters[] = {
     {"cycles", offsetof(epg_statistics_t, cycles)},
     {"overruns", offsetof(epg_statistics_t, overruns)},
@@ -100,14 +100,14 @@ static const struct {
 
 enum { COUNTERS = sizeof counters / sizeof counters[0] };
 
-/** What a middleware that the console runs beside says of its connection; NULL: nothing. */
+/** Returns the state of the connection of the middleware beside the console; NULL if it has none. */
 static const char *connection(const epg_target_t *target)
 {
     const epg_middleware_t *middleware = target->middleware;
     return middleware != NULL && middleware->state != NULL ? middleware->state() : NULL;
 }
 
-/** First the state, then the counters, then what is computed from them, last what there is of a node. */
+/** Line 0 is the target's state.  Then come the counters, the mean computed from them, and the counters of a node. */
 static bool stats_line(epg_console_session_t *session, size_t index)
 {
     const epg_status_t *status = &session->status;
@@ -167,7 +167,7 @@ static void port(epg_console_session_t *session, const char *category, const cha
     }
 }
 
-/** Line `*index` of the values of topics; without so many, `*index` is less by their number. */
+/** Writes line `*index` of the values of `topics`.  Returns false if there are fewer; subtracts their number then. */
 static bool value_line(epg_console_session_t *session, const char *category, const epg_topic_t *topics, size_t count,
                        size_t *index)
 {
@@ -237,7 +237,7 @@ size_t epg_console_find_signal(const epg_console_session_t *session, const char 
         }
         if (last != NULL && strcmp(last + 1, name) == 0) {
             if (found != SIZE_MAX) {
-                return SIZE_MAX; /* an input and an output of the same name */
+                return SIZE_MAX; /* ambiguous: an input and an output have this name */
             }
             found = i;
         }

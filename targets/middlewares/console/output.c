@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Lines that wait to be read.
+ * The output of the console: a ring of bytes for lines that are not yet sent.
  */
 #include "output.h"
 
@@ -80,7 +80,7 @@ void epg_console_count(epg_console_output_t *output, const char *name, uint32_t 
 
 bool epg_console_end(epg_console_output_t *output)
 {
-    epg_console_text(output, "\r\n"); /* a terminal of bytes moves down and back */
+    epg_console_text(output, "\r\n"); /* a plain serial terminal needs both characters */
     const bool whole = !output->full;
     output->used += whole ? output->writing : 0U;
     output->writing = 0;
@@ -107,7 +107,7 @@ void epg_console_raw(epg_console_output_t *output, const char *bytes, size_t len
 bool epg_console_send(epg_console_output_t *output, const epg_stream_t *stream)
 {
     bool sent = false;
-    /* Twice at most: up to the end of the ring, and from its beginning. */
+    /* At most two parts: up to the end of the ring, then from its begin. */
     for (int part = 0; part < 2 && output->used > 0; part++) {
         const size_t length = output->begin + output->used > output->size ? output->size - output->begin : output->used;
         const size_t taken = stream->write(stream->context, output->bytes + output->begin, length);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Commands about what can be kept: get, set, save of parameters and names.
+ * The commands get, set and save, for parameters and for the names of the node.
  */
 #include "epg/parameters.h"
 
@@ -21,7 +21,7 @@ static size_t find(const epg_parameters_t *parameters, const char *name)
     return SIZE_MAX;
 }
 
-/** The parameters, or NULL after reporting that there are none. */
+/** Returns the parameters.  If there are none, reports this and returns NULL. */
 static epg_parameters_t *parameters_of(epg_console_session_t *session, const char *command)
 {
     epg_parameters_t *parameters = session->target->application->parameters;
@@ -62,7 +62,7 @@ static bool is_name(const char *word)
     return strcmp(word, "node") == 0 || strcmp(word, "namespace") == 0;
 }
 
-/** The name as it is kept, and as it is with the board's serial number. */
+/** Answers with the name as it is stored, and with the board's serial number in it. */
 static void tell_name(epg_console_session_t *session, const char *word)
 {
     const epg_target_t *target = session->target;
@@ -119,7 +119,7 @@ void epg_console_get(epg_console_session_t *session, const epg_console_command_t
     epg_console_answer(session, "get", parameter_line);
 }
 
-/** A command that sets one name; false if it is about parameters. */
+/** Carries out a command that sets a name.  Returns false for a command that sets parameters. */
 static bool sets_name(epg_console_session_t *session, const epg_console_command_t *command)
 {
     char *assignment = command->count == 2 ? strchr(command->words[1], '=') : NULL;

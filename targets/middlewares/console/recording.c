@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The command capture: a recording of every cycle, and its rows afterwards.
+ * The command capture: records signals in control cycles, and sends the rows afterwards.
  */
 #include <string.h>
 
 #include "epg/capture.h"
 #include "session.h"
 
-/** The n-th signal of the last recording, as the request points to it. */
+/** Returns the signal in a column of the last recording. */
 static const epg_signal_t *recorded_signal(const epg_console_session_t *session, size_t column)
 {
     const epg_target_t *target = session->target;
@@ -21,7 +21,7 @@ static const epg_signal_t *recorded_signal(const epg_console_session_t *session,
     return NULL;
 }
 
-/** The header, then the rows. */
+/** Line 0 is the header; then come the rows. */
 static bool row_line(epg_console_session_t *session, size_t index)
 {
     const epg_capture_t *capture = session->target->application->capture;
@@ -50,7 +50,9 @@ static bool row_line(epg_console_session_t *session, size_t index)
     return true;
 }
 
-/** Takes "when=<port>><number>", "when=<port><<number>" or "when=fault"; false after reporting what it is instead. */
+/**
+ * Reads the value of "when=": "<port>><number>", "<port><<number>" or "fault".  Reports a mistake and returns false.
+ */
 static bool read_trigger(epg_console_session_t *session, const char *text, epg_capture_request_t *request)
 {
     char name[EPG_CONSOLE_LINE];
@@ -79,7 +81,7 @@ static bool read_trigger(epg_console_session_t *session, const char *text, epg_c
     return true;
 }
 
-/** Takes "name=value"; false after reporting what is wrong. */
+/** Reads a setting "name=value".  Reports a mistake and returns false. */
 static bool read_setting(epg_console_session_t *session, const char *name, const char *text,
                          epg_capture_request_t *request)
 {
@@ -101,7 +103,7 @@ static bool read_setting(epg_console_session_t *session, const char *name, const
     return true;
 }
 
-/** Takes ports and settings; false after reporting what is wrong. */
+/** Reads the ports and settings of a command.  Reports a mistake and returns false. */
 static bool read_request(epg_console_session_t *session, const epg_console_command_t *command,
                          epg_capture_request_t *request)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * How commands answer.
+ * The answers of commands.
  */
 #include "session.h"
 

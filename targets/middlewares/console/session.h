@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * What the parts of the console share.
+ * The state of the console, and the functions that its source files share.
  */
 #ifndef EPG_CONSOLE_SESSION_H
 #define EPG_CONSOLE_SESSION_H
@@ -14,12 +14,12 @@
 #include "output.h"
 
 enum {
-    EPG_CONSOLE_LINE = 256,  /**< longest command */
-    EPG_CONSOLE_WORDS = 24,  /**< most words of a command */
-    EPG_CONSOLE_WATCHED = 32 /**< most values of a watch line */
+    EPG_CONSOLE_LINE = 256,  /**< bytes of the longest command */
+    EPG_CONSOLE_WORDS = 24,  /**< largest number of words in a command */
+    EPG_CONSOLE_WATCHED = 32 /**< largest number of values in a watch line */
 };
 
-/** A line from outside, cut into words. */
+/** A command: a received line, split into words. */
 typedef struct epg_console_command {
     size_t count;
     char *words[EPG_CONSOLE_WORDS];
@@ -28,61 +28,61 @@ typedef struct epg_console_command {
 typedef struct epg_console_session epg_console_session_t;
 
 /**
- * Writes line `index` of an answer, from its first word on; false, and nothing is written, behind the last one.  Called
- * again with the same index when there was no room for the line.
+ * Begins and writes line `index` of an answer, without its end.  Returns false, and writes nothing, after the last
+ * line.  It is called again with the same index if there was no room for the line.
  */
 typedef bool epg_console_list_t(epg_console_session_t *session, size_t index);
 
-/** What keeps the next command waiting. */
+/** The event that the next command waits for. */
 typedef enum epg_console_wait {
-    EPG_CONSOLE_READY,
-    EPG_CONSOLE_APPLYING, /**< changes of parameters, until the control side has made them */
-    EPG_CONSOLE_ENABLING, /**< a request, until a cycle has acted on it */
-    EPG_CONSOLE_DISABLING
+    EPG_CONSOLE_READY,    /**< none */
+    EPG_CONSOLE_APPLYING, /**< the control side makes changes of parameters */
+    EPG_CONSOLE_ENABLING, /**< a cycle acts on a request to enable */
+    EPG_CONSOLE_DISABLING /**< a cycle acts on a request to disable */
 } epg_console_wait_t;
 
-/** Lines as they come in. */
+/** The line that is being received. */
 typedef struct epg_console_input {
     char line[EPG_CONSOLE_LINE + 1];
     size_t length;
     bool too_long;
-    bool no_text;  /**< the line holds bytes that are no text */
-    bool complete; /**< the line is to be carried out */
-    bool echo;
+    bool no_text;  /**< the line contains bytes that are not ASCII text */
+    bool complete; /**< the line has ended and must be carried out */
+    bool echo;     /**< received characters are sent back */
 } epg_console_input_t;
 
 struct epg_console_session {
     const epg_target_t *target;
     const epg_console_options_t *options;
     const epg_stream_t *stream;
-    uint64_t start_ns; /**< what times are counted from */
-    uint64_t now_ns;
+    uint64_t start_ns; /**< time 0 of all times in answers, in board time */
+    uint64_t now_ns;   /**< board time of this poll */
     bool connected;
-    bool connected_before; /**< at any time since the start */
+    bool connected_before; /**< the console was connected at least once since the start */
 
     epg_console_input_t input;
     epg_console_output_t output;
-    uint64_t progress_ns; /**< when the stream last took something, or had nothing to take */
+    uint64_t progress_ns; /**< last instant at which the stream accepted bytes, or there were none to send */
 
-    epg_status_t status; /**< newest */
+    epg_status_t status; /**< newest status */
     bool has_status;
 
-    epg_console_list_t *list; /**< the answer of several lines that is being written; NULL: none */
-    const char *list_command; /**< that it answers; a literal */
-    size_t list_index;
-    size_t list_selected[EPG_CONSOLE_WORDS]; /**< what it is about, if it is not about everything */
-    size_t list_count;                       /**< of `list_selected` */
+    epg_console_list_t *list;                /**< writer of the present answer of several lines; NULL: there is none */
+    const char *list_command;                /**< command that it answers; a string literal */
+    size_t list_index;                       /**< next line of the answer */
+    size_t list_selected[EPG_CONSOLE_WORDS]; /**< indices of the items in the answer, if they were selected */
+    size_t list_count;                       /**< number of `list_selected`; 0: the answer contains all items */
 
     epg_console_wait_t wait;
     const char *wait_command;
     uint64_t wait_since_ns;
-    uint32_t wait_cycles; /**< cycles run when it began */
+    uint32_t wait_cycles; /**< number of control cycles at the begin of the wait */
 
     bool watching;
-    size_t watched[EPG_CONSOLE_WATCHED]; /**< monitoring values */
+    size_t watched[EPG_CONSOLE_WATCHED]; /**< value indices of the watched monitoring values */
     size_t watched_count;
-    uint64_t watch_next_ns;
-    uint64_t watch_shown_ns; /**< time of the values shown last */
+    uint64_t watch_next_ns;  /**< next watch line */
+    uint64_t watch_shown_ns; /**< tick of the values in the last watch line */
 
     bool jogging;
     bool recording;
@@ -90,45 +90,45 @@ struct epg_console_session {
 
 /* console.c ---------------------------------------------------------------------------------------------------- */
 
-/** "ok <command>", and whatever the caller adds before epg_console_end_or_drop(). */
+/** Begins the line "ok <command>".  The caller may append to it, and must call epg_console_end_or_drop(). */
 void epg_console_ok(epg_console_session_t *session, const char *command);
 
-/** "error <command> <message>"; `about`, if not NULL, follows in quotes. */
+/** Writes the line "error <command> <message>".  `about`, if not NULL, follows in quotes. */
 void epg_console_error(epg_console_session_t *session, const char *command, const char *message, const char *about);
 
 /** Begins an answer of several lines, which ends with "ok <command>". */
 void epg_console_answer(epg_console_session_t *session, const char *command, epg_console_list_t *list);
 
-/** Keeps the next command waiting. */
+/** Makes the next command wait for an event. */
 void epg_console_wait_for(epg_console_session_t *session, const char *command, epg_console_wait_t wait);
 
-/** `fault` as one word. */
+/** Appends " fault=" with the name of the fault as one word, and its component. */
 void epg_console_fault(epg_console_session_t *session, const epg_status_t *status);
 
-/** The node's name, with the board's serial number in it. */
+/** Appends " node=" with the node's name, in which "$serial" is replaced. */
 void epg_console_node(epg_console_session_t *session);
 
-/** Seconds since the start of a time of epg_port_time_ns(). */
+/** Returns the nanoseconds from the start of the console to the board time `time_ns`. */
 uint64_t epg_console_since_start(const epg_console_session_t *session, uint64_t time_ns);
 
 /* input.c ------------------------------------------------------------------------------------------------------ */
 
-/** Takes what has arrived, up to the end of a line; true if there is a line now. */
+/** Takes the bytes that have arrived, up to the end of a line. */
 void epg_console_read(epg_console_session_t *session);
 
-/** Forgets the line. */
+/** Drops the line. */
 void epg_console_input_clear(epg_console_input_t *input);
 
-/** Cuts `line` into words, in place; false if there are too many. */
+/** Splits `line` into words, in place.  Returns false if there are too many. */
 bool epg_console_cut(char *line, epg_console_command_t *command);
 
-/** Cuts "name=value" in place; `*value` is a NULL pointer when there is no "=". */
+/** Splits "name=value" in place.  `*value` becomes NULL if there is no "=". */
 void epg_console_assignment(char *word, const char **value);
 
-/** Reads a number that is the whole of `text`. */
+/** Reads a number.  Returns false if `text` is not a number. */
 bool epg_console_number(const char *text, double *value);
 
-/** Reads a whole number from 0 to `largest` that is the whole of `text`. */
+/** Reads a whole number from 0 to `largest`.  Returns false if `text` is not such a number. */
 bool epg_console_whole(const char *text, uint32_t largest, uint32_t *value);
 
 /* Commands ----------------------------------------------------------------------------------------------------- */
@@ -148,21 +148,24 @@ void epg_console_watch(epg_console_session_t *session, const epg_console_command
 void epg_console_capture(epg_console_session_t *session, const epg_console_command_t *command);
 void epg_console_echo(epg_console_session_t *session, const epg_console_command_t *command);
 
-/** Looks whether the jog that was asked for has ended. */
+/** Answers a jog that has ended. */
 void epg_console_poll_jog(epg_console_session_t *session);
 
-/** Looks whether a recording has ended. */
+/** Reports a recording that has ended. */
 void epg_console_poll_capture(epg_console_session_t *session);
 
 /** Writes a watch line if one is due. */
 void epg_console_poll_watch(epg_console_session_t *session);
 
-/** Finds a signal by "inputs.name", or by its name alone if that is clear.  SIZE_MAX if there is none. */
+/**
+ * Finds a signal by its full name ("inputs.name"), or by "name" if this is unambiguous.  Returns its index, SIZE_MAX if
+ * there is none.
+ */
 size_t epg_console_find_signal(const epg_console_session_t *session, const char *name);
 
 /**
- * Which value of `topic` is called `name`, which may be written without the slash it begins with; SIZE_MAX if none is.
- * Topics for other things than values have none.
+ * Finds a value of `topic` by its name, whose leading slash may be omitted.  Returns its index in the message, SIZE_MAX
+ * if there is none.  Only topics with the role EPG_TOPIC_VALUES have values.
  */
 size_t epg_console_find_value(const epg_topic_t *topic, const char *name);
 

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Commands that act: setpoints, enable, disable, jog, echo.
+ * The commands that act on the target: setpoints, enable, disable, jog; and echo.
  */
 #include <string.h>
 
 #include "session.h"
 
-/** True if the command has `count` words; else reports `usage`. */
+/** Returns true if the command has `count` words, otherwise reports `usage`. */
 static bool has_words(epg_console_session_t *session, const epg_console_command_t *command, size_t count,
                       const char *usage)
 {
@@ -27,7 +27,7 @@ void epg_console_enable(epg_console_session_t *session, const epg_console_comman
 
 void epg_console_disable(epg_console_session_t *session, const epg_console_command_t *command)
 {
-    /* whatever else the line says: it must act */
+    /* Disabling must act even if the line has more words. */
     (void)command;
     epg_control_request(session->target->control, false);
     epg_console_wait_for(session, "disable", EPG_CONSOLE_DISABLING);
@@ -47,7 +47,7 @@ void epg_console_echo(epg_console_session_t *session, const epg_console_command_
 
 /* Setpoints ---------------------------------------------------------------------------------------------------- */
 
-/** Setpoint called `name`; SIZE_MAX: there is none. */
+/** Returns the index of the setpoint with this name; SIZE_MAX if there is none. */
 static size_t find_setpoint(const epg_target_t *target, const char *name)
 {
     for (size_t i = 0; i < target->subscription_count; i++) {
@@ -138,7 +138,7 @@ void epg_console_jog(epg_console_session_t *session, const epg_console_command_t
     }
 }
 
-/** A number with its sign, whatever it is: that is what the eye looks for. */
+/** Appends a number that always has a sign, because the user must see the direction. */
 static void put_signed(epg_console_output_t *output, const char *name, double value, bool whole)
 {
     epg_console_key(output, name);

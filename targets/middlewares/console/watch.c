@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Values at the communication period, those of a line all of one control cycle.
+ * The command watch: values at the communication period.  All values of a line belong to one control cycle.
  */
 #include <string.h>
 
 #include "session.h"
 
-/** Monitoring value of a publication or signal; SIZE_MAX if nothing has that name. */
+/** Returns the value index of a publication or signal; SIZE_MAX if there is none with this name. */
 static size_t find(const epg_console_session_t *session, const char *name)
 {
     const epg_target_t *target = session->target;
@@ -21,7 +21,7 @@ static size_t find(const epg_console_session_t *session, const char *name)
     return signal == SIZE_MAX ? SIZE_MAX : target->signals[signal].index;
 }
 
-/** What a monitoring value is called; the publication that begins with it, or SIZE_MAX. */
+/** Returns the name of a monitoring value.  `*publication` is the publication whose first value it is, or SIZE_MAX. */
 static const char *name_of(const epg_target_t *target, size_t index, size_t *publication)
 {
     *publication = SIZE_MAX;
@@ -47,7 +47,7 @@ static void watch_value(epg_console_session_t *session, size_t index)
     }
 }
 
-/** Everything that is published, or if nothing is, all signals. */
+/** Watches all published values, or all signals if there are no publications. */
 static void watch_all(epg_console_session_t *session)
 {
     const epg_target_t *target = session->target;
@@ -94,7 +94,7 @@ void epg_console_poll_watch(epg_console_session_t *session)
     if (!session->watching || session->now_ns < session->watch_next_ns) {
         return;
     }
-    /* On its own schedule: a late line moves none of the next, and none is made up. */
+    /* The schedule is fixed: a late line does not delay the next ones, and missed lines are not written later. */
     const uint64_t period_ns = target->communication_period_ns;
     session->watch_next_ns += ((session->now_ns - session->watch_next_ns) / period_ns + 1U) * period_ns;
     const double *values = session->options->values;
@@ -104,7 +104,7 @@ void epg_console_poll_watch(epg_console_session_t *session)
     }
     memcpy(&time_ns, &values[target->time_index], sizeof time_ns);
     if (time_ns == session->watch_shown_ns) {
-        return; /* the model rests */
+        return; /* the model is stopped: there are no new values */
     }
     session->watch_shown_ns = time_ns;
     epg_console_begin(&session->output, "watch ");
