@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * Setting up and giving back quadrature decoders: epg/pico_quadrature.h.
+ * Quadrature encoders on the PIO: claims, settings and release of state machines.  See epg/pico_quadrature.h.
  */
 #include "epg/pico_quadrature.h"
 
@@ -8,10 +8,10 @@
 
 #define STATE_MACHINES 4u
 
-/** Program of a block that this file has loaded, and how many of its encoders run it. */
+/** The program that this file has loaded into a block, and the state machines that it has claimed there. */
 typedef struct block_use {
     epg_pico_quadrature_variant_t variant;
-    uint8_t claimed; /**< state machines, one bit each */
+    uint8_t claimed; /**< claimed state machines, one bit for each; 0: no program is loaded */
 } block_use_t;
 
 static block_use_t block_uses[NUM_PIOS];
@@ -38,7 +38,9 @@ static uint8_t lower_pin(const epg_pico_quadrature_config_t *config)
     return config->pin_a < config->pin_b ? config->pin_a : config->pin_b;
 }
 
-/** Both pins within the 32 that the block sees; RP2350B's blocks can be moved to 16 ... 47 by pio_set_gpio_base(). */
+/**
+ * Returns true if the block reaches both pins.  It reaches 32; on RP2350B, pio_set_gpio_base() can select 16 ... 47.
+ */
 static bool pins_in_reach(const epg_pico_quadrature_config_t *config, PIO pio)
 {
     const uint32_t low = lower_pin(config);
@@ -52,7 +54,7 @@ static bool pins_in_reach(const epg_pico_quadrature_config_t *config, PIO pio)
     return high - low == 1u && low >= first && high < first + 32u && high < NUM_BANK0_GPIOS;
 }
 
-/** Free: no function, or an input that gpio_init() has made. */
+/** Returns true if a pin has no function, or is an input that gpio_init() has made. */
 static bool pin_is_free(uint32_t pin)
 {
     const gpio_function_t function = gpio_get_function(pin);
@@ -81,10 +83,10 @@ static epg_pico_quadrature_error_t check(const epg_pico_quadrature_config_t *con
 static void set_up_pin(const epg_pico_quadrature_config_t *config, PIO pio, uint32_t pin)
 {
     gpio_set_pulls(pin, config->pull == EPG_PICO_QUADRATURE_PULL_UP, config->pull == EPG_PICO_QUADRATURE_PULL_DOWN);
-    pio_gpio_init(pio, pin); /* RP2350 isolates a pad until it has a function, PIO inputs too */
+    pio_gpio_init(pio, pin); /* on RP2350 a pad is isolated until it has a function; an input of PIO needs one, too */
 }
 
-/** The first sample must find the pins as they are: OSR holds their state before it. */
+/** Sets the registers.  OSR must hold the present levels of the pins, so that the first sample finds no change. */
 static void set_registers(PIO pio, uint32_t machine)
 {
     pio_sm_exec(pio, machine, pio_encode_set(pio_y, 0));
@@ -187,7 +189,7 @@ void epg_pico_quadrature_stop(epg_pico_quadrature_t *encoder)
     pio_sm_set_enabled(encoder->pio, machine, false);
     gpio_set_function(encoder->pin, GPIO_FUNC_NULL);
     gpio_set_function(encoder->pin + 1u, GPIO_FUNC_NULL);
-    if ((use->claimed & bit) == 0) { /* attached: not ours */
+    if ((use->claimed & bit) == 0) { /* an attached state machine belongs to the caller */
         return;
     }
     use->claimed = (uint8_t)(use->claimed & ~bit);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * Velocity from the times of edges: epg/pico_quadrature_velocity.h.
+ * Velocity from the times of edges.  See epg/pico_quadrature_velocity.h.
  */
 #include "epg/pico_quadrature_velocity.h"
 
@@ -18,7 +18,7 @@ void epg_pico_quadrature_velocity_init(epg_pico_quadrature_velocity_t *estimate,
     };
 }
 
-/** Time since the last edge, from the complement of the samples since then. */
+/** Returns the time since the last edge.  `word` contains the complement of the number of samples since then. */
 static double __not_in_flash_func(edge_age_ns)(const epg_pico_quadrature_velocity_t *estimate, uint32_t word)
 {
     const uint32_t samples = ~word & LONGEST_AGE;
@@ -27,13 +27,13 @@ static double __not_in_flash_func(edge_age_ns)(const epg_pico_quadrature_velocit
     return (double)cycles * estimate->cycle_ns;
 }
 
-/** No edge since the last read: it cannot be faster than one count in the time that has passed. */
+/** Limits the estimate while there is no new edge: the speed is at most one count in the time since the last edge. */
 static void __not_in_flash_func(let_fall)(epg_pico_quadrature_velocity_t *estimate, uint64_t now_ns)
 {
     const uint64_t since = now_ns - estimate->edge_ns;
     if (!estimate->edge_known || since >= estimate->timeout_ns) {
         estimate->velocity = 0.0;
-        estimate->edge_known = false; /* the next edge begins anew: its distance in time says nothing about speed */
+        estimate->edge_known = false; /* the time from this old edge to the next one is not a measure of the speed */
         return;
     }
     const double limit = 1e9 / (double)since;
@@ -66,7 +66,7 @@ epg_pico_quadrature_error_t __not_in_flash_func(epg_pico_quadrature_velocity_rea
     const double longest = (double)(LONGEST_AGE * EPG_PICO_QUADRATURE_VELOCITY_SAMPLE_CYCLES) * estimate->cycle_ns;
     const bool age_known = pause < longest;
     const uint64_t edge_ns = now_ns - (age_known && age < pause ? (uint64_t)age : 0u);
-    /* An edge lies half a count behind the count it leads to. */
+    /* The position of an edge is halfway between the counts before and after it. */
     const int64_t edge_twice = 2 * encoder->travelled - (moved > 0 ? 1 : -1);
     if (!age_known) {
         estimate->velocity = (double)moved * 1e9 / pause;

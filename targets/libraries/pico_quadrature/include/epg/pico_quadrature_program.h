@@ -1,14 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The PIO programs of src/pico_quadrature.pio as words: no header of an SDK is needed, so that any driver can use them.
+ * The PIO programs of src/pico_quadrature.pio as instruction words.  This header does not need an SDK, so any driver
+ * can use it.
  *
- * Each program must be loaded at address 0, once per PIO block.  A state machine is set up with
- * - IN base: the lower of the two pins; IN shifts left, OUT shifts right, no autopush and no autopull; divider 1;
- * - wrap from `..._WRAP` to `..._WRAP_TARGET`, first instruction `..._START`;
- * - Y 0 and OSR the present state of the pins (bit 0: the lower one), by instructions executed before it is enabled.
+ * A program must be loaded at address 0, once per PIO block.  Each state machine must have these settings:
+ * - The IN base is the lower of the two pins.  IN shifts left, OUT shifts right, without autopush and autopull.  The
+ *   clock divider is 1.
+ * - The program wraps from `..._WRAP` to `..._WRAP_TARGET`.  Its first instruction is `..._START`.
+ * - Y is 0, and OSR holds the present levels of the pins (bit 0: the lower pin).  The driver sets both by instructions
+ *   that it executes before it enables the state machine.
  *
- * With the lower pin A and the upper pin B, a count rises when A leads.
+ * If A is the lower pin and B the upper one, the count rises when A leads B.
  */
 #ifndef EPG_PICO_QUADRATURE_PROGRAM_H
 #define EPG_PICO_QUADRATURE_PROGRAM_H
@@ -17,18 +20,18 @@
 
 #define EPG_PICO_QUADRATURE_ORIGIN 0u
 
-/** PIO flag that a state machine raises when both pins change at once: this plus its number (0 ... 3). */
+/** State machine n (0 ... 3) raises the PIO flag with this number plus n when both pins change at once. */
 #define EPG_PICO_QUADRATURE_SKIPPED_FLAG 4u
 
-/** Program `count`: pushes the count, modulo 2^32. */
+/** The program `count` pushes the count modulo 2^32. */
 #define EPG_PICO_QUADRATURE_COUNT_LENGTH 28u
 #define EPG_PICO_QUADRATURE_COUNT_START 19u
 #define EPG_PICO_QUADRATURE_COUNT_WRAP_TARGET 19u
 #define EPG_PICO_QUADRATURE_COUNT_WRAP 27u
-/** Shortest distance of two edges that is counted exactly, in cycles: one more than the program needs, because a
- * synchroniser may take one of two edges a cycle later. */
+/** Shortest distance in cycles between two edges that are counted exactly.  It is one more than the program needs,
+ * because the synchroniser of a pin can delay one of the two edges by a cycle. */
 #define EPG_PICO_QUADRATURE_COUNT_EDGE_CYCLES 10u
-/** Longest time between two pushes at that distance, in cycles. */
+/** Longest time in cycles between two pushes while edges have at least that distance. */
 #define EPG_PICO_QUADRATURE_COUNT_SILENCE_CYCLES 90u
 
 static const uint16_t epg_pico_quadrature_count_program[EPG_PICO_QUADRATURE_COUNT_LENGTH] = {
@@ -37,8 +40,8 @@ static const uint16_t epg_pico_quadrature_count_program[EPG_PICO_QUADRATURE_COUN
 };
 
 /**
- * Program `velocity`: pushes the count modulo 2^16 in the upper half of a word, and in the lower half the complement of
- * the samples without change since the last edge, modulo 2^16.
+ * The program `velocity` pushes words of two halves.  The upper half is the count modulo 2^16.  The lower half is the
+ * complement of the number of samples without a change since the last edge, modulo 2^16.
  */
 #define EPG_PICO_QUADRATURE_VELOCITY_LENGTH 32u
 #define EPG_PICO_QUADRATURE_VELOCITY_START 22u
@@ -46,7 +49,7 @@ static const uint16_t epg_pico_quadrature_count_program[EPG_PICO_QUADRATURE_COUN
 #define EPG_PICO_QUADRATURE_VELOCITY_WRAP 31u
 #define EPG_PICO_QUADRATURE_VELOCITY_EDGE_CYCLES 12u
 #define EPG_PICO_QUADRATURE_VELOCITY_SILENCE_CYCLES 70u
-/** Cycles of a sample that finds no change, and from an edge to the first push after it (mean). */
+/** Cycles of a sample without a change, and mean number of cycles from an edge to the first push after it. */
 #define EPG_PICO_QUADRATURE_VELOCITY_SAMPLE_CYCLES 9u
 #define EPG_PICO_QUADRATURE_VELOCITY_LATENCY_CYCLES 22u
 
