@@ -46,11 +46,11 @@ extern "C" {
 /** The results of the functions. */
 typedef enum epg_pico_quadrature_error {
     EPG_PICO_QUADRATURE_OK = 0,
-    EPG_PICO_QUADRATURE_ERROR_PINS,          /**< A and B are not adjacent, or the block cannot reach them */
-    EPG_PICO_QUADRATURE_ERROR_PIN_IN_USE,    /**< a pin has another function, or is an output */
-    EPG_PICO_QUADRATURE_ERROR_PULL,          /**< pull-down on RP2350 (erratum RP2350-E9) */
-    EPG_PICO_QUADRATURE_ERROR_BLOCK,         /**< the chip does not have this PIO block */
-    EPG_PICO_QUADRATURE_ERROR_STATE_MACHINE, /**< the state machine does not exist or is claimed, or none is free */
+    EPG_PICO_QUADRATURE_ERROR_PINS,               /**< A and B are not adjacent, or the block cannot reach them */
+    EPG_PICO_QUADRATURE_ERROR_PIN_IN_USE,         /**< a pin has another function, or is an output */
+    EPG_PICO_QUADRATURE_ERROR_PULL,               /**< pull-down on RP2350 (erratum RP2350-E9) */
+    EPG_PICO_QUADRATURE_ERROR_BLOCK,              /**< the chip does not have this PIO block */
+    EPG_PICO_QUADRATURE_ERROR_STATE_MACHINE,      /**< no such state machine, or it is claimed, or none is free */
     EPG_PICO_QUADRATURE_ERROR_INSTRUCTION_MEMORY, /**< the block has another program, or the other variant */
     EPG_PICO_QUADRATURE_ERROR_HALTED              /**< the state machine does not run, so no position was read */
 } epg_pico_quadrature_error_t;
@@ -138,7 +138,7 @@ static inline bool epg_pico_quadrature_newest(const epg_pico_quadrature_t *encod
 {
     const uint32_t machine = encoder->state_machine;
     const uint32_t empty = 1u << (PIO_FSTAT_RXEMPTY_LSB + machine);
-    /* The words in the FIFO are old: they were pushed after the last read, and later words were lost when it was full. */
+    /* The words in the FIFO are old: they were pushed after the last read, until the FIFO was full. */
     uint32_t stale = encoder->pio->flevel >> (8u * machine + PIO_FLEVEL_RX0_LSB) & 0xfu;
     for (; stale > 0; stale--) {
         (void)encoder->pio->rxf[machine];
