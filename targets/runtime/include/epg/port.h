@@ -7,13 +7,13 @@
  * `targets/families/<name>`.  The portable code (runtime, component drivers, generated tables, model) includes no
  * header of an SDK.  It can therefore be compiled into a static library before the SDK's settings are known.
  *
- * All functions are called from the control side unless their comment names another context.  None of them may
- * allocate memory or report an error, because the generator has already checked pins, peripherals and ranges.  None of
- * them may block, except epg_port_wait_until() and epg_port_store_write().
+ * All functions are called from the control side unless their comment names another context.  The generator has already
+ * checked pins, peripherals and ranges.  A function must therefore not fail, and it must not allocate memory or block.
+ * Only epg_port_wait_until() waits, and only epg_port_store_write() may fail and block.
  *
  * Peripherals are described by constant structures, which the generator fills.  In them, `instance` is the number of
  * the hardware unit (a PIO block, a PWM slice, a timer), and `slot` is the number of the part of that unit that is used
- * (a state machine, a channel).  Pins have the numbers of the board's SoC.
+ * (a state machine, a channel).  Pins have the numbers that the description of the SoC gives them.
  */
 #ifndef EPG_PORT_H
 #define EPG_PORT_H
