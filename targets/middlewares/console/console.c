@@ -34,7 +34,7 @@ static const handler_t handlers[] = {
 
 static epg_console_session_t session;
 
-/** Handles the begin or the end of a connection: clears all state of the last one, and stops a jog. */
+/** Handles the start or the end of a connection: clears all state of the last one, and stops a jog. */
 static void begin_session(bool connected)
 {
     if (session.jogging) {

@@ -107,7 +107,7 @@ void epg_console_raw(epg_console_output_t *output, const char *bytes, size_t len
 bool epg_console_send(epg_console_output_t *output, const epg_stream_t *stream)
 {
     bool sent = false;
-    /* At most two parts: up to the end of the ring, then from its begin. */
+    /* At most two parts: up to the end of the ring, then from its start. */
     for (int part = 0; part < 2 && output->used > 0; part++) {
         const size_t length = output->begin + output->used > output->size ? output->size - output->begin : output->used;
         const size_t taken = stream->write(stream->context, output->bytes + output->begin, length);

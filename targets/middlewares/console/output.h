@@ -40,7 +40,7 @@ void epg_console_double(epg_console_output_t *output, double value);
 void epg_console_integer(epg_console_output_t *output, int64_t value);
 void epg_console_seconds(epg_console_output_t *output, uint64_t time_ns);
 
-/** Appends " name=", the begin of a value. */
+/** Appends " name=", the start of a value. */
 void epg_console_key(epg_console_output_t *output, const char *name);
 
 /** Appends " name=value" for a whole number. */

@@ -76,7 +76,7 @@ struct epg_console_session {
     epg_console_wait_t wait;
     const char *wait_command;
     uint64_t wait_since_ns;
-    uint32_t wait_cycles; /**< number of control cycles at the begin of the wait */
+    uint32_t wait_cycles; /**< number of control cycles at the start of the wait */
 
     bool watching;
     size_t watched[EPG_CONSOLE_WATCHED]; /**< value indices of the watched monitoring values */

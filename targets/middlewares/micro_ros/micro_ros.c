@@ -57,7 +57,7 @@ static struct {
     uint64_t alive_ns; /* last answer of the agent */
     uint64_t sync_ns;  /* next request for the time */
     uint64_t full_ns;  /* since then, the reliable stream has been full; 0: it has room */
-    uint64_t asked_ns; /* end of the last pause, or begin of the full stream */
+    uint64_t asked_ns; /* end of the last pause, or the instant at which the stream became full */
     uint64_t rest_ns;  /* end of the present pause, in which the library is not called */
 } ros;
 

@@ -35,7 +35,7 @@ static uint32_t size_of(const void *untyped)
 
 static size_t size_behind(const void *untyped, size_t alignment)
 {
-    (void)alignment; /* the alignment inside a message is counted from its own begin */
+    (void)alignment; /* the alignment inside a message is counted from its own start */
     return size_of(untyped);
 }
 

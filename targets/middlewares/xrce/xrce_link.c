@@ -172,7 +172,7 @@ static bool take(epg_xrce_link_t *link, uint8_t byte)
 /** Decodes one byte of the stream.  Returns true if a frame is complete. */
 static bool take_stuffed(epg_xrce_link_t *link, uint8_t byte)
 {
-    if (byte == BEGIN) { /* it occurs only at the begin of a frame, so the frame before it stays incomplete */
+    if (byte == BEGIN) { /* it occurs only at the start of a frame, so the frame before it stays incomplete */
         link->broken += link->part > SOURCE ? 1U : 0U;
         link->part = SOURCE;
         link->escaped = false;

@@ -15,7 +15,7 @@ enum { LEVEL_OK, LEVEL_WARN, LEVEL_ERROR };
 
 enum { DECIMAL_SIZE = 21 }; /* bytes of the largest 64-bit number, with the terminating zero */
 
-/** Writes a whole number to the end of `text`.  Returns its begin. */
+/** Writes a whole number to the end of `text`.  Returns its start. */
 static const char *decimal(uint64_t value, char text[DECIMAL_SIZE])
 {
     char *place = &text[DECIMAL_SIZE - 1];

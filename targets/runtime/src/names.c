@@ -53,7 +53,7 @@ static bool is_digit(char c)
     return c >= '0' && c <= '9';
 }
 
-/** Returns the length of the part of a name at the begin of `text`; 0 if there is none. */
+/** Returns the length of the part of a name at the start of `text`; 0 if there is none. */
 static size_t part(const char *text)
 {
     size_t length = 0;

@@ -56,7 +56,7 @@ void epg_setpoints_enable(const epg_application_t *application, uint64_t now_ns)
 /** Returns true if the newest sample is older than its timeout.  `initial`, before the first sample, has no age. */
 static bool too_old(const epg_setpoint_t *setpoint, const epg_setpoint_state_t *state, uint64_t now_ns)
 {
-    /* `fresh_ns` can be after `now_ns`: the sample was then received after the begin of this cycle. */
+    /* `fresh_ns` can be after `now_ns`: the sample was then received after the start of this cycle. */
     return state->count > 0 && now_ns > state->fresh_ns && now_ns - state->fresh_ns > setpoint->timeout_ns;
 }
 

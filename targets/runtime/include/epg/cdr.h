@@ -3,7 +3,7 @@
  * @file
  * Common Data Representation (CDR): the bytes of a ROS 2 message on the wire.
  *
- * Numbers are little endian.  Each number is aligned to its own size, counted from the begin of the message.  The
+ * Numbers are little endian.  Each number is aligned to its own size, counted from the start of the message.  The
  * encapsulation header of four bytes, which DDS puts before a message, is not part of it.
  *
  *     epg_cdr_writer_t writer = {.data = buffer, .size = sizeof buffer};

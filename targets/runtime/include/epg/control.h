@@ -3,15 +3,15 @@
  * @file
  * The control cycle: read the inputs, step the model, write the outputs, count.
  *
- * The generator writes one constant `epg_application_t` per target, which describes the target.  All other parts of the
- * control loop are in this file.
+ * The generator writes one constant `epg_application_t` per target, which describes the target.  The code that is the
+ * same for all targets is in control.c.
  *
  * Two contexts use a control object.  The *control side* calls epg_control_cycle() at every tick; it is a timer
  * interrupt, a processor core that does nothing else, or the thread with the highest priority.  The *communication
  * side* delivers setpoints, fetches monitoring values and requests enabling.  Neither side waits for the other: they
  * share only wait-free exchanges (epg/exchange.h) and a few atomic words.
  *
- * A control side looks like this, with `tick` from a hardware timer:
+ * A control side looks like this; a hardware timer gives the ticks:
  *
  *     epg_control_start(&control, &application);
  *     for (;;) {
@@ -82,7 +82,7 @@ typedef struct epg_setpoint_sample {
 typedef struct epg_setpoint_state {
     double value;      /**< value for the model, after timeout and rate limit */
     double target;     /**< newest sample, or the value that its timeout has put in its place */
-    uint64_t fresh_ns; /**< begin of its age: the reception, or the enabling if that was later */
+    uint64_t fresh_ns; /**< start of its age: the reception, or the enabling if that was later */
     uint32_t count;    /**< `count` of the newest sample; 0: none yet */
     bool timed_out;    /**< true from a timeout to the next sample or enabling */
 } epg_setpoint_state_t;
@@ -113,7 +113,7 @@ typedef struct epg_application {
     void (*monitor)(double *values); /**< fills `monitor_count` values, after the actuators are written; may be NULL */
     bool (*fail_safe)(void);         /**< true: the target may be enabled; runs before read(); NULL: no such input */
     uint16_t fail_safe_component;    /**< index of the component that is the fail-safe input */
-    void (*arrived)(size_t index);   /**< communication side: setpoint `index` has a new value; may be NULL */
+    void (*arrived)(size_t index);   /**< communication side: a value for setpoint `index` has arrived; may be NULL */
 
     size_t setpoint_count;
     const epg_setpoint_t *setpoints;
@@ -131,7 +131,10 @@ typedef struct epg_application {
     epg_jog_t *jog;               /**< actuators that can be moved by hand; NULL: none */
 } epg_application_t;
 
-/** The state of one target.  Its members belong to this file and control.c; other code calls the functions below. */
+/**
+ * The state of one target.  Only the runtime writes its members; other code calls the functions below.  Code on the
+ * control side may read the status.
+ */
 typedef struct epg_control {
     const epg_application_t *application;
     /* The status, which each cycle publishes at its end.  The union gives its members short names. */

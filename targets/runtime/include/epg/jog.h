@@ -49,7 +49,7 @@ typedef struct epg_jog {
     const epg_jog_actuator_t *actuators;
     size_t encoder_count;
     const epg_jog_encoder_t *encoders;
-    epg_jog_reading_t *first; /**< `encoder_count` readings at the begin of the movement */
+    epg_jog_reading_t *first; /**< `encoder_count` readings at the start of the movement */
     epg_jog_reading_t *last;  /**< `encoder_count` readings at its end */
 
     epg_handover_t handover; /**< of the readings and of the members below, except `stop` */

@@ -7,7 +7,7 @@
  * word "$serial", which is replaced by the board's serial number; so one firmware gives each board its own name.
  *
  * The rules are those of ROS 2.  A name consists of letters, digits and '_', and does not begin with a digit.  A
- * namespace is "/", or parts that each begin with '/'.  "$serial" must not be at the begin of a part, because a serial
+ * namespace is "/", or parts that each begin with '/'.  "$serial" must not be at the start of a part, because a serial
  * number can begin with a digit.
  */
 #ifndef EPG_NAMES_H

@@ -30,7 +30,7 @@ typedef struct epg_statistics {
     uint32_t cycles;            /**< control cycles run */
     uint32_t overruns;          /**< cycles that ended after the next tick, or that began after missed ticks */
     uint32_t missed;            /**< ticks without a cycle */
-    uint32_t lateness_max;      /**< longest time from a tick to the begin of its cycle */
+    uint32_t lateness_max;      /**< longest time from a tick to the start of its cycle */
     uint32_t computation_min;   /**< duration of the shortest cycle, without its wait for the output delay */
     uint32_t computation_max;   /**< duration of the longest cycle, the same */
     uint64_t computation_total; /**< sum of the durations of all cycles; the mean is this divided by `cycles` */
