@@ -1,18 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
-# What platforms on microcontrollers share: their port layer is that of the target's family, as sources of whoever links
-# a target.  docs/adding-a-family.md says which functions the family.cmake of a family defines.
+# Functions that the platforms bare_metal and freertos share.  Their port layer comes from the target's family of chips.
+# Its sources are compiled into each executable that links a target, with the SDK's settings for that executable.
+# docs/adding-a-family.md lists the functions that a family.cmake must define.
 
-# Sets <result> to FALSE, after an error, where target <name> cannot be built: no SDK, or one for another board.
+# Checks if target <name> can be built.  Reports an error and sets <result> to FALSE if not, for example without the SDK
+# or with the SDK set to another board.
 function(_epg_mcu_check name result)
   include("${EPG_FAMILY_CMAKE}")
   cmake_language(CALL _epg_${EPG_FAMILY}_check "${name}" good)
   if(NOT good)
-    set_property(TARGET ${name} PROPERTY EPG_FAILED TRUE) # what is said once need not be said of executables too
+    set_property(TARGET ${name} PROPERTY EPG_FAILED TRUE) # its executables need not report the same error again
   endif()
   set(${result} "${good}" PARENT_SCOPE)
 endfunction()
 
-# Adds the port layer to target <name>; SERVICE are the sources that say how communication is served.
+# Adds the port layer to target <name>.  SERVICE lists the sources that run the communication side on the platform;
+# LIBRARIES lists the libraries that they need.
 function(_epg_mcu_target name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SERVICE;LIBRARIES")
   set(shared "${CMAKE_CURRENT_FUNCTION_LIST_DIR}")
@@ -26,7 +29,7 @@ function(_epg_mcu_target name)
     cmake_language(CALL _epg_${EPG_FAMILY}_library epg_mcu)
   endif()
 
-  # Its own interface library, because the sources must not be compiled into the static library.
+  # An interface library: the sources must be compiled into the executable, not into the target's static library.
   add_library(${name}_port INTERFACE)
   file(GLOB of_both "${family}/${EPG_PLATFORM}/*.c")
   target_sources(${name}_port INTERFACE ${arg_SERVICE} ${of_both})
@@ -37,7 +40,7 @@ function(_epg_mcu_target name)
   set_target_properties(${name} PROPERTIES EPG_FAMILY "${EPG_FAMILY}")
 endfunction()
 
-# An executable that holds target <name> and nothing else; <main> is its main().
+# Adds an executable that contains target <name> and nothing else.  The source <main> has its main().
 function(_epg_mcu_executable executable name main)
   add_executable(${executable} "${main}")
   target_compile_definitions(${executable} PRIVATE EPG_MCU_START=${name}_start)

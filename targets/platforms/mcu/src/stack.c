@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * How much of the stacks has been used: painted before, looked at after.
+ * The use of the stacks: an unused stack is filled with a pattern.  The lowest word without the pattern shows how far
+ * the stack has been used.
  */
 #include "epg/family.h"
 

@@ -1,23 +1,26 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Starting and stopping a target; what the communication side does for it.
+ * Starts and stops a target, and runs its communication side.
  */
 #include "epg/family.h"
 #include "epg/serve.h"
 
-/** Bytes at the bottom of the main stack that its guard may cover, rounded up to where the MPU can begin. */
+/**
+ * Bytes at the bottom of the main stack that a guard region of the MPU may cover, including the alignment of the
+ * region.  A write there would be a fault.
+ */
 #define GUARD 64U
-/** Bytes below the stack pointer that painting must leave alone: it runs there. */
+/** Bytes below the stack pointer that must not be painted: the painting function uses them as its own stack. */
 #define IN_USE 128U
-/** How often stacks are looked at. */
+/** Time between two measurements of the stacks. */
 #define STACKS_PERIOD_US 250000U
 
 static const epg_family_target_t *running;
 static epg_mcu_error_t error;
 static epg_fault_t fault;
 
-/** Once per reset, before anything else has a chance to change what tells. */
+/** Runs before main(), once per reset: later code may change the registers that hold the cause of the reset. */
 static void __attribute__((constructor)) ask_for_the_cause_of_the_reset(void)
 {
     fault = epg_family_fault_before_reset();
@@ -32,7 +35,7 @@ static void report_stacks(void)
     epg_control_report_stack(control, EPG_STACK_COMMUNICATION, status.service_stack_used, status.service_stack_size);
 }
 
-/** One turn of the communication side. */
+/** One turn of the communication side; called at least once per millisecond. */
 static void serve(void)
 {
     static uint32_t stacks_us;

@@ -1,10 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * A small store in flash: two sectors, of which the one with the higher number counts.
+ * A small store in flash.
  *
- * A write erases the other sector, programs the bytes, and last the head with number, size and checksum, so that the
- * power may fail at any moment: what is found afterwards is either all new or all old.
+ * It uses two sectors in turn.  Each sector holds one record: data, and a head with number, size and checksum.  The
+ * valid record with the higher number is the current one.
+ *
+ * The power may fail at any moment of a write; afterwards the store must have either all old data or all new data.
+ * Therefore a write leaves the sector of the current record alone.  It erases the other sector, programs the data
+ * there, and programs the head last.  Without a complete head the new record is not valid, and the old one stays
+ * current.
  */
 #include <string.h>
 
@@ -17,9 +22,9 @@
 
 typedef struct head {
     uint32_t magic;
-    uint32_t number; /* of the write; never 0 */
-    uint32_t size;
-    uint32_t check; /* of number, size and bytes */
+    uint32_t number; /* counts the writes */
+    uint32_t size;   /* bytes of data */
+    uint32_t check;  /* Adler-32 of number, size and data */
 } head_t;
 
 static uint32_t check_of(const head_t *head, const uint8_t *data)
@@ -29,7 +34,7 @@ static uint32_t check_of(const head_t *head, const uint8_t *data)
     return epg_adler32(sum, data, head->size);
 }
 
-/** Copies the head of a sector; false if there is none that fits its bytes. */
+/** Copies the head of a sector into `*head`.  False if the sector has no valid record. */
 static bool valid_head(uint32_t index, head_t *head)
 {
     const uint8_t *sector = epg_family_store_sector(index);
@@ -40,7 +45,7 @@ static bool valid_head(uint32_t index, head_t *head)
     return head->magic == MAGIC && head->size <= EPG_FAMILY_STORE_CAPACITY && head->check == check_of(head, sector);
 }
 
-/** The sector that counts; false when nothing is stored. */
+/** Finds the sector of the current record.  False if nothing is stored. */
 static bool newest(uint32_t *index, head_t *head)
 {
     head_t heads[SECTORS];

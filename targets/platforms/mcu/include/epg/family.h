@@ -1,30 +1,37 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * What a family of chips brings to the platforms bare_metal and freertos, and what it gets from them.
+ * The interface between a family of chips and the platforms bare_metal and freertos.
  *
- * The platforms run the communication side, start and stop a target, watch stacks and keep the store's records.  A family
- * brings the registers: the tick and the control cycle in its interrupt, pins and peripherals (`epg/port.h`), outputs that
- * are safe, the watchdog, flash, transports.  Where the two sides run is the family's: on RP2040 and RP2350 control has
- * core 1 and communication core 0; on a chip with one core control is the interrupt of highest priority, and
- * communication runs below it.  Nothing here depends on that, since communication never waits for control.
+ * The platforms bring everything that does not depend on registers: they start and stop a target, run its communication
+ * side, measure the use of the stacks, and manage the records of the store.
  *
- * `epg/family_port.h`, a header of the family, defines what must be known to a compiler:
+ * A family brings everything that depends on registers: the tick and its interrupt, in which the control cycle runs;
+ * pins and peripherals (`epg/port.h`); safe outputs; the watchdog; flash; transports.
  *
- * | name                             | meaning |
- * |----------------------------------|---------|
- * | `epg_family_target_t`            | a target, generated: at least `target`, `transport`, `transport_title` and `console_transport`, as in `epg/pico.h` |
- * | `EPG_FAMILY_MIDDLEWARE_STACK`    | bytes of stack that middleware and console take; generated |
- * | `EPG_FAMILY_SERVICE_STACK_SIZE`  | bytes of the stack of communication on bare metal, where a user has set them; else undefined |
- * | `EPG_FAMILY_FPU_FRAME`           | bytes by which the frame of an exception is larger for the registers of an FPU |
- * | `EPG_FAMILY_SERVICE_TIMEOUT_MS`  | in which communication must have been served, or the watchdog is no longer fed |
- * | `EPG_FAMILY_STORE_CAPACITY`      | bytes of data that a sector of the store can hold, in front of its head |
- * | `epg_family_panic(format, ...)`  | makes outputs safe, says why where it can (NULL: nothing to say), never returns |
- * | `epg_family_sleep()`             | sleeps until an interrupt |
- * | `epg_family_in_interrupt()`      | whether the caller is an interrupt or exception |
- * | `epg_family_time_us()`           | low word of the microseconds since power-on: wraps, never stops |
+ * The family also chooses where the two sides run.  On RP2040 and RP2350 the control side has core 1 to itself, and
+ * the communication side runs on core 0.  On a chip with one core, the control side is the interrupt of the highest
+ * priority, and the communication side runs at a lower priority.  The platforms work with both, because the
+ * communication side never waits for the control side.
  *
- * The last four can be functions or macros.
+ * Types and constants that the compiler needs are in a header of the family, `epg/family_port.h`:
+ *
+ * - `epg_family_target_t`: the type of a generated target.  It has at least the members `target`, `transport`,
+ *   `transport_title` and `console_transport`, as in `epg/pico.h`
+ * - `EPG_FAMILY_MIDDLEWARE_STACK`: bytes of stack that the middleware and the console need; generated
+ * - `EPG_FAMILY_SERVICE_STACK_SIZE`: bytes of the communication side's stack on bare metal, if the user has set them;
+ *   else undefined
+ * - `EPG_FAMILY_FPU_FRAME`: bytes that the registers of an FPU add to the stack frame of an exception; 0 without FPU
+ * - `EPG_FAMILY_SERVICE_TIMEOUT_MS`: milliseconds without a turn of the communication side after which the watchdog
+ *   is no longer fed
+ * - `EPG_FAMILY_STORE_CAPACITY`: bytes of data that one sector of the store can hold, before its head
+ * - `epg_family_panic(format, ...)`: makes the outputs safe, reports the reason if it can (NULL: no reason), and
+ *   never returns
+ * - `epg_family_sleep()`: sleeps until the next interrupt
+ * - `epg_family_in_interrupt()`: true if the caller is an interrupt or an exception
+ * - `epg_family_time_us()`: low 32 bits of the microseconds since power-on; they wrap every 71 minutes, and never stop
+ *
+ * The last four may be functions or macros.
  */
 #ifndef EPG_FAMILY_H
 #define EPG_FAMILY_H
@@ -38,6 +45,7 @@
 #include "epg/fault.h"
 #include "epg/mcu.h"
 
+/** A stack: the words from `bottom` up to, but not including, `top`.  It is filled from the top downwards. */
 typedef struct epg_mcu_stack {
     uint32_t *bottom;
     uint32_t *top;
@@ -45,98 +53,146 @@ typedef struct epg_mcu_stack {
 
 /* What a family brings: control --------------------------------------------------------------------------------- */
 
-/** Whether a start is possible now; nothing has been started yet.  The place to verify clocks and priorities, too. */
+/**
+ * Called first at each start, before anything has been started.  Returns EPG_MCU_OK if a start is possible now, else
+ * the reason why not.  A family can check its clocks and priorities here.
+ */
 epg_mcu_error_t epg_family_check_start(const epg_family_target_t *target);
 
 /**
- * Starts the control loop, and returns when it waits for its first tick or when it has failed.
+ * Starts the control loop.  Returns EPG_MCU_OK when the loop waits for its first tick, or the error that stopped it.
  *
- * Calls epg_control_start(), latches `fault` (what ended the run before this one, once per reset) and starts the
- * watchdog.  Afterwards the interrupt of a timer that repeats by itself calls epg_control_cycle() in every period, with
- * the time at which the tick was due and how many were missed (`epg/ticks.h`).  Nothing that a user installs can delay
- * the interrupt, and it calls no function of a kernel.  It feeds the watchdog only while epg_control_silence() is below
- * EPG_FAMILY_SERVICE_TIMEOUT_MS.
+ * It calls epg_control_start(), latches `fault` (the fault that ended the run before the last reset; EPG_FAULT_NONE if
+ * there was none) and starts the watchdog.
+ *
+ * From then on the interrupt of a periodic timer calls epg_control_cycle() once per control period, with the time at
+ * which the tick was due and the number of missed ticks (`epg/ticks.h`).  The implementation must keep three rules:
+ *
+ * - The timer repeats by itself.  No code re-arms it, so a tick can be late but is never lost.
+ * - No interrupt that a user installs can delay the timer's interrupt, and that interrupt calls no function of a
+ *   kernel.
+ * - The interrupt feeds the watchdog only while the communication side is alive, that is, while epg_control_silence()
+ *   is less than EPG_FAMILY_SERVICE_TIMEOUT_MS in control cycles.
  */
 epg_mcu_error_t epg_family_control_start(const epg_family_target_t *target, epg_fault_t fault);
 
-/** Ends control: outputs are safe, peripherals given back and the watchdog off when this returns.  Also when it is off. */
+/**
+ * Stops the control loop.  When this returns, the outputs are safe, the peripherals are free again, and the watchdog is
+ * off.  Does nothing if the loop is not running.
+ */
 void epg_family_control_stop(void);
 
 /* What a family brings: safety ---------------------------------------------------------------------------------- */
 
-/** What the run before this one has left behind: EPG_FAULT_NONE, EPG_FAULT_WATCHDOG or EPG_FAULT_PROCESSOR. */
+/** The fault that caused the last reset: EPG_FAULT_NONE, EPG_FAULT_WATCHDOG or EPG_FAULT_PROCESSOR. */
 epg_fault_t epg_family_fault_before_reset(void);
 
-/** Puts a handler that makes outputs safe before the user's HardFault handler; may be called again. */
+/**
+ * Installs a HardFault handler that makes the outputs safe and then calls the user's HardFault handler.  It may be
+ * called more than once.
+ */
 void epg_family_guard_faults(void);
 
-/** The stack of main() and interrupts, and the one on which the control cycle runs: the same, if it has none of its own. */
+/** The stack of main() and of interrupts. */
 extern const epg_mcu_stack_t epg_family_main_stack;
+/** The stack on which the control cycle runs; the same as the main stack if the control cycle has no own stack. */
 extern const epg_mcu_stack_t epg_family_control_stack;
 
 /* What a family brings: communication on bare metal --------------------------------------------------------------- */
 
+/*
+ * On bare metal the communication side runs in an interrupt that no peripheral raises: software makes it pending.  It
+ * has the lowest priority, so every other interrupt can interrupt it, and main() belongs to the user.
+ */
+
 /**
- * Claims an interrupt of the lowest priority on the core of communication, with `handler` as its entry in the vector
- * table, and a timer that calls epg_mcu_service_wake() every `period_us` from an interrupt.  False: none is free.
+ * Claims two things on the core of the communication side: an interrupt of the lowest priority, whose entry in the
+ * vector table becomes `handler`, and a timer whose interrupt calls epg_mcu_service_wake() every `period_us`
+ * microseconds.
+ *
+ * Returns false if no interrupt or no timer is free.
  */
 bool epg_family_service_claim(void (*handler)(void), uint32_t period_us);
+
+/** Frees the interrupt and the timer that epg_family_service_claim() has claimed. */
 void epg_family_service_release(void);
 
-/** Makes that interrupt pending; from any interrupt. */
+/** Makes the claimed interrupt pending.  May be called from every interrupt. */
 void epg_family_service_pend(void);
 
 /* What a family brings: two sectors of flash ----------------------------------------------------------------------- */
 
+/*
+ * Flash keeps its contents without power.  It is erased in whole sectors, after which every bit is 1; programming a
+ * byte can only clear bits.  The store uses two sectors in turn (store.c), so that the old data stay until the new
+ * are complete.  A sector holds EPG_FAMILY_STORE_CAPACITY bytes of data, then the head.
+ */
+
 /**
- * The bytes of a sector, 0 or 1: EPG_FAMILY_STORE_CAPACITY of data, then the head.  NULL while reading them would fault,
- * as it does where flash has ECC and a word was cut while it was programmed.
+ * The contents of sector `index`, 0 or 1: the data, then the head.  NULL if a read would cause a fault.  This happens
+ * on flash with ECC, if the power failed while a word was being programmed.
  */
 const uint8_t *epg_family_store_sector(uint32_t index);
 
 /**
- * Erases a sector, programs `size` bytes of `data` and last of all the head, each place once.  False when that is not
- * allowed now: the target is enabled, or the image lies there.
+ * Erases sector `index`, programs `size` bytes of `data`, and the head last.  No place is programmed twice.
+ *
+ * Returns false if the flash must not be written: the target is enabled, or the sector is a part of the program.
  */
 bool epg_family_store_write(uint32_t index, const void *data, size_t size, const void *head, size_t head_size);
 
 /* What a family can call ------------------------------------------------------------------------------------------ */
 
-/** What the family's own functions for programs do: `epg_pico_start()` and so on.  From where communication runs. */
+/**
+ * The implementation of the functions that a family offers to programs, such as epg_pico_start().  They must be called
+ * on the core on which the communication side runs.
+ */
 bool epg_mcu_start(const epg_family_target_t *target);
 bool epg_mcu_stop(void);
 void epg_mcu_status(epg_mcu_status_t *status);
 
-/** Keeps `problem` as the error that epg_mcu_status() tells. */
+/** Stores `problem` as the error that epg_mcu_status() reports. */
 void epg_mcu_report(epg_mcu_error_t problem);
 
-/** Asks for communication at once: for the interrupt of a transport, on the core of communication. */
+/**
+ * Runs the communication side as soon as possible.  For the interrupt of a transport, on the communication side's
+ * core.
+ */
 void epg_mcu_service_wake(void);
 
-/** Fills the words from `bottom` to `end` with a pattern. */
+/** Fills the words from `bottom` up to, but not including, `end` with a pattern. */
 void epg_mcu_stack_paint(uint32_t *bottom, const uint32_t *end);
 
-/** Bytes that have ever been used of `stack`, whose first `unpainted` bytes are not looked at. */
+/**
+ * The largest number of bytes of `stack` that have been in use since it was painted.  The lowest `unpainted` bytes are
+ * ignored, because they were not painted.
+ */
 uint32_t epg_mcu_stack_used(const epg_mcu_stack_t *stack, uint32_t unpainted);
 
-/** Whether all of a painted stack has been used, and perhaps more. */
+/** True if a painted stack has been used completely.  It may then have overflowed, too. */
 bool epg_mcu_stack_full(const epg_mcu_stack_t *stack);
 
 /* Between the platforms and what they share ------------------------------------------------------------------------ */
 
 /**
- * What `serve` does besides its middleware, which is waiting within it: sends what that has written, calls `rest`, which
- * returns soon, and serves transports and console.
+ * Keeps the communication side running while its middleware waits for bytes within `serve`: sends the bytes that the
+ * middleware has written, calls `rest`, which must return soon, and serves the transports and the console.
  */
 void epg_mcu_serve_others(void (*rest)(void));
 
-/** Calls `serve` at least once per millisecond.  Each platform has this and the next two in its service.c. */
+/**
+ * Starts to call `serve`, one turn of the communication side, at least once per millisecond.  Returns false if that
+ * is not possible.  Each platform implements this function and the next two in its service.c.
+ */
 bool epg_mcu_service_start(void (*serve)(void));
 
-/** `serve` is not running, nor called again, when this has returned true.  False when the caller cannot wait for it. */
+/**
+ * Stops the calls of `serve`.  When this returns true, `serve` is not running and is not called again.  Returns false
+ * if the caller cannot wait for the end of `serve`.
+ */
 bool epg_mcu_service_stop(void);
 
-/** Fills in the stack on which `serve` runs. */
+/** Reports the stack on which `serve` runs: its size, and the largest number of bytes in use so far. */
 void epg_mcu_service_stack(uint32_t *size, uint32_t *used);
 
 #endif

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * What the port layer of a microcontroller tells the program, on bare metal and on FreeRTOS.
+ * Errors and measurements that the port layer reports to a program, on bare metal and on FreeRTOS.
  *
- * Free of any SDK, as generated code is.  The header of a family of chips (`epg/pico.h`) has the functions and the names
- * that programs use.
+ * This header includes no header of an SDK, because generated code includes it.  Programs use the functions and names
+ * in the header of their family of chips, for example `epg/pico.h`.
  */
 #ifndef EPG_MCU_H
 #define EPG_MCU_H
@@ -16,29 +16,30 @@
 extern "C" {
 #endif
 
-/** Why a target did not start or did not stop, or why the program did not get the core that controls. */
+/** The reason why a target did not start or stop, or why the program could not use the control side's core. */
 typedef enum epg_mcu_error {
     EPG_MCU_OK = 0,
-    EPG_MCU_ERROR_RUNNING,   /**< it runs already */
-    EPG_MCU_ERROR_CLOCK,     /**< a clock is not what the generator computed all dividers for */
-    EPG_MCU_ERROR_PLACEMENT, /**< code or tables of the control cycle lie in the wrong memory: another linker script? */
-    EPG_MCU_ERROR_RESOURCE,  /**< a peripheral or an interrupt is taken by somebody else */
-    EPG_MCU_ERROR_CORE,      /**< the core that controls did not answer */
-    EPG_MCU_ERROR_CALLER,    /**< a stop was called where it cannot wait */
-    EPG_MCU_ERROR_CORE_TAKEN /**< start: the program uses the core that controls; later: it has asked for it, in vain */
+    EPG_MCU_ERROR_RUNNING,   /**< a target is running already */
+    EPG_MCU_ERROR_CLOCK,     /**< a clock has not the frequency for which the generator computed the dividers */
+    EPG_MCU_ERROR_PLACEMENT, /**< code or tables of the control cycle are in the wrong memory: another linker script? */
+    EPG_MCU_ERROR_RESOURCE,  /**< other code uses a peripheral or an interrupt that the target needs */
+    EPG_MCU_ERROR_CORE,      /**< the control side's core did not answer */
+    EPG_MCU_ERROR_CALLER,    /**< stop was called from a context that cannot wait */
+    EPG_MCU_ERROR_CORE_TAKEN /**< at a start: the program uses the control side's core.  Later: the program has tried
+                                  to use that core while the target runs */
 } epg_mcu_error_t;
 
-/** What the port layer counts besides the statistics of the control cycle. */
+/** Measurements of the port layer.  The statistics of the control cycle are reported elsewhere (`epg/statistics.h`). */
 typedef struct epg_mcu_status {
-    epg_mcu_error_t error;       /**< the newest one; EPG_MCU_OK after a start */
-    bool after_watchdog;         /**< the watchdog ended the run before this one */
-    uint32_t control_stack_size; /**< bytes of the stack on which the control cycle runs, */
-    uint32_t control_stack_used; /**< and how many of them have ever been used */
-    uint32_t main_stack_size;    /**< of the stack that main() and interrupts use beside the control cycle */
-    uint32_t main_stack_used;
-    uint32_t service_stack_size; /**< of communication: of its interrupt on bare metal, of its task on FreeRTOS */
-    uint32_t service_stack_used;
-    uint32_t transport_lost; /**< bytes that the middleware's transport has received and lost */
+    epg_mcu_error_t error;       /**< the newest error; EPG_MCU_OK after a successful start */
+    bool after_watchdog;         /**< the watchdog or a processor fault ended the run before the last reset */
+    uint32_t control_stack_size; /**< bytes of the stack on which the control cycle runs */
+    uint32_t control_stack_used; /**< the largest number of its bytes in use so far */
+    uint32_t main_stack_size;    /**< bytes of the stack of main() and of interrupts, except the control cycle */
+    uint32_t main_stack_used;    /**< the largest number of its bytes in use so far */
+    uint32_t service_stack_size; /**< bytes of the communication side's stack: its interrupt or its FreeRTOS task */
+    uint32_t service_stack_used; /**< the largest number of its bytes in use so far */
+    uint32_t transport_lost;     /**< bytes that the middleware's transport has received and lost */
 } epg_mcu_status_t;
 
 #ifdef __cplusplus

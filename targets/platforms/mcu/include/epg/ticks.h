@@ -1,7 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Which tick a timer's interrupt is for, and how many were missed before it.
+ * The number of ticks that have passed since the last control cycle.
+ *
+ * A timer that repeats by itself raises one interrupt per period.  If an interrupt is handled more than a period
+ * late, two or more ticks have become one interrupt.  The clock shows how many: each whole period since the last tick
+ * is a tick.
  */
 #ifndef EPG_TICKS_H
 #define EPG_TICKS_H
@@ -9,13 +13,16 @@
 #include <stdint.h>
 
 typedef struct epg_mcu_ticks {
-    uint64_t due_ns; /**< of the newest tick */
-    int64_t period_ns;
+    uint64_t due_ns;   /**< time at which the newest tick was due */
+    int64_t period_ns; /**< control period */
 } epg_mcu_ticks_t;
 
 /**
- * Ticks that have passed since `due_ns`, none of which is late; the rest is the present one's.  0: the present one was
- * counted together with the one before.  Times of the clock are off by up to `tolerance_ns`.
+ * Returns the number of ticks between `ticks->due_ns` and `now_ns`, and moves `ticks->due_ns` to the newest of them.
+ * 1 is the normal result.  A result n > 1 means that n - 1 ticks were missed.  0 means that the tick of this interrupt
+ * was already counted in the cycle before; no cycle must run.
+ *
+ * The clock may differ from the true time by up to `tolerance_ns`, which must be much smaller than a period.
  */
 static inline uint32_t epg_mcu_ticks_pass(epg_mcu_ticks_t *ticks, uint64_t now_ns, int64_t tolerance_ns)
 {
