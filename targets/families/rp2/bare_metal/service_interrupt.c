@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The interrupt of communication on bare metal: one of core 0's that no peripheral has, and a hardware alarm of its own
- * (not the SDK's alarm pool) that asks for it.
+ * The interrupt in which the communication side runs on bare metal.
+ *
+ * It is one of core 0's interrupts that belong to no peripheral and that software makes pending.  A hardware alarm
+ * makes it pending periodically.  The alarm is claimed for this purpose alone; it is not one of the SDK's alarm pool.
  */
 #include "../src/parts.h"
 
@@ -13,7 +15,10 @@ static struct {
     void (*handler)(void);
 } service;
 
-/** Next time in whole periods from the present one: it may have passed already when an interrupt came in between. */
+/**
+ * Sets the alarm to one period from now.  An interrupt may delay this code until that time has passed; the SDK then
+ * does not set the alarm, and the next attempt uses a longer time.
+ */
 static void set_alarm(void)
 {
     absolute_time_t next = make_timeout_time_us(service.period_us);

@@ -3,9 +3,12 @@
  * @file
  * Time: the chip's microsecond timer, refined within a control cycle by core 1's SysTick.
  *
- * The timer is the same for both cores and independent of the PWM that makes the tick; its microseconds come from the
- * crystal, as clk_sys does, so the two never drift apart.  Within a cycle one microsecond is coarse: there time is that
- * of the tick plus clocks counted by the SysTick of core 1, which nobody else uses.
+ * Both cores read the same microsecond timer.  It does not depend on the PWM slice that makes the tick.  Its
+ * microseconds are derived from the same crystal as clk_sys, so timer and tick never drift apart.
+ *
+ * One microsecond is too coarse within a control cycle.  There, the time is the time at the begin of the cycle plus the
+ * clocks of clk_sys since then.  SysTick counts these clocks: a 24-bit counter in each core.  No other code uses core
+ * 1's.
  */
 #include "epg/port.h"
 
@@ -18,17 +21,17 @@
 
 static struct {
     uint64_t begin_ns;
-    uint32_t begin_us;      /* of the microsecond timer, low word */
-    uint32_t begin_systick; /* it counts down */
-    uint32_t range_us;      /* SysTick is unambiguous for longer than this */
+    uint32_t begin_us;      /* low 32 bits of the microsecond timer */
+    uint32_t begin_systick; /* SysTick counts down */
+    uint32_t range_us;      /* half of the time after which SysTick wraps: its count is unambiguous */
     uint32_t ns_per_clock;  /* times 2^24 */
     bool in_cycle;
 } cycle;
 
 uint64_t __not_in_flash_func(epg_pico_timer_us)(void)
 {
-    /* Not the latched registers, which both cores would fight for.  The low word wraps every 71 minutes: if it did
-     * between two readings of the high word, a second reading is from after that. */
+    /* The raw registers: the latched ones (timelr, timehr) have one latch for both cores.  The low word wraps every
+     * 71 minutes.  If the high word has changed between its two readings, the low word is read again, after the wrap. */
     uint32_t high = timer_hw->timerawh;
     uint32_t low = timer_hw->timerawl;
     const uint32_t again = timer_hw->timerawh;
@@ -82,7 +85,7 @@ uint64_t __not_in_flash_func(epg_port_time_ns)(void)
 
 void __not_in_flash_func(epg_port_wait_until)(uint64_t time_ns)
 {
-    /* Core 1 has nothing else to do; time passes, so this ends. */
+    /* A busy wait: core 1 has nothing else to do. */
     while (epg_port_time_ns() < time_ns) {
         tight_loop_contents();
     }

@@ -1,14 +1,20 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Core 1: the control cycle in the wrap interrupt of a reserved PWM slice, and nothing else.
+ * The control loop on core 1: one control cycle in each wrap interrupt of a reserved PWM slice.
  *
- * The tick's slice and those of the motors start with one write and never stop, so a tick comes at an exact multiple
- * of the PWM periods, and what a cycle writes takes effect at an exact one (RP2040 data sheet 4.5.2.6: TOP and CC are
- * taken over at the wrap).  Nothing re-arms the tick, so it can be late but never lost.
+ * Tick: the tick's slice and the slices of the outputs start with one write to a register, and do not stop while the
+ * target runs.  The distance between a tick and the wraps of the outputs' slices is therefore the same in each run.  A
+ * level that a cycle writes takes effect at the next wrap of its slice (RP2040 data sheet 4.5.2.6: TOP and CC are taken
+ * over at the wrap).  The counter repeats by itself, so a tick can be late but is never lost.
  *
- * The interrupt is enabled on core 1 only, which sleeps between ticks with a vector table of its own: nothing that
- * core 0 installs can run here.  Whether a tick was missed is asked of the microsecond timer, not of the PWM.
+ * Isolation: the interrupt is enabled on core 1 only.  Core 1 has its own vector table and sleeps between ticks, so no
+ * handler that core 0 installs can run there.
+ *
+ * Missed ticks: two wraps before one interrupt look the same as one wrap.  The microsecond timer shows how many there
+ * were.
+ *
+ * Requests of core 0 (to stop, or to keep out of flash) are answered after the outputs of a cycle.
  */
 #include <string.h>
 
@@ -20,34 +26,35 @@
 #define WRAP_IRQ PWM_IRQ_WRAP
 #define WRAP_ENABLE (&pwm_hw->inte)
 #else
-/* The SDK's pwm_set_irq_enabled() and with it most programs use the other one. */
+/* RP2350 has two wrap interrupts.  The SDK's pwm_set_irq_enabled(), and so most programs, use number 0. */
 #define WRAP_IRQ PWM_IRQ_WRAP_1
 #define WRAP_ENABLE (&pwm_hw->irq_ctrl[1].inte)
 #endif
 
 /**
- * Bytes of core 1's stack; epg_pico_status() tells how many are used.  Measured on RP2040 with JIWY, all the console
- * can do, and USB flooded: 528.  The rest is for models that need more: nothing else lies in SCRATCH_X.
+ * Bytes of core 1's stack; epg_pico_status() reports how many have been used.  528 bytes were measured on RP2040 with
+ * JIWY, all commands of the console, and USB flooded.  The rest is for models that need more: the memory bank SCRATCH_X
+ * contains nothing else.
  */
 #ifndef EPG_PICO_CONTROL_STACK_SIZE
 #define EPG_PICO_CONTROL_STACK_SIZE 3072
 #endif
 
-/** Milliseconds without a control cycle until the watchdog resets the chip; several periods where those are long. */
+/** Milliseconds without a control cycle after which the watchdog resets the chip; at least four control periods. */
 #ifndef EPG_PICO_WATCHDOG_MS
 #define EPG_PICO_WATCHDOG_MS 100
 #endif
 
-/** How long a flash write may keep core 1 waiting before the watchdog is no longer fed. */
+/** The longest write to flash.  If core 1 must wait longer, it no longer feeds the watchdog. */
 #define HOLD_LIMIT_US 5000000U
 
-/** Until core 1 has started all peripherals and has had its first tick, and until it has stopped. */
+/** Core 1 must have started all peripherals within this time, or have stopped. */
 #define START_TIMEOUT_US 500000U
 
-/** Two readings of the microsecond timer differ by up to this from the true time between them. */
+/** Resolution of the microsecond timer: the difference of two readings is off by up to this time. */
 #define TIMER_NS 1000
 
-/* RP2040-E1: its watchdog counts twice per microsecond. */
+/* Erratum RP2040-E1: the watchdog of the RP2040 counts twice per microsecond. */
 #if PICO_RP2040
 #define WATCHDOG_STEPS_PER_US 2U
 #else
@@ -60,9 +67,12 @@ typedef enum state { STATE_OFF, STATE_STARTING, STATE_FAILED, STATE_RUNNING, STA
 
 static atomic_uint state;
 
-/* Each word has one writer: a request is a number (0: none), an answer is (request << 1) | granted. */
-static atomic_uint hold_request; /* core 0's */
-static atomic_uint hold_answer;  /* core 1's */
+/*
+ * A hold: core 0 asks core 1 to wait in RAM while flash is written.  Each of the two words has one writer, so no lock
+ * is needed.  A request is a number, 0 for none.  Its answer is (request << 1) | granted.
+ */
+static atomic_uint hold_request; /* written by core 0 */
+static atomic_uint hold_answer;  /* written by core 1 */
 
 static struct {
     const epg_pico_target_t *pico;
@@ -70,16 +80,16 @@ static struct {
     const epg_application_t *application;
     epg_mcu_ticks_t ticks;
     uint32_t tick_bit;
-    uint32_t watchdog_load; /* 0: off */
-    uint32_t silence_limit; /* control cycles */
-    epg_fault_t fault;      /* that ended the run before this one */
+    uint32_t watchdog_load; /* value of the LOAD register; 0: the watchdog is off */
+    uint32_t silence_limit; /* control cycles without a turn of the communication side */
+    epg_fault_t fault;      /* fault that ended the run before the last reset */
 } loop;
 
-/* 512 bytes hold the tables of both chips; VTOR wants a power of two. */
+/* Aligned to a power of two, as VTOR requires; 512 bytes are enough for the tables of both chips. */
 static exception_handler_t vectors[VECTORS] __attribute__((aligned(512)));
 static_assert(sizeof vectors <= 512, "the alignment of a vector table");
 
-/* A section of the SDK's linker scripts: at the end of SCRATCH_X, a memory bank that core 0 leaves alone. */
+/* The SDK's linker scripts put this section at the end of SCRATCH_X, a memory bank that core 0 does not use. */
 static uint32_t stack[EPG_PICO_CONTROL_STACK_SIZE / sizeof(uint32_t)]
     __attribute__((section(".stack1.epg"), aligned(32)));
 const epg_mcu_stack_t epg_family_control_stack = {.bottom = stack, .top = stack + sizeof stack / sizeof stack[0]};
@@ -98,7 +108,7 @@ static inline uint32_t pass_ticks(uint64_t now_ns)
     return epg_mcu_ticks_pass(&loop.ticks, now_ns, TIMER_NS);
 }
 
-/** Waits in RAM while core 0 writes to flash.  The outputs are safe and stay so. */
+/** Waits in RAM while core 0 writes to flash.  The target is disabled, so its outputs are safe and stay safe. */
 static void __not_in_flash_func(wait_in_hold)(uint32_t request)
 {
     const uint32_t begin_us = timer_hw->timerawl;
@@ -107,12 +117,12 @@ static void __not_in_flash_func(wait_in_hold)(uint32_t request)
             feed_watchdog();
         }
     }
-    /* Ticks of this time are not missed: nobody waited for them. */
+    /* Do not count ticks during the hold as missed: the loop was stopped on purpose. */
     pwm_hw->intr = loop.tick_bit;
     (void)pass_ticks(epg_pico_timer_us() * 1000U);
 }
 
-/** After the outputs of a cycle: what core 0 has asked for. */
+/** Answers a request of core 0, after the outputs of a cycle: to wait while flash is written, or to stop. */
 static void __not_in_flash_func(answer)(uint32_t request)
 {
     if (request != 0U && atomic_load(&hold_answer) >> 1 != request) {
@@ -132,7 +142,7 @@ static void __not_in_flash_func(answer)(uint32_t request)
 static void __not_in_flash_func(on_wrap)(void)
 {
     const epg_pico_tick_t *tick = &loop.pico->tick;
-    /* Before time is read: a wrap from here on is an interrupt of its own. */
+    /* Clear the interrupt before the time is read.  A later wrap then raises the interrupt again. */
     pwm_hw->intr = loop.tick_bit;
     const uint32_t count = pwm_hw->slice[tick->slice].ctr;
     const uint64_t now_ns = epg_pico_timer_us() * 1000U;
@@ -141,7 +151,8 @@ static void __not_in_flash_func(on_wrap)(void)
         return;
     }
 
-    /* The counter says to a clock how long ago the wrap was, the timer says whether it is that wrap's counter. */
+    /* The slice's counter shows, to one clock, how long ago its last wrap was.  It is used only if it agrees with the
+     * timer: if they differ, the slice has wrapped again since the interrupt. */
     const uint32_t fine_ns = epg_pico_clocks_to_ns(count * tick->prescaler);
     const int64_t difference = (int64_t)(loop.ticks.due_ns + fine_ns - now_ns);
     const bool agree = difference > -2 * TIMER_NS && difference < 2 * TIMER_NS;
@@ -160,7 +171,7 @@ static void __not_in_flash_func(on_wrap)(void)
 
 /* Core 1 --------------------------------------------------------------------------------------------------------- */
 
-/** Does nothing but sleep; interrupts do the rest. */
+/** All work of core 1 is done in the wrap interrupt. */
 static void __attribute__((noreturn)) __not_in_flash_func(sleep_between_ticks)(void)
 {
     for (;;) {
@@ -217,13 +228,13 @@ static void core1_main(void)
 
 /* Core 0 --------------------------------------------------------------------------------------------------------- */
 
-/** True unless `address` is in flash, which a cycle must not touch. */
+/** True if `address` is in RAM.  The control cycle must not read flash. */
 static bool in_ram(uintptr_t address)
 {
     return address >= SRAM_BASE && address < SRAM_END;
 }
 
-/** Whether the linker script has put the control cycle into RAM: some of its code and its tables stand for it. */
+/** True if the linker script has put the control cycle into RAM.  Some of its functions and tables are checked. */
 static bool placed_in_ram(const epg_application_t *application)
 {
     return in_ram((uintptr_t)&epg_control_cycle) && in_ram((uintptr_t)application) &&
@@ -231,7 +242,7 @@ static bool placed_in_ram(const epg_application_t *application)
            in_ram((uintptr_t)application->safe) && in_ram((uintptr_t)application->model_step);
 }
 
-/** Waits until core 1 has left `from`; false after START_TIMEOUT_US. */
+/** Waits until core 1 has changed `state` from `from` to another value.  False after START_TIMEOUT_US. */
 static bool wait_while(state_t from)
 {
     const uint32_t begin_us = timer_hw->timerawl;
@@ -266,7 +277,8 @@ epg_pico_error_t epg_family_control_start(const epg_pico_target_t *pico, epg_fau
     atomic_store(&hold_answer, 0U);
     atomic_store(&state, STATE_STARTING);
 
-    /* RP2040 data sheet 2.1.5: at equal priority core 0's flood of accesses could delay core 1's by a clock each. */
+    /* Core 1's accesses to memory go first.  At equal priority each access of core 0 could delay one of core 1 by a
+     * clock (RP2040 data sheet 2.1.5). */
     busctrl_hw->priority = BUSCTRL_BUS_PRIORITY_PROC1_BITS;
     epg_mcu_stack_paint(epg_family_control_stack.bottom, epg_family_control_stack.top);
     __real_multicore_reset_core1();
@@ -306,7 +318,7 @@ bool epg_pico_control_hold(uint32_t timeout_us)
 {
     static uint32_t number;
     if (atomic_load(&state) != STATE_RUNNING) {
-        return !epg_pico_core1_taken(); /* else core 1 does nothing */
+        return !epg_pico_core1_taken(); /* if the program does not use core 1 either, no code runs there */
     }
     number = (number + 1U) & 0x7FFFFFFFU;
     const uint32_t request = number == 0U ? ++number : number;

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Core 1 belongs to the control loop while a target runs, and else to the program.
+ * Arbitration of core 1: the control loop has it while a target runs; at other times the program may use it.
  *
- * The linker leads the program's calls of the SDK's functions here (--wrap), so that neither takes the core from the
- * other: a target does not start while the program has core 1, and a program cannot have it while a target runs.
+ * The linker redirects the program's calls of the SDK's functions for core 1 to the functions here (--wrap).  A target
+ * does not start while the program uses core 1, and the program cannot use core 1 while a target runs.
  */
 #include "parts.h"
 
@@ -28,7 +28,7 @@ epg_mcu_error_t epg_family_check_start(const epg_family_target_t *target)
     return taken ? EPG_MCU_ERROR_CORE_TAKEN : EPG_MCU_OK;
 }
 
-/** Whether the program may have core 1 now. */
+/** True if the program may use core 1 now. */
 static bool granted(void)
 {
     if (epg_pico_control_runs()) {
@@ -46,7 +46,7 @@ void __wrap_multicore_reset_core1(void)
     }
 }
 
-/** The program gets the control loop's stack, which is not in use then and is larger than the SDK's for core 1. */
+/** The program's code on core 1 runs on the control loop's stack, which is not in use then. */
 void __wrap_multicore_launch_core1(void (*entry)(void))
 {
     const epg_mcu_stack_t *stack = &epg_family_control_stack;

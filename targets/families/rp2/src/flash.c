@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Writing to flash while a target runs: only while it is disabled, with core 1 waiting in RAM; the store's two sectors.
+ * Writes to flash while a target runs, and the two sectors of the store.
  *
- * While flash is erased or written nothing can be read from it.  The control cycle lies in RAM, but what a user has
- * added to it may not.  So flash_safe_execute() of the SDK asks this first (get_flash_safety_helper() is its hook for
- * programs that share core 1 in their own way): when outputs are not safe, it returns PICO_ERROR_NOT_PERMITTED.
+ * The program is in the same flash chip.  While a sector is erased or programmed, nothing can be read from flash; code
+ * that is read from there would crash.  The control cycle is in RAM, but functions that a user has added to it may be
+ * in flash.  Flash is therefore written only while the target is disabled, and core 1 waits in RAM meanwhile.
+ *
+ * This holds for all code that uses the SDK's flash_safe_execute().  The SDK lets programs replace its protection of
+ * core 1 (get_flash_safety_helper()); the one here refuses with PICO_ERROR_NOT_PERMITTED while the target is enabled.
  */
 #include "flash.h"
 
@@ -13,12 +16,15 @@
 
 #include "parts.h"
 
-/** Bytes from the start of flash.  The last sector is left to others: picotool's mark for RP2350-E10, for one. */
+/**
+ * Place of the store, in bytes from the start of flash: the two sectors before the last one.  Other tools use the last
+ * sector; for example, picotool writes a mark there for erratum RP2350-E10.
+ */
 #ifndef EPG_PICO_STORE_OFFSET
 #define EPG_PICO_STORE_OFFSET (PICO_FLASH_SIZE_BYTES - 3 * FLASH_SECTOR_SIZE)
 #endif
 
-/** How long core 1 may take to answer: its present cycle. */
+/** Time for core 1 to end its present cycle and answer. */
 #define HOLD_TIMEOUT_MS 300U
 
 static_assert(EPG_FAMILY_STORE_CAPACITY == FLASH_SECTOR_SIZE - FLASH_PAGE_SIZE,
@@ -32,7 +38,7 @@ typedef struct job {
     size_t head_size;
 } job_t;
 
-/* The end of the image in flash, from the SDK's linker scripts. */
+/* End of the program in flash; defined by the SDK's linker scripts. */
 extern char __flash_binary_end;
 
 static uint32_t interrupts;
@@ -77,7 +83,10 @@ const uint8_t *epg_family_store_sector(uint32_t index)
     return (const uint8_t *)(XIP_BASE + EPG_PICO_STORE_OFFSET + index * FLASH_SECTOR_SIZE);
 }
 
-/** Programs `size` bytes at `offset`, a multiple of a page, the rest of the last page with ones. */
+/**
+ * Programs `size` bytes at `offset`, which must be a multiple of a page of 256 bytes.  The rest of the last page stays
+ * erased (0xFF).
+ */
 static void program(uint32_t offset, const uint8_t *data, size_t size)
 {
     static uint8_t page[FLASH_PAGE_SIZE];

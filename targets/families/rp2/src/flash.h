@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The SDK's headers about flash, as system headers.
+ * The SDK's headers of the flash, as system headers: their warnings are not reported.
  */
 #ifndef EPG_PICO_FLASH_H
 #define EPG_PICO_FLASH_H

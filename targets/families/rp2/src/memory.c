@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * memcpy() and memset() in RAM, for the chip whose SDK leaves them to the C library.
+ * memcpy() and memset() in RAM, for RP2350.
  *
- * The control cycle copies structures, and the compiler makes calls of that.  The SDK's linker scripts mean to place the
- * C library's functions in RAM, but know them by names of archive and member that differ between toolchains.  On RP2040
- * the SDK has its own (PICO_MEM_IN_RAM).  Weak: a user's own go first.
+ * The control cycle copies structures, and the compiler turns such copies into calls of these functions.  They must be
+ * in RAM.  The SDK's linker scripts try to place the C library's functions there, but find them by the names of
+ * archives and members, which differ between toolchains.  On RP2040 the functions are not needed: the SDK brings its
+ * own, and puts them in RAM (PICO_MEM_IN_RAM).
+ *
+ * Both functions are weak: a definition of the user replaces them.
  */
 #include <string.h>
 
@@ -13,10 +16,10 @@
 
 #if !LIB_PICO_MEM_OPS_PICO
 
-/* Without this the compiler knows a loop that copies, and calls memcpy(). */
+/* Without this option the compiler replaces the copying loop in memcpy() by a call of memcpy(). */
 #define KEEP_LOOPS __attribute__((weak, optimize("no-tree-loop-distribute-patterns")))
 
-/** A word of memory of any type. */
+/** A word of memory that may be a part of an object of any type. */
 typedef uint32_t __attribute__((may_alias)) word_t;
 
 static inline bool aligned(const void *one, const void *other)

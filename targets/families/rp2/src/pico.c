@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * What programs call on a Pico; core 0's stack.
+ * The functions that programs call on a Pico, and the limits of core 0's stack.
  */
 #include "parts.h"
 
-/* The SDK's linker scripts. */
+/* Defined by the SDK's linker scripts. */
 extern uint32_t __StackBottom;
 extern uint32_t __StackTop;
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * PWM, pins and quadrature decoders.  What the control cycle calls lies in RAM.
+ * PWM and pins.  The functions that the control cycle calls are in RAM.
  */
 #include "epg/port.h"
 
@@ -14,7 +14,7 @@ bool epg_pico_resource_taken;
 
 void epg_port_pwm_start(const epg_port_pwm_t *pwm)
 {
-    /* All slices run from one write to EN, in phase with the tick: see control_core.c. */
+    /* The slice is not enabled here: control_core.c enables all slices with one write to EN, in phase with the tick. */
     pwm_slice_hw_t *slice = &pwm_hw->slice[pwm->instance];
     slice->csr = 0;
     slice->div = (uint32_t)pwm->prescaler << PWM_CH0_DIV_INT_LSB;
@@ -27,7 +27,9 @@ void epg_port_pwm_start(const epg_port_pwm_t *pwm)
 
 void __not_in_flash_func(epg_port_pwm_write)(const epg_port_pwm_t *pwm, uint32_t level)
 {
-    /* Both channels share a register, which only this core writes: reading it first is safe. */
+    /*
+     * Both channels of a slice share a register.  Only this core writes it, so reading, changing and writing is safe.
+     */
     io_rw_32 *cc = &pwm_hw->slice[pwm->instance].cc;
     *cc = pwm->slot == PWM_CHAN_A ? (*cc & PWM_CH0_CC_B_BITS) | level
                                   : (*cc & PWM_CH0_CC_A_BITS) | level << PWM_CH0_CC_B_LSB;

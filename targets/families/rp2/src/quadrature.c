@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Quadrature decoders: state machines of the PIO, by the library pico_quadrature.
+ * Quadrature decoders: state machines of the PIO that run the program of the library pico_quadrature.
  */
 #include "encoder_sdk.h"
 #include "epg/port.h"
@@ -12,8 +12,8 @@
 typedef struct decoder {
     epg_pico_quadrature_t encoder;
     bool started;
-    bool healthy; /* its state machine answered when it was last asked */
-    uint32_t count;
+    bool healthy;   /* its state machine delivered a count at the last reading */
+    uint32_t count; /* the newest count */
 } decoder_t;
 
 static decoder_t decoders[NUM_PIOS][STATE_MACHINES];

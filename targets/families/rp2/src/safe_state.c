@@ -1,31 +1,32 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Outputs that are safe: before main(), and after everything that must not happen.
+ * Safe outputs: before main(), and after a fault of the processor or the program.
  *
- * A pin at its safe level is a plain output (SIO).  That takes effect at once, whatever its PWM slice is doing.
+ * Each pin of the chip is connected to one of several functions, such as PWM or SIO (plain input and output).  A pin at
+ * its safe level is connected to SIO.  This takes effect at once, and the pin no longer follows its PWM slice.
  */
 #include "parts.h"
 
-/** Bytes of stack for a core that has faulted, perhaps because its own was used up. */
+/** Bytes of a second stack for each core.  The HardFault handler uses it, because the first may have overflowed. */
 #define EMERGENCY_STACK 128
-/** Remembers across a reset by the watchdog that a fault came before it.  The SDK uses words 4 to 7. */
+/** The watchdog's scratch register that records a fault.  It survives a reset by the watchdog.  The SDK uses 4 to 7. */
 #define FAULT_WORD 3
 #define FAULT_MAGIC 0xEF4A17EDU
-/** Its place in a vector table: Armv6-M ARM B1.5.2, Armv8-M ARM B3.8. */
+/** Number of the HardFault exception in the vector table: Armv6-M ARM B1.5.2, Armv8-M ARM B3.8. */
 #define HARD_FAULT 3
 
 /* RP2040 data sheet 2.19.2 and RP2350 data sheet 9.4: SIO is function 5 of every pin. */
 static_assert(GPIO_FUNC_SIO == 5, "the function that makes a pin a plain output");
 
-/* One bit per pin, in RAM for the handlers. */
+/* One bit per pin.  In RAM, because the handlers must not read flash. */
 static uint32_t output_pins;
 static uint32_t output_levels;
 
 /**
- * Runs after peripherals are out of reset (00100) and before clocks are set up (00500): within a millisecond after the
- * boot ROM has handed over, plus copying where the image runs from RAM.  Until then pins float, held by the chip's weak
- * pull-downs.
+ * Runs as early as possible: after the peripherals' reset has ended (00100), before the clocks are set up (00500).
+ * This is within a millisecond after the boot ROM has started the program.  A program that runs from RAM is copied
+ * first, which takes additional time.  Until then the pins float; only the chip's weak pull-downs hold them.
  */
 void epg_pico_outputs_start(void)
 {
@@ -44,7 +45,7 @@ PICO_RUNTIME_INIT_FUNC_RUNTIME(epg_pico_outputs_start, "00150");
 void __not_in_flash_func(epg_pico_outputs_off)(void)
 {
     if (sio_hw->cpuid == 0U) {
-        /* Core 1 would write its outputs again: it is held in reset. */
+        /* Hold core 1 in reset.  It would write its outputs again. */
         hw_set_bits(&psm_hw->frce_off, PSM_FRCE_OFF_PROC1_BITS);
     }
     sio_hw->gpio_clr = output_pins & ~output_levels;
@@ -69,7 +70,7 @@ epg_fault_t epg_family_fault_before_reset(void)
     if (watchdog_hw->scratch[FAULT_WORD] == FAULT_MAGIC) {
         fault = EPG_FAULT_PROCESSOR;
     } else if (watchdog_enable_caused_reboot()) {
-        /* Not a reboot that was asked for, such as picotool's. */
+        /* The watchdog timed out.  An intended reboot, such as picotool's, does not reach this line. */
         fault = EPG_FAULT_WATCHDOG;
     }
     watchdog_hw->scratch[FAULT_WORD] = 0;
@@ -78,13 +79,16 @@ epg_fault_t epg_family_fault_before_reset(void)
 
 /* HardFault ---------------------------------------------------------------------------------------------------- */
 
-/* Used from assembler: both cores' emergency stacks, and what was in the vector table before. */
+/* Used from assembler: one emergency stack per core, and the HardFault handlers that were installed before. */
 __attribute__((used)) uint32_t epg_pico_emergency_stacks[2][EMERGENCY_STACK / sizeof(uint32_t)];
 __attribute__((used)) exception_handler_t epg_pico_next_handler[2];
 
 static_assert(EMERGENCY_STACK == 1 << 7, "the handler shifts by 7");
 
-/* Outputs first, on a stack that is there; then, as if nothing had been, the handler from before. */
+/*
+ * The HardFault handler.  It switches to the emergency stack of this core, makes the outputs safe, restores the stack
+ * pointer and LR, and jumps to the handler that was installed before.  That handler finds the exception as it was.
+ */
 static void __attribute__((naked)) __not_in_flash_func(on_hard_fault)(void)
 {
     pico_default_asm_volatile("ldr r0, =%c[cpuid]\n"
@@ -130,8 +134,9 @@ void epg_family_guard_faults(void)
 /* panic(), failed assertions and the end of main() --------------------------------------------------------------- */
 
 /*
- * The linker leads calls of <name> to __wrap_<name> (--wrap), so that outputs are safe before the SDK's functions
- * print, break into the debugger or wait for ever, and whichever of them the user has replaced.
+ * The linker redirects calls of <name> to __wrap_<name> (--wrap).  The outputs are safe before the SDK's function
+ * prints, stops in the debugger or waits for ever.  This holds for a function with which the user replaces the SDK's,
+ * too.
  */
 #define SAFE_BEFORE(name)                                                                                              \
     void __attribute__((naked, used)) __not_in_flash_func(__wrap_##name)(void)                                         \

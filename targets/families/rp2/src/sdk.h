@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The headers of the Pico SDK, as system headers: the user's warnings are for the user's code.
+ * The headers of the Pico SDK, as system headers: the warnings that users choose apply to their own code only.
  */
 #ifndef EPG_PICO_SDK_H
 #define EPG_PICO_SDK_H

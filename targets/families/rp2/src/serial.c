@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * What tells this board from all others: the unique id of its flash chip (RP2040) or of the chip itself (RP2350), which
- * is the serial number of the USB device too.
+ * The serial number of the board: the unique id of its flash chip (RP2040), or of the microcontroller (RP2350).  The
+ * USB device has the same serial number.
  */
 #include "epg/port.h"
 #include "parts.h"
 
 const char *epg_port_serial(void)
 {
-    /* The SDK reads the id before main() and keeps it in memory. */
+    /* Does not access flash: the SDK has read the id before main(). */
     static char text[2 * PICO_UNIQUE_BOARD_ID_SIZE_BYTES + 1];
     if (text[0] == '\0') {
         pico_get_unique_board_id_string(text, sizeof text);

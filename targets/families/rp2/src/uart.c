@@ -1,13 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * UARTs: an interrupt of core 0 moves bytes between the FIFOs and the rings (RP2040 data sheet 4.2, PL011).
+ * UARTs (RP2040 data sheet 4.2, PL011).
+ *
+ * The hardware has a FIFO of 32 bytes for each direction.  Its interrupt, on core 0, moves bytes between the FIFOs and
+ * two ring buffers in memory, from which the communication side reads and to which it writes.
  */
 #include "epg/port_uart.h"
 #include "parts.h"
 #include "uart_sdk.h"
 
-/** Entries of each FIFO; one run of the interrupt moves no more than that. */
+/** Entries of each FIFO.  One run of the interrupt moves at most this many bytes in each direction. */
 #define FIFO 32U
 
 #define DAMAGED (UART_UARTDR_BE_BITS | UART_UARTDR_PE_BITS | UART_UARTDR_FE_BITS)
@@ -18,7 +21,8 @@ static const epg_port_uart_t *users[NUM_UARTS];
 
 static void count_damage(epg_port_uart_lines_t *lines)
 {
-    atomic_store(&lines->damaged, atomic_load(&lines->damaged) + 1U); /* the only writer */
+    /* A load and a store are enough, because no other context writes this counter. */
+    atomic_store(&lines->damaged, atomic_load(&lines->damaged) + 1U);
 }
 
 static bool receive(uart_hw_t *hw, epg_port_uart_lines_t *lines)
@@ -43,7 +47,7 @@ static void send(uart_hw_t *hw, epg_port_uart_lines_t *lines)
          i++) {
         hw->dr = byte;
     }
-    /* The interrupt comes when the FIFO has become half empty; a FIFO that was not filled has no such moment. */
+    /* The interrupt is raised when the FIFO becomes half empty.  Enable it only if the ring has bytes left. */
     hw_write_masked(&hw->imsc, epg_ring_count(&lines->sent) > 0U ? UART_UARTIMSC_TXIM_BITS : 0U,
                     UART_UARTIMSC_TXIM_BITS);
 }
@@ -53,9 +57,9 @@ static void serve(uint number)
     epg_port_uart_lines_t *lines = users[number]->lines;
     uart_hw_t *hw = uart_get_hw(UART_INSTANCE(number));
     if ((hw->ris & UART_UARTRIS_OERIS_BITS) != 0U) {
-        count_damage(lines); /* the FIFO was full: at least one is missing */
+        count_damage(lines); /* the FIFO was full, and at least one byte was lost */
     }
-    hw->icr = ALL_INTERRUPTS; /* before the FIFOs are looked at: what comes from here on is an interrupt of its own */
+    hw->icr = ALL_INTERRUPTS; /* before the FIFOs are read: a later byte raises the interrupt again */
     const bool any = receive(hw, lines);
     send(hw, lines);
     if (any) {
@@ -95,20 +99,20 @@ bool epg_port_uart_start(const epg_port_uart_t *port)
     irq_set_enabled(irq, false);
     empty(&port->lines->received);
     empty(&port->lines->sent);
-    uart_init(uart, 115200); /* out of reset, 8N1, FIFOs; the generator's divider takes the place of the SDK's: */
+    uart_init(uart, 115200); /* ends the reset, sets 8N1 and enables the FIFOs; the generator's divider follows */
     uart_hw_t *hw = uart_get_hw(uart);
     const uint32_t control = hw->cr;
     hw->cr = 0;
     hw->ibrd = port->divider >> 6U;
     hw->fbrd = port->divider & 63U;
-    hw->lcr_h = hw->lcr_h; /* 4.2.7.1: takes the divider over */
+    hw->lcr_h = hw->lcr_h; /* a write to LCR_H makes the hardware use the new divider (4.2.7.1) */
     hw->cr = control;
     hw->imsc = RECEIVE_INTERRUPTS;
     if (!mine) {
         irq_set_exclusive_handler(irq, port->instance == 0U ? on_uart0 : on_uart1);
         users[port->instance] = port;
     }
-    /* RX first high: a pin that nothing drives must not look like a break. */
+    /* Pull RX up: a low level on an open pin would look like a break. */
     gpio_pull_up(port->pin_rx);
     gpio_set_function(port->pin_rx, UART_FUNCSEL_NUM(uart, port->pin_rx));
     gpio_set_function(port->pin_tx, UART_FUNCSEL_NUM(uart, port->pin_tx));

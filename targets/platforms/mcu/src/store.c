@@ -22,7 +22,7 @@
 
 typedef struct head {
     uint32_t magic;
-    uint32_t number; /* counts the writes */
+    uint32_t number; /* counts the writes, from 1 */
     uint32_t size;   /* bytes of data */
     uint32_t check;  /* Adler-32 of number, size and data */
 } head_t;

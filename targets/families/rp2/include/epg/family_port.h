@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * RP2040 and RP2350 for the platforms: what `epg/family.h` asks of a family's header.
+ * RP2040 and RP2350: the types and constants that `epg/family.h` requires of a family.
  */
 #ifndef EPG_FAMILY_PORT_H
 #define EPG_FAMILY_PORT_H
@@ -18,23 +18,23 @@ typedef epg_pico_target_t epg_family_target_t;
 #define EPG_FAMILY_SERVICE_STACK_SIZE EPG_PICO_SERVICE_STACK_SIZE
 #endif
 
-/** Milliseconds in which core 0 must have served communication once. */
+/** Milliseconds without a turn of the communication side on core 0 after which the watchdog is no longer fed. */
 #ifndef EPG_PICO_CORE0_TIMEOUT_MS
 #define EPG_PICO_CORE0_TIMEOUT_MS 500
 #endif
 #define EPG_FAMILY_SERVICE_TIMEOUT_MS EPG_PICO_CORE0_TIMEOUT_MS
 
-/** Armv8-M ARM, B3.19; the RP2040 has no FPU. */
+/** Bytes of the FPU's registers in a stack frame: Armv8-M ARM, B3.19.  The RP2040 has no FPU. */
 #if PICO_RP2040
 #define EPG_FAMILY_FPU_FRAME 0
 #else
 #define EPG_FAMILY_FPU_FRAME 72
 #endif
 
-/** The head has the last page of a sector: flash.c. */
+/** A sector of flash has 4096 bytes.  Its last page of 256 bytes contains the head of a record: flash.c. */
 #define EPG_FAMILY_STORE_CAPACITY (4096U - 256U)
 
-/* The linker leads panic() through epg_pico_safe_state(): safe_state.c. */
+/* The SDK's panic() makes the outputs safe first, because the linker redirects it (--wrap): safe_state.c. */
 #define epg_family_panic panic
 #define epg_family_sleep __wfi
 

@@ -1,10 +1,42 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Raspberry Pi Pico: what a generated target and the port layer know of each other.
+ * Raspberry Pi Pico (RP2040) and Pico 2 (RP2350): starting, stopping and monitoring a target.
  *
- * Free of the Pico SDK, as generated code is.  Core 1 runs the control cycle in the wrap interrupt of a reserved PWM
- * slice and does nothing else; core 0 belongs to communication and to the user.  One target per executable.
+ * **Cores.**  Both chips have two processor cores.  Core 1 runs the control cycle and nothing else, so no other code
+ * can delay it.  Core 0 runs main(), the communication side, and all interrupts and tasks of the user.
+ *
+ * **Tick.**  A PWM slice is a 16-bit counter that counts from 0 to TOP and then wraps to 0.  It counts the system
+ * clock, clk_sys, divided by a prescaler.  One slice is reserved for the tick: each of its wraps raises an interrupt
+ * on core 1, in which one control cycle runs.  The counter repeats by itself, so a tick can be late but is never
+ * lost.
+ *
+ * **PWM outputs.**  Each other slice can drive two pins, channel A and channel B.  A pin is high while the counter is
+ * below the channel's compare level.  The hardware takes over a new level at the next wrap (RP2040 data sheet
+ * 4.5.2.6).  The slices of the outputs start together with the slice of the tick, so a cycle's outputs take effect at
+ * a fixed distance from its tick.
+ *
+ * **Encoders.**  A quadrature decoder is a small program in a PIO block, a processor for input and output beside the
+ * cores.  A PIO block has four state machines, and each can count the edges of one encoder.
+ *
+ * **Flash and RAM.**  No code can be read from flash while flash is written.  The control cycle therefore runs from
+ * RAM.
+ *
+ * **USB.**  The chip is a USB device with one or two serial ports (CDC ACM), one for the middleware and one for the
+ * console.
+ *
+ * A program contains one target.  The generated `<name>_start()` and `<name>_stop()` call the functions below:
+ *
+ *     #include "jiwy.h"
+ *     #include "epg/pico.h"
+ *
+ *     if (!jiwy_start()) {
+ *         epg_pico_status_t status;
+ *         epg_pico_status(&status);
+ *         printf("not started: error %d\n", (int)status.error);
+ *     }
+ *
+ * This header includes no header of the Pico SDK, because generated code includes it.
  */
 #ifndef EPG_PICO_H
 #define EPG_PICO_H
@@ -22,79 +54,91 @@
 extern "C" {
 #endif
 
-/** A pin that a component drives, and its level while nothing is to move. */
+/** A pin that a component drives. */
 typedef struct epg_pico_output {
-    uint8_t pin;
-    bool high;
+    uint8_t pin; /**< GPIO number, 0 ... 29 */
+    bool high;   /**< safe level of the pin */
 } epg_pico_output_t;
 
+/** The pins that all components of a target drive. */
 typedef struct epg_pico_outputs {
     size_t count;
     const epg_pico_output_t *pins;
 } epg_pico_outputs_t;
 
-/** The PWM slice whose wrap is the tick: `prescaler * (top + 1)` clocks are one control period. */
+/**
+ * The PWM slice that makes the tick.  One control period is `prescaler * (top + 1)` periods of clk_sys.
+ *
+ * Example: at 125 MHz, prescaler 2 and top 62499 give 2 * 62500 = 125000 clocks, which is a control period of 1 ms.
+ */
 typedef struct epg_pico_tick {
-    uint8_t slice;
-    uint16_t prescaler;
-    uint16_t top;
+    uint8_t slice;      /**< 0 ... 7 on RP2040, 0 ... 11 on RP2350A */
+    uint16_t prescaler; /**< 1 ... 255: integer part of the slice's divider */
+    uint16_t top;       /**< largest value of the counter */
 } epg_pico_tick_t;
 
-/** A target as its port layer runs it. */
+/** A target with its tick and transports; generated. */
 typedef struct epg_pico_target {
     const epg_target_t *target;
-    uint32_t clock; /**< Hz of clk_sys, which all dividers were computed for */
+    uint32_t clock; /**< Hz of clk_sys for which the generator computed all dividers */
     epg_pico_tick_t tick;
-    const epg_transport_t *transport; /**< for the target's middleware; NULL: it needs none */
-    const char *transport_title;
-    const epg_transport_t *console_transport; /**< for the console beside it; NULL: there is none */
+    const epg_transport_t *transport;         /**< of the target's middleware; NULL if it needs none */
+    const char *transport_title;              /**< name of the transport for the user, for example "EPG ROS 2" */
+    const epg_transport_t *console_transport; /**< of a console beside another middleware; NULL if there is none */
 } epg_pico_target_t;
 
-/** Why epg_pico_start() did not start, epg_pico_stop() did not stop, or the program did not get core 1. */
+/** The reason why epg_pico_start() or epg_pico_stop() failed, or why the program could not use core 1. */
 typedef epg_mcu_error_t epg_pico_error_t;
 
 #define EPG_PICO_OK EPG_MCU_OK
-#define EPG_PICO_ERROR_RUNNING EPG_MCU_ERROR_RUNNING
-#define EPG_PICO_ERROR_CLOCK EPG_MCU_ERROR_CLOCK           /**< of clk_sys */
-#define EPG_PICO_ERROR_PLACEMENT EPG_MCU_ERROR_PLACEMENT   /**< in flash */
-#define EPG_PICO_ERROR_RESOURCE EPG_MCU_ERROR_RESOURCE     /**< a PIO block, an alarm, a UART or an interrupt */
-#define EPG_PICO_ERROR_CORE EPG_MCU_ERROR_CORE             /**< core 1 */
-#define EPG_PICO_ERROR_CALLER EPG_MCU_ERROR_CALLER         /**< of epg_pico_stop() */
-#define EPG_PICO_ERROR_CORE_TAKEN EPG_MCU_ERROR_CORE_TAKEN /**< core 1 */
+#define EPG_PICO_ERROR_RUNNING EPG_MCU_ERROR_RUNNING       /**< a target is running already */
+#define EPG_PICO_ERROR_CLOCK EPG_MCU_ERROR_CLOCK           /**< clk_sys is not epg_pico_target_t::clock */
+#define EPG_PICO_ERROR_PLACEMENT EPG_MCU_ERROR_PLACEMENT   /**< the control cycle is in flash, not in RAM */
+#define EPG_PICO_ERROR_RESOURCE EPG_MCU_ERROR_RESOURCE     /**< a PIO block, alarm, UART or interrupt is in use */
+#define EPG_PICO_ERROR_CORE EPG_MCU_ERROR_CORE             /**< core 1 did not answer */
+#define EPG_PICO_ERROR_CALLER EPG_MCU_ERROR_CALLER         /**< epg_pico_stop() was called where it cannot wait */
+#define EPG_PICO_ERROR_CORE_TAKEN EPG_MCU_ERROR_CORE_TAKEN /**< the program uses core 1, or has tried to */
 
-/** What the port layer counts.  Control runs on core 1's stack, main() and interrupts use core 0's. */
+/** Measurements of the port layer.  The control cycle has core 1's stack; main() and interrupts have core 0's stack. */
 typedef epg_mcu_status_t epg_pico_status_t;
 
-/** The transport over USB CDC, in usb/, linked where a target uses it: the first serial port of the device, */
+/** The transport `usb`: the first serial port of the USB device.  It is linked only if a target uses it. */
 extern const epg_transport_t epg_pico_usb;
-/** and the second one, which a device has whose first one is not the console's. */
+/** The second serial port.  A device has it if the first port belongs to a middleware and the target has a console. */
 extern const epg_transport_t epg_pico_usb_second;
 
-/** All outputs of the target in this executable; generated.  They are made safe before main() and after each fault. */
+/** All outputs of the target; generated.  They are made safe before main() and after each fault. */
 extern const epg_pico_outputs_t epg_pico_outputs;
 
 /**
- * Starts the control loop on core 1, then communication on core 0.  Call it from core 0, on FreeRTOS before or after
- * the scheduler starts.  Returns when core 1 waits for its first tick; false, with all outputs safe, when that is
- * impossible: epg_pico_status() says why.
+ * Starts the control side on core 1, then the communication side on core 0.  Returns true when core 1 waits for its
+ * first tick.  The outputs stay safe until the target is enabled.
+ *
+ * Returns false, with all outputs safe, if the target cannot start; epg_pico_status() then reports the reason.
+ *
+ * Must be called on core 0.  On FreeRTOS it may be called before or after the scheduler starts.
  */
 bool epg_pico_start(const epg_pico_target_t *pico);
 
 /**
- * Ends communication and control; outputs are safe and core 1 is in reset when this returns.  epg_pico_start() may
- * follow.  Call it from core 0; on FreeRTOS from a task, which waits until communication has come to the end of its turn.
+ * Stops the communication side and the control side.  When this returns true, all outputs are safe and core 1 is in
+ * reset; epg_pico_start() may be called again.  Returns true, too, if no target is running.
  *
- * False, and everything goes on, when the caller is communication itself (a callback of TinyUSB, for example), an
- * interrupt, or, on FreeRTOS, a task that has suspended the scheduler: these cannot wait for communication.
+ * Must be called on core 0, on FreeRTOS from a task.  It waits for the end of the communication side's turn.  Three
+ * callers cannot wait for this: the communication side itself (for example a callback of TinyUSB), an interrupt, and
+ * a FreeRTOS task that has suspended the scheduler.  For them it returns false, and the target goes on.
  */
 bool epg_pico_stop(void);
 
-/** Fills `status`; takes as long as reading all stacks does, so not from an interrupt.  Core 0. */
+/**
+ * Fills `status`.  It reads all stacks, which takes too long for an interrupt.  Must be called on core 0.
+ */
 void epg_pico_status(epg_pico_status_t *status);
 
 /**
- * Makes all outputs safe for good, by registers alone: pins become plain outputs at their safe levels, and unless
- * this is core 1, core 1 is held in reset.  For fault handlers; only a reset leads out of it.
+ * Makes all outputs safe until the next reset.  For fault handlers: it uses registers only, and needs no interrupt
+ * and no other core.  Each pin becomes a plain output at its safe level.  If the caller is core 0, core 1 is held in
+ * reset, so that it cannot write its outputs again.
  */
 void epg_pico_safe_state(void);
 
