@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-# RP2040 and RP2350: built with the Raspberry Pi Pico SDK, which is the user's: it is there when epg_add_target() is
-# called, or the message says what to write.
+# RP2040 and RP2350, built with the Raspberry Pi Pico SDK.
+#
+# The user's project includes the SDK.  It must be initialised before epg_add_target(); if it is not, the error message
+# shows the lines to write.
 
-# Sets <result> to FALSE after an error when the Pico SDK is not there, or is there for another board.
+# Checks that the Pico SDK is initialised, new enough, and set to the target's board.  Reports an error and sets
+# <result> to FALSE if not.
 function(_epg_rp2_check name result)
   set(${result} FALSE PARENT_SCOPE)
   set(board "${EPG_BOARD_pico_sdk}")
@@ -41,7 +44,7 @@ Configure with -DPICO_BOARD=${board} in a build folder of its own, or choose the
   set(${result} TRUE PARENT_SCOPE)
 endfunction()
 
-# Adds to the port layer <name>_port of target <name> what depends on the target.
+# Adds the sources, libraries and checks that depend on target <name> to its port layer <name>_port.
 function(_epg_rp2_target name)
   _epg_rp2_in_ram("${name}")
   set(ports 0)
@@ -50,19 +53,20 @@ function(_epg_rp2_target name)
   endif()
   list(LENGTH EPG_MIDDLEWARES middlewares)
   if(middlewares GREATER 1)
-    math(EXPR ports "${ports} + 1") # a console beside another middleware is on USB whatever that is on
+    math(EXPR ports "${ports} + 1") # a console beside another middleware always is a serial port on USB
   endif()
   if(ports GREATER 0)
     _epg_rp2_usb_library()
     target_link_libraries(${name}_port INTERFACE epg_pico_usb)
   endif()
-  # Only when a directory is done is it known what the user has set of executables.
+  # Deferred to the end of the top directory: the user may set properties of executables after epg_add_target().
   cmake_language(EVAL CODE "cmake_language(DEFER DIRECTORY [[${CMAKE_SOURCE_DIR}]] CALL _epg_rp2_check_executables [[${name}]] [[${ports}]] [[${CMAKE_SOURCE_DIR}]])")
   _epg_rp2_binary_info("${name}" info)
   target_sources(${name}_port INTERFACE "${info}")
 endfunction()
 
-# What `picotool info` shows of target <name>, as a source of whoever links it.
+# Writes the source file that makes `picotool info` show target <name>.  It is compiled into each executable that links
+# it.
 function(_epg_rp2_binary_info name result)
   string(TOUPPER "${name}" NAME)
   set(file "${CMAKE_BINARY_DIR}/epg/${name}_binary_info.c")
@@ -77,8 +81,8 @@ bi_decl(bi_program_feature(\"EPG \" @NAME@_EPG_VERSION \" target @name@ \" @NAME
   set(${result} "${file}" PARENT_SCOPE)
 endfunction()
 
-# Reports executables below <directory> that link target <name> and are set to what it cannot run with; <usb>: it is the
-# USB device.
+# Reports an error for each executable in or below <directory> that links target <name> with settings under which the
+# target cannot run.  <usb> is the number of its serial ports on USB; if it is not 0, the target needs the USB device.
 function(_epg_rp2_check_executables name usb directory)
   get_property(targets DIRECTORY "${directory}" PROPERTY BUILDSYSTEM_TARGETS)
   foreach(target IN LISTS targets)
@@ -101,7 +105,7 @@ Take PICO_NO_RAM_VECTOR_TABLE out of the compile definitions of ${target}.")
   endforeach()
 endfunction()
 
-# Reports <target>, an executable that links target <name>, when the SDK's stdio over USB is on for it, too.
+# Reports an error if the SDK's stdio over USB is enabled for <target>, an executable that links target <name>.
 function(_epg_rp2_check_stdio name target libraries)
   get_target_property(enabled ${target} PICO_TARGET_STDIO_USB)
   set(by "pico_enable_stdio_usb()")
@@ -118,13 +122,15 @@ Write pico_enable_stdio_usb(${target} 0), or choose another transport: SET commu
   endif()
 endfunction()
 
-# Puts code and tables of the control cycle into RAM.
+# Puts the code and the tables of the control cycle into RAM.
 #
-# The linker scripts of the Pico SDK place text and constants in flash, except those of archives whose name ends in
-# libm.a, libgcc.a or (in part) libc.a: these they place in RAM, as "floating point and time critical code".  The model,
-# the tables and the runtime are floating-point and time-critical code too, so their archives get names that end so.
-# That needs no linker script of our own, in any type of binary, and leaves the linker free to drop what is not used.
-# in_ram.ld stops the link when a linker script has other ideas.
+# The linker scripts of the Pico SDK put code and constants into flash, except those of archives whose name ends in
+# libm.a, libgcc.a or (in part) libc.a.  These go into RAM, as "floating point and time critical code".  The model, the
+# tables and the runtime are floating-point and time-critical code, too.  Their archives therefore get a name that ends
+# in libm.a.
+#
+# This needs no linker script of EPG, works for all types of binary, and lets the linker remove unused functions.
+# in_ram.ld stops the link with an error if the user's linker script puts the control cycle into flash.
 function(_epg_rp2_in_ram name)
   foreach(library ${name} epg_runtime ${EPG_MODELS})
     get_target_property(done ${library} EPG_IN_RAM)
@@ -138,7 +144,7 @@ function(_epg_rp2_in_ram name)
   endforeach()
 endfunction()
 
-# Adds to <library>, the port layer of all targets, what its sources need.
+# Adds the SDK's libraries, definitions and linker options to <library>, the port layer of all targets.
 function(_epg_rp2_library library)
   set(folder "${CMAKE_CURRENT_FUNCTION_LIST_DIR}")
   include("${EPG_TARGETS_DIR}/libraries/pico_quadrature/library.cmake")
@@ -146,17 +152,17 @@ function(_epg_rp2_library library)
     EPG::pico_quadrature pico_runtime pico_runtime_init pico_multicore pico_flash pico_unique_id
     hardware_clocks hardware_exception hardware_flash hardware_gpio hardware_irq hardware_pwm hardware_sync
     hardware_timer hardware_uart hardware_watchdog)
-  # The user's own files are compiled with these, too: what only assembler reads is for assembler only.
+  # The user's files are compiled with these definitions, too.  Those for assembler are not passed to C and C++.
   foreach(part DOUBLE FLOAT DIVIDER INT64_OPS BITS MEM)
-    # What the control cycle calls of the SDK lies in RAM too.
+    # The functions of the SDK that the control cycle calls must be in RAM, too.
     target_compile_definitions(${library} INTERFACE $<$<COMPILE_LANGUAGE:ASM>:PICO_${part}_IN_RAM=1>)
   endforeach()
   target_compile_definitions(${library} INTERFACE
-    # NaN stays NaN where the RP2040's ROM routines can do that.
+    # The result of an operation with NaN is NaN, as far as the routines in the RP2040's ROM can do this.
     PICO_DOUBLE_PROPAGATE_NANS=1
-    # An overflowing stack is a HardFault, which makes outputs safe.
+    # A stack overflow raises a HardFault, which makes the outputs safe.
     PICO_USE_STACK_GUARDS=1
-    # The bank of memory for core 1's stack holds the control loop's: the SDK's does not fit beside it.
+    # No stack of the SDK for core 1: the control loop's stack uses the whole memory bank.
     PICO_CORE1_STACK_SIZE=0)
   foreach(function panic __assert_func _exit multicore_reset_core1 multicore_launch_core1
       multicore_launch_core1_with_stack multicore_launch_core1_raw)
@@ -166,8 +172,9 @@ function(_epg_rp2_library library)
   set_property(TARGET ${library} APPEND PROPERTY INTERFACE_LINK_DEPENDS "${folder}/in_ram.ld")
 endfunction()
 
-# The transport over USB: its own TinyUSB device, so it excludes the SDK's stdio over USB.
-# The program that links it has an epg_pico_target.h, which says how many serial ports it has.
+# Adds the library of the transport `usb`.  It is a USB device made with TinyUSB.  A chip has one USB device, so it
+# cannot be used together with the SDK's stdio over USB.  The generated epg_pico_target.h sets the number of its serial
+# ports.
 function(_epg_rp2_usb_library)
   if(TARGET epg_pico_usb)
     return()
@@ -184,7 +191,7 @@ function(_epg_rp2_usb_library)
   target_link_libraries(epg_pico_usb INTERFACE tinyusb_device_unmarked pico_usb_reset_interface_headers)
 endfunction()
 
-# Makes an <executable> with EPG's main() run from RAM, and files of it to flash.
+# Makes an <executable> with EPG's main() run from RAM, and adds its output files for flashing (.uf2, .hex, .bin).
 function(_epg_rp2_executable executable)
   _epg_find_picotool()
   pico_set_binary_type(${executable} copy_to_ram)
@@ -193,7 +200,8 @@ function(_epg_rp2_executable executable)
   pico_add_extra_outputs(${executable})
 endfunction()
 
-# The folder of the FreeRTOS kernel's port, and the submodule of the kernel that holds it.
+# Sets <port> to the folder of the FreeRTOS kernel's port for this chip, and <submodule> to the kernel's submodule with
+# it.
 function(_epg_rp2_freertos_port port submodule)
   set(${submodule} "portable/ThirdParty/Community-Supported-Ports" PARENT_SCOPE)
   if(PICO_RP2040)

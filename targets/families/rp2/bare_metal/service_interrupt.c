@@ -17,7 +17,7 @@ static struct {
 
 /**
  * Sets the alarm to one period from now.  An interrupt may delay this code until that time has passed; the SDK then
- * does not set the alarm, and the next attempt uses a longer time.
+ * does not set the alarm, and this function tries again, with longer and longer times.
  */
 static void set_alarm(void)
 {

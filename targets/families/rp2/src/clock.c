@@ -23,7 +23,7 @@ static struct {
     uint64_t begin_ns;
     uint32_t begin_us;      /* low 32 bits of the microsecond timer */
     uint32_t begin_systick; /* SysTick counts down */
-    uint32_t range_us;      /* half of the time after which SysTick wraps: its count is unambiguous */
+    uint32_t range_us;      /* half of the time in which SysTick wraps: no count is ambiguous */
     uint32_t ns_per_clock;  /* times 2^24 */
     bool in_cycle;
 } cycle;

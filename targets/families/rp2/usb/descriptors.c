@@ -1,13 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Descriptors: one or two serial ports (CDC ACM) and the interface by which picotool reboots the board.
+ * Descriptors of the USB device: tables that the host reads after the device is plugged in, and by which it finds
+ * drivers.
  *
- * A target configuration (`communication: {usb: ...}`, in epg_pico_target.h) or definitions of the executable say what the
- * device is called.  Otherwise the numbers are those of the Pico SDK's own serial port, by which picotool and udev rules
- * know a board that runs firmware, and the serial number is the board's unique id, so that several boards can be told
- * apart.  Windows finds the
- * driver of the second interface (WinUSB) through Microsoft OS 2.0 descriptors.
+ * The device has one or two serial ports (CDC ACM), and an interface by which picotool reboots the board.
+ *
+ * Names and numbers come from definitions of the executable or from the target configuration (`communication: {usb:
+ * ...}`, in epg_pico_target.h).  By default the numbers are those of the Pico SDK's own serial port, by which picotool
+ * and udev rules recognise a board that runs firmware.  The serial number is by default the board's unique id, which
+ * distinguishes several boards on one computer.
+ *
+ * Windows finds the driver of picotool's interface (WinUSB) through Microsoft OS 2.0 descriptors.
  */
 #include "usb.h"
 
@@ -29,7 +33,7 @@
 #define EPG_PICO_USB_PRODUCT "Pico"
 #endif
 
-/* Of the first port; those of the second are two further. */
+/* Endpoints of the first serial port.  Those of the second port have numbers that are larger by 2. */
 #define ENDPOINT_NOTIFICATION 0x81
 #define ENDPOINT_OUT 0x02
 #define ENDPOINT_IN 0x82
@@ -60,7 +64,7 @@ static_assert(sizeof EPG_PICO_USB_SERIAL <= TEXT_LENGTH + 1, "EPG_PICO_USB_SERIA
 static const tusb_desc_device_t device = {
     .bLength = sizeof device,
     .bDescriptorType = TUSB_DESC_DEVICE,
-    .bcdUSB = 0x0210, /* the first with a BOS descriptor */
+    .bcdUSB = 0x0210, /* USB 2.1, the first version with a BOS descriptor */
     .bDeviceClass = TUSB_CLASS_MISC,
     .bDeviceSubClass = MISC_SUBCLASS_COMMON,
     .bDeviceProtocol = MISC_PROTOCOL_IAD,
@@ -118,12 +122,14 @@ static const uint8_t microsoft[] = {
     /* compatible id: length, type, id, sub-id */
     U16_TO_U8S_LE(20), U16_TO_U8S_LE(MS_OS_20_FEATURE_COMPATBLE_ID), 'W', 'I', 'N', 'U', 'S', 'B', 0, 0,
     0, 0, 0, 0, 0, 0, 0, 0,
-    /* registry property: length, type, a text, length of the name, name */
+    /* registry property: length, type, type of its value (text), length of the name, name */
     U16_TO_U8S_LE(128), U16_TO_U8S_LE(MS_OS_20_FEATURE_REG_PROPERTY), U16_TO_U8S_LE(1), U16_TO_U8S_LE(40),
     CHARACTER('D'), CHARACTER('e'), CHARACTER('v'), CHARACTER('i'), CHARACTER('c'), CHARACTER('e'), CHARACTER('I'),
     CHARACTER('n'), CHARACTER('t'), CHARACTER('e'), CHARACTER('r'), CHARACTER('f'), CHARACTER('a'), CHARACTER('c'),
     CHARACTER('e'), CHARACTER('G'), CHARACTER('U'), CHARACTER('I'), CHARACTER('D'), CHARACTER('\0'),
-    /* length and text: the class by which picotool finds the interface, as in the SDK's serial port */
+    /*
+     * length and value: the id of the interface's class, by which picotool finds it; the SDK's serial port has the same
+     */
     U16_TO_U8S_LE(78),
     CHARACTER('{'), CHARACTER('b'), CHARACTER('c'), CHARACTER('7'), CHARACTER('3'), CHARACTER('9'), CHARACTER('8'),
     CHARACTER('c'), CHARACTER('1'), CHARACTER('-'), CHARACTER('7'), CHARACTER('3'), CHARACTER('c'), CHARACTER('d'),
@@ -157,7 +163,7 @@ bool tud_vendor_control_xfer_cb(uint8_t port, uint8_t stage, const tusb_control_
     if (stage != CONTROL_STAGE_SETUP) {
         return true;
     }
-    /* Index 7 asks for the descriptor set. */
+    /* wIndex 7 requests the descriptor set (Microsoft OS 2.0 Descriptors Specification). */
     if (request->bRequest != EPG_USB_MICROSOFT_REQUEST || request->wIndex != 7) {
         return false;
     }

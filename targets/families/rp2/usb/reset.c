@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The interface by which `picotool reboot -f` and the boards' VS Code extension reboot a board that runs firmware.
+ * The USB interface by which `picotool reboot -f` and the VS Code extension for Pico reboot a board that runs firmware.
  *
- * Outputs are safe before the reboot, and the reboot is no fault.
+ * The outputs are made safe before the reboot.  The reboot does not count as a fault.
  */
 #include "../src/parts.h"
 #include "usb.h"
 
-/** Until the answer to the request has gone out. */
+/** Time in which the answer to the request is sent, before the reboot. */
 #define DELAY_MS 100
 
 static uint8_t interface_number;
@@ -49,7 +49,8 @@ static bool control_request(uint8_t port, uint8_t stage, const tusb_control_requ
         return false;
     }
     if (request->bRequest == RESET_REQUEST_BOOTSEL) {
-        /* wValue: bits 0 to 6 interfaces to leave out, 8 whether a pin shows activity, 9 active low, 10 on the pin */
+        /* wValue: bits 0 to 6: interfaces to disable; bit 8: a pin shows activity; bit 9: that pin is active low;
+         * from bit 9: its number */
         const uint16_t value = request->wValue;
         const int pin = (value & 0x100U) != 0U ? value >> 9U : -1;
         epg_pico_outputs_off();

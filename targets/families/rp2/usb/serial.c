@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The transport `usb`: serial ports over USB (CDC ACM).  Nothing here waits for the host.
+ * The transport `usb`: serial ports over USB (CDC ACM).  No function waits for the host.
  */
 #include "../src/parts.h"
 #include "usb.h"
 
 const char *epg_pico_usb_titles[EPG_PICO_USB_PORTS];
 
-/** The number of a port within TinyUSB, which is its context. */
+/** The number of a port in TinyUSB.  The transport's `context` contains it in place of a pointer. */
 static uint8_t number_of(const void *context)
 {
     return (uint8_t)(uintptr_t)context;
@@ -23,12 +23,12 @@ static bool start(void *context, const char *title)
 {
     epg_pico_usb_titles[number_of(context)] = title;
     if (tud_inited()) {
-        return true; /* the other port, or started before and stopped since: the device stays */
+        return true; /* the device runs already: for the other port, or since an earlier start of the target */
     }
     if (!tusb_init()) {
         return false;
     }
-    /* Behind TinyUSB's own handler, which has put the event in its queue. */
+    /* Lowest order: runs after TinyUSB's own handler, which puts the event into its queue. */
     irq_add_shared_handler(USBCTRL_IRQ, on_interrupt, PICO_SHARED_IRQ_HANDLER_LOWEST_ORDER_PRIORITY);
     return true;
 }
@@ -45,7 +45,7 @@ static void flush(void *context)
     tud_cdc_n_write_flush(number_of(context));
 }
 
-/* Somebody has opened the port: terminals and agents set DTR. */
+/* True if a program on the host has opened the port: terminals and agents then set the DTR line. */
 static bool connected(void *context)
 {
     return tud_cdc_n_connected(number_of(context));
@@ -68,7 +68,9 @@ static size_t writable(void *context)
     return tud_cdc_n_connected(number) ? tud_cdc_n_write_available(number) : 0U;
 }
 
-/** Who opens the port next gets nothing that was meant for who has closed it. */
+/**
+ * Called by TinyUSB.  When a program closes the port, its unread bytes are dropped: they are not for the next program.
+ */
 void tud_cdc_line_state_cb(uint8_t number, bool dtr, bool rts)
 {
     (void)rts;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * What the parts of the USB device ask of each other.
+ * The constants and variables that the files of the USB device share.
  */
 #ifndef EPG_PICO_USB_H
 #define EPG_PICO_USB_H
@@ -9,7 +9,9 @@
 #include "epg_pico_target.h"
 #include "usb_sdk.h"
 
-/** Interfaces, in the order of the configuration descriptor.  A serial port has two. */
+/**
+ * Numbers of the interfaces, in the order of the configuration descriptor.  A serial port consists of two interfaces.
+ */
 enum {
     EPG_USB_CDC,
     EPG_USB_CDC_DATA,
@@ -21,13 +23,13 @@ enum {
     EPG_USB_INTERFACES
 };
 
-/** What the serial ports are for, as their interfaces' text descriptors say; NULL: not started. */
+/** The purpose of each serial port, in the text descriptor of its interface.  NULL if the port was not started. */
 extern const char *epg_pico_usb_titles[EPG_PICO_USB_PORTS];
 
-/** The vendor request that fetches the Microsoft OS 2.0 descriptors. */
+/** Number of the vendor request by which Windows reads the Microsoft OS 2.0 descriptors. */
 #define EPG_USB_MICROSOFT_REQUEST 1
 
-/** Driver of the interface by which picotool reboots the board. */
+/** TinyUSB driver of the interface by which picotool reboots the board. */
 extern const usbd_class_driver_t epg_pico_usb_reset_driver;
 
 #endif

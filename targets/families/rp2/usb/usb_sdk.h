@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The headers of TinyUSB and of the Pico SDK that go with it, as system headers.
+ * The headers of TinyUSB, and those of the Pico SDK for USB, as system headers: their warnings are not reported.
  */
 #ifndef EPG_PICO_USB_SDK_H
 #define EPG_PICO_USB_SDK_H

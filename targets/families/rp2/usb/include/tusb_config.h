@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * TinyUSB as EPG uses it: one device with one serial port, or two when the console has one of its own.
+ * Configuration of TinyUSB: a device with one serial port, or with two if the console has its own port.
  */
 #ifndef EPG_PICO_TUSB_CONFIG_H
 #define EPG_PICO_TUSB_CONFIG_H
@@ -12,11 +12,12 @@
 #error "EPG_PICO_USB_PORTS must be 1 or 2"
 #endif
 
-/** Bytes of a frame around a message, and twice those of a frame of which each byte is escaped. */
+/** Bytes that a frame adds to a message. */
 #define EPG_PICO_USB_FRAME 32
+/** Bytes of the largest frame: each byte may need an escape byte before it. */
 #define EPG_PICO_USB_LARGEST_FRAME (2 * (EPG_PICO_LARGEST_MESSAGE + EPG_PICO_USB_FRAME))
 
-/* Bytes of each port.  The largest message has to fit whatever is in it, as no middleware waits. */
+/* Bytes of each port's buffers.  A middleware never waits for room, so the largest frame must fit. */
 #ifndef EPG_PICO_USB_RECEIVE_SIZE
 #define EPG_PICO_USB_RECEIVE_SIZE 512
 #endif
@@ -41,7 +42,7 @@
 #define CFG_TUD_CDC_TX_BUFSIZE EPG_PICO_USB_SEND_SIZE
 #define CFG_TUD_CDC_EP_BUFSIZE 64
 
-/* The interface for picotool has a driver of its own: reset.c. */
+/* TinyUSB's driver of vendor interfaces is not needed: reset.c has a driver for picotool's interface. */
 #define CFG_TUD_VENDOR 0
 
 #endif
