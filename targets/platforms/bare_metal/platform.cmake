@@ -1,5 +1,5 @@
-# SPDX-License-Identifier: Apache-2.0
-# Bare metal: control in the interrupt of a timer, communication in one of lowest priority.
+# SPDX-License-Identifier: Apache-2.0 Bare metal: the control side runs in the interrupt of a timer, the communication
+# side in an interrupt of the lowest priority.
 
 include("${CMAKE_CURRENT_LIST_DIR}/../mcu/mcu.cmake")
 

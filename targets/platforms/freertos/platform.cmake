@@ -1,5 +1,5 @@
-# SPDX-License-Identifier: Apache-2.0
-# FreeRTOS: control in the interrupt of a timer, above the kernel; communication in a task.
+# SPDX-License-Identifier: Apache-2.0 FreeRTOS: the control side runs in the interrupt of a timer, which the kernel
+# never masks; the communication side in a task.
 
 include("${CMAKE_CURRENT_LIST_DIR}/../mcu/mcu.cmake")
 
@@ -19,7 +19,8 @@ function(_epg_freertos_executable executable name)
   _epg_mcu_executable("${executable}" "${name}" "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/src/main.c")
 endfunction()
 
-# The kernel's own CMake targets: the project's, or made here with EPG's FreeRTOSConfig.h.
+# Adds the CMake targets of the FreeRTOS kernel with EPG's FreeRTOSConfig.h, unless the project has its own.  Reports an
+# error and sets <result> to FALSE if the kernel is not found.
 function(_epg_freertos_kernel name result)
   set(${result} TRUE PARENT_SCOPE)
   if(TARGET FreeRTOS-Kernel-Static)

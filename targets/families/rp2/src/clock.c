@@ -31,7 +31,7 @@ static struct {
 uint64_t __not_in_flash_func(epg_pico_timer_us)(void)
 {
     /* The raw registers: the latched ones (timelr, timehr) have one latch for both cores.  The low word wraps every
-     * 71 minutes.  If the high word has changed between its two readings, the low word is read again, after the wrap. */
+     * 71 minutes.  If the high word has changed between its two readings, the low word is read again after the wrap. */
     uint32_t high = timer_hw->timerawh;
     uint32_t low = timer_hw->timerawl;
     const uint32_t again = timer_hw->timerawh;

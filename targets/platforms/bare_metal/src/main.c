@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * main() of an executable that holds a target and nothing else.
+ * main() of an executable that contains a target and nothing else.
  */
 #include "epg/family.h"
 
-/* <name>_start() of the target; CMake names it. */
+/* <name>_start() of the target; CMake defines the name. */
 extern bool EPG_MCU_START(void);
 
 int main(void)

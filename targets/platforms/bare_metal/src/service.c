@@ -1,24 +1,28 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Communication on bare metal: an interrupt of lowest priority, so that main() stays the user's.
+ * The communication side on bare metal: an interrupt of the lowest priority, called the service here.
  *
- * The family's timer asks for it every millisecond, and a transport's interrupt asks for it at once.  All other
- * interrupts, and whatever they do for the user, go before it.
+ * Without an RTOS there are no tasks.  The service runs beside main() because it is an interrupt, so main() belongs to
+ * the user.  All other interrupts can interrupt it, the user's too.
  *
- * It has a stack of its own, so that the user's need not be larger for it.
+ * The service runs every millisecond, started by the family's timer, and as soon as possible after a transport's
+ * interrupt.
+ *
+ * It has its own stack.  The user's main stack need not be larger because of it.
  */
 #include "epg/family.h"
 
 #define PERIOD_US 1000U
 
 /**
- * Bytes that the service takes besides its middleware, with USB's interrupt and the timer's nested in it.  Measured on
- * RP2040 over six runs with USB flooded: 1824 in all with the console.  RP2350 was not measured.
+ * Bytes of stack for the service itself and for the interrupts of USB and of the timer, which can interrupt it.  The
+ * middleware's bytes are added.  Measured on RP2040 in six runs with USB flooded: 1824 bytes in all with the console.
+ * RP2350 was not measured.
  */
 #define SERVICE_AND_INTERRUPTS (256 + 3 * EPG_FAMILY_FPU_FRAME)
 
-/** Bytes, a quarter more than was measured; epg_mcu_status() tells how many are used. */
+/** Bytes of the stack: a quarter more than was measured.  epg_mcu_status() reports how many have been used. */
 #ifdef EPG_FAMILY_SERVICE_STACK_SIZE
 #define STACK_SIZE EPG_FAMILY_SERVICE_STACK_SIZE
 #else
@@ -53,7 +57,10 @@ __attribute__((used)) void epg_mcu_service_run(void)
     }
 }
 
-/* Runs epg_mcu_service_run() on the service's stack; other interrupts that come meanwhile use it too. */
+/*
+ * Entry of the interrupt: switches to the service's stack, calls epg_mcu_service_run(), and switches back.  Interrupts
+ * that interrupt the service use its stack, too.
+ */
 static void __attribute__((naked)) on_service(void)
 {
     __asm__ volatile(".syntax unified\n"
@@ -63,7 +70,9 @@ static void __attribute__((naked)) on_service(void)
                      "ldr r1, =%c[size]\n"
                      "adds r1, r0, r1\n"
 #if __ARM_ARCH >= 8
-                     /* Armv8-M checks the stack pointer against a limit. */
+                     /*
+                      * Armv8-M compares the stack pointer with the limit in MSPLIM.  A limit of 0 permits the switch.
+                      */
                      "mrs r5, msplim\n"
                      "movs r2, #0\n"
                      "msr msplim, r2\n"
@@ -102,10 +111,10 @@ bool epg_mcu_service_start(void (*serve)(void))
 bool epg_mcu_service_stop(void)
 {
     if (epg_family_in_interrupt()) {
-        return false; /* it may have come in the middle of the service, or be the service */
+        return false; /* the interrupt may have interrupted the service, or may be the service */
     }
     if (service != NULL) {
-        service = NULL; /* from here on nothing asks for it, and an interrupt that was asked for does nothing */
+        service = NULL; /* no more wake-ups; a service interrupt that is pending already does nothing */
         epg_family_service_release();
     }
     return true;

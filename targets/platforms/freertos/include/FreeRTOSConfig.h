@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The FreeRTOS kernel as EPG runs it: one core, static memory, a tick of 1 ms.
+ * EPG's configuration of the FreeRTOS kernel: one core, static memory, a kernel tick of 1 ms.
  *
- * The control loop knows nothing of the kernel: it has a core of its own, or an interrupt above all that the kernel
- * masks.  So the kernel is that of one core.
- * A project that brings its own FreeRTOSConfig.h (a target FreeRTOS-Kernel of its own) uses that; src/rtos.h says what
- * must be the same.
+ * The control loop does not use the kernel.  It runs on its own core, or in an interrupt with a priority above those
+ * that the kernel masks.  The kernel is therefore configured for one core.
+ *
+ * A project can have its own CMake target FreeRTOS-Kernel with its own FreeRTOSConfig.h; this file is not used then.
+ * src/rtos.h checks the settings that EPG needs.
  */
 #ifndef EPG_FREERTOS_CONFIG_H
 #define EPG_FREERTOS_CONFIG_H
@@ -68,7 +69,7 @@ void epg_freertos_assert_failed(const char *file, int line);
     } while (0)
 #endif
 
-/* What the kernel's port for the chips of a family takes. */
+/* Settings of the kernel's port for the family of chips. */
 #include "epg/freertos_port.h"
 
 #define INCLUDE_vTaskPrioritySet 1

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * What the kernel calls when something is wrong, outputs first, and when nothing is to be done.  A hook of the user's
- * own takes the place of one here.
+ * Hooks, which are functions that the kernel calls: after an error, and when no task is ready.
+ *
+ * After an error the outputs are made safe first.  The hooks are weak: a definition of the user replaces them.
  */
 #include "epg/family.h"
 #include "rtos.h"
@@ -16,7 +17,7 @@ void __attribute__((weak)) vApplicationStackOverflowHook(TaskHandle_t task, char
     epg_family_panic("stack overflow in task %s", name);
 }
 
-/** Sleeps until an interrupt, and leaves the bus to the control loop. */
+/** Sleeps until the next interrupt.  A sleeping core makes no accesses to memory that could delay the control loop. */
 void __attribute__((weak)) vApplicationIdleHook(void)
 {
     epg_family_sleep();

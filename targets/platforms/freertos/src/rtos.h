@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The headers of the FreeRTOS kernel, as system headers: the user's warnings are for the user's code.
+ * The headers of the FreeRTOS kernel, as system headers: the warnings that users choose apply to their own code only.
+ *
+ * It also checks the settings of FreeRTOSConfig.h that EPG needs, because a project may bring its own.
  */
 #ifndef EPG_FREERTOS_RTOS_H
 #define EPG_FREERTOS_RTOS_H

@@ -1,22 +1,23 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Communication on FreeRTOS: a task, from static memory, with the user's tasks beside it.
+ * The communication side on FreeRTOS: a task beside the user's tasks, in static memory.
  *
- * It runs every millisecond and at once when a transport's interrupt asks for it.  Tasks of higher priority go before
- * it; if they keep it waiting longer than EPG_FAMILY_SERVICE_TIMEOUT_MS, communication counts as stuck.
+ * It runs every millisecond, and at once after a transport's interrupt.  Tasks of higher priority run first.  If they
+ * make it wait longer than EPG_FAMILY_SERVICE_TIMEOUT_MS, the watchdog is no longer fed and resets the chip.
  */
 #include "epg/family.h"
 #include "epg/port_wait.h"
 #include "rtos.h"
 
 /**
- * Bytes that the task takes besides its middleware, with its registers while others run; interrupts have a stack of
- * their own.  Measured on RP2040 over six runs with USB flooded: 1652 in all with the console.  RP2350 was not measured.
+ * Bytes of stack for the task itself, and for its registers while another task runs.  The middleware's bytes are added.
+ * Interrupts use another stack.  Measured on RP2040 in six runs with USB flooded: 1652 bytes in all with the console.
+ * RP2350 was not measured.
  */
 #define SERVICE_AND_CONTEXT (128 + 2 * EPG_FAMILY_FPU_FRAME)
 
-/** Words of the task's stack, a quarter more than was measured. */
+/** Words of the task's stack: a quarter more than was measured. */
 #ifndef EPG_FREERTOS_STACK_WORDS
 #define EPG_FREERTOS_STACK_WORDS ((EPG_FAMILY_MIDDLEWARE_STACK + SERVICE_AND_CONTEXT) * 5 / 16)
 #endif
@@ -25,12 +26,12 @@
 #define EPG_FREERTOS_PRIORITY (tskIDLE_PRIORITY + 2)
 #endif
 
-/** PARKED: the task waits for a start.  PARKING: it shall park after its turn. */
+/** PARKED: the task waits for the next start.  PARKING: a stop waits for the end of the task's turn. */
 typedef enum state { PARKED, SERVING, PARKING } state_t;
 
 /*
- * The task is made by the first start and is never deleted: interrupts notify it at any time, and in the middle of a
- * turn it may own a mutex of TinyUSB, or write to flash.
+ * The first start creates the task; no stop deletes it, for two reasons.  Interrupts may notify it at any time.  And in
+ * the middle of a turn it may own a mutex of TinyUSB, or be writing to flash.
  */
 static StaticTask_t memory;
 static StackType_t stack[EPG_FREERTOS_STACK_WORDS];
@@ -47,7 +48,7 @@ void epg_mcu_service_wake(void)
     }
 }
 
-/** For a tick, or until a transport has something. */
+/** Sleeps until the next kernel tick, or until a transport's interrupt. */
 static void rest(void)
 {
     (void)ulTaskNotifyTake(pdTRUE, pdMS_TO_TICKS(1));
