@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The communication thread: every millisecond, and at once when a transport's interrupt asks for it.
+ * The communication thread.  It runs every millisecond, and at once after a transport's interrupt.
  *
- * Threads of higher priority go before it; if they keep it waiting for too long, it counts as stuck.
+ * Threads of higher priority run first.  If they make it wait too long, the watchdog is no longer fed.
  */
 #include <zephyr/kernel.h>
 
@@ -18,7 +18,10 @@ BUILD_ASSERT(CONFIG_EPG_COMMUNICATION_PRIORITY < CONFIG_NUM_PREEMPT_PRIORITIES,
 #define THREAD_OPTIONS 0
 #endif
 
-/** A timeout ends at the end of the last tick that has begun: one tick fewer is a millisecond at most. */
+/*
+ * The kernel counts a timeout from the next tick of the system clock, so it takes up to one tick longer.  One tick less
+ * gives at most a millisecond.
+ */
 #define TICKS_PER_MS (CONFIG_SYS_CLOCK_TICKS_PER_SEC / 1000)
 #define PERIOD K_TICKS(MAX(TICKS_PER_MS - 1, 1))
 
@@ -65,7 +68,7 @@ void epg_zephyr_communication_stop(void)
     if (running) {
         atomic_store(&stopping, true);
         epg_zephyr_communication_wake();
-        (void)k_thread_join(&thread, K_FOREVER); /* no middleware waits for anything */
+        (void)k_thread_join(&thread, K_FOREVER); /* this ends soon: no middleware waits */
         running = false;
     }
 }

@@ -1,15 +1,19 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The control cycle, in a meta-IRQ thread that the tick's interrupt releases.
+ * The control thread: a meta-IRQ thread that the tick's interrupt releases, and that runs one control cycle per tick.
  *
- * A meta-IRQ thread runs before every other thread, cooperative ones too, as soon as no interrupt is being served.  The
- * tick repeats by itself, so it can be late but never lost; how many ticks there were is asked of the time of the newest
- * one.  The tick and the system clock may drift apart by some parts per million (the driver of SysTick loses clocks when
- * it is set anew), so that time counts from each tick anew.
+ * A meta-IRQ thread runs before every other thread, cooperative ones too, as soon as no interrupt is being served.
  *
- * On RP2040 and RP2350 the tick's interrupt reads the inputs, too (inputs.c): the thread may begin later in some cycles,
- * because other interrupts go before it.
+ * The tick repeats by itself, so it can be late but is never lost.  The number of passed ticks follows from the time of
+ * the newest one.
+ *
+ * The tick and the system clock may drift apart by some parts per million, because the driver of SysTick loses clocks
+ * when it sets a new timeout.  The due time of a cycle is therefore the measured time of its tick, not a multiple of
+ * the period.
+ *
+ * Other interrupts may delay the thread in some cycles.  On RP2040 and RP2350 the tick's interrupt therefore reads the
+ * inputs (inputs.c), so that they are always read at the same distance from the tick.
  */
 #include <string.h>
 
@@ -27,7 +31,7 @@ BUILD_ASSERT(CONFIG_NUM_METAIRQ_PRIORITIES >= 1,
 #define THREAD_OPTIONS 0
 #endif
 
-/** How long the control thread may take to answer besides two periods. */
+/** The control thread must answer a request to hold within two periods and this time. */
 #define ANSWER_US 10000U
 
 static K_THREAD_STACK_DEFINE(stack, CONFIG_EPG_CONTROL_STACK_SIZE);
@@ -37,19 +41,19 @@ static K_SEM_DEFINE(ticks, 0, 1);
 static struct {
     epg_control_t *control;
     const epg_application_t *application;
-    uint64_t due_ns; /* of the newest tick that was handled */
+    uint64_t due_ns; /* time of the newest tick that was handled */
     uint64_t period_ns;
 } loop;
 
-/** The target's application, with what this platform does besides. */
+/** The target's application, with functions of this platform in place of read() and write(). */
 static epg_application_t wrapped;
 
-static bool running; /* the thread is there */
+static bool running; /* the thread exists */
 static atomic_bool stopping;
-static atomic_bool waiting; /* for a tick */
-static atomic_bool sampled; /* the newest tick has read the inputs; it does so only while `waiting` */
+static atomic_bool waiting; /* the thread waits for a tick */
+static atomic_bool sampled; /* the newest tick has read the inputs; it does so only while `waiting` is true */
 
-/* Holding: asked for by the communication thread, answered after the cycle at hand. */
+/* Holding: the communication thread requests it; the control thread answers at the next tick. */
 static atomic_bool hold_requested;
 static atomic_bool hold_granted;
 static K_SEM_DEFINE(hold_answered, 0, 1);
@@ -64,13 +68,13 @@ void epg_zephyr_control_tick(void)
     k_sem_give(&ticks);
 }
 
-/** Ticks that have passed since `loop.due_ns`, the newest of which was at `newest_ns`. */
+/** The number of ticks since `loop.due_ns`.  The newest one was at `newest_ns`, and becomes the new `loop.due_ns`. */
 static inline uint32_t pass_ticks(uint64_t newest_ns)
 {
     const int64_t half = (int64_t)(loop.period_ns / 2U);
     const int64_t since = (int64_t)(newest_ns - loop.due_ns);
     if (since < half) {
-        return 0U; /* it was counted together with the one before */
+        return 0U; /* this tick was already counted in the cycle before */
     }
     loop.due_ns = newest_ns;
     if (since < half + (int64_t)loop.period_ns) {
@@ -79,7 +83,7 @@ static inline uint32_t pass_ticks(uint64_t newest_ns)
     return (uint32_t)((uint64_t)(since + half) / loop.period_ns);
 }
 
-/** True while no cycle is to run: the outputs are safe and stay so. */
+/** True while no cycle must run.  The target is disabled then, so its outputs are safe and stay safe. */
 static bool held(void)
 {
     if (!atomic_load(&hold_requested)) {
@@ -94,8 +98,9 @@ static bool held(void)
 }
 
 /**
- * At the output delay, so that no interrupt comes between two writes, and all levels act at the same wrap of the PWM.  It
- * takes 3 us for JIWY, and 13 us in a cycle in which both motors change their direction (RP2040 at 125 MHz).
+ * Writes the outputs, at the output delay, with interrupts locked.  No interrupt can come between two writes, so all
+ * levels take effect at the same wrap of the PWM.  It takes 3 us for JIWY, and 13 us in a cycle in which both motors
+ * change their direction (RP2040 at 125 MHz).
  */
 static void write_locked(void)
 {
@@ -104,14 +109,14 @@ static void write_locked(void)
     irq_unlock(key);
 }
 
-/** After requests to enable, and before outputs are written. */
+/** In a cycle, read() comes after requests to enable and before the outputs, which is the right place for the check. */
 static void read_and_check_outputs(void)
 {
     loop.application->read();
     epg_zephyr_outputs_check(loop.control);
 }
 
-/** Outputs whose drivers may wait are written while interrupts are not locked. */
+/** Outputs are written with interrupts locked only if no driver can wait. */
 static const epg_application_t *wrap(const epg_application_t *application)
 {
     wrapped = *application;
@@ -152,7 +157,8 @@ static void run(void *first, void *second, void *third)
             loop.application->safe();
             return;
         }
-        /* Not after a cycle that ended late, nor when another tick has come before this thread could run. */
+        /* False after a cycle that ended late, and if another tick has come before this thread could run: then the tick
+         * has not read the inputs, and the cycle reads them. */
         epg_zephyr_inputs_use(atomic_load(&sampled));
         cycle();
         epg_zephyr_inputs_use(false);
@@ -212,7 +218,7 @@ void epg_zephyr_control_stop(void)
     if (running) {
         atomic_store(&stopping, true);
         k_sem_give(&ticks);
-        (void)k_thread_join(&thread, K_FOREVER); /* it goes before this thread, and its cycle ends */
+        (void)k_thread_join(&thread, K_FOREVER); /* this ends soon: it has a higher priority than this thread */
         epg_zephyr_tick_stop();
         epg_zephyr_watchdog_stop();
         running = false;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Outputs that are safe: before main(), and after everything that must not happen.
+ * Safe outputs: before main(), and after a fatal error.
  */
 #include <zephyr/cache.h>
 #include <zephyr/drivers/pwm.h>
@@ -17,7 +17,7 @@ LOG_MODULE_DECLARE(epg, CONFIG_EPG_LOG_LEVEL);
 
 #define FAULT_MAGIC 0xEF4A17EDU
 
-/** Remembers across a reset that a fault came before it. */
+/** Records a fault across a reset: the start-up code does not clear this variable. */
 static __noinit uint32_t fault_word;
 
 static void remember(uint32_t value)
@@ -26,7 +26,7 @@ static void remember(uint32_t value)
     (void)sys_cache_data_flush_range(&fault_word, sizeof fault_word);
 }
 
-/** Pins become plain outputs at their safe levels, whatever a PWM is doing. */
+/** Makes each output's pin a plain output at its safe level, whatever its PWM does. */
 static void make_pins_safe(void)
 {
     for (size_t i = 0; i < epg_zephyr_hardware.output_count; i++) {
@@ -40,7 +40,7 @@ static void make_pins_safe(void)
 
 void epg_zephyr_safe_state(void)
 {
-    (void)irq_lock(); /* for good: no tick comes any more, and no other thread */
+    (void)irq_lock(); /* for ever: no tick and no other thread runs any more */
     make_pins_safe();
     remember(FAULT_MAGIC);
 }
@@ -58,7 +58,7 @@ epg_fault_t epg_zephyr_fault_before_reset(void)
     return fault;
 }
 
-/** When there are GPIOs, and before the PWM takes its pins over. */
+/** Runs after the drivers of the GPIOs have started, and before the PWM takes over its pins. */
 static int start_outputs(void)
 {
     make_pins_safe();
@@ -68,7 +68,7 @@ static int start_outputs(void)
 SYS_INIT(start_outputs, POST_KERNEL, CONFIG_EPG_OUTPUTS_INIT_PRIORITY);
 
 #ifdef CONFIG_EPG_FATAL_ERROR_HANDLER
-/* In place of Zephyr's weak one. */
+/* Replaces Zephyr's weak function. */
 void k_sys_fatal_error_handler(unsigned int reason, const struct arch_esf *frame)
 {
     ARG_UNUSED(frame);

@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Inputs: quadrature decoders, which are devices of the sensor API that give their count (epg/zephyr/qdec.h), and pins.
+ * Inputs: quadrature decoders and pins.  A decoder is a device of the sensor API that reports its count
+ * (epg/zephyr/qdec.h).
  *
- * On RP2040 and RP2350 the tick's own interrupt reads them: no other interrupt and no thread comes before it, so inputs
- * are of the same instant in each cycle, however late the control thread begins.  Pins whose driver may wait, such as
- * those of an expander on I2C, cannot be read in an interrupt: the control thread reads them at its beginning.
+ * On RP2040 and RP2350 the tick's interrupt reads the inputs.  No other interrupt and no thread can delay it, so inputs
+ * are read at the same distance from the tick in each cycle, however late the control thread begins.
+ *
+ * Some pins have a driver that may wait, for example those of an expander on I2C.  They cannot be read in an interrupt;
+ * the control thread reads them at the begin of its cycle.
  */
 #include <epg/zephyr/qdec.h>
 #include <zephyr/kernel.h>
@@ -16,24 +19,24 @@
 #include "pico.h"
 #endif
 
-/** Decoders of one target; the chips have fewer. */
+/** Largest number of decoders.  A target with more does not start. */
 #define DECODERS 16U
-/** Rows in the table of pins; the chips have fewer. */
+/** Largest number of rows in the table of pins.  A target whose inputs are in later rows does not start. */
 #define PINS 64U
 
-/* By row of the table: what the last reading gave. */
+/* The result of the last reading, by row of the table of decoders. */
 static struct {
     uint32_t count;
     bool healthy;
 } newest[DECODERS];
 
-/* By row of the table, of pins that the tick's interrupt reads. */
+/* By row of the table of pins: true if the tick's interrupt reads the pin, and the level that it has read. */
 static struct {
     bool in_interrupt;
     bool level;
 } levels[PINS];
 
-/** For the control thread: `newest` and `levels` are of the tick whose cycle it runs. */
+/** Used by the control thread: `newest` and `levels` belong to the tick of the present cycle. */
 static bool sampled;
 
 static size_t decoder_rows(void)
@@ -128,7 +131,7 @@ static bool find_pin(uint8_t pin, size_t *row)
     return true;
 }
 
-/** Whether the driver of the port only reads a register. */
+/** True if the port's driver only reads a register. */
 static bool can_be_read_in_interrupt(const struct device *port)
 {
 #ifdef CONFIG_EPG_TICK_PICO_PWM

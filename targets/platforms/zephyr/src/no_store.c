@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Boards without a partition to store in.
+ * The store of boards that have no flash partition for it: it is always empty, and a write fails.
  */
 #include "epg/port.h"
 

@@ -3,9 +3,9 @@
  * @file
  * Outputs: PWM and pins.
  *
- * A driver may refuse a write: an expander that does not answer, a clock that is off, a channel that somebody has taken.
- * The component is then brought into a safe state and given up until a reset (epg/outputs.h), and the target is disabled
- * with the fault EPG_FAULT_OUTPUT.
+ * A driver may refuse a write, for example because an expander does not answer, a clock is off, or other code uses the
+ * channel.  The component is then brought into a safe state and not used until the next reset (epg/outputs.h).  The
+ * target is disabled with the fault EPG_FAULT_OUTPUT.
  */
 #include <zephyr/drivers/pwm.h>
 #include <zephyr/kernel.h>
@@ -18,10 +18,10 @@
 
 #define NS_PER_S 1000000000U
 
-/** Rows in the table of pins; the chips have fewer. */
+/** Largest number of rows in the table of pins.  A target whose outputs are in later rows does not start. */
 #define PINS 64U
 
-/** The row in the table of outputs of a pin that is in no component's. */
+/** In place of a row: the pin is not in the table of outputs. */
 #define NO_ROW UINT8_MAX
 BUILD_ASSERT(NO_ROW >= EPG_OUTPUTS_ROWS, "no row of the table");
 
@@ -39,13 +39,15 @@ static uint8_t output_row(uint8_t pin)
 
 /* PWM ------------------------------------------------------------------------------------------------------------ */
 
-/** Outputs of one target; the chips have fewer. */
+/** Largest number of PWM outputs.  A target with more does not start. */
 #define PWMS 32U
 
-/* By row of the table: the period in clocks of the device, so that no cycle divides 64 bits to know it. */
+/*
+ * The PWM period in clocks of the device, by row of the table of PWMs.  Computed once: it takes a division of 64 bits.
+ */
 static uint32_t periods[PWMS];
 
-/* By row of the table: its row in the table of outputs. */
+/* The row in the table of outputs, by row of the table of PWMs. */
 static uint8_t pwm_outputs[PWMS];
 
 static const epg_zephyr_pwm_t *find_pwm(uint8_t instance, uint8_t slot, size_t *row)
@@ -77,13 +79,16 @@ static int find_period(const epg_port_pwm_t *config)
     return error;
 }
 
-/** The high time for a level out of `steps`, in clocks of the device. */
+/** The high time in clocks of the device, for `level` out of `steps`. */
 static inline uint32_t pulse_of(uint32_t level, uint32_t steps, uint32_t period)
 {
     return period == steps ? level : (uint32_t)((uint64_t)period * level / steps);
 }
 
-/** Makes an output a plain pin; one that has no pin, because the application's devicetree names the PWM, by its driver. */
+/**
+ * Sets an output to a constant level.  Its pin becomes a plain output.  If the application's devicetree defines the
+ * PWM, its pin is not known; then the PWM's driver sets the level.
+ */
 static bool take_over(size_t row, bool high)
 {
     const epg_zephyr_pin_t *pin = epg_zephyr_pin(epg_zephyr_hardware.outputs[row].pin);
@@ -101,7 +106,7 @@ static bool take_over(size_t row, bool high)
 
 static void refuse(uint8_t row)
 {
-    epg_zephyr_device_refused = true; /* for a start that is under way */
+    epg_zephyr_device_refused = true; /* makes a start fail that is in progress */
     epg_outputs_refused(&outputs, row, take_over);
 }
 
@@ -149,7 +154,7 @@ void epg_port_pwm_write(const epg_port_pwm_t *config, uint32_t level)
 
 /* Pins ------------------------------------------------------------------------------------------------------------ */
 
-/* By row of the table: its row in the table of outputs. */
+/* The row in the table of outputs, by row of the table of pins. */
 static uint8_t pin_outputs[PINS];
 
 static bool find_pin(uint8_t pin, size_t *row)
@@ -191,7 +196,9 @@ void epg_port_output_write(uint8_t pin, bool level)
     epg_outputs_written(&outputs, pin_outputs[row], level ? EPG_LEVEL_HIGH : EPG_LEVEL_LOW);
 }
 
-/* All --------------------------------------------------------------------------------------------------------------- */
+/*
+ * All ---------------------------------------------------------------------------------------------------------------
+ */
 
 bool epg_zephyr_outputs_start(void)
 {

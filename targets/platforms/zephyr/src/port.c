@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Time, and the devices of the target.
+ * Time, and the table of the target's devices.
  */
 #include "epg/port.h"
 
@@ -24,8 +24,8 @@ bool epg_zephyr_device_refused;
 #define CLOCK CONFIG_SYS_CLOCK_HW_CYCLES_PER_SEC
 
 /**
- * A whole number of nanoseconds per clock; else times 2^24, which is a few parts per thousand million off, and needs no
- * division of 64 bits.
+ * Converts clocks to nanoseconds.  If a clock is not a whole number of nanoseconds, the factor is scaled by 2^24.  The
+ * result is then wrong by a few parts per thousand million, and no division of 64 bits is needed.
  */
 static inline uint64_t clocks_to_ns(uint64_t clocks)
 {
@@ -43,13 +43,13 @@ uint64_t epg_port_time_ns(void)
     return clocks_to_ns(k_cycle_get_64());
 }
 
-/** From the interrupt that ends a sleep to the thread that slept, with others before it. */
+/** Time from the interrupt that ends a sleep until the thread runs, with other interrupts before it. */
 #define WAKING_NS 50000
 
 /**
- * Ticks of the system clock that a sleep takes more than it is asked for: to the end of the one that has begun, and,
- * when one ends between the kernel's reading the time and its setting the timer (z_add_timeout()), one more, for this
- * timeout and for all that end in the same tick as the one it was set for.
+ * Ticks of the system clock by which a sleep can be longer than requested.  One tick, because the tick that has begun
+ * does not count.  One more, if a tick ends after the kernel has read the time and before it sets the timer
+ * (z_add_timeout()).
  */
 #define LONGER_TICKS 2
 
@@ -58,19 +58,21 @@ void epg_port_wait_until(uint64_t time_ns)
 #ifdef CONFIG_ARCH_POSIX
     ARG_UNUSED(time_ns); /* time is simulated */
 #else
-    /* The processor is for others until shortly before; the rest is too short for that. */
+    /* Sleep for most of the time, so that other threads can run.  The rest is too short for a sleep. */
     const int64_t left = (int64_t)(time_ns - epg_port_time_ns()) - WAKING_NS;
     const int64_t whole = left > 0 ? (int64_t)k_ns_to_ticks_floor32((uint32_t)MIN(left, UINT32_MAX)) : 0;
     if (whole > LONGER_TICKS) {
         (void)k_sleep(K_TICKS((k_ticks_t)(whole - LONGER_TICKS)));
     }
     while (epg_port_time_ns() < time_ns) {
-        arch_nop(); /* time passes, so this ends */
+        arch_nop();
     }
 #endif
 }
 
-/* All --------------------------------------------------------------------------------------------------------------- */
+/*
+ * All ---------------------------------------------------------------------------------------------------------------
+ */
 
 const epg_zephyr_pin_t *epg_zephyr_pin(uint8_t pin)
 {

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * What tells this board from all others: the chip's device id, which is the serial number of the USB device too.
+ * The serial number of the board: the chip's device id.  The USB device has the same serial number.
  */
 #include <zephyr/drivers/hwinfo.h>
 #include <zephyr/sys/util.h>
 
 #include "epg/port.h"
 
-/** Bytes of an id that are used; the largest that Zephyr's USB serial number shows. */
+/** Bytes of the device id that are used: as many as Zephyr's USB serial number shows. */
 #define ID_SIZE 16U
 
 const char *epg_port_serial(void)

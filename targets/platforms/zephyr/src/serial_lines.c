@@ -1,19 +1,24 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Bytes between a device of the UART API and two rings, by its interrupts: real UARTs, and the serial ports of USB, whose
- * "interrupt" is a work queue of Zephyr's.
+ * Moves bytes between a device of Zephyr's UART API and two rings, in the device's interrupt.
+ *
+ * The device is a UART, or a serial port on USB.  The "interrupt" of a port on USB is a work queue of Zephyr.
  */
 #include <zephyr/drivers/uart.h>
 #include <zephyr/kernel.h>
 
 #include "parts.h"
 
-/** Pieces of data that one run of the interrupt moves in each direction; what is left raises it again. */
+/** Largest number of pieces that one run of the interrupt moves in each direction.  The rest raises it again. */
 #define ROUNDS 8U
+/** Largest size of a piece, in bytes. */
 #define PIECE 32U
 
-/** With back pressure: takes no more than there is room for. */
+/**
+ * Receives a piece.  With back pressure it takes at most as many bytes as the ring has room for, and stops receiving if
+ * the ring is full.  False if there is nothing more to receive.
+ */
 static bool receive(const struct device *device, epg_zephyr_lines_t *lines)
 {
     unsigned char piece[PIECE];
@@ -34,8 +39,9 @@ static bool receive(const struct device *device, epg_zephyr_lines_t *lines)
 }
 
 /**
- * Sends what lies together in the ring; false when there is nothing more, or the device takes nothing more.  In pieces:
- * USB's driver copies one with interrupts off, and the tick's would wait for that.
+ * Sends a piece: bytes that are adjacent in the ring's memory.  False if there is nothing more to send, or if the
+ * device takes nothing more.  Pieces are small, because USB's driver copies one with interrupts off, which delays the
+ * tick.
  */
 static bool send(const struct device *device, epg_ring_t *ring)
 {
@@ -61,7 +67,8 @@ static void on_interrupt(const struct device *device, void *user)
     epg_zephyr_lines_t *lines = user;
     bool any = false;
     if (lines->damaged != NULL && uart_err_check(device) > 0) {
-        atomic_store(lines->damaged, atomic_load(lines->damaged) + 1U); /* the only writer */
+        /* A load and a store are enough, because no other context writes this counter. */
+        atomic_store(lines->damaged, atomic_load(lines->damaged) + 1U);
     }
     for (uint32_t i = 0; i < ROUNDS && uart_irq_update(device) > 0 && uart_irq_is_pending(device) > 0; i++) {
         const bool received = uart_irq_rx_ready(device) > 0 && receive(device, lines);

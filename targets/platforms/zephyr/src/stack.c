@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * How much of a thread's stack has been used.
+ * The use of a thread's stack.
  */
 #include <zephyr/kernel.h>
 
 #include "parts.h"
 
-/* Threads of POSIX run on stacks of the host. */
+/* On native_sim (CONFIG_ARCH_POSIX) threads run on stacks of the computer, which Zephyr does not measure. */
 uint32_t epg_zephyr_stack_used(const struct k_thread *thread, size_t size)
 {
 #if defined(CONFIG_INIT_STACKS) && defined(CONFIG_THREAD_STACK_INFO) && !defined(CONFIG_ARCH_POSIX)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Starting and stopping a target; what the communication thread does for it.
+ * Starts and stops a target, and runs its communication side.
  */
 #include <zephyr/kernel.h>
 #include <zephyr/logging/log.h>
@@ -12,7 +12,7 @@
 
 LOG_MODULE_REGISTER(epg, CONFIG_EPG_LOG_LEVEL);
 
-/** How often stacks are looked at. */
+/** Time between two measurements of the stacks. */
 #define STACKS_PERIOD_NS 250000000U
 
 static const epg_zephyr_target_t *running;
@@ -28,7 +28,7 @@ static void report_stacks(epg_control_t *control)
     epg_control_report_stack(control, EPG_STACK_COMMUNICATION, used, size);
 }
 
-/** One turn of the communication side. */
+/** One turn of the communication side; called at least once per millisecond. */
 static void serve(void)
 {
     static uint64_t stacks_ns;

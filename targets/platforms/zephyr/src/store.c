@@ -1,12 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * A small store in the flash partition storage_partition: records one after the other in up to two pages, of which the
- * valid one with the highest number counts.
+ * A small store in the flash partition storage_partition.
  *
- * A record's data are written before its head, which has the checksum: the power may fail at any moment, and what is
- * found afterwards is either all new or all old.  A partition of one page is the exception, when it is full and erased:
- * then nothing may be left.
+ * Flash is erased in whole pages, and wears out by this.  The store therefore appends records, one after the other, in
+ * up to two pages.  It erases a page only when the other one is full.  The valid record with the highest number is the
+ * current one.
+ *
+ * The power may fail at any moment of a write; afterwards the store must have either all old data or all new data.  A
+ * record begins with a head, which contains a checksum.  The data are written first and the head last; without a
+ * complete head the new record is not valid, and the old one stays current.
+ *
+ * A partition of one page is an exception.  When the page is full it must be erased; if the power fails then, nothing
+ * is stored any more.
  */
 #include <string.h>
 
@@ -26,14 +32,14 @@
 
 #define MAGIC 0x53475045U /* "EPGS" */
 #define PAGES 2U
-/** The largest unit in which flash is written. */
+/** The largest unit of writing that is supported, in bytes.  Flash can be written in whole units only. */
 #define ALIGN_MAX 64U
 
 typedef struct head {
     uint32_t magic;
-    uint32_t number; /* of the write; never 0 */
-    uint32_t size;
-    uint32_t check; /* of number, size and data */
+    uint32_t number; /* counts the writes, from 1 */
+    uint32_t size;   /* bytes of data */
+    uint32_t check;  /* Adler-32 of number, size and data */
 } head_t;
 
 static struct {
@@ -43,13 +49,13 @@ static struct {
     uint32_t align;
 } flash;
 
-/** The newest record, and where the next one goes. */
+/** The place of the newest record and of the next one. */
 typedef struct place {
-    bool found;
+    bool found; /* there is a valid record */
     head_t head;
-    uint32_t at;   /* of the head */
-    uint32_t page; /* of the newest record; 0 if there is none */
-    uint32_t end;  /* of that page's records, from its beginning */
+    uint32_t at;   /* offset of its head in the partition */
+    uint32_t page; /* number of its page; 0 if there is no record */
+    uint32_t end;  /* offset in this page, at which the next record begins */
 } place_t;
 
 static bool open_partition(void)
@@ -88,7 +94,7 @@ static uint32_t check_of_head(const head_t *head)
     return epg_adler32(epg_adler32(1U, &head->number, sizeof head->number), &head->size, sizeof head->size);
 }
 
-/** Whether the data after a head are what it says. */
+/** True if the data after the head at offset `at` have its checksum. */
 static bool valid(const head_t *head, uint32_t at)
 {
     uint8_t piece[ALIGN_MAX];
@@ -103,7 +109,7 @@ static bool valid(const head_t *head, uint32_t at)
     return sum == head->check;
 }
 
-/** Follows the records of a page; those that are newer than what was found before count. */
+/** Goes through the records of a page, and updates `*place` if a valid record is newer than the one found so far. */
 static void scan(uint32_t page, place_t *place)
 {
     const uint32_t begin = page * flash.page_size;
@@ -153,7 +159,7 @@ static bool erased(uint32_t at, uint32_t size)
     return true;
 }
 
-/** Writes `size` bytes in units of flash, the rest of the last one as if erased. */
+/** Writes `size` bytes in whole units.  The rest of the last unit is written with the value of erased flash. */
 static bool program(uint32_t at, const void *data, size_t size)
 {
     uint8_t unit[ALIGN_MAX];

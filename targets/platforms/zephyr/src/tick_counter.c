@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The tick of other chips: the top of a counter, which its hardware goes on from by itself.
+ * The tick of chips other than RP2040 and RP2350: the top value of a counter.  The counter's hardware starts again by
+ * itself at its top value, so a tick can be late but is never lost.
  */
 #include <zephyr/drivers/counter.h>
 #include <zephyr/kernel.h>
@@ -35,7 +36,7 @@ epg_zephyr_error_t epg_zephyr_tick_start(const epg_zephyr_tick_t *tick, uint64_t
     if (tick->prescaler == 0U || counter_get_frequency(tick->device) != tick->clock / tick->prescaler) {
         return EPG_ZEPHYR_ERROR_TICK;
     }
-    /* In two steps: 2^24 times a large prescaler's nanoseconds need more than 64 bits. */
+    /* In two steps: the product of 2^24 and the nanoseconds of a large prescaler needs more than 64 bits. */
     const uint64_t prescaled_ns = (uint64_t)tick->prescaler * NS_PER_S;
     state.ns_per_count = ((prescaled_ns / tick->clock) << 24) + ((prescaled_ns % tick->clock) << 24) / tick->clock;
     state.counter = tick->device;
@@ -62,7 +63,7 @@ uint64_t epg_zephyr_tick_newest_ns(uint64_t *now_ns)
     *now_ns = epg_port_time_ns();
     (void)counter_get_value(state.counter, &count);
     irq_unlock(key);
-    if (!state.counts_up) { /* from top to 0, at which it begins again */
+    if (!state.counts_up) { /* it counts from top down to 0 */
         count = state.top - count;
     }
     return *now_ns - (count * state.ns_per_count >> 24);

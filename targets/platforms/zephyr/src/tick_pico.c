@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The tick of RP2040 and RP2350: the wrap interrupt of a PWM slice that nothing else uses.
+ * The tick of RP2040 and RP2350: the wrap interrupt of a reserved PWM slice.
  *
- * Zephyr's PWM driver starts all slices, one after the other, and has no use for their interrupts.  Here the tick's
- * slice and those of the target's outputs start anew with one write, so that what a cycle writes takes effect at the same
- * distance from the tick each time (RP2040 data sheet 4.5.2.6: TOP and CC are taken over at the wrap).
+ * A PWM slice is a counter that counts from 0 to TOP, and then wraps.  A new level of an output takes effect at the
+ * next wrap of its slice (RP2040 data sheet 4.5.2.6: TOP and CC are taken over at the wrap).
+ *
+ * Zephyr's PWM driver starts all slices, one after the other, and does not use their interrupts.  Here the slice of the
+ * tick and the slices of the target's outputs are stopped, and started together with one write.  The distance between a
+ * tick and the wraps of the outputs is therefore the same in each run.
  */
 #include <zephyr/drivers/clock_control.h>
 #include <zephyr/irq.h>
@@ -20,7 +23,7 @@
 BUILD_ASSERT(DT_NODE_HAS_STATUS_OKAY(PWM_NODE), "the tick is made by the PWM: its node must have status \"okay\"");
 
 #if DT_IRQ_HAS_NAME(PWM_NODE, pwm_irq_wrap_1)
-/* The SDK's pwm_set_irq_enabled() and with it most programs use the other one. */
+/* RP2350 has two wrap interrupts.  The SDK's pwm_set_irq_enabled(), and so most programs, use number 0. */
 #define WRAP_IRQ DT_IRQ_BY_NAME(PWM_NODE, pwm_irq_wrap_1, irq)
 #define WRAP_ENABLE (&pwm_hw->irq_ctrl[1].inte)
 #else
@@ -29,8 +32,8 @@ BUILD_ASSERT(DT_NODE_HAS_STATUS_OKAY(PWM_NODE), "the tick is made by the PWM: it
 #endif
 
 /**
- * The highest of those that Zephyr may mask: above it no function of the kernel may be called.  The drivers of this chip
- * have lower ones.
+ * The highest priority that Zephyr may mask.  An interrupt above it must not call the kernel.  The drivers of this chip
+ * use lower priorities.
  */
 #define WRAP_PRIORITY 0
 
@@ -48,7 +51,7 @@ static void on_wrap(const void *argument)
     epg_zephyr_control_tick();
 }
 
-/** Slices of the PWM that drive outputs of the target, one bit each. */
+/** The PWM slices that drive outputs of the target, one bit per slice. */
 static uint32_t output_slices(void)
 {
     uint32_t slices = 0;
@@ -84,7 +87,7 @@ epg_zephyr_error_t epg_zephyr_tick_start(const epg_zephyr_tick_t *tick, uint64_t
 
     const uint32_t outputs = output_slices();
     if ((outputs & bit) != 0U) {
-        return EPG_ZEPHYR_ERROR_DEVICE; /* an overlay has moved an output to the tick's slice */
+        return EPG_ZEPHYR_ERROR_DEVICE; /* an overlay of the user has moved an output to the slice of the tick */
     }
     pwm_slice_hw_t *slice = &pwm_hw->slice[tick->instance];
     slice->csr = 0;
@@ -116,8 +119,11 @@ void epg_zephyr_tick_stop(void)
 
 uint64_t epg_zephyr_tick_newest_ns(uint64_t *now_ns)
 {
-    /* In this order, so that what lies between the two, in a flash that may have to be read first, makes the tick later
-     * and not earlier: outputs wait for its time, and a level that were there before the wrap would act at that. */
+    /*
+     * The counter first, then the time.  Code from flash may take long between the two readings.  In this order the tick
+     * then seems later than it was, never earlier.  Too early would be wrong: outputs are written at a time after the
+     * tick, and a level that is written before a wrap takes effect at that wrap.
+     */
     const unsigned int key = irq_lock();
     const uint32_t count = pwm_hw->slice[state.slice].ctr;
     *now_ns = epg_port_time_ns();

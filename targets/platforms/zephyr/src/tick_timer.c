@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The tick of boards that are emulated (native_sim, QEMU): a k_timer.  Elsewhere it would be late whenever something
- * else keeps the system clock's interrupt waiting.
+ * The tick of emulated boards (native_sim, QEMU): a k_timer.  On a real board it would be late whenever other code
+ * delays the interrupt of the system clock.
  */
 #include <zephyr/kernel.h>
 
@@ -10,7 +10,7 @@
 #include "parts.h"
 
 static struct {
-    uint64_t origin_ns; /* a tick, or the start */
+    uint64_t origin_ns; /* time from which the periods are counted */
     uint64_t period_ns;
 } state;
 
@@ -27,9 +27,9 @@ epg_zephyr_error_t epg_zephyr_tick_start(const epg_zephyr_tick_t *tick, uint64_t
     ARG_UNUSED(tick);
     const uint64_t ticks = k_ns_to_ticks_floor64(period_ns);
     if (ticks == 0U || k_ticks_to_ns_floor64(ticks) != period_ns) {
-        return EPG_ZEPHYR_ERROR_TICK; /* the generated part has asserted that already */
+        return EPG_ZEPHYR_ERROR_TICK; /* the period is not a whole number of the system clock's ticks */
     }
-    /* From a tick of the system clock on, so that those of the timer come at whole periods after it. */
+    /* Begin at a tick of the system clock: the timer then expires at whole periods after it. */
     const int64_t first = k_uptime_ticks() + 1;
     state.period_ns = period_ns;
     state.origin_ns = k_ticks_to_ns_floor64((uint64_t)first);

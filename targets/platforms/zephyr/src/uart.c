@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * UARTs.  Their baud rates and pins are the devicetree's.
+ * UARTs.  The devicetree sets their baud rates and pins.
  */
 #include <zephyr/drivers/uart.h>
 #include <zephyr/kernel.h>
@@ -9,12 +9,12 @@
 #include "epg/port_uart.h"
 #include "parts.h"
 
-/** UARTs of one target. */
+/** Largest number of UARTs of a target. */
 #define UARTS 4U
 
 static epg_zephyr_lines_t lines[UARTS];
 
-/** The row of the table; `UARTS` when there is none. */
+/** The row of a UART in the table of UARTs; `UARTS` if there is none. */
 static size_t find(const epg_port_uart_t *port)
 {
     for (size_t i = 0; i < epg_zephyr_hardware.uart_count && i < UARTS; i++) {

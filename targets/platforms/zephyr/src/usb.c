@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The transport `usb`: serial ports over USB (CDC ACM).  Nothing here waits for the host.
+ * The transport `usb`: serial ports over USB (CDC ACM).  No function waits for the host.
  *
- * What a port is for stands in the property label of its node, which USB shows as the name of the interface.
+ * The purpose of a port is the property `label` of its devicetree node.  USB shows it as the name of the interface.
  */
 #include "usb.h"
 
@@ -17,7 +17,7 @@ typedef struct port {
     epg_ring_t received;
     epg_ring_t sent;
     epg_zephyr_lines_t lines;
-    bool open; /* at the last poll */
+    bool open; /* a program on the host had the port open at the last poll */
 } port_t;
 
 static bool is_open(const port_t *port)
@@ -36,15 +36,15 @@ static bool start(void *context, const char *title)
 }
 
 /**
- * Who opens the port next gets nothing that was meant for who has closed it, but for what is in Zephyr's own buffer
- * (tx-fifo-size of the node).
+ * Drops all bytes after a program has closed the port: they are not for the next program.  Bytes in Zephyr's own buffer
+ * (tx-fifo-size of the node) remain.
  */
 static void drop(port_t *port)
 {
     unsigned char byte;
     while (epg_ring_take(&port->received, &byte)) {
     }
-    const unsigned int key = irq_lock(); /* it is the other side that takes out of this ring */
+    const unsigned int key = irq_lock(); /* the interrupt takes bytes from this ring, too */
     port->sent.taken_at = port->sent.put_at;
     atomic_store(&port->sent.taken, atomic_load(&port->sent.put));
     irq_unlock(key);
@@ -67,7 +67,7 @@ static void flush(void *context)
     epg_zephyr_lines_send(&port->lines);
 }
 
-/* Somebody has opened the port: terminals and agents set DTR. */
+/* True if a program on the host has opened the port: terminals and agents then set the DTR line. */
 static bool connected(void *context)
 {
     const port_t *port = context;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * What the parts of the USB device ask of each other.
+ * The start of the USB device.
  */
 #ifndef EPG_ZEPHYR_USB_H
 #define EPG_ZEPHYR_USB_H
@@ -9,10 +9,10 @@
 #include <stdbool.h>
 
 #ifdef CONFIG_EPG_USB_DEVICE
-/** Makes the USB device of all classes in this image, once; false when that is impossible. */
+/** Starts the USB device, with all USB classes in this image.  Later calls do nothing.  Returns false if it fails. */
 bool epg_zephyr_usb_device_start(void);
 #else
-/* The application makes it. */
+/* The application starts the USB device. */
 static inline bool epg_zephyr_usb_device_start(void)
 {
     return true;

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The USB device, of Zephyr's newer device stack: all classes of the image in one configuration, and the board's serial
- * number, so that several boards can be told apart.
+ * The USB device, by Zephyr's newer device stack (usbd).
+ *
+ * It has all USB classes of the image in one configuration, and the board's serial number, which distinguishes several
+ * boards on one computer.
  */
 #include <zephyr/device.h>
 #include <zephyr/logging/log.h>
@@ -26,7 +28,7 @@ USBD_CONFIGURATION_DEFINE(epg_usb_high_speed, 0, CONFIG_EPG_USB_MAX_POWER / 2, &
 USBD_DESC_SERIAL_NUMBER_DEFINE(epg_usb_serial_number);
 #endif
 
-/** Boards that see the bus's voltage are on the bus while it is there. */
+/** On boards that measure the voltage of the bus, the device is enabled while there is a voltage. */
 static void on_message(struct usbd_context *device, const struct usbd_msg *message)
 {
     if (message->type == USBD_MSG_VBUS_READY) {
@@ -53,7 +55,7 @@ static int add_texts(struct usbd_context *device)
     return error;
 }
 
-/** All classes of the image, for one speed of the bus. */
+/** Adds a configuration with all classes of the image, for one speed of the bus. */
 static int configure(struct usbd_context *device, enum usbd_speed speed, struct usbd_config_node *configuration)
 {
     int error = usbd_add_configuration(device, speed, configuration);
@@ -61,7 +63,7 @@ static int configure(struct usbd_context *device, enum usbd_speed speed, struct 
         error = usbd_register_all_classes(device, speed, 1, NULL);
     }
     if (error == 0) {
-        /* Serial ports have two interfaces each, which association descriptors hold together. */
+        /* The class of devices with association descriptors: these join the two interfaces of a serial port. */
         error = usbd_device_set_code_triple(device, speed, USB_BCC_MISCELLANEOUS, 0x02, 0x01);
     }
     return error;
@@ -98,7 +100,7 @@ bool epg_zephyr_usb_device_start(void)
         if (error != 0) {
             LOG_ERR("the USB device does not start (%d)", error);
         }
-        started = error == 0; /* for good: a target that is stopped leaves it on the bus */
+        started = error == 0; /* it stays on the bus when the target stops */
     }
     return started;
 }

@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The watchdog of the alias watchdog0: fed after a control cycle while communication is alive.
+ * The watchdog, which is the device with the devicetree alias watchdog0.
+ *
+ * It resets the board if it is not fed in time.  It is fed after each control cycle, but only while the communication
+ * side is alive.  It therefore resets the board if one of the two sides stops.
  */
 #include <zephyr/drivers/hwinfo.h>
 #include <zephyr/drivers/watchdog.h>
@@ -16,9 +19,9 @@
 
 LOG_MODULE_DECLARE(epg, CONFIG_EPG_LOG_LEVEL);
 
-/** While flash is written, which can keep the processor waiting; chips of Raspberry Pi can do 8.3 s. */
+/** Timeout while flash is written, which can make the processor wait.  The longest one of RP2040 is 8.3 s. */
 #define RELAXED_MS 8000U
-/** Feedings per timeout by a watchdog that cannot be stopped, after the target was. */
+/** Some watchdogs cannot be stopped.  After the target has stopped, a timer feeds them this often per timeout. */
 #define FEEDINGS 4U
 
 static const struct device *const device = DEVICE_DT_GET(DT_ALIAS(watchdog0));
@@ -26,7 +29,7 @@ static const struct device *const device = DEVICE_DT_GET(DT_ALIAS(watchdog0));
 static struct {
     int channel;
     uint32_t timeout_ms;
-    uint32_t silence_limit; /* control cycles */
+    uint32_t silence_limit; /* control cycles without a turn of the communication side */
     bool running;
 } state;
 
@@ -72,7 +75,7 @@ epg_zephyr_error_t epg_zephyr_watchdog_start(uint64_t period_ns)
 void epg_zephyr_watchdog_stop(void)
 {
     if (epg_zephyr_outputs_unsafe()) {
-        return; /* it is to reset the board */
+        return; /* the watchdog must reset the board */
     }
     if (state.running && wdt_disable(device) < 0) {
         k_timer_start(&feeder, K_NO_WAIT, K_MSEC(state.timeout_ms / FEEDINGS));
@@ -103,7 +106,7 @@ bool epg_zephyr_watchdog_has_reset(void)
     if (hwinfo_get_reset_cause(&cause) < 0 || (cause & RESET_WATCHDOG) == 0U) {
         return false;
     }
-    (void)hwinfo_clear_reset_cause(); /* some chips keep causes until then, over other resets */
+    (void)hwinfo_clear_reset_cause(); /* some chips keep the recorded causes across later resets */
     return true;
 #endif
 }
