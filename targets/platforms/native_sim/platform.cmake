@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-# Zephyr as a program of this computer: as on boards.
+# Zephyr as a program of this computer: built like the platform zephyr, with the simulated plant.
 
 include("${CMAKE_CURRENT_LIST_DIR}/../zephyr/zephyr.cmake")
 
-# A macro, so that what it sets gets where epg_add_target() was called, and Zephyr will look.
+# A macro, not a function: the variables it sets must reach the scope that calls epg_add_target(), where Zephyr reads
+# them.
 macro(_epg_native_sim_before_build)
   _epg_zephyr_prepare(${ARGV})
   _epg_zephyr_hand_on()
@@ -13,7 +14,7 @@ function(_epg_native_sim_target name)
   _epg_zephyr_port_layer("${name}")
   target_include_directories("epg_zephyr_${name}" PRIVATE
     "${EPG_TARGETS_DIR}/platforms/host/include" "${EPG_TARGETS_DIR}/platforms/native_sim/include"
-    ${EPG_COMPONENT_INCLUDES}) # what connects the components to the plant
+    ${EPG_COMPONENT_INCLUDES}) # the generated functions that connect components and plant include the components' headers
 endfunction()
 
 macro(_epg_native_sim_executable)

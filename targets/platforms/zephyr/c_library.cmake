@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-# The C library of a toolchain that Zephyr does not know well enough.
+# The choice of the C library for the toolchain `gnuarmemb`.
 #
-# Models need a complete <math.h>.  With ZEPHYR_TOOLCHAIN_VARIANT=gnuarmemb Zephyr takes newlib, and that of Debian is built
-# without the locks that Zephyr implements ("Retargetable locking must be enabled").  Debian's picolibc serves, but Zephyr
-# does not look for it: TOOLCHAIN_HAS_PICOLIBC says that it is there.  sysbuild hands no such setting on to its images, so
-# each target sets its own.
+# Models need a complete <math.h>.  With ZEPHYR_TOOLCHAIN_VARIANT=gnuarmemb Zephyr uses newlib.  Debian's newlib is
+# built without the locks that Zephyr implements, and the build stops ("Retargetable locking must be enabled").
+# Debian's picolibc works, but Zephyr does not search for it.  TOOLCHAIN_HAS_PICOLIBC makes Zephyr use it.  sysbuild
+# does not pass this setting to its images, so each target sets it.
 function(_epg_zephyr_find_c_library)
   _epg_zephyr_value(variant ZEPHYR_TOOLCHAIN_VARIANT)
   _epg_zephyr_value(folder GNUARMEMB_TOOLCHAIN_PATH)
@@ -13,7 +13,7 @@ function(_epg_zephyr_find_c_library)
   endif()
   find_program(compiler arm-none-eabi-gcc PATHS "${folder}/bin" NO_DEFAULT_PATH NO_CACHE)
   if(NOT compiler)
-    return() # Zephyr says so
+    return() # Zephyr reports this error
   endif()
   set(header "${CMAKE_BINARY_DIR}/CMakeFiles/epg/newlib_locks.c")
   file(CONFIGURE OUTPUT "${header}" CONTENT

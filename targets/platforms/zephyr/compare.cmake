@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-# What has become of the devicetree and of the configuration, compared with what the target was generated for: a user's
-# overlay and prj.conf go over EPG's, and may say something that the target cannot work with.
+# Compares the final devicetree and configuration with those for which the target was generated.  The user's overlay and
+# prj.conf override EPG's, and can contain values with which the target does not work.
 #
-# <name>_zephyr.cmake lists the needs: EPG_ZEPHYR_CONFIG of <symbol>|<value, or "at least <number>">|<for what>, EPG_ZEPHYR_PROPERTIES of
-# <label>|<property>|<value>|<for what>, EPG_ZEPHYR_NODES of <label>|<who names it>, EPG_ZEPHYR_UARTS of labels.
+# The generated <name>_zephyr.cmake lists the required values:
+#
+#   EPG_ZEPHYR_CONFIG      <symbol>|<value, or "at least <number>">|<purpose>
+#   EPG_ZEPHYR_PROPERTIES  <label>|<property>|<value>|<purpose>
+#   EPG_ZEPHYR_NODES       <label>|<component that names the node>
+#   EPG_ZEPHYR_UARTS       <label> of each UART that carries a middleware's bytes
 
 function(_epg_zephyr_compare name output)
   include("${output}/${name}_zephyr.cmake")
@@ -74,7 +78,7 @@ Take what says otherwise out of prj.conf or your overlay.  The target's own are 
   endif()
 endfunction()
 
-# The console's text must not get into a middleware's bytes.
+# Appends an error to <result> if Zephyr's console uses the same UART as a middleware: text would mix with its bytes.
 function(_epg_zephyr_compare_console result)
   dt_chosen(console PROPERTY "zephyr,console")
   foreach(label IN LISTS EPG_ZEPHYR_UARTS)

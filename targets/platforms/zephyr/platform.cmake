@@ -1,9 +1,10 @@
-# SPDX-License-Identifier: Apache-2.0
-# Zephyr: epg_add_target() comes before find_package(Zephyr), which chooses the compiler and makes everything.
+# SPDX-License-Identifier: Apache-2.0 Zephyr: epg_add_target() must come before find_package(Zephyr), which chooses the
+# compiler and creates the CMake targets.
 
 include("${CMAKE_CURRENT_LIST_DIR}/zephyr.cmake")
 
-# A macro, so that what it sets gets where epg_add_target() was called, and Zephyr will look.
+# A macro, not a function: the variables it sets must reach the scope that calls epg_add_target(), where Zephyr reads
+# them.
 macro(_epg_zephyr_before_build)
   _epg_zephyr_prepare(${ARGV})
   _epg_zephyr_hand_on()

@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-# What the platforms in Zephyr share.
+# Functions that the platforms zephyr and native_sim share.
 #
-# Before find_package(Zephyr): the target's overlay and Kconfig defaults become a shield, which a user's own overlay and
-# prj.conf go over, and EPG becomes one of Zephyr's modules.  When Zephyr loads that module, zephyr_module/CMakeLists.txt
-# calls _epg_zephyr_build(), which compares what has become of the devicetree and the configuration with what the
-# target needs, and makes the libraries.
+# 1. epg_add_target() comes before find_package(Zephyr).  It writes the target's overlay and Kconfig defaults as a
+# shield
+#    (the user's overlay and prj.conf override a shield), and makes EPG one of Zephyr's modules.
+# 2. find_package(Zephyr) loads EPG's module.  zephyr_module/CMakeLists.txt then calls _epg_zephyr_build().
+# 3. _epg_zephyr_build() compares the final devicetree and configuration with those that the target needs, and adds the
+#    libraries.
 
 include("${CMAKE_CURRENT_LIST_DIR}/c_library.cmake")
 include("${CMAKE_CURRENT_LIST_DIR}/compare.cmake")
 
-# Sets BOARD, BOARD_ROOT and EXTRA_ZEPHYR_MODULES where the caller is; SHIELD is Zephyr's in the cache.
+# Prepares find_package(Zephyr) for target <name>, whose generated files are in <output>.  Sets BOARD, BOARD_ROOT,
+# EXTRA_ZEPHYR_MODULES and ZEPHYR_EXTRA_MODULES in the scope of the caller, and SHIELD in the cache.
 function(_epg_zephyr_prepare name output)
   get_property(other GLOBAL PROPERTY EPG_ZEPHYR_TARGET)
   if(TARGET zephyr_interface)
@@ -38,7 +41,7 @@ A second target is a second image, which sysbuild builds beside this one; a mode
     "cmake_language(DEFER DIRECTORY [[${CMAKE_SOURCE_DIR}]] CALL _epg_zephyr_check_built [[${name}]])")
 endfunction()
 
-# In epg_add_target(): hands what _epg_zephyr_prepare() has set on to its caller.
+# Called in epg_add_target(): passes the variables that _epg_zephyr_prepare() has set to the caller of epg_add_target().
 macro(_epg_zephyr_hand_on)
   foreach(variable BOARD BOARD_ROOT EXTRA_ZEPHYR_MODULES ZEPHYR_EXTRA_MODULES)
     if(NOT "${${variable}}" STREQUAL "")
@@ -47,7 +50,8 @@ macro(_epg_zephyr_hand_on)
   endforeach()
 endmacro()
 
-# What a variable will be to Zephyr, which looks in this order: sysbuild's cache, this one, the environment, here.
+# Sets <result> to the value that Zephyr will use for <variable>.  Zephyr takes the first of: sysbuild's cache, CMake's
+# cache, the environment, a variable of CMake.
 function(_epg_zephyr_value result variable)
   set(${result} "" PARENT_SCOPE)
   _epg_zephyr_sysbuild_value(value "${variable}")
@@ -59,7 +63,8 @@ function(_epg_zephyr_value result variable)
   endforeach()
 endfunction()
 
-# What `west build --sysbuild -D<variable>=` and the like have set for this image, or "".
+# Sets <result> to the value that sysbuild has for <variable> in this image, for example from `west build --sysbuild
+# -D<variable>=...`, or to "".
 function(_epg_zephyr_sysbuild_value result variable)
   set(${result} "" PARENT_SCOPE)
   if(NOT SYSBUILD OR NOT EXISTS "${SYSBUILD_CACHE}")
@@ -74,7 +79,7 @@ function(_epg_zephyr_sysbuild_value result variable)
   endforeach()
   set(names "${variable}")
   if(image)
-    list(APPEND names "${image}_${variable}") # the one for this image alone comes last and wins
+    list(APPEND names "${image}_${variable}") # a value for this image alone comes last and overrides the general one
   endif()
   foreach(wanted IN LISTS names)
     foreach(line IN LISTS lines)
@@ -85,11 +90,12 @@ function(_epg_zephyr_sysbuild_value result variable)
   endforeach()
 endfunction()
 
-# Sets BOARD where nobody has; stops when it is not the target's.
+# Sets BOARD to <wanted> if the user has not set it.  Stops with an error if it is set to a board other than the
+# target's.
 function(_epg_zephyr_board name wanted)
   _epg_zephyr_value(given BOARD)
   if(wanted STREQUAL "")
-    set(BOARD "${given}" PARENT_SCOPE) # a board of the user's, whose board.yaml does not say what Zephyr calls it
+    set(BOARD "${given}" PARENT_SCOPE) # the user's own board: its board.yaml does not contain Zephyr's name for it
     return()
   elseif(given STREQUAL "")
     set(BOARD "${wanted}" PARENT_SCOPE)
@@ -105,7 +111,8 @@ Build it with -b ${wanted} in a build folder of its own, or choose the .tcf of a
   set(BOARD "${given}" PARENT_SCOPE)
 endfunction()
 
-# The folder that Zephyr finds the shield epg_<name> in; files are touched only when they change.
+# Writes the shield epg_<name>, and sets <result> to the folder in which Zephyr finds it.  Files are written only if
+# their contents change.
 function(_epg_zephyr_write_shield result name output)
   set(root "${CMAKE_BINARY_DIR}/CMakeFiles/epg/${name}")
   set(shield "${root}/boards/shields/epg_${name}")
@@ -118,9 +125,11 @@ function(_epg_zephyr_write_shield result name output)
   set(${result} "${root}" PARENT_SCOPE)
 endfunction()
 
-# Adds the shield to those that the user has chosen.  Zephyr keeps what it has seen first in CACHED_SHIELD, which goes
-# before everything else, and warns when SHIELD is another: an added shield is in both, whoever has set SHIELD, and a
-# build that was configured before the target was added gets it too.
+# Adds <shield> to the shields that the user has chosen.
+#
+# Zephyr stores the shields of the first configuration in CACHED_SHIELD, which overrides all other values, and warns if
+# SHIELD differs from it.  The shield is therefore added to both variables.  A build folder that was configured before
+# the target was added gets the shield, too.
 function(_epg_zephyr_select_shield shield)
   if(DEFINED CACHED_SHIELD)
     set(before "${CACHED_SHIELD}")
@@ -136,14 +145,14 @@ function(_epg_zephyr_select_shield shield)
   if(DEFINED CACHED_SHIELD AND NOT written STREQUAL "" AND NOT written STREQUAL CACHED_SHIELD
       AND NOT "${written} ${shield}" STREQUAL all)
     set(CACHED_SHIELD "${all}" CACHE STRING "Selected shield" FORCE)
-    return() # another -DSHIELD than before: Zephyr says that this needs a pristine build
+    return() # -DSHIELD differs from the one before: Zephyr warns that this needs a pristine build
   endif()
   set(SHIELD "${all}" CACHE STRING "Selected shield" FORCE)
   set(CACHED_SHIELD "${all}" CACHE STRING "Selected shield" FORCE)
 endfunction()
 
-# Makes EPG one of Zephyr's modules.  One that is in the workspace's manifest too is read once: modules of one name are
-# one to Zephyr, which takes the last.
+# Makes EPG one of Zephyr's modules.  EPG may be in the workspace's manifest, too.  Zephyr reads it once nevertheless:
+# of modules with the same name it uses the last.
 function(_epg_zephyr_add_module)
   get_filename_component(module "${EPG_TARGETS_DIR}/.." ABSOLUTE)
   set(extra EXTRA_ZEPHYR_MODULES)
@@ -154,7 +163,7 @@ function(_epg_zephyr_add_module)
       return()
     endif()
   endforeach()
-  # The list is added to where Zephyr finds it first.
+  # Append to the variable that Zephyr reads: the first one that has a value.
   foreach(variable EXTRA_ZEPHYR_MODULES ZEPHYR_EXTRA_MODULES)
     if(NOT "$CACHE{${variable}}" STREQUAL "")
       set(${variable} "$CACHE{${variable}};${module}" CACHE STRING "Modules of Zephyr besides the workspace's" FORCE)
@@ -175,13 +184,13 @@ function(_epg_zephyr_add_module)
   set(${extra} "${${extra}}" PARENT_SCOPE)
 endfunction()
 
-# From zephyr_module/CMakeLists.txt: the libraries of the target that epg_add_target() has prepared.
+# Adds the libraries of the target that epg_add_target() has prepared.  Called by zephyr_module/CMakeLists.txt.
 function(_epg_zephyr_build)
   get_property(name GLOBAL PROPERTY EPG_ZEPHYR_TARGET)
   get_property(output GLOBAL PROPERTY EPG_ZEPHYR_OUTPUT)
   get_property(python GLOBAL PROPERTY EPG_ZEPHYR_PYTHON_BEFORE)
   if(python STREQUAL "" AND NOT "$CACHE{Python3_EXECUTABLE}" STREQUAL "")
-    # Zephyr's doing; the next configure must not take it for its user's.
+    # Zephyr has set Python3_EXECUTABLE in the cache.  The next configuration must not take it for a choice of the user.
     set(EPG_PYTHON_FOUND_LATER "$CACHE{Python3_EXECUTABLE}" CACHE INTERNAL "What Zephyr has found")
   endif()
   if(TARGET "${name}")
@@ -191,8 +200,8 @@ function(_epg_zephyr_build)
   _epg_build_target("${name}" "${output}")
 endfunction()
 
-# The generated source, compiled as Zephyr's own libraries are, and the port layer, which is the module's library
-# epg_zephyr: all that for the application.
+# Adds the generated source of the platform as a Zephyr library, so that it is compiled like Zephyr's own sources.
+# Links it and the port layer, the library epg_zephyr of EPG's module, to the application.
 function(_epg_zephyr_port_layer name)
   get_property(output GLOBAL PROPERTY EPG_ZEPHYR_OUTPUT)
   list(TRANSFORM EPG_PLATFORM_SOURCES PREPEND "${output}/" OUTPUT_VARIABLE sources)
@@ -201,11 +210,11 @@ function(_epg_zephyr_port_layer name)
   zephyr_library_include_directories("${EPG_TARGETS_DIR}/platforms/zephyr/include")
   zephyr_library_link_libraries(${name})
   target_link_libraries(epg_zephyr PRIVATE epg_runtime)
-  target_link_libraries(${name} PRIVATE epg_zephyr) # the port layer that the runtime and the drivers call
+  target_link_libraries(${name} PRIVATE epg_zephyr) # the runtime and the drivers call the port layer
   target_link_libraries(app PUBLIC ${name})
 endfunction()
 
-# EPG's main() for the application, which Zephyr has made.
+# Adds a main() that starts target <name> to Zephyr's CMake target of the application, which must be <executable>.
 function(_epg_zephyr_application executable name)
   if(NOT executable STREQUAL "app")
     message(FATAL_ERROR "epg_add_executable(${executable} EPG::${name}): Zephyr's application is called 'app': epg_add_executable(app EPG::${name})")
@@ -224,7 +233,8 @@ int main(void)
   target_sources(app PRIVATE "${main}")
 endfunction()
 
-# At the end of the top directory: Zephyr has read EPG's module, or nothing of the target is built.
+# Deferred to the end of the top directory: reports an error if Zephyr has not read EPG's module.  Nothing of the target
+# would be built then.
 function(_epg_zephyr_check_built name)
   if(TARGET "${name}")
     return()
