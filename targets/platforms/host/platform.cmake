@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# The host platform for CMake: its port layer as the library EPG::host, and executables with EPG's main().
+# The host platform: its port layer, which is the library EPG::host, and executables with EPG's main().
 
 function(_epg_host_library)
   if(TARGET epg_host)
@@ -9,11 +9,11 @@ function(_epg_host_library)
   file(GLOB sources "${folder}/src/*.c")
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${folder}/src")
   list(FILTER sources EXCLUDE REGEX "/main\\.c$")
-  # A library of its own rather than sources of the user's executable: the host needs no SDK settings.
+  # A static library, unlike the port layers of microcontrollers, because its sources need no settings of an SDK.
   add_library(epg_host STATIC EXCLUDE_FROM_ALL ${sources})
   target_include_directories(epg_host PUBLIC "${folder}/include")
   target_link_libraries(epg_host PUBLIC epg_runtime "$<$<PLATFORM_ID:Linux>:-pthread>" $<$<NOT:$<BOOL:${WIN32}>>:m>)
-  target_link_libraries(epg_runtime INTERFACE epg_host) # the port layer that it calls
+  target_link_libraries(epg_runtime INTERFACE epg_host) # the runtime calls the port layer
   set_target_properties(epg_host PROPERTIES C_STANDARD 11 C_STANDARD_REQUIRED ON C_EXTENSIONS OFF)
   target_compile_definitions(epg_host PRIVATE _POSIX_C_SOURCE=200809L)
   add_library(EPG::host ALIAS epg_host)
@@ -21,7 +21,7 @@ endfunction()
 
 function(_epg_host_target name)
   if(CMAKE_SYSTEM_NAME STREQUAL "PICO" OR NOT (UNIX OR WIN32)) # the Pico SDK includes Platform/UnixPaths, which sets UNIX
-    set_property(TARGET ${name} PROPERTY EPG_FAILED TRUE) # executables of the target need no error of their own
+    set_property(TARGET ${name} PROPERTY EPG_FAILED TRUE) # its executables need not report the same error again
     message(SEND_ERROR "epg_add_target(${name}): its target is 'host', a program for a computer, and this project is compiled for a microcontroller (CMAKE_SYSTEM_NAME is ${CMAKE_SYSTEM_NAME}).
 Choose the .tcf of a target for the board: 'epg targets' lists them. If there is none, add the controller alone, without pins and topics, and call it from your code (docs/models.md, \"The library\"):
   epg_add_model(${name} MODEL <folder>)")

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The port layer's time: that of the monotonic clock, or simulated.
+ * The port layer's time: the time of the monotonic clock, or simulated time.
  */
 #if !defined(_WIN32)
 #define _POSIX_C_SOURCE 200809L
@@ -43,7 +43,7 @@ void epg_port_wait_until(uint64_t time_ns)
     }
 }
 
-#else /* there is no real time either */
+#else /* not Linux: only simulated time, in which nothing waits */
 
 void epg_port_wait_until(uint64_t time_ns)
 {

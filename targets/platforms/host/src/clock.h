@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The host's two clocks: the monotonic one, and the simulated one that replaces it in simulated time.
+ * The host's two clocks: the monotonic clock, and the simulated clock, which replaces it in simulated time.
  */
 #ifndef EPG_HOST_CLOCK_H
 #define EPG_HOST_CLOCK_H
@@ -11,10 +11,10 @@
 /** Monotonic time in nanoseconds, whatever epg_port_time_ns() returns.  Callable from every thread. */
 uint64_t epg_host_monotonic_ns(void);
 
-/** From now on epg_port_time_ns() returns `time_ns`.  Single-threaded use only. */
+/** From now on epg_port_time_ns() returns `time_ns`.  Must not be used in a program with several threads. */
 void epg_host_clock_simulate(uint64_t time_ns);
 
-/** From now on epg_port_time_ns() returns monotonic time.  The state at program start. */
+/** From now on epg_port_time_ns() returns the monotonic time, as it does at the start of the program. */
 void epg_host_clock_real(void);
 
 #endif

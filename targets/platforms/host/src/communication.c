@@ -45,7 +45,7 @@ uint64_t epg_host_communication_next(const epg_host_communication_t *communicati
     return next_ns < communication->end_ns ? next_ns : UINT64_MAX;
 }
 
-/** The next event takes effect at `time_ns`. */
+/** Applies the next event at `time_ns`. */
 static void deliver(epg_host_communication_t *communication, uint64_t time_ns)
 {
     const epg_host_event_t *event = &communication->events->events[communication->next_event];
@@ -68,7 +68,7 @@ static void deliver(epg_host_communication_t *communication, uint64_t time_ns)
     }
 }
 
-/** Publishes the newest values, as at `time_ns`.  Before the first cycle there are none. */
+/** Publishes the newest values, with the time `time_ns`.  Does nothing before the first cycle. */
 static void publish(epg_host_communication_t *communication, uint64_t time_ns)
 {
     const epg_target_t *target = communication->target;
@@ -115,7 +115,7 @@ void epg_host_communicate_realtime(epg_host_communication_t *communication, uint
     }
     if (communication->next_publication_ns <= time_ns && communication->next_publication_ns < communication->end_ns) {
         publish(communication, time_ns);
-        /* On its own schedule: a late publication moves none of the next, and none is made up. */
+        /* The schedule is fixed: a late publication does not delay the later ones, and a lost one is not repeated. */
         const uint64_t period_ns = communication->target->communication_period_ns;
         communication->next_publication_ns +=
             ((time_ns - communication->next_publication_ns) / period_ns + 1) * period_ns;

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Where a target's middlewares are connected.
+ * The connections of a target's middlewares: by themselves, to an agent, or to a terminal.
  */
 #include <stddef.h>
 
 #include "services.h"
 
-/* One that needs no stream can wait for its own connection. */
+/* A middleware that makes its own connection has a function to wait for it. */
 bool epg_host_connects_itself(const epg_target_t *target)
 {
     return target->middleware != NULL && target->middleware->wait != NULL;

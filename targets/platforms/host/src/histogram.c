@@ -1,13 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Distribution of times, in memory of fixed size.
+ * The distribution of measured times, in memory of fixed size.
  */
 #include "histogram.h"
 
 enum { SUB = EPG_HOST_BUCKETS_PER_OCTAVE };
 
-/** Values below 2 * SUB have a bucket each; above, the leading bit gives the octave and the next five the bucket. */
+/**
+ * The bucket of a value.  Values below 2 * SUB have one bucket each.  Above, the leading bit selects the octave, and
+ * the next five bits select the bucket in it.
+ */
 static size_t bucket_of(uint64_t value)
 {
     unsigned shift = 0;
@@ -17,7 +20,7 @@ static size_t bucket_of(uint64_t value)
     return (size_t)shift * SUB + (size_t)(value >> shift);
 }
 
-/** Smallest value of bucket `index`. */
+/** The smallest value that belongs to bucket `index`. */
 static uint64_t bucket_start(size_t index)
 {
     if (index < 2U * SUB) {

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Distribution of times, in memory of fixed size.
+ * The distribution of measured times, in memory of fixed size.
  *
- * Each power of two of nanoseconds is divided into 32 equal buckets, so a quantile is read to 1/32 of its value,
- * over the whole range of 64 bits (the layout of HdrHistogram).  Recording takes the same few instructions always.
+ * A histogram counts the values that fall into each bucket.  Each octave, the range from one power of two to the next,
+ * is divided into 32 equal buckets.  A quantile is therefore accurate to 1/32 of its value, over the whole range of 64
+ * bits (the layout of HdrHistogram).  Adding a value allocates no memory.
  */
 #ifndef EPG_HOST_HISTOGRAM_H
 #define EPG_HOST_HISTOGRAM_H
@@ -28,7 +29,7 @@ void epg_host_histogram_add(epg_host_histogram_t *histogram, uint64_t value);
 /** Mean in nanoseconds; 0 when empty. */
 double epg_host_histogram_mean(const epg_host_histogram_t *histogram);
 
-/** Smallest value that `share` (0 ... 1) of all values do not exceed, rounded up to the end of its bucket. */
+/** The value that a `share` (0 ... 1) of all values does not exceed, rounded up to the end of its bucket; ns. */
 uint64_t epg_host_histogram_quantile(const epg_host_histogram_t *histogram, double share);
 
 /** Number of values in buckets that begin below `limit` and at or above `from`. */

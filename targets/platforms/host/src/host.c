@@ -19,7 +19,7 @@
 
 enum { DONE = 0, FAILED = 1, WRONG_INPUT = 2, INTERRUPTED = 130 };
 
-/** The files a run writes; NULL where not wanted. */
+/** The files that a run writes.  NULL if a file is not wanted. */
 typedef struct outputs {
     FILE *topics;
     FILE *trace;
@@ -32,7 +32,7 @@ static void on_interrupt(int number)
     epg_host_interrupted = 1;
 }
 
-/** Opens `path` for writing into `*file`; nothing to do, and true, when it is NULL. */
+/** Opens `path` for writing.  Returns true and does nothing if `path` is NULL. */
 static bool open_output(const char *path, FILE **file)
 {
     if (path == NULL) {
@@ -58,7 +58,7 @@ static bool close_output(const char *path, FILE *file)
     return true;
 }
 
-/** With all files open and the events read: runs, and fills the files. */
+/** Runs the target and writes the files.  They are open, and the events are read. */
 static int run_target(const epg_host_target_t *host, const epg_host_options_t *options, const epg_host_events_t *events,
                       const outputs_t *outputs, const epg_host_services_t *services)
 {
@@ -97,7 +97,7 @@ static int run_target(const epg_host_target_t *host, const epg_host_options_t *o
     return status == DONE && epg_host_interrupted ? INTERRUPTED : status;
 }
 
-/** With a terminal for the console, if one is wanted. */
+/** Opens the terminal of the console, if the options request one, and runs the target. */
 static int run_with_terminal(const epg_host_target_t *host, const epg_host_options_t *options,
                              const epg_host_events_t *events, const outputs_t *outputs, epg_host_link_t *link,
                              const char *agent)
@@ -123,7 +123,7 @@ static int run_with_terminal(const epg_host_target_t *host, const epg_host_optio
     return status;
 }
 
-/** With a link to an agent, if there is one: in real time. */
+/** Opens the link to the agent, if the target has one and the run is in real time, and runs the target. */
 static int run_with_link(const epg_host_target_t *host, const epg_host_options_t *options,
                          const epg_host_events_t *events, const outputs_t *outputs)
 {

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Where the agent of a middleware is: a UDP address, or a terminal such as /dev/ttyUSB0.
+ * The link to the agent of a middleware: by UDP, or by a terminal such as /dev/ttyUSB0.
  *
- * Linux only, as real time is.  For one thread.  Nothing waits.
+ * It needs Linux, like real time.  Only one thread may use a link.  No function waits.
  */
 #ifndef EPG_HOST_LINK_H
 #define EPG_HOST_LINK_H
@@ -18,23 +18,27 @@ enum { EPG_HOST_LINK_OUTPUT = 16384 };
 typedef struct epg_host_link {
     epg_stream_t stream;
     int file;           /**< -1: not open */
-    const char *device; /**< of a terminal, which is opened again when it is there again; NULL: UDP */
+    const char *device; /**< path of the terminal, which is opened again after it was unplugged; NULL: UDP */
     uint32_t baud_rate;
-    uint64_t retry_ns;                          /**< when opening is tried next, by the monotonic clock */
-    unsigned char output[EPG_HOST_LINK_OUTPUT]; /**< for a terminal: what it has not taken yet */
-    size_t waiting;                             /**< bytes there */
+    uint64_t retry_ns;                          /**< monotonic time of the next attempt to open the terminal */
+    unsigned char output[EPG_HOST_LINK_OUTPUT]; /**< bytes that the terminal has not taken yet */
+    size_t waiting;                             /**< number of these bytes */
 } epg_host_link_t;
 
-/** Whether `text` is HOST:PORT. */
+/** True if `text` has the form HOST:PORT. */
 bool epg_host_link_is_address(const char *text);
 
-/** To `address`, HOST:PORT; false, with a message, if there is no such host. */
+/**
+ * Makes a link by UDP to `address`, HOST:PORT.  Returns false, with a message, if the host is unknown or unreachable.
+ */
 bool epg_host_link_udp(epg_host_link_t *link, const char *address);
 
-/** To the terminal `device`, as soon as it is there. */
+/** Makes a link by the terminal `device`, which need not exist yet: it is opened as soon as it does. */
 void epg_host_link_serial(epg_host_link_t *link, const char *device, uint32_t baud_rate);
 
-/** To `agent`, HOST:PORT or a terminal; false, with a message, if there is no such host. */
+/**
+ * Makes a link to `agent`, which is HOST:PORT or a terminal.  Returns false, with a message, like epg_host_link_udp().
+ */
 bool epg_host_link_open(epg_host_link_t *link, const char *agent, uint32_t baud_rate);
 
 void epg_host_link_close(epg_host_link_t *link);

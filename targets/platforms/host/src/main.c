@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * main() of a host executable whose user has none of their own.
+ * EPG's main() of a host executable, for users who do not write their own.
  */
 #include "epg/host.h"
 
-/** Defined by the generated code; the build names it: <name>_host. */
+/** The generated <name>_host; CMake defines the name. */
 extern const epg_host_target_t EPG_HOST_TARGET;
 
 int main(int argc, char **argv)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Numbers as the host's files hold them.
+ * Numbers in the form of the host's files.
  */
 #include "number.h"
 
@@ -13,7 +13,7 @@
 
 bool epg_host_parse_number(const char *text, double *value)
 {
-    /* strtod alone would also take white space before the number, hexadecimal numbers and "infinity". */
+    /* strtod() alone would also accept leading white space, hexadecimal numbers and "infinity". */
     const char *digits = text[0] == '+' || text[0] == '-' ? text + 1 : text;
     const bool named = strcmp(digits, "nan") == 0 || strcmp(digits, "inf") == 0;
     if (!named && (digits[0] == '\0' || strspn(digits, "0123456789.eE+-") != strlen(digits))) {
@@ -37,7 +37,7 @@ bool epg_host_parse_time(const char *text, uint64_t *time_ns)
 void epg_host_write_number(FILE *file, double value)
 {
     if (!epg_is_finite(value)) {
-        /* Never "-nan": the sign of a NaN says nothing and differs between machines. */
+        /* Never "-nan": the sign of a NaN has no meaning and differs between machines. */
         fputs(value > DBL_MAX ? "inf" : value < -DBL_MAX ? "-inf" : "nan", file);
         return;
     }

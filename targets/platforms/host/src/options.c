@@ -41,14 +41,14 @@ void epg_host_print_help(const char *name)
            name, name, name);
 }
 
-/** One option: a flag, or a value that is kept as text. */
+/** An option of the command line: a flag, or a text value.  One of the two pointers is NULL. */
 typedef struct option {
     const char *name;
     bool *flag;
     const char **value;
 } option_t;
 
-/** Length of the option's name in `argument`: up to "=" or the end. */
+/** Length of the option's name in `argument`: up to "=", or up to the end. */
 static size_t name_length(const char *argument)
 {
     return strcspn(argument, "=");
@@ -65,7 +65,7 @@ static const option_t *find(const option_t *options, size_t count, const char *a
     return NULL;
 }
 
-/** Takes the option at argv[*i], and moves *i on if its value is the next argument. */
+/** Takes the option at argv[*i].  Increments *i if the option's value is the next argument.  False after a message. */
 static bool take(const option_t *option, int argc, char **argv, int *i)
 {
     const char *given = strchr(argv[*i], '=');
@@ -88,7 +88,7 @@ static bool take(const option_t *option, int argc, char **argv, int *i)
     return (*option->value)[0] != '\0';
 }
 
-/** Whether the options go together. */
+/** True if the options can be combined; false after a message. */
 static bool fit_together(const epg_host_options_t *options)
 {
     if ((options->console || options->console_pty != NULL) && !options->realtime) {

@@ -11,32 +11,35 @@
 
 typedef struct epg_host_options {
     bool help;
-    bool interface; /**< only the names that setpoint files may use */
+    bool interface; /**< prints the names that setpoint files may use, and does not run the target */
     bool quiet;
     bool realtime;
     bool console;            /**< on standard input and output */
-    uint64_t duration_ns;    /**< > 0; UINT64_MAX: until it is ended */
-    const char *agent;       /**< HOST:PORT; NULL: as generated */
-    const char *device;      /**< terminal that the agent is on, instead; NULL: none was given */
-    const char *console_pty; /**< name of the terminal that the console is on; NULL: none */
-    const char *store;       /**< path of the file that stored values are in; NULL: none */
-    const char *serial;      /**< word that stands for "$serial" in names; NULL: none was given */
-    const char *setpoints;   /**< path to read; NULL: none */
-    const char *topics;      /**< paths to write; NULL: not written */
-    const char *trace;
-    const char *statistics;
+    uint64_t duration_ns;    /**< > 0; UINT64_MAX: until the user ends the run */
+    const char *agent;       /**< address of the agent, HOST:PORT; NULL: the generated one */
+    const char *device;      /**< path of the agent's terminal, in place of an address; NULL: not given */
+    const char *console_pty; /**< name of the console's terminal; NULL: none */
+    const char *store;       /**< path of the file for stored values; NULL: none */
+    const char *serial;      /**< word that replaces "$serial" in names; NULL: not given */
+    const char *setpoints;   /**< path of the setpoint file; NULL: none */
+    const char *topics;      /**< path of the file for publications; NULL: not written */
+    const char *trace;       /**< path of the file for signals; NULL: not written */
+    const char *statistics;  /**< path of the file for statistics; NULL: not written */
 } epg_host_options_t;
 
 /**
- * Reads the command line of a target whose middleware is `connected` by itself or not; false after a message to stderr
- * that says what is wrong.
+ * Reads the command line.  `connected` is true if the target's middleware has a connection other than a terminal.
+ * Returns false after a message to stderr that describes the mistake.
  */
 bool epg_host_read_options(int argc, char **argv, bool connected, epg_host_options_t *options);
 
-/** The rest of that, when all options but `duration` (NULL: not given) are in `options`: whether they go together. */
+/**
+ * The second half of epg_host_read_options(): checks if the options can be combined, and reads `duration` (NULL: not
+ * given).  Returns false after a message.
+ */
 bool epg_host_complete_options(const char *duration, bool connected, epg_host_options_t *options);
 
-/** Prints how the program is used. */
+/** Prints the usage of the program. */
 void epg_host_print_help(const char *name);
 
 #endif

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The port layer against simulated peripherals: decoder counts, PWM levels and pin levels.
+ * The port layer with simulated peripherals: decoder counts, PWM levels and pin levels.
  *
- * The generator numbers the host's peripherals from 0 in each class, all in instance 0; `slot` or `pin` is therefore
- * enough to name one.  Every word is a relaxed atomic, because in real time a second thread may set an input or look
- * at an output while the control thread runs; no order between two signals is promised, as on real pins.
+ * The generator numbers the host's peripherals of each class from 0, all in instance 0.  `slot` or `pin` is therefore
+ * enough to identify one.
+ *
+ * Each value is a relaxed atomic, because in real time a second thread may set an input or read an output while the
+ * control thread runs.  The order of changes of two signals is not defined, as with real pins.
  */
 #include <stdatomic.h>
 
@@ -14,13 +16,14 @@
 
 enum { UNITS = UINT8_MAX + 1, PINS = UINT8_MAX + 1 };
 
-/** What drives an input pin; all pins begin with 0. */
+/** The driver of an input pin, set by the plant.  At the start no pin is driven. */
 enum { UNDRIVEN, DRIVEN_LOW, DRIVEN_HIGH };
+/** The driver of an input pin, set by a setpoint file in place of the plant. */
 enum { NOT_FORCED, FORCED_OPEN, FORCED_LOW, FORCED_HIGH };
 
 static struct {
-    _Atomic int64_t signal; /* as the plant sets it */
-    _Atomic int64_t origin; /* of `signal` when the decoder started */
+    _Atomic int64_t signal; /* position of the shaft in counts, set by the plant */
+    _Atomic int64_t origin; /* value of `signal` when the decoder was started */
     atomic_bool failed;
 } decoders[UNITS];
 
@@ -31,7 +34,7 @@ static struct {
 
 static _Atomic uint8_t driven[PINS];
 static _Atomic uint8_t pulls[PINS];
-static _Atomic uint8_t forced[PINS]; /* in place of what the plant drives */
+static _Atomic uint8_t forced[PINS];
 static atomic_bool outputs[PINS];
 
 #define GET(object) atomic_load_explicit(&(object), memory_order_relaxed)
@@ -39,7 +42,7 @@ static atomic_bool outputs[PINS];
 
 /* Quadrature decoders ----------------------------------------------------------------------------------------- */
 
-/** A decoder counts from 0 wherever the shaft stands: an incremental encoder does not know where that is. */
+/** A decoder counts from 0 at any position of the shaft: an incremental encoder does not know the position. */
 void epg_port_quadrature_start(const epg_port_quadrature_t *decoder)
 {
     SET(decoders[decoder->slot].origin, GET(decoders[decoder->slot].signal));

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Real time: the control cycle in a thread of its own, woken at absolute times of the monotonic clock.
+ * Real time: a control thread, which wakes up at absolute times of the monotonic clock.
  *
- * The only file of the host platform that needs more than C11; it works on Linux.
+ * It needs Linux; on other systems all functions fail with a message.
  */
 #if defined(__linux__)
 #define _POSIX_C_SOURCE 200809L
@@ -30,31 +30,31 @@
 #include "clock.h"
 
 enum {
-    PRIORITY = 80,                     /* above threaded interrupts (50), below the kernel's own threads (99) */
-    STACK_SIZE = 2 << 20,              /* bytes; thread-local storage is taken from it, of sanitizers close to 1 MiB */
-    STACK_PREFAULTED = 256 << 10,      /* bytes the cycle may use without a page fault */
-    START_DELAY_NS = 20 * 1000 * 1000, /* from all being ready to the first tick: the caller gets going meanwhile */
-    LONGEST_SLEEP_NS = 100 * 1000 * 1000 /* of the communication side, so that an interrupt is seen soon */
+    PRIORITY = 80,                       /* above threaded interrupts (50), below the kernel's own threads (99) */
+    STACK_SIZE = 2 << 20,                /* bytes, with thread-local storage, which takes 1 MiB with sanitizers */
+    STACK_PREFAULTED = 256 << 10,        /* bytes that the cycle may use without a page fault */
+    START_DELAY_NS = 20 * 1000 * 1000,   /* from the thread's start to its first tick: time for the caller to prepare */
+    LONGEST_SLEEP_NS = 100 * 1000 * 1000 /* longest sleep of the communication side: it then looks for Ctrl-C */
 };
 
-/** A control thread and what it shares with the thread that started it. */
+/** A control thread, with the data that it shares with the thread that has started it. */
 typedef struct control_thread {
     epg_host_run_t *run;
     pthread_t thread;
     sem_t ready;       /* posted when start_ns is known */
     uint64_t start_ns; /* monotonic time of the first tick */
     atomic_bool stop;
-    atomic_bool ended; /* by itself */
+    atomic_bool ended; /* the thread has ended by itself */
 } control_thread_t;
 
-/** Sleeps until monotonic time `time_ns`; may return before when a signal arrives. */
+/** Sleeps until monotonic time `time_ns`.  Returns early, with EINTR, if a signal arrives. */
 static int sleep_until(uint64_t time_ns)
 {
     const struct timespec until = {.tv_sec = (time_t)(time_ns / 1000000000U), .tv_nsec = (long)(time_ns % 1000000000U)};
     return clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, NULL);
 }
 
-/** Touches the part of the stack that the cycle will use. */
+/** Writes to the part of the stack that the cycle will use.  The system maps its pages now, and not during a cycle. */
 static void prefault_stack(void)
 {
     volatile unsigned char stack[STACK_PREFAULTED];
@@ -64,14 +64,14 @@ static void prefault_stack(void)
 }
 
 /**
- * The loop.  The plant is simulated between a cycle and the next, outside the measured time; a plant too slow for
- * that makes ticks be missed, and they are counted.
+ * The control loop.  The plant is simulated between two cycles, outside the measured time.  If the plant takes too
+ * long, ticks are missed, and they are counted.
  */
 static void control_loop(control_thread_t *self)
 {
     epg_host_run_t *run = self->run;
     const uint64_t period_ns = run->host->target->application->period_ns;
-    uint64_t tick_ns = 0; /* since the first tick, as all times of a run */
+    uint64_t tick_ns = 0; /* since the first tick, like all times of a run */
     uint64_t next_ns = 0;
     uint32_t missed = 0;
     while (next_ns < run->end_ns && !atomic_load(&self->stop) && epg_host_plant_is_sound(run, next_ns)) {
@@ -98,10 +98,12 @@ static void control_loop(control_thread_t *self)
 static void *control_main(void *argument)
 {
     control_thread_t *self = argument;
-    /* Without a real-time policy, the kernel may join timers that lie within 50 us of each other: ask for none. */
+    /*
+     * Without a real-time policy, the kernel may delay a timer by up to 50 us, to handle several at once.  Forbid it.
+     */
     prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
     prefault_stack();
-    /* What is mapped by now is all the loop uses.  MCL_FUTURE would make later allocations of others fail. */
+    /* The loop uses only memory that is mapped already.  MCL_FUTURE could make later allocations of other code fail. */
     self->run->memory_locked = mlockall(MCL_CURRENT) == 0;
     self->start_ns = epg_host_monotonic_ns() + START_DELAY_NS;
     sem_post(&self->ready);
@@ -128,7 +130,7 @@ static int create_thread(control_thread_t *self, int policy, int priority)
     return error;
 }
 
-/** SCHED_FIFO at the highest priority up to PRIORITY that this user may have, else SCHED_OTHER. */
+/** Tries SCHED_FIFO with the highest priority that the user is permitted, at most PRIORITY; else uses SCHED_OTHER. */
 static int create_thread_best(control_thread_t *self)
 {
     epg_host_run_t *run = self->run;
@@ -147,7 +149,7 @@ static int create_thread_best(control_thread_t *self)
     return error;
 }
 
-/** Starts the thread and waits until it knows when it begins; false with a message if there is none. */
+/** Starts the control thread and waits until `start_ns` is known.  Returns false, with a message, if this fails. */
 static bool start_thread(control_thread_t *self, epg_host_run_t *run)
 {
     sigset_t all;
@@ -156,7 +158,7 @@ static bool start_thread(control_thread_t *self, epg_host_run_t *run)
     atomic_init(&self->stop, false);
     atomic_init(&self->ended, false);
     sem_init(&self->ready, 0, 0);
-    /* Signals are for the other threads: the control thread inherits this mask. */
+    /* The control thread inherits this mask.  Other threads handle all signals, so that none interrupts a cycle. */
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before);
     const int error = create_thread_best(self);
@@ -177,7 +179,7 @@ static void join_thread(control_thread_t *self)
     sem_destroy(&self->ready);
 }
 
-/** Sleeps until monotonic time `time_ns`, less if there is a middleware with something to do. */
+/** Sleeps until monotonic time `time_ns`.  With a middleware it sleeps for a shorter time and serves the middleware. */
 static void sleep_or_serve(epg_host_run_t *run, uint64_t time_ns)
 {
     if (epg_host_services_run(&run->services)) {
@@ -209,7 +211,7 @@ bool epg_host_run_realtime(epg_host_run_t *run)
         until_ns = until_ns < now_ns + LONGEST_SLEEP_NS ? until_ns : now_ns + LONGEST_SLEEP_NS;
         sleep_or_serve(run, start_ns + (until_ns < run->end_ns ? until_ns : run->end_ns));
         const uint64_t monotonic_ns = epg_host_monotonic_ns();
-        now_ns = monotonic_ns > start_ns ? monotonic_ns - start_ns : 0; /* a signal may have come before the start */
+        now_ns = monotonic_ns > start_ns ? monotonic_ns - start_ns : 0; /* a signal can end the sleep too early */
         epg_host_communicate_realtime(&run->communication, now_ns);
     }
     atomic_store(&control.stop, now_ns < run->end_ns);
@@ -231,7 +233,7 @@ static struct {
     atomic_bool stop;
 } own;
 
-/** Serves the middleware until the program stops the target. */
+/** Body of the communication thread: serves the middleware until the program stops the target. */
 static void *communication_main(void *argument)
 {
     (void)argument;
@@ -244,7 +246,7 @@ static void *communication_main(void *argument)
     return NULL;
 }
 
-/** A thread for the target's middleware, if it has one that is connected to something; false if that fails. */
+/** Starts the communication thread if the target's middleware has a connection.  Returns false if this fails. */
 static bool start_communication(const epg_host_target_t *host)
 {
     own.run.services.target = host->target;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * What is said about a run after its end.
+ * The report about a run after its end: statistics as JSON, and a summary.
  */
 #include "report.h"
 
@@ -11,7 +11,7 @@
 #include "epg/fault.h"
 #include "number.h"
 
-/** Upper edges of the printed histogram in nanoseconds: 1, 2, 5 in each decade. */
+/** Upper edges of the histogram's bins in nanoseconds: 1, 2 and 5 in each decade. */
 static const uint64_t edges[] = {1000,    2000,    5000,    10000,    20000,    50000,    100000,    200000,    500000,
                                  1000000, 2000000, 5000000, 10000000, 20000000, 50000000, 100000000, UINT64_MAX};
 enum { EDGES = sizeof edges / sizeof edges[0] };
@@ -21,13 +21,13 @@ static uint64_t in_bin(const epg_host_run_t *run, size_t bin)
     return epg_host_histogram_between(&run->timing.lateness, bin == 0 ? 0 : edges[bin - 1], edges[bin]);
 }
 
-/** The target's own counts after the last cycle, and what only the host can know. */
+/** The target's statistics after the last cycle, with the ticks that were missed after it. */
 static epg_statistics_t counts(const epg_host_run_t *run)
 {
     const epg_control_t *control = run->host->target->control;
     epg_statistics_t statistics = control->statistics;
     statistics.missed += (uint32_t)run->missed_at_end;
-    statistics.setpoints_dropped = atomic_load(&control->dropped); /* also those after the last cycle */
+    statistics.setpoints_dropped = atomic_load(&control->dropped); /* includes later ones */
     return statistics;
 }
 
@@ -79,7 +79,7 @@ static void write_flag(FILE *file, const char *key, bool value)
     fprintf(file, "  \"%s\": %s,\n", key, value ? "true" : "false");
 }
 
-/** `value` in nanoseconds. */
+/** Writes `value`, which is in nanoseconds, in seconds. */
 static void write_time(FILE *file, const char *key, double value)
 {
     fprintf(file, "  \"%s\": ", key);
@@ -147,7 +147,7 @@ void epg_host_write_statistics(FILE *file, const epg_host_run_t *run)
     fputs("}\n", file);
 }
 
-/* For people ---------------------------------------------------------------------------------------------------- */
+/* Summary ------------------------------------------------------------------------------------------------------- */
 
 static void print_histogram(const epg_host_run_t *run)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * One run of a target: what both ways of running it share.
+ * A run of a target: the part that simulated time and real time share.
  */
 #include "run.h"
 
@@ -14,7 +14,9 @@ volatile sig_atomic_t epg_host_interrupted;
 
 void epg_host_run_start(epg_host_run_t *run, const epg_application_t *application)
 {
-    /* Plant first: starting the application samples the sensors and starts the decoders where the shafts stand. */
+    /*
+     * The plant first: the start of the application reads the sensors and starts the decoders at the plant's positions.
+     */
     epg_plant_start(&run->plant, run->host->plant, application->period_ns);
     epg_control_start(run->host->target->control, application);
     epg_plant_actuate(&run->plant);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * One run of a target: what both ways of running it share.
+ * A run of a target: the part that simulated time and real time share.  Time 0 is the first tick.
  */
 #ifndef EPG_HOST_RUN_H
 #define EPG_HOST_RUN_H
@@ -19,30 +19,31 @@
 
 typedef struct epg_host_run {
     const epg_host_target_t *host;
-    uint64_t end_ns; /**< no cycle starts at or after this time; UINT64_MAX: until stopped */
+    uint64_t end_ns; /**< no cycle starts at or after this time; UINT64_MAX: the run ends when it is stopped */
     epg_plant_run_t plant;
     epg_host_communication_t communication;
-    epg_host_services_t services; /**< real time only */
-    bool ends_with_input;         /**< the run ends when standard input does */
+    epg_host_services_t services; /**< used in real time only */
+    bool ends_with_input;         /**< the run ends at the end of standard input */
     epg_host_trace_t trace;
     epg_host_timing_t timing;
-    uint64_t ran_ns;        /**< how far the run came */
-    uint64_t missed_at_end; /**< ticks missed that no later cycle could count */
-    uint64_t wall_time_ns;
-    const epg_host_signal_t *diverged; /**< the plant's output that ended the run; NULL: none */
+    uint64_t ran_ns;                   /**< the time that the run has reached */
+    uint64_t missed_at_end;            /**< ticks that were missed after the last cycle */
+    uint64_t wall_time_ns;             /**< duration of the run by the monotonic clock */
+    const epg_host_signal_t *diverged; /**< the output of the plant that ended the run; NULL: none */
     double diverged_value;
-    uint64_t diverged_ns;         /**< when */
-    const char *scheduler;        /**< "simulated", "SCHED_FIFO" or "SCHED_OTHER" */
-    const char *scheduler_reason; /**< why it is not SCHED_FIFO; NULL otherwise */
-    bool memory_locked;
+    uint64_t diverged_ns;         /**< time at which it diverged */
+    const char *scheduler;        /**< "simulated", "SCHED_FIFO", "SCHED_OTHER" or "native_sim" */
+    const char *scheduler_reason; /**< the error for which SCHED_FIFO was not used; NULL otherwise */
+    bool memory_locked;           /**< the memory could be locked, so the control thread has no page faults */
 } epg_host_run_t;
 
-/** Set by the user's interrupt (Ctrl-C); both loops end after the cycle at hand. */
+/** Set to 1 by Ctrl-C or SIGTERM.  The loops then end after the present cycle. */
 extern volatile sig_atomic_t epg_host_interrupted;
 
 /**
- * Tick after the one at `tick_ns`, when the cycle has ended at `now_ns`: the newest one that is due, at least the
- * next.  The phase never moves; ticks in between are counted in `*missed`.
+ * Returns the time of the next tick after a cycle: the tick of the cycle was at `tick_ns`, and the cycle ended at
+ * `now_ns`.  It is the newest tick that is due, or the one after `tick_ns` if none is due.  Ticks in between are
+ * counted in `*missed`.  All ticks are multiples of `period_ns`, however long a cycle takes.
  */
 static inline uint64_t epg_host_next_tick(uint64_t tick_ns, uint64_t period_ns, uint64_t now_ns, uint32_t *missed)
 {
@@ -52,34 +53,34 @@ static inline uint64_t epg_host_next_tick(uint64_t tick_ns, uint64_t period_ns, 
     return next_ns + skipped * period_ns;
 }
 
-/** Starts the plant, then the application, both at time 0.  `application` is the target's own or a copy of it. */
+/** Starts the plant, then the application, both at time 0.  `application` is the target's, or a copy of it. */
 void epg_host_run_start(epg_host_run_t *run, const epg_application_t *application);
 
-/** A plant whose output is farther from 0 than this has diverged, whatever its unit. */
+/** The largest value of a plant's output, in its unit.  A plant with a larger absolute value has diverged. */
 #define EPG_HOST_PLANT_LARGEST 1e12
 
 /**
- * False when an output of the plant is not finite or too large: it must not reach a sensor, and the run must end.
- * `time_ns` is the time since time 0.
+ * Returns false if an output of the plant is not finite or too large at `time_ns`.  The output must not reach a sensor,
+ * and the run must end.
  */
 bool epg_host_plant_is_sound(epg_host_run_t *run, uint64_t time_ns);
 
 /**
- * After the last cycle, that of `tick_ns`, when the next would have been that of `next_ns`: counts the ticks lost up
- * to the end, makes the outputs safe, and says so if the plant has ended the run.
+ * Ends a run after its last cycle, whose tick was at `tick_ns`; the next tick would have been at `next_ns`.  Counts the
+ * ticks that were missed up to the end, makes the outputs safe, and prints a message if the plant has diverged.
  */
 void epg_host_run_end(epg_host_run_t *run, uint64_t tick_ns, uint64_t next_ns);
 
 /**
- * Puts the simulated clock to 0 and returns the application to start: the target's, except that its cycle takes
- * simulated time when a `$stall` event says so.
+ * Sets the simulated clock to 0, and returns the application to start: a copy of the target's whose cycle takes
+ * simulated time if there is a `$stall` event.
  */
 const epg_application_t *epg_host_prepare_simulated(epg_host_run_t *run);
 
 /** Runs from time 0 to the end in simulated time. */
 void epg_host_run_simulated(epg_host_run_t *run);
 
-/** Runs from time 0 to the end in real time; false, with a message, if this is not possible. */
+/** Runs from time 0 to the end in real time.  Returns false, with a message, if this is not possible. */
 bool epg_host_run_realtime(epg_host_run_t *run);
 
 #endif

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * What tells one program from another: a word from the command line, as nothing else of a PC is one program's own.
+ * The serial number of the program: a word from the command line.  A serial number of the PC would not distinguish
+ * several programs on it.
  */
 #include "serial.h"
 

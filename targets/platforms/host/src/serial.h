@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * What tells one program from another.
+ * The serial number of the program.
  */
 #ifndef EPG_HOST_SERIAL_H
 #define EPG_HOST_SERIAL_H
 
-/** From now on epg_port_serial() is `text`, which stays valid; without a call it is "host". */
+/** Sets the result of epg_port_serial() to `text`, which must stay valid.  Without a call the result is "host". */
 void epg_host_serial_set(const char *text);
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The middlewares that run beside the control loop in real time.
+ * The middlewares that run beside the control loop in real time: services.h.
  */
 #if defined(__linux__)
 #define _POSIX_C_SOURCE 200809L
@@ -17,13 +17,13 @@
 
 enum { LONGEST_SLEEP_NS = 1000 * 1000 };
 
-/** The target's middleware, if it is not the one on the terminal. */
+/** The target's middleware if it has a connection other than the terminal; NULL otherwise. */
 static const epg_middleware_t *connected(const epg_host_services_t *services)
 {
     return services->link != NULL || epg_host_connects_itself(services->target) ? services->target->middleware : NULL;
 }
 
-/** What is on the terminal. */
+/** The middleware that uses the terminal; NULL if there is no terminal. */
 static const epg_middleware_t *on_terminal(const epg_host_services_t *services)
 {
     if (services->terminal == NULL) {
@@ -55,7 +55,7 @@ void epg_host_services_start(const epg_host_services_t *services)
 
 enum { MS = 1000 * 1000, MOST_FILES = 2 };
 
-/** Sleeps until `time_ns` or until something arrives at a link or a terminal. */
+/** Sleeps until `time_ns`, or until bytes arrive at the link or the terminal. */
 static void wait_for_files(const epg_host_services_t *services, uint64_t time_ns)
 {
     const uint64_t now_ns = epg_host_monotonic_ns();
@@ -81,7 +81,7 @@ static void wait_for_files(const epg_host_services_t *services, uint64_t time_ns
 
 #endif
 
-/** Says on stderr that the agent is there, or no longer. */
+/** Reports on stderr that the connection to the agent was made or lost. */
 static void tell_state(epg_host_services_t *services, const epg_middleware_t *middleware)
 {
     if (services->agent == NULL || middleware == NULL || middleware->state == NULL) {

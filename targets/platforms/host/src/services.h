@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The middlewares that run beside the control loop in real time: the target's own, and its console.
+ * The middlewares that run beside the control loop in real time: the target's middleware, and its console.
  *
- * The target's middleware connects by itself, or it has a link to an agent; else it is what sits on the terminal.  A
- * console beside a middleware that is connected sits on the terminal in its place.
+ * The target's middleware makes its own connection, or has a link to an agent, or uses the terminal.  In the first two
+ * cases the terminal is free for a console.
  */
 #ifndef EPG_HOST_SERVICES_H
 #define EPG_HOST_SERVICES_H
@@ -20,29 +20,29 @@
 
 typedef struct epg_host_services {
     const epg_target_t *target;
-    epg_host_link_t *link;         /**< to the agent of the target's middleware; NULL: there is none */
-    const char *agent;             /**< where it is, for people; NULL: nothing is said of the connection */
-    const char *state;             /**< of the connection, as said last; NULL: it is not running */
-    epg_host_terminal_t *terminal; /**< NULL: there is none */
+    epg_host_link_t *link;         /**< link to the agent of the target's middleware; NULL: no agent */
+    const char *agent;             /**< address of the agent in messages; NULL: no messages about the connection */
+    const char *state;             /**< state of the connection at the last message; NULL: not connected */
+    epg_host_terminal_t *terminal; /**< NULL: no terminal */
 } epg_host_services_t;
 
-/** Whether the target's middleware makes its connection itself. */
+/** True if the target's middleware makes its own connection. */
 bool epg_host_connects_itself(const epg_target_t *target);
 
-/** Whether the target's middleware has a connection, and needs no terminal. */
+/** True if the target's middleware has a connection other than a terminal. */
 bool epg_host_is_connected(const epg_host_target_t *host);
 
-/** What sits on a terminal if there is one; NULL: nothing does. */
+/** The middleware that would use a terminal; NULL if none would. */
 const epg_middleware_t *epg_host_console(const epg_host_target_t *host);
 
-/** Whether anything runs. */
+/** True if at least one middleware runs. */
 bool epg_host_services_run(const epg_host_services_t *services);
 
 void epg_host_services_start(const epg_host_services_t *services);
 
 /**
- * Sleeps until monotonic time `time_ns` or until something arrives, a millisecond at most; then serves all.  What
- * becomes of the connection to an agent is said on stderr.
+ * Sleeps until monotonic time `time_ns`, until bytes arrive, or for a millisecond, whichever is first.  Then serves all
+ * middlewares.  Reports on stderr when the connection to an agent was made or lost.
  */
 void epg_host_services_serve(epg_host_services_t *services, uint64_t time_ns);
 

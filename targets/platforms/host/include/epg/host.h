@@ -1,10 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The host platform: a target runs on a PC against a simulated plant, in simulated or in real time.
+ * The host platform: a target runs on a PC against a simulated plant.
  *
- * Peripherals are simulated at the level of their signals: encoder counts, PWM levels, pin levels.  The generated
- * file `<name>_plant.c` connects them to the plant model.
+ * The target has the same model, components and control loop as on a board.  Its peripherals are simulated at the level
+ * of their signals: encoder counts, PWM levels, pin levels.  Generated functions connect them to the plant model.
+ *
+ * A run is in simulated or in real time.  Simulated time has one thread, does not wait, and gives the same result every
+ * time; a control cycle takes no simulated time.  Real time needs Linux: a control thread wakes up at each tick.
+ *
+ * An executable has EPG's main(), which calls epg_host_main(), or a main() of the user, which calls the generated
+ * `<name>_start()` and `<name>_stop()`.
  */
 #ifndef EPG_HOST_H
 #define EPG_HOST_H
@@ -29,29 +35,37 @@ typedef struct epg_host_input {
     bool invert; /**< the component reads 1 when the pin is low */
 } epg_host_input_t;
 
-/** All the host needs to run one target.  `plant` is NULL when there is none: then sensors stand still. */
+/** A target with its plant and signals; generated. */
 typedef struct epg_host_target {
     const epg_target_t *target;
-    const epg_plant_t *plant;
+    const epg_plant_t *plant; /**< NULL if there is no plant: the sensors' values then stay constant */
     size_t signal_count;
-    const epg_host_signal_t *signals;
+    const epg_host_signal_t *signals; /**< all signals that can be recorded */
     size_t plant_output_count;
-    const epg_host_signal_t *plant_outputs; /**< those of `signals` that the plant computes */
+    const epg_host_signal_t *plant_outputs; /**< the part of `signals` that the plant computes */
     size_t input_count;
-    const epg_host_input_t *inputs;
-    const char *agent;  /**< where the agent of the target's middleware is: HOST:PORT, or a terminal; NULL: no agent */
+    const epg_host_input_t *inputs; /**< the digital inputs */
+    const char *agent;  /**< address of the agent of the target's middleware: HOST:PORT or a terminal; NULL: no agent */
     uint32_t baud_rate; /**< of that terminal */
 } epg_host_target_t;
 
-/** Body of main() of a host executable: reads options, runs, prints a summary.  Returns the exit status. */
+/**
+ * Body of main() of a host executable: reads the options of the command line, runs the target, prints a summary.
+ * Returns the exit status.
+ */
 int epg_host_main(const epg_host_target_t *host, int argc, char **argv);
 
-/** Starts the control cycle in a thread of its own, in real time, and returns; false when that fails. */
+/**
+ * Starts the target in real time and returns.  The control loop runs in a new thread, and the communication side in a
+ * second one if the target's middleware has a connection.  Returns false, with a message, if this fails, and false if a
+ * target is running already.
+ */
 bool epg_host_start(const epg_host_target_t *host);
 
 /**
- * Ends the threads started by epg_host_start(), the control thread after the current cycle; outputs are safe then.
- * False, and everything goes on, when one of these threads is the caller.
+ * Stops the threads that epg_host_start() has started, the control thread after its present cycle.  When this returns
+ * true, the outputs are safe.  Returns false if the caller is one of these threads, because a thread cannot wait for
+ * its own end; the target then goes on.
  */
 bool epg_host_stop(void);
 
