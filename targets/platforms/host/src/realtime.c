@@ -31,7 +31,7 @@
 
 enum {
     PRIORITY = 80,                       /* above threaded interrupts (50), below the kernel's own threads (99) */
-    STACK_SIZE = 2 << 20,                /* bytes, with thread-local storage, which takes 1 MiB with sanitizers */
+    STACK_SIZE = 2 << 20,                /* bytes, with thread-local storage, up to 1 MiB with sanitizers */
     STACK_PREFAULTED = 256 << 10,        /* bytes that the cycle may use without a page fault */
     START_DELAY_NS = 20 * 1000 * 1000,   /* from the thread's start to its first tick: time for the caller to prepare */
     LONGEST_SLEEP_NS = 100 * 1000 * 1000 /* longest sleep of the communication side: it then looks for Ctrl-C */

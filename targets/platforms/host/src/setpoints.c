@@ -19,7 +19,7 @@ enum { ERRORS_SHOWN = 20, FIELDS = 3 };
 
 static const char header[] = "time,topic,value";
 
-/** One pass over one file. */
+/** The state of the reader, while it reads one file. */
 typedef struct reader {
     const char *path;
     const epg_host_target_t *host;
@@ -27,7 +27,7 @@ typedef struct reader {
     unsigned line;
     unsigned errors;
     uint64_t previous_ns;
-    const char *unknown[ERRORS_SHOWN]; /* names that were reported: each once */
+    const char *unknown[ERRORS_SHOWN]; /* unknown names that were reported already */
     size_t unknown_count;
 } reader_t;
 
@@ -49,7 +49,7 @@ fail(reader_t *reader, const char *format, ...)
     return false;
 }
 
-/** The whole file as a string on the heap; NULL, with a message, if it cannot be read. */
+/** Reads the whole file into a string on the heap.  Returns NULL, with a message, if it cannot be read. */
 static char *read_text(const char *path)
 {
     FILE *file = fopen(path, "rb");
@@ -73,7 +73,7 @@ static char *read_text(const char *path)
     }
     const char *problem = text == NULL ? "not enough memory" : NULL;
     if (ferror(file)) {
-        problem = strerror(errno); /* a folder, for instance, opens but cannot be read */
+        problem = strerror(errno); /* for example of a folder, which can be opened but not read */
     } else if (problem == NULL && memchr(text, '\0', size) != NULL) {
         problem = "it is not a text file";
     }
@@ -98,7 +98,7 @@ static char *trim(char *text)
     return text;
 }
 
-/** Splits `line` at its commas; returns how many fields there are, the first FIELDS of them in `fields`. */
+/** Splits `line` at its commas.  Puts the first FIELDS fields into `fields`, and returns the number of all fields. */
 static size_t split(char *line, char *fields[FIELDS])
 {
     size_t count = 0;
@@ -116,7 +116,7 @@ static size_t split(char *line, char *fields[FIELDS])
     return count;
 }
 
-/** Whether `name` is reported for the first time.  A name that is wrong in thousands of rows is one mistake. */
+/** True if `name` was not reported before.  A wrong name in thousands of rows is reported once. */
 static bool is_new(reader_t *reader, const char *name)
 {
     for (size_t i = 0; i < reader->unknown_count; i++) {
@@ -130,7 +130,7 @@ static bool is_new(reader_t *reader, const char *name)
     return true;
 }
 
-/** With the names of all subscriptions as the hint. */
+/** Reports an unknown topic, with the names of all subscriptions as the hint. */
 static bool fail_topic(reader_t *reader, const char *topic)
 {
     const epg_target_t *target = reader->host->target;
@@ -178,7 +178,7 @@ static const epg_host_input_t *find_input(const reader_t *reader, const char *na
     return NULL;
 }
 
-/** What a row makes of the pin of a digital input. */
+/** Reads a row with `$component:<name>`: the level of a digital input, in place of the plant's. */
 static bool read_force(reader_t *reader, const char *name, const char *text, epg_host_event_t *event)
 {
     const epg_host_input_t *input = find_input(reader, name);
@@ -201,7 +201,7 @@ static bool read_force(reader_t *reader, const char *name, const char *text, epg
     return true;
 }
 
-/** Kind and index of what `topic` names. */
+/** Finds the kind and the index of the event that a row with `topic` describes. */
 static bool read_topic(reader_t *reader, const char *topic, epg_host_event_t *event)
 {
     const epg_target_t *target = reader->host->target;
@@ -267,8 +267,8 @@ static bool read_event(reader_t *reader, char *line, epg_host_event_t *event)
 }
 
 /**
- * Values that arrive at one moment are published together.  A non-finite value will be dropped, so it must not be
- * the one that publishes the others.
+ * Setpoints with the same time must arrive at the model together: only the last one is marked to publish all of them.
+ * A value that is not finite is dropped later, so it must not be that one.
  */
 static void mark_published(epg_host_events_t *events)
 {

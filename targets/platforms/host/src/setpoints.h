@@ -1,19 +1,20 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The setpoint file: what happens to a target from outside, and when.
+ * The setpoint file: a list of events that come to a target from outside, with their times.
  *
- * A CSV file with the header line `time,topic,value`, one event per line, in order of time:
+ * It is a CSV file with the header line `time,topic,value`.  Each further line is an event, in the order of time.
+ * Times are in seconds since the start of the run:
  *
  * | topic                  | value                | effect                                                          |
  * |------------------------|----------------------|-----------------------------------------------------------------|
  * | a subscription         | number, nan, inf     | a setpoint arrives                                              |
  * | the enable topic       | 0 or 1               | disable or enable                                               |
  * | `$enable`              | 0 or 1               | the same, whether or not the target has an enable topic         |
- * | `$component:<name>`    | 0 or 1               | what a digital input reads, whatever the plant says             |
- * |                        | open                 | nothing drives its pin: the level of its pull resistor          |
- * |                        | plant                | the plant drives it again                                       |
- * | `$stall`               | seconds              | the next cycle takes that long; simulated time only             |
+ * | `$component:<name>`    | 0 or 1               | a digital input reads this value, whatever the plant computes   |
+ * |                        | open                 | its pin is open: it reads the level of its pull resistor        |
+ * |                        | plant                | the plant drives its pin again                                  |
+ * | `$stall`               | seconds              | the next cycle takes this time; in simulated time only          |
  */
 #ifndef EPG_HOST_SETPOINTS_H
 #define EPG_HOST_SETPOINTS_H
@@ -34,22 +35,23 @@ typedef enum epg_host_event_kind {
 typedef struct epg_host_event {
     uint64_t time_ns; /**< since the start of the run */
     epg_host_event_kind_t kind;
-    size_t index; /**< setpoint, or the pin of a digital input */
-    double value; /**< setpoint, enable (0 or 1), seconds, or the epg_plant_force_t of a pin */
-    bool publish; /**< of a setpoint: the last finite one of this moment */
+    size_t index; /**< value index of a setpoint, or pin of a digital input */
+    double value; /**< value of a setpoint, 0 or 1 to enable, seconds of a stall, or epg_plant_force_t of a pin */
+    bool publish; /**< of a setpoint: true if it is the last finite one at this time */
     unsigned line;
 } epg_host_event_t;
 
-/** All events of a file.  `events` is on the heap; zero-initialised memory is an empty list. */
+/** All events of a file.  `events` is on the heap.  Zero-initialised memory is an empty list. */
 typedef struct epg_host_events {
     epg_host_event_t *events;
     size_t count;
 } epg_host_events_t;
 
 /**
- * Reads the file `path` for the target `host`.  `realtime` refuses what only simulated time can do.
+ * Reads the file `path` for the target `host`.  If `realtime` is true, events that need simulated time are errors.
  *
- * Returns false after printing `path:line: error: ...` for each wrong line (the first 20) to stderr.
+ * Returns false if the file is wrong, after a message `path:line: error: ...` to stderr for each of the first 20 wrong
+ * lines.
  */
 bool epg_host_read_setpoints(const char *path, const epg_host_target_t *host, bool realtime, epg_host_events_t *events);
 

@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Simulated time: one thread, no waiting, the same result every time.
+ * Simulated time: one thread, which does not wait, and gives the same result every time.
  *
- * Nothing here depends on how fast the machine is: a cycle takes no simulated time, unless a `$stall` event says
- * that one does.  The computation time that the statistics report is measured beside, by the monotonic clock.
+ * The result does not depend on the speed of the computer.  A cycle takes no simulated time, except after a `$stall`
+ * event.  The computation time in the statistics is measured separately, by the monotonic clock.
  */
 #include "clock.h"
 #include "run.h"
 
-/** The run at hand, for read_and_stall(): the application's functions take no argument. */
+/** The present run.  It is global for read_and_stall(): functions of an application have no argument. */
 static struct {
     epg_host_run_t *run;
     epg_application_t application; /* the target's, with read_and_stall() in place of read() */
-    uint64_t now_ns;
-    uint64_t outside_ns; /* monotonic time spent within a cycle on what is not the cycle: plant and communication */
+    uint64_t now_ns;               /* simulated time */
+    uint64_t outside_ns;           /* monotonic time spent on plant and communication within a cycle, during a stall */
 } simulation;
 
 static void set_time(uint64_t time_ns)
@@ -23,7 +23,7 @@ static void set_time(uint64_t time_ns)
     epg_host_clock_simulate(time_ns);
 }
 
-/** Communication and plant have come to `time_ns`, the plant driven by the outputs as they are. */
+/** Advances communication and plant to `time_ns`.  The plant's inputs stay as they are. */
 static void move_on(uint64_t time_ns)
 {
     epg_host_communicate_simulated(&simulation.run->communication, time_ns);
@@ -32,8 +32,8 @@ static void move_on(uint64_t time_ns)
 }
 
 /**
- * Samples the sensors; then, when a stall is due, time passes before anything is computed from the samples, as if
- * an interrupt of higher priority had come in between.
+ * Replaces the application's read(): samples the sensors.  If a stall is due, simulated time passes before the model
+ * computes with the samples, as if an interrupt of a higher priority had delayed the cycle.
  */
 static void read_and_stall(void)
 {
@@ -56,7 +56,7 @@ const epg_application_t *epg_host_prepare_simulated(epg_host_run_t *run)
     return &simulation.application;
 }
 
-/** The cycle of `tick_ns`, now. */
+/** Runs the cycle of the tick at `tick_ns` at the present simulated time, which may be later. */
 static void cycle(epg_host_run_t *run, uint64_t tick_ns, uint32_t missed)
 {
     const uint64_t begun_ns = simulation.now_ns;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The port layer's store as a file.
+ * The port layer's store: a file.
  */
 #include "store.h"
 
@@ -27,7 +27,10 @@ size_t epg_port_store_read(void *data, size_t size)
     return length;
 }
 
-/** Another file first, renamed when it is whole: an interrupted run leaves the old one or the new one. */
+/**
+ * Writes a second file, and renames it when it is complete.  After an interruption, either the old or the new file
+ * exists.
+ */
 bool epg_port_store_write(const void *data, size_t size)
 {
     char path[4096];

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Streams to whoever sits at the computer.
+ * Streams to the user at the computer: standard input and output, or a pseudo-terminal.
  */
 #if defined(__linux__)
-#undef _XOPEN_SOURCE /* a build may ask for an older one */
+#undef _XOPEN_SOURCE /* the build may have defined an older one */
 #define _XOPEN_SOURCE 700
 #endif
 
@@ -31,7 +31,7 @@ enum {
     GRACE_NS = 200 * 1000 * 1000 /* from the end of input to the end of the run */
 };
 
-/** What is ready at `file` of `events`; POLLHUP and POLLERR come unasked. */
+/** The events of `events` that are ready at `file`.  poll() adds POLLHUP and POLLERR. */
 static short ready(int file, short events)
 {
     struct pollfd entry = {.fd = file, .events = events};
@@ -44,7 +44,7 @@ static bool connected(void *context)
     if (!terminal->own) {
         return !terminal->lost;
     }
-    return (ready(terminal->input, POLLIN) & POLLHUP) == 0; /* somebody has the other end open */
+    return (ready(terminal->input, POLLIN) & POLLHUP) == 0; /* a program has the other end open */
 }
 
 static size_t read_bytes(void *context, void *data, size_t size)
@@ -60,7 +60,7 @@ static size_t read_bytes(void *context, void *data, size_t size)
     return count > 0 ? (size_t)count : 0;
 }
 
-/** Bytes taken of `size`; 0 when there is no room or nobody any more. */
+/** Writes up to `size` bytes, and returns the number written.  0 if there is no room, or if the reader has gone. */
 static size_t write_some(epg_host_terminal_t *terminal, const char *data, size_t size)
 {
     if (terminal->lost || (ready(terminal->output, POLLOUT) & POLLOUT) == 0) {
@@ -73,7 +73,7 @@ static size_t write_some(epg_host_terminal_t *terminal, const char *data, size_t
     return count > 0 ? (size_t)count : 0;
 }
 
-/** Standard output gets lines as files here have them: without the carriage return that a terminal of bytes needs. */
+/** Writes to standard output, without the carriage returns that the console sends: Linux ends a line with a newline. */
 static size_t write_lines(void *context, const void *data, size_t size)
 {
     epg_host_terminal_t *terminal = context;
@@ -114,10 +114,13 @@ void epg_host_terminal_standard(epg_host_terminal_t *terminal)
         .input = STDIN_FILENO,
         .output = STDOUT_FILENO,
     };
-    signal(SIGPIPE, SIG_IGN); /* a reader that has gone is no reason to end with outputs as they are */
+    signal(SIGPIPE, SIG_IGN); /* the program must go on, to make its outputs safe, when the reader has gone */
 }
 
-/** No echo, no lines, no signals: bytes, as over USB.  Closing it once lets the other end see that nobody is there. */
+/**
+ * Makes the terminal transfer plain bytes, as USB does: no echo, no editing of lines, no signals.  It is opened and
+ * closed once; from then on a poll of our end reports that no program has the other end open (POLLHUP).
+ */
 static bool make_raw(const char *name)
 {
     struct termios settings;
@@ -135,7 +138,7 @@ static bool make_raw(const char *name)
     return set;
 }
 
-/** Makes `path` a link to the terminal `name`, in place of a link that an earlier run has left. */
+/** Makes `path` a symbolic link to the terminal `name`.  Replaces a link that an earlier run has left. */
 static bool make_link(const char *name, const char *path)
 {
     struct stat status;
@@ -190,7 +193,7 @@ void epg_host_terminal_close(epg_host_terminal_t *terminal)
     }
 }
 
-#else /* not Linux: there is no real time either, and nothing of this is called */
+#else /* not Linux: there is no real time, so these functions are not called */
 
 void epg_host_terminal_standard(epg_host_terminal_t *terminal)
 {

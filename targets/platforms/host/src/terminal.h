@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Streams between a middleware and whoever sits at the computer: standard input and output, or a terminal of its own.
+ * Streams between a middleware and the user at the computer: standard input and output, or a pseudo-terminal.
  *
- * Linux only, as real time is.  For one thread.
+ * A pseudo-terminal looks to other programs like the serial port of a board.
+ *
+ * It needs Linux, like real time.  Only one thread may use a terminal.
  */
 #ifndef EPG_HOST_TERMINAL_H
 #define EPG_HOST_TERMINAL_H
@@ -17,22 +19,28 @@ typedef struct epg_host_terminal {
     epg_stream_t stream;
     int input;
     int output;
-    bool own;         /**< a pseudo-terminal, whose name in the file system is `path` */
-    const char *path; /**< NULL when there is none to remove */
-    bool lost;        /**< nobody will read any more */
-    uint64_t end_ns;  /**< monotonic time at which standard input ended; 0: it has not */
+    bool own;         /**< true: a pseudo-terminal; false: standard input and output */
+    const char *path; /**< symbolic link to the pseudo-terminal, which is removed at the end; NULL: none */
+    bool lost;        /**< the reader of the output has gone */
+    uint64_t end_ns;  /**< monotonic time at which standard input ended; 0: it has not ended */
 } epg_host_terminal_t;
 
-/** Standard input and output. */
+/** Opens standard input and output. */
 void epg_host_terminal_standard(epg_host_terminal_t *terminal);
 
-/** A pseudo-terminal with the name `path`, a link that is removed at the end; false, with a message, if there is none. */
+/**
+ * Makes a pseudo-terminal, and `path` as a symbolic link to it, which epg_host_terminal_close() removes.  Returns
+ * false, with a message, if this fails.
+ */
 bool epg_host_terminal_open(epg_host_terminal_t *terminal, const char *path);
 
-/** Whether input can still come: a terminal that nobody has open, and input that has ended, are always ready. */
+/**
+ * True if it makes sense to wait for input.  False if standard input has ended, or no program has the pseudo-terminal
+ * open:  poll() would then return at once.
+ */
 bool epg_host_terminal_listens(const epg_host_terminal_t *terminal);
 
-/** True when standard input has ended, and what was read before has had time to be answered. */
+/** True if standard input has ended 0.2 s ago or earlier, so that the last commands could be answered. */
 bool epg_host_terminal_ended(const epg_host_terminal_t *terminal, uint64_t now_ns);
 
 void epg_host_terminal_close(epg_host_terminal_t *terminal);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * When control cycles began and how long they took.
+ * Measurements of control cycles: lateness, intervals and computation times.
  */
 #include "timing.h"
 
@@ -10,7 +10,7 @@
 void epg_host_timing_add(epg_host_timing_t *timing, uint64_t lateness_ns, uint64_t computation_ns)
 {
     if (timing->lateness.count > 0) {
-        /* (start - start before) - (tick - tick before), which skipped ticks do not disturb */
+        /* (start - previous start) - (tick - previous tick); ticks that were skipped have no influence */
         const int64_t deviation = (int64_t)(lateness_ns - timing->lateness_last);
         timing->deviation_min = deviation < timing->deviation_min ? deviation : timing->deviation_min;
         timing->deviation_max = deviation > timing->deviation_max ? deviation : timing->deviation_max;

@@ -10,7 +10,7 @@
 
 #include "number.h"
 
-/** Columns beside the signals: time before them; enabled, fault, lateness and computation after them. */
+/** Columns besides those of the signals: the time before them; enabled, fault, lateness and computation after them. */
 enum { COLUMNS_BEFORE = 1, COLUMNS_AFTER = 4, ROWS_AT_ONCE = 1024 };
 
 bool epg_host_trace_start(epg_host_trace_t *trace, const epg_host_target_t *host, FILE *file, bool realtime,
@@ -34,7 +34,7 @@ bool epg_host_trace_start(epg_host_trace_t *trace, const epg_host_target_t *host
         return false;
     }
     trace->capacity = (size_t)rows;
-    memset(trace->rows, 0, (size_t)(rows * row_size)); /* so that no page is touched first by the control thread */
+    memset(trace->rows, 0, (size_t)(rows * row_size)); /* maps all pages now, not in the control thread */
     fputs("time", file);
     for (size_t i = 0; i < host->signal_count; i++) {
         fprintf(file, ",%s", host->signals[i].name);
@@ -63,7 +63,7 @@ void epg_host_trace_add(epg_host_trace_t *trace, uint64_t tick_ns, uint64_t late
         return;
     }
     if (trace->count == trace->capacity) {
-        write_rows(trace); /* never in real time: there is a row for each cycle of the run */
+        write_rows(trace); /* does not happen in real time: there is a row for each cycle */
     }
     const epg_host_target_t *host = trace->host;
     const epg_control_t *control = host->target->control;

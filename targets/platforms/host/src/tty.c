@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * A link by a terminal: a serial port, or one that another program has made (pty).
+ * A link by a terminal: a serial port, or a pseudo-terminal that another program has made.
  */
 #if defined(__linux__)
-#define _DEFAULT_SOURCE /* speeds above those that POSIX has */
+#define _DEFAULT_SOURCE /* for baud rates above those of POSIX */
 #endif
 
 #include "link.h"
@@ -43,7 +43,7 @@ static speed_t speed_of(uint32_t baud_rate)
     return B115200;
 }
 
-/** Bytes, with no meaning to the terminal. */
+/** Makes the terminal transfer plain bytes, at this baud rate. */
 static bool make_raw(int file, uint32_t baud_rate)
 {
     struct termios settings;
@@ -76,7 +76,7 @@ static void open_device(epg_host_link_t *link)
     }
 }
 
-/** Gives the terminal what it takes now. */
+/** Writes as many of the waiting bytes as the terminal takes now. */
 static void put_out(epg_host_link_t *link)
 {
     if (link->file < 0 || link->waiting == 0) {
@@ -103,7 +103,7 @@ static bool connected(void *context)
     }
     struct pollfd entry = {.fd = link->file};
     if (poll(&entry, 1, 0) > 0 && (entry.revents & (POLLHUP | POLLERR | POLLNVAL)) != 0) {
-        drop(link); /* pulled out */
+        drop(link); /* it was unplugged */
     }
     put_out(link);
     return link->file >= 0;
@@ -159,7 +159,7 @@ void epg_host_link_close(epg_host_link_t *link)
     link->file = -1;
 }
 
-#else /* not Linux: there is no real time either, and nothing of this is called */
+#else /* not Linux: there is no real time, so these functions are not called */
 
 void epg_host_link_serial(epg_host_link_t *link, const char *device, uint32_t baud_rate)
 {

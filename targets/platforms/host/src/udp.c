@@ -49,7 +49,7 @@ static bool connected(void *context)
     return link->file >= 0;
 }
 
-/** An error that an earlier packet has met is told once, at the next call; that one is made again. */
+/** True if a call failed because of an earlier packet.  Linux reports such an error once; the call must be repeated. */
 static bool was_refused(ssize_t count)
 {
     return count < 0 && (errno == ECONNREFUSED || errno == EINTR || errno == EHOSTUNREACH || errno == ENETUNREACH);
@@ -78,10 +78,10 @@ static size_t write_packet(void *context, const void *data, size_t size)
 static size_t writable(void *context)
 {
     (void)context;
-    return LARGEST_PACKET; /* a packet that the system cannot take is lost, as packets are */
+    return LARGEST_PACKET; /* a packet that the system cannot take is lost; UDP permits this */
 }
 
-/** A socket that talks to nobody but `address`; -1 if there is none. */
+/** Makes a socket that is connected to the first address that can be reached; -1 if there is none. */
 static int connect_to(const struct addrinfo *address)
 {
     for (; address != NULL; address = address->ai_next) {
@@ -128,7 +128,7 @@ bool epg_host_link_udp(epg_host_link_t *link, const char *address)
     return link->file >= 0;
 }
 
-#else /* not Linux: there is no real time either, and nothing of this is called */
+#else /* not Linux: there is no real time, so these functions are not called */
 
 bool epg_host_link_udp(epg_host_link_t *link, const char *address)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Waiting on the communication side, which is a thread of its own.
+ * The wait of a middleware for bytes.  The communication side has its own thread, so it can sleep for a short time.
  */
 #include "epg/port_wait.h"
 
