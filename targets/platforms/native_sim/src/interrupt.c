@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Interrupts of the user.  Part of the native simulator's runner: Zephyr's image knows nothing of signals.
+ * Ctrl-C and SIGTERM.  A part of the native simulator, the program around the image: Zephyr has no signals of Linux.
  */
 #define _POSIX_C_SOURCE 200809L
 
@@ -20,7 +20,7 @@ static void on_interrupt(int number)
 
 void epg_native_sim_catch_interrupts(volatile int *flag)
 {
-    /* Restarted: the simulator's threads wait for each other by semaphores, and do not expect less than that. */
+    /* SA_RESTART: the simulator's threads wait for each other by semaphores, and do not handle an interrupted wait. */
     struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = (int)(SA_RESETHAND | SA_RESTART)};
     interrupted = flag;
     sigemptyset(&action.sa_mask);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The command line of an image: EPG's options among those of native_sim, which are written -option=value.
+ * The command line of an image.  EPG's options are added to those of native_sim, and have its form: -option=value.
  */
 #include <stdio.h>
 
@@ -71,7 +71,10 @@ static void add_options(void)
 
 NATIVE_TASK(add_options, PRE_BOOT_1, 10);
 
-/** Without a duration, and in real time, the target is connected to the world. */
+/**
+ * Completes and checks the options.  Without a duration the run counts as real time: the target then has its
+ * connections.  False after a message.
+ */
 static bool complete(void)
 {
     epg_host_options_t *options = &epg_native_sim_options;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * What the parts of the simulation ask of each other.
+ * The functions that the files of the simulation call in each other.
  */
 #ifndef EPG_NATIVE_SIM_PARTS_H
 #define EPG_NATIVE_SIM_PARTS_H
@@ -12,43 +12,45 @@
 #include "options.h"
 #include "run.h"
 
-/** Exit status, as of a host executable. */
+/** Exit status of the program, the same as that of a host executable. */
 enum { DONE = 0, FAILED = 1, WRONG_INPUT = 2, INTERRUPTED = 130 };
 
 /* options.c ------------------------------------------------------------------------------------------------------ */
 
-/** What the command line says; `realtime` unless only simulated time was asked for. */
+/** The options of the command line.  `realtime` is true, too, if no duration was given. */
 extern epg_host_options_t epg_native_sim_options;
 
-/** What the setpoint file says. */
+/** The events of the setpoint file. */
 extern epg_host_events_t epg_native_sim_events;
 
 /* signals.c ------------------------------------------------------------------------------------------------------ */
 
-/** False, with a message, when a decoder, PWM output or pin of the target is not an emulated one. */
+/** Returns false, with a message, if a decoder, PWM output or pin of the target is not emulated. */
 bool epg_native_sim_all_emulated(void);
 
-/** From now on shafts turn; before, they are only where they are. */
+/** From now on a change of a shaft's position produces counts.  Before this call it only sets the initial position. */
 void epg_native_sim_shafts_turn(void);
 
-/** Drives the pins again that were driven before they were inputs. */
+/** Sets the levels of all driven pins again: a pin that was not an input yet has not got its level. */
 void epg_native_sim_drive_pins(void);
 
 /* transports.c --------------------------------------------------------------------------------------------------- */
 
-/** Opens what the command line asks for; DONE, or the exit status after a message. */
+/** Opens the transports that the options request.  Returns DONE, or after a message the exit status. */
 int epg_native_sim_open_transports(void);
 void epg_native_sim_close_transports(void);
 
-/** Says on stderr what has become of the connection to the agent. */
+/** Reports on stderr when the connection to the agent was made or lost. */
 void epg_native_sim_tell_connection(void);
 
-/** Whether standard input was the console, and has ended. */
+/** True if the run has no duration, its console is standard input, and this has ended. */
 bool epg_native_sim_input_ended(void);
 
-/* interrupt.c, which is no part of the image but of the program around it -------------------------------------------- */
+/*
+ * interrupt.c, which is not a part of the image but of the native simulator around it ---------------------------------
+ */
 
-/** From now on an interrupt (Ctrl-C, SIGTERM) sets `*flag`; a second one ends the program. */
+/** From now on the first Ctrl-C or SIGTERM sets `*flag` to 1, and a second one ends the program. */
 void epg_native_sim_catch_interrupts(volatile int *flag);
 
 #endif

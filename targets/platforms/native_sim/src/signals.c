@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * What the plant moves and sees: the devices that Zephyr emulates.
+ * The connection between the plant and the devices that Zephyr emulates: the plant sets inputs and reads outputs.
  *
- * The generator numbers the peripherals of native_sim from 0 in each class; `slot` or `pin` is enough to name one.
+ * The generator numbers the peripherals of each class from 0.  `slot` or `pin` is therefore enough to identify one.
  */
 #include <stdio.h>
 
@@ -18,14 +18,15 @@
 
 enum { UNITS = UINT8_MAX + 1, PINS = UINT8_MAX + 1 };
 
-/** What drives an input pin; all pins begin with 0. */
+/** The driver of an input pin, set by the plant.  At the start no pin is driven. */
 enum { UNDRIVEN, DRIVEN_LOW, DRIVEN_HIGH };
+/** The driver of an input pin, set by a setpoint file in place of the plant. */
 enum { NOT_FORCED, FORCED_OPEN, FORCED_LOW, FORCED_HIGH };
 
-static bool turning;
-static int64_t counts[UNITS]; /* where the shafts are */
+static bool turning;          /* a change of a shaft's position produces counts */
+static int64_t counts[UNITS]; /* positions of the shafts, in counts */
 static uint8_t driven[PINS];
-static uint8_t forced[PINS]; /* in place of what the plant drives */
+static uint8_t forced[PINS];
 
 /* Devices -------------------------------------------------------------------------------------------------------- */
 
@@ -106,11 +107,14 @@ void epg_native_sim_shafts_turn(void)
     turning = true;
 }
 
-/** Before the decoders run, a shaft is where it is: an incremental encoder does not know where that is. */
+/**
+ * Turns a shaft to the position `count`.  Before the decoders run this sets its initial position, and no count changes:
+ * an incremental encoder does not know the position.
+ */
 void epg_plant_quadrature_set(uint8_t slot, int64_t count)
 {
     const struct device *device = decoder_of(slot);
-    /* Modulo 2^32, as the target sees counts; so a plant that has gone astray turns no shaft for ever either. */
+    /* Modulo 2^32, like the counts of the target.  This also limits the time for an absurd position. */
     const int32_t edges = (int32_t)(uint32_t)((uint64_t)count - (uint64_t)counts[slot]);
     counts[slot] = count;
     if (turning && device != NULL && edges != 0) {
@@ -126,7 +130,9 @@ void epg_plant_quadrature_fail(uint8_t slot, bool failed)
     }
 }
 
-/* PWM ---------------------------------------------------------------------------------------------------------------- */
+/*
+ * PWM ----------------------------------------------------------------------------------------------------------------
+ */
 
 double epg_plant_pwm_duty(uint8_t slot)
 {
@@ -142,7 +148,9 @@ double epg_plant_pwm_duty(uint8_t slot)
     return 0.0;
 }
 
-/* Pins --------------------------------------------------------------------------------------------------------------- */
+/*
+ * Pins ---------------------------------------------------------------------------------------------------------------
+ */
 
 static bool is_configured(const struct gpio_dt_spec *gpio, gpio_flags_t direction)
 {
@@ -156,7 +164,7 @@ bool epg_plant_output(uint8_t pin)
     return is_configured(gpio, GPIO_OUTPUT) && gpio_emul_output_get(gpio->port, gpio->pin) > 0;
 }
 
-/** Gives the emulated pin the level of what drives it, else that of its pull resistor. */
+/** Sets the level of an emulated input pin: that of its driver, or that of its pull resistor if nothing drives it. */
 static void drive(uint8_t pin)
 {
     const struct gpio_dt_spec *gpio = gpio_of(pin);

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * A run: setpoints, plant and recording around the control cycles of the image, in the order and with the functions of
- * the host.
+ * A run: setpoints, plant and recording around the control cycles of the image.  The functions and their order are
+ * those of the platform `host`.
  *
- * Zephyr's clock stands still while the image computes, so that a cycle takes no simulated time unless a `$stall`
- * event says that one does; in real time the native simulator waits between two ticks of the system clock.
+ * Zephyr's clock does not advance while the image computes.  A cycle therefore takes no simulated time, except after a
+ * `$stall` event.  In real time the native simulator waits between two ticks of the system clock.
  */
 #include <errno.h>
 #include <stdio.h>
@@ -28,20 +28,20 @@
 static epg_host_run_t run;
 static struct {
     epg_application_t application; /* that of Zephyr's port layer, with read_and_stall() in place of read() */
-    void (*read)(void);            /* what read_and_stall() stands for */
+    void (*read)(void);            /* its read(), which read_and_stall() calls */
     FILE *topics;
     FILE *trace;
     FILE *statistics;
     bool prepared;
-    bool begun;           /* the first cycle has been */
+    bool begun;           /* the first cycle has begun */
     bool written;         /* the files are complete */
-    uint64_t start_ns;    /* epg_port_time_ns() of the first tick: time 0 of the run */
-    uint64_t tick_ns;     /* of the newest cycle, since time 0 */
-    uint64_t begun_ns;    /* when it began, since time 0 */
-    uint64_t entered_ns;  /* the same, monotonic */
-    uint64_t outside_ns;  /* monotonic time spent within it on what is not the cycle: plant and communication */
-    uint64_t wall_ns;     /* monotonic time 0 */
-    volatile int stopped; /* by the user */
+    uint64_t start_ns;    /* time 0 of the run, as a time of epg_port_time_ns(): the first tick */
+    uint64_t tick_ns;     /* tick of the newest cycle, since time 0 */
+    uint64_t begun_ns;    /* begin of the newest cycle, since time 0 */
+    uint64_t entered_ns;  /* begin of the newest cycle, monotonic time */
+    uint64_t outside_ns;  /* monotonic time spent on plant and communication within the cycle, during a stall */
+    uint64_t wall_ns;     /* time 0 of the run, monotonic time */
+    volatile int stopped; /* the user has pressed Ctrl-C */
 } simulation;
 
 static uint64_t now_ns(void)
@@ -51,7 +51,7 @@ static uint64_t now_ns(void)
 
 /* Files ---------------------------------------------------------------------------------------------------------- */
 
-/** Opens `path` for writing; NULL when it is NULL. */
+/** Opens `path` for writing.  Returns NULL if `path` is NULL.  Ends the program, after a message, if it cannot. */
 static FILE *open_output(const char *path)
 {
     FILE *file = path == NULL ? NULL : fopen(path, "wb");
@@ -76,7 +76,7 @@ static bool close_output(const char *path, FILE **file)
     return !failed && closed;
 }
 
-/** Completes what was recorded; false, with a message, when it cannot be written. */
+/** Writes the rest of the recorded values and closes the files.  False, with a message, if a file cannot be written. */
 static bool close_outputs(void)
 {
     const epg_host_options_t *options = &epg_native_sim_options;
@@ -91,7 +91,10 @@ static bool close_outputs(void)
     return topics && trace && statistics;
 }
 
-/** Whoever ends the program (native_sim's own -stop_at, the application): what was recorded so far is in the files. */
+/**
+ * Runs at each end of the program.  Other code may end it, too (native_sim's -stop_at, the application): write the
+ * files.
+ */
 static void on_exit(void)
 {
     if (simulation.prepared && !simulation.written) {
@@ -125,7 +128,7 @@ static void prepare(void)
     simulation.prepared = true;
 }
 
-/** After the last cycle, when the next would have been that of `next_ns`. */
+/** Ends the run and the program after the last cycle.  The next tick would have been at `next_ns`. */
 static void finish(uint64_t next_ns)
 {
     const epg_host_options_t *options = &epg_native_sim_options;
@@ -143,9 +146,11 @@ static void finish(uint64_t next_ns)
     posix_exit(!written || run.diverged != NULL ? FAILED : simulation.stopped ? INTERRUPTED : DONE);
 }
 
-/* Cycles ------------------------------------------------------------------------------------------------------------ */
+/*
+ * Cycles ------------------------------------------------------------------------------------------------------------
+ */
 
-/** Communication and plant come to the present, the plant driven by the outputs as they are. */
+/** Advances communication and plant to the present time.  The plant's inputs stay as they are. */
 static void move_on(void)
 {
     epg_host_communicate_simulated(&run.communication, now_ns());
@@ -153,8 +158,8 @@ static void move_on(void)
 }
 
 /**
- * Samples the sensors; then, when a stall is due, time passes before anything is computed from the samples, as if
- * an interrupt of higher priority had come in between.
+ * Replaces the application's read(): samples the sensors.  If a stall is due, simulated time passes before the model
+ * computes with the samples, as if an interrupt of a higher priority had delayed the cycle.
  */
 static void read_and_stall(void)
 {
@@ -178,10 +183,10 @@ void epg_native_sim_starting(void)
     const epg_host_target_t *host = epg_native_sim_target;
     if (!simulation.prepared) {
         prepare();
-        /* Plant first: starting the application samples the sensors and starts the decoders where the shafts stand. */
+        /* The plant first: the start of the application reads the sensors and starts the decoders at its positions. */
         epg_plant_start(&run.plant, host->plant, host->target->application->period_ns);
     } else if (simulation.begun) {
-        epg_plant_actuate(&run.plant); /* the target was stopped meanwhile, with its outputs safe */
+        epg_plant_actuate(&run.plant); /* a second start: the outputs were safe while the target was stopped */
         move_on();
         epg_plant_sense(&run.plant);
     }

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Streams to the world outside of the simulation: the agent, and whoever sits at the computer.
+ * Streams from the simulation to the computer: to the agent, and to the user.
  *
- * The functions that do it are the host's, in the runner of the native simulator; none of them waits.
+ * Their functions are those of the platform `host`, in the native simulator around the image.  None of them waits.
  */
 #include <stdio.h>
 #include <string.h>
@@ -23,7 +23,7 @@ static epg_host_terminal_t terminal;
 static bool has_agent;
 static bool has_terminal;
 
-/* Nobody is there -------------------------------------------------------------------------------------------------- */
+/* A stream without connection -------------------------------------------------------------------------------------- */
 
 static bool never_connected(void *context)
 {
@@ -57,7 +57,7 @@ static bool start(void *context, const char *title)
 {
     ARG_UNUSED(context);
     ARG_UNUSED(title);
-    return true; /* opened before the image was booted */
+    return true; /* the streams were opened before Zephyr was booted */
 }
 
 #define NOBODY                                                                                                         \
@@ -68,7 +68,9 @@ static bool start(void *context, const char *title)
 epg_transport_t epg_native_sim_agent = {.start = start, .stream = NOBODY};
 epg_transport_t epg_native_sim_terminal = {.start = start, .stream = NOBODY};
 
-/* The agent --------------------------------------------------------------------------------------------------------- */
+/*
+ * The agent ---------------------------------------------------------------------------------------------------------
+ */
 
 static const char *agent_name(void)
 {
@@ -128,7 +130,9 @@ void epg_native_sim_tell_connection(void)
     }
 }
 
-/* The terminal ------------------------------------------------------------------------------------------------------ */
+/*
+ * The terminal ------------------------------------------------------------------------------------------------------
+ */
 
 static int open_terminal(void)
 {
@@ -157,7 +161,9 @@ bool epg_native_sim_input_ended(void)
            epg_host_terminal_ended(&terminal, epg_host_monotonic_ns());
 }
 
-/* Both --------------------------------------------------------------------------------------------------------------- */
+/*
+ * Both ---------------------------------------------------------------------------------------------------------------
+ */
 
 int epg_native_sim_open_transports(void)
 {

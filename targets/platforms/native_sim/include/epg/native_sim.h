@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * native_sim: what a generated target, the port layer of Zephyr and the simulation know of each other.
+ * native_sim: a target in Zephyr, as a program of this computer, with a simulated plant.
  *
- * The target's peripherals are Zephyr's emulated ones.  Between two control cycles a simulated plant turns the shafts of
- * the decoders and sees what the PWM devices and pins put out; setpoints come from a file, and signals go to one, as on
- * the platform `host`, whose code does that.
+ * The target's peripherals are emulated by Zephyr's drivers.  Before each control cycle the plant model is simulated up
+ * to that time: it reads the outputs (PWM devices, pins) and moves the shafts of the decoders.  Setpoints come from a
+ * file, and signals are recorded to a file.  The code for this is that of the platform `host`.
+ *
+ * Zephyr's port layer calls the functions below at its start and around each cycle.
  */
 #ifndef EPG_NATIVE_SIM_H
 #define EPG_NATIVE_SIM_H
@@ -17,26 +19,29 @@
 #include "epg/transport.h"
 #include "epg/zephyr.h"
 
-/** The target of this image, its plant and what can be recorded; generated. */
+/** The target of this image, with its plant and signals; generated. */
 extern const epg_host_target_t *const epg_native_sim_target;
 
-/** To the agent of the target's middleware, by UDP or a terminal.  Connected in real time only. */
+/** The transport to the agent of the target's middleware, by UDP or a terminal.  It is connected in real time only. */
 extern epg_transport_t epg_native_sim_agent;
 
-/** Standard input and output, or a pseudo-terminal, as the command line says; without that, nobody is connected. */
+/**
+ * The transport by standard input and output, or by a pseudo-terminal.  An option of the command line chooses one of
+ * them; without such an option it is never connected.
+ */
 extern epg_transport_t epg_native_sim_terminal;
 
-/* What the port layer tells the simulation.  From the thread that starts the target: */
-
-/** Before the target's peripherals are started; */
+/** Called before the target's peripherals are started, by the thread that starts the target.  Starts the plant. */
 void epg_native_sim_starting(void);
-/** and after that, before the first cycle. */
+/** Called after the target's peripherals were started and before the first cycle, by the same thread. */
 void epg_native_sim_started(void);
 
-/* from the control thread: */
-
-/** The cycle of the tick at `tick_ns` (epg_port_time_ns()) is about to run; does not return when the run has ended. */
+/**
+ * Called by the control thread before the cycle of the tick at `tick_ns`, a time of epg_port_time_ns().  Simulates the
+ * plant up to this time.  At the end of the run it ends the program and does not return.
+ */
 void epg_native_sim_before_cycle(uint64_t tick_ns);
+/** Called by the control thread after a cycle.  Applies the outputs to the plant, and records the signals. */
 void epg_native_sim_after_cycle(void);
 
 #endif
