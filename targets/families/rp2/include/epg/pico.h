@@ -16,14 +16,13 @@
  * 4.5.2.6).  The slices of the outputs start together with the slice of the tick, so a cycle's outputs take effect at
  * a fixed distance from its tick.
  *
- * **Encoders.**  A quadrature decoder is a small program in a PIO block, a processor for input and output beside the
- * cores.  A PIO block has four state machines, and each can count the edges of one encoder.
+ * **Encoders.**  A PIO block is a small processor for input and output, which works independently of the cores.  It has
+ * four state machines.  With the program of a quadrature decoder, each of them counts the edges of one encoder.
  *
- * **Flash and RAM.**  No code can be read from flash while flash is written.  The control cycle therefore runs from
- * RAM.
+ * **Flash and RAM.**  While flash is written, no code can be read from it.  The control cycle therefore runs from RAM.
  *
- * **USB.**  The chip is a USB device with one or two serial ports (CDC ACM), one for the middleware and one for the
- * console.
+ * **USB.**  If the target's transport is `usb`, or if it has a console, the chip is a USB device with one or two serial
+ * ports (CDC ACM): one for the middleware, one for the console.
  *
  * A program contains one target.  The generated `<name>_start()` and `<name>_stop()` call the functions below:
  *

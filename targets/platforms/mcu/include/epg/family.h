@@ -51,7 +51,7 @@ typedef struct epg_mcu_stack {
     uint32_t *top;
 } epg_mcu_stack_t;
 
-/* What a family brings: control --------------------------------------------------------------------------------- */
+/* Brought by a family: control ---------------------------------------------------------------------------------- */
 
 /**
  * Called first at each start, before anything has been started.  Returns EPG_MCU_OK if a start is possible now, else
@@ -82,7 +82,7 @@ epg_mcu_error_t epg_family_control_start(const epg_family_target_t *target, epg_
  */
 void epg_family_control_stop(void);
 
-/* What a family brings: safety ---------------------------------------------------------------------------------- */
+/* Brought by a family: safety ----------------------------------------------------------------------------------- */
 
 /** The fault that caused the last reset: EPG_FAULT_NONE, EPG_FAULT_WATCHDOG or EPG_FAULT_PROCESSOR. */
 epg_fault_t epg_family_fault_before_reset(void);
@@ -95,10 +95,10 @@ void epg_family_guard_faults(void);
 
 /** The stack of main() and of interrupts. */
 extern const epg_mcu_stack_t epg_family_main_stack;
-/** The stack on which the control cycle runs; the same as the main stack if the control cycle has no own stack. */
+/** The stack on which the control cycle runs.  It is the main stack if the control cycle does not have its own. */
 extern const epg_mcu_stack_t epg_family_control_stack;
 
-/* What a family brings: communication on bare metal --------------------------------------------------------------- */
+/* Brought by a family: communication on bare metal ---------------------------------------------------------------- */
 
 /*
  * On bare metal the communication side runs in an interrupt that no peripheral raises: software makes it pending.  It
@@ -120,7 +120,7 @@ void epg_family_service_release(void);
 /** Makes the claimed interrupt pending.  May be called from every interrupt. */
 void epg_family_service_pend(void);
 
-/* What a family brings: two sectors of flash ----------------------------------------------------------------------- */
+/* Brought by a family: two sectors of flash ------------------------------------------------------------------------ */
 
 /*
  * Flash keeps its contents without power.  It is erased in whole sectors, after which every bit is 1; programming a
@@ -141,7 +141,7 @@ const uint8_t *epg_family_store_sector(uint32_t index);
  */
 bool epg_family_store_write(uint32_t index, const void *data, size_t size, const void *head, size_t head_size);
 
-/* What a family can call ------------------------------------------------------------------------------------------ */
+/* Functions that a family can call -------------------------------------------------------------------------------- */
 
 /**
  * The implementation of the functions that a family offers to programs, such as epg_pico_start().  They must be called
@@ -172,7 +172,7 @@ uint32_t epg_mcu_stack_used(const epg_mcu_stack_t *stack, uint32_t unpainted);
 /** True if a painted stack has been used completely.  It may then have overflowed, too. */
 bool epg_mcu_stack_full(const epg_mcu_stack_t *stack);
 
-/* Between the platforms and what they share ------------------------------------------------------------------------ */
+/* Between the platforms and their shared code ---------------------------------------------------------------------- */
 
 /**
  * Keeps the communication side running while its middleware waits for bytes within `serve`: sends the bytes that the

@@ -7,7 +7,7 @@
  * ones too; only interrupts can delay it.  The communication side is a preemptible thread.
  *
  * **Tick.**  A timer of the hardware repeats by itself and raises an interrupt once per control period.  The interrupt
- * releases the control thread.
+ * releases the control thread.  Emulated boards have no such timer; a k_timer makes their tick.
  *
  * **Devices.**  Encoders, PWM outputs, pins and UARTs are devices of Zephyr's drivers.  The target's overlay adds a
  * devicetree node with the compatible `epg,target`, which lists them.  The generated tables below connect the numbers
