@@ -3,6 +3,7 @@
 
 include("${CMAKE_CURRENT_LIST_DIR}/../mcu/mcu.cmake")
 
+# Called by epg_add_target(): adds the port layer to target <name>.
 function(_epg_bare_metal_target name)
   _epg_mcu_check("${name}" good)
   if(good)
@@ -10,6 +11,7 @@ function(_epg_bare_metal_target name)
   endif()
 endfunction()
 
+# Called by epg_add_executable(): adds an executable that contains target <name> and nothing else.
 function(_epg_bare_metal_executable executable name)
   _epg_mcu_executable("${executable}" "${name}" "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/src/main.c")
 endfunction()

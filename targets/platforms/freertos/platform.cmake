@@ -3,6 +3,7 @@
 
 include("${CMAKE_CURRENT_LIST_DIR}/../mcu/mcu.cmake")
 
+# Called by epg_add_target(): adds the kernel and the port layer to target <name>.
 function(_epg_freertos_target name)
   _epg_mcu_check("${name}" good)
   if(good)
@@ -15,6 +16,7 @@ function(_epg_freertos_target name)
   endif()
 endfunction()
 
+# Called by epg_add_executable(): adds an executable that contains target <name> and nothing else.
 function(_epg_freertos_executable executable name)
   _epg_mcu_executable("${executable}" "${name}" "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/src/main.c")
 endfunction()

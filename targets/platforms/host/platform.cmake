@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # The host platform: its port layer, which is the library EPG::host, and executables with EPG's main().
 
+# Adds the library EPG::host, once for all targets.
 function(_epg_host_library)
   if(TARGET epg_host)
     return()
@@ -19,6 +20,8 @@ function(_epg_host_library)
   add_library(EPG::host ALIAS epg_host)
 endfunction()
 
+# Called by epg_add_target(): links the port layer to target <name>.  Reports an error if the project is for a
+# microcontroller.
 function(_epg_host_target name)
   if(CMAKE_SYSTEM_NAME STREQUAL "PICO" OR NOT (UNIX OR WIN32)) # the Pico SDK includes Platform/UnixPaths, which sets UNIX
     set_property(TARGET ${name} PROPERTY EPG_FAILED TRUE) # its executables need not report the same error again
@@ -31,6 +34,7 @@ Choose the .tcf of a target for the board: 'epg targets' lists them. If there is
   target_link_libraries(${name} PUBLIC epg_host)
 endfunction()
 
+# Called by epg_add_executable(): adds a program that runs target <name> and has its options on the command line.
 function(_epg_host_executable executable name)
   add_executable(${executable} "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/src/main.c")
   target_compile_definitions(${executable} PRIVATE EPG_HOST_TARGET=${name}_host)

@@ -10,6 +10,7 @@ macro(_epg_native_sim_before_build)
   _epg_zephyr_hand_on()
 endmacro()
 
+# Called when Zephyr has loaded EPG's module: adds the generated sources, the port layer and the plant of target <name>.
 function(_epg_native_sim_target name)
   _epg_zephyr_port_layer("${name}")
   target_include_directories("epg_zephyr_${name}" PRIVATE
@@ -17,6 +18,7 @@ function(_epg_native_sim_target name)
     ${EPG_COMPONENT_INCLUDES}) # the generated functions that connect components and plant include the components' headers
 endfunction()
 
+# Called by epg_add_executable(): adds EPG's main() to Zephyr's application.
 macro(_epg_native_sim_executable)
   _epg_zephyr_application(${ARGV})
 endmacro()

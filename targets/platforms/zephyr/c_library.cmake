@@ -5,6 +5,9 @@
 # built without the locks that Zephyr implements, and the build stops ("Retargetable locking must be enabled").
 # Debian's picolibc works, but Zephyr does not search for it.  TOOLCHAIN_HAS_PICOLIBC makes Zephyr use it.  sysbuild
 # does not pass this setting to its images, so each target sets it.
+#
+# Sets TOOLCHAIN_HAS_PICOLIBC in the cache if newlib lacks the locks and the toolchain has picolibc.  Warns if it has
+# neither.
 function(_epg_zephyr_find_c_library)
   _epg_zephyr_value(variant ZEPHYR_TOOLCHAIN_VARIANT)
   _epg_zephyr_value(folder GNUARMEMB_TOOLCHAIN_PATH)

@@ -9,6 +9,7 @@
 #   EPG_ZEPHYR_NODES       <label>|<component that names the node>
 #   EPG_ZEPHYR_UARTS       <label> of each UART that carries a middleware's bytes
 
+# Stops with an error that lists all differences, if the configuration or the devicetree does not suit target <name>.
 function(_epg_zephyr_compare name output)
   include("${output}/${name}_zephyr.cmake")
   set(differences "")

@@ -10,10 +10,12 @@ macro(_epg_zephyr_before_build)
   _epg_zephyr_hand_on()
 endmacro()
 
+# Called when Zephyr has loaded EPG's module: adds the generated source and the port layer of a target.
 macro(_epg_zephyr_target)
   _epg_zephyr_port_layer(${ARGV})
 endmacro()
 
+# Called by epg_add_executable(): adds EPG's main() to Zephyr's application.
 macro(_epg_zephyr_executable)
   _epg_zephyr_application(${ARGV})
 endmacro()

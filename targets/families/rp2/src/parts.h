@@ -67,6 +67,7 @@ bool epg_pico_control_runs(void);
  * core 1.
  */
 bool epg_pico_control_hold(uint32_t timeout_us);
+/** Ends the wait of core 1. */
 void epg_pico_control_release(void);
 
 /* safe_state.c ------------------------------------------------------------------------------------------------- */

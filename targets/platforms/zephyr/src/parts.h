@@ -70,6 +70,7 @@ uint64_t epg_zephyr_tick_newest_ns(uint64_t *now_ns);
 
 /** Starts the control thread.  `fault`, the fault that ended the run before the last reset, is latched. */
 epg_zephyr_error_t epg_zephyr_control_start(const epg_zephyr_target_t *zephyr, epg_fault_t fault);
+/** Stops the control thread after its present cycle, with the outputs safe, and then the tick and the watchdog. */
 void epg_zephyr_control_stop(void);
 
 /** True if the caller is the control thread. */
@@ -85,6 +86,7 @@ void epg_zephyr_control_tick(void);
  * Returns false if the target is enabled, or if the control thread does not answer.
  */
 bool epg_zephyr_control_hold(void);
+/** Ends a hold. */
 void epg_zephyr_control_release(void);
 
 /** Reports the bytes of the stack, and the largest number in use so far; 0 if Zephyr does not measure it. */
@@ -122,7 +124,9 @@ epg_fault_t epg_zephyr_fault_before_reset(void);
 /* watchdog.c ------------------------------------------------------------------------------------------------------ */
 
 #ifdef CONFIG_EPG_WATCHDOG
+/** Starts the watchdog.  Its timeout is at least four control periods of `period_ns`. */
 epg_zephyr_error_t epg_zephyr_watchdog_start(uint64_t period_ns);
+/** Stops the watchdog, except if outputs are not safe: then it must reset the board. */
 void epg_zephyr_watchdog_stop(void);
 /**
  * Feeds the watchdog after a cycle, unless the communication side is stuck.  `silence` is the result of

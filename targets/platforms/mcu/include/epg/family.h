@@ -147,9 +147,9 @@ bool epg_family_store_write(uint32_t index, const void *data, size_t size, const
  * The implementation of the functions that a family offers to programs, such as epg_pico_start().  They must be called
  * on the core on which the communication side runs.
  */
-bool epg_mcu_start(const epg_family_target_t *target);
-bool epg_mcu_stop(void);
-void epg_mcu_status(epg_mcu_status_t *status);
+bool epg_mcu_start(const epg_family_target_t *target); /**< false: epg_mcu_status() reports the error */
+bool epg_mcu_stop(void);                               /**< false: the caller cannot wait, and the target goes on */
+void epg_mcu_status(epg_mcu_status_t *status);         /**< reads all stacks; not for interrupts */
 
 /** Stores `problem` as the error that epg_mcu_status() reports. */
 void epg_mcu_report(epg_mcu_error_t problem);
