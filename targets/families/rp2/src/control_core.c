@@ -4,9 +4,9 @@
  * The control loop on core 1: one control cycle in each wrap interrupt of a reserved PWM slice.
  *
  * Tick: the tick's slice and the slices of the outputs start with one write to a register, and do not stop while the
- * target runs.  The distance between a tick and the wraps of the outputs' slices is therefore the same in each run.  A
- * level that a cycle writes takes effect at the next wrap of its slice (RP2040 data sheet 4.5.2.6: TOP and CC are taken
- * over at the wrap).  The counter repeats by itself, so a tick can be late but is never lost.
+ * target runs.  If the control period is a whole number of PWM periods, each tick comes at a wrap of the outputs'
+ * slices.  A level that a cycle writes takes effect at the next wrap of its slice (RP2040 data sheet 4.5.2.6: TOP and
+ * CC are taken over at the wrap).  The counter repeats by itself, so a tick can be late but is never lost.
  *
  * Isolation: the interrupt is enabled on core 1 only.  Core 1 has its own vector table and sleeps between ticks, so no
  * handler that core 0 installs can run there.

@@ -4,8 +4,8 @@
  * Writes to flash while a target runs, and the two sectors of the store.
  *
  * The program is in the same flash chip.  While a sector is erased or programmed, nothing can be read from flash; code
- * that is read from there would crash.  The control cycle is in RAM, but functions that a user has added to it may be
- * in flash.  Flash is therefore written only while the target is disabled, and core 1 waits in RAM meanwhile.
+ * that runs from flash at that time would crash.  The control cycle is in RAM, but functions that a user has added to
+ * it may be in flash.  Flash is therefore written only while the target is disabled, and core 1 waits in RAM meanwhile.
  *
  * This holds for all code that uses the SDK's flash_safe_execute().  The SDK lets programs replace its protection of
  * core 1 (get_flash_safety_helper()); the one here refuses with PICO_ERROR_NOT_PERMITTED while the target is enabled.

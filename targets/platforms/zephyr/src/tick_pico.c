@@ -7,8 +7,8 @@
  * next wrap of its slice (RP2040 data sheet 4.5.2.6: TOP and CC are taken over at the wrap).
  *
  * Zephyr's PWM driver starts all slices, one after the other, and does not use their interrupts.  Here the slice of the
- * tick and the slices of the target's outputs are stopped, and started together with one write.  The distance between a
- * tick and the wraps of the outputs is therefore the same in each run.
+ * tick and the slices of the target's outputs are stopped, and started together with one write.  If the control period
+ * is a whole number of PWM periods, each tick then comes at a wrap of the outputs' slices.
  */
 #include <zephyr/drivers/clock_control.h>
 #include <zephyr/irq.h>
@@ -120,9 +120,9 @@ void epg_zephyr_tick_stop(void)
 uint64_t epg_zephyr_tick_newest_ns(uint64_t *now_ns)
 {
     /*
-     * The counter first, then the time.  Code from flash may take long between the two readings.  In this order the tick
-     * then seems later than it was, never earlier.  Too early would be wrong: outputs are written at a time after the
-     * tick, and a level that is written before a wrap takes effect at that wrap.
+     * The counter first, then the time.  Code from flash may take long between the two readings.  In this order the
+     * tick then seems later than it was, never earlier.  Too early would be wrong: outputs are written at a time after
+     * the tick, and a level that is written before a wrap takes effect at that wrap.
      */
     const unsigned int key = irq_lock();
     const uint32_t count = pwm_hw->slice[state.slice].ctr;

@@ -12,9 +12,9 @@
  * lost.
  *
  * **PWM outputs.**  Each other slice can drive two pins, channel A and channel B.  A pin is high while the counter is
- * below the channel's compare level.  The hardware takes over a new level at the next wrap (RP2040 data sheet
- * 4.5.2.6).  The slices of the outputs start together with the slice of the tick, so a cycle's outputs take effect at
- * a fixed distance from its tick.
+ * below the channel's compare level.  The hardware takes over a new level at the next wrap (RP2040 data sheet 4.5.2.6).
+ * The slices of the outputs start together with the slice of the tick.  If the control period is a whole number of PWM
+ * periods, each tick comes at a wrap of the outputs' slices.
  *
  * **Encoders.**  A PIO block is a small processor for input and output, which works independently of the cores.  It has
  * four state machines.  With the program of a quadrature decoder, each of them counts the edges of one encoder.
