@@ -70,7 +70,7 @@ static bool is_timely(const epg_xrce_guard_t *guard, uint16_t first_missing)
  *
  * An agent cannot have sent fewer frames than were handled here, unless a forged or damaged frame has taken the number
  * of one of its frames.  The agent ignores acknowledgements of numbers that it has not reached, so its stream may stop
- * for ever.  The session is not usable any more then.
+ * and never go on.  The session is not usable any more then.
  */
 static bool limit_heartbeat(epg_xrce_guard_t *guard, uint8_t *last)
 {

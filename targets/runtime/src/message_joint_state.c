@@ -24,7 +24,7 @@ static bool has(const epg_topic_t *topic, size_t quantity)
     return false;
 }
 
-static void write_sort(epg_cdr_writer_t *writer, const epg_topic_t *topic, const double *values, size_t quantity)
+static void write_quantity(epg_cdr_writer_t *writer, const epg_topic_t *topic, const double *values, size_t quantity)
 {
     epg_layout_walk_t walk = epg_layout_walk(topic, values);
     const size_t joints = has(topic, quantity) ? walk.layout->count : 0;
@@ -45,7 +45,7 @@ static size_t write_joint_state(const epg_topic_t *topic, const double *values, 
         epg_cdr_write_string(&writer, layout->names[i]);
     }
     for (size_t quantity = 0; quantity < QUANTITIES; quantity++) {
-        write_sort(&writer, topic, values, quantity);
+        write_quantity(&writer, topic, values, quantity);
     }
     return writer.failed ? 0 : writer.length;
 }
@@ -68,8 +68,8 @@ static void read_names(epg_cdr_reader_t *reader, const epg_message_layout_t *lay
 }
 
 /** Reads the values of a quantity.  Returns false if one is missing. */
-static bool read_sort(epg_cdr_reader_t *reader, const epg_topic_t *topic, size_t quantity, const size_t *places,
-                      double *values)
+static bool read_quantity(epg_cdr_reader_t *reader, const epg_topic_t *topic, size_t quantity, const size_t *places,
+                          double *values)
 {
     const epg_message_layout_t *layout = topic->layout;
     size_t first;
@@ -100,7 +100,7 @@ static bool read_joint_state(const epg_topic_t *topic, const void *data, size_t 
     epg_skip_header(&reader);
     read_names(&reader, layout, places);
     for (size_t quantity = 0; quantity < QUANTITIES; quantity++) {
-        if (!read_sort(&reader, topic, quantity, places, values)) {
+        if (!read_quantity(&reader, topic, quantity, places, values)) {
             return false;
         }
     }

@@ -135,7 +135,7 @@ void epg_family_guard_faults(void)
 
 /*
  * The linker redirects calls of <name> to __wrap_<name> (--wrap).  The outputs are safe before the SDK's function
- * prints, stops in the debugger or waits for ever.  This holds for a function with which the user replaces the SDK's,
+ * prints, stops in the debugger or waits without end.  This holds for a function with which the user replaces the SDK's,
  * too.
  */
 #define SAFE_BEFORE(name)                                                                                              \

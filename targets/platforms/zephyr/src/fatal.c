@@ -40,7 +40,7 @@ static void make_pins_safe(void)
 
 void epg_zephyr_safe_state(void)
 {
-    (void)irq_lock(); /* for ever: no tick and no other thread runs any more */
+    (void)irq_lock(); /* until the reset: no tick and no other thread runs any more */
     make_pins_safe();
     remember(FAULT_MAGIC);
 }

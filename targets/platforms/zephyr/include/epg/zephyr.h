@@ -175,8 +175,8 @@ bool epg_zephyr_stop(void);
 void epg_zephyr_status(epg_zephyr_status_t *status);
 
 /**
- * Makes all outputs safe until the next reset, and locks interrupts for ever.  For fault handlers.  Each pin becomes a
- * plain output at its safe level, whatever its PWM does.
+ * Makes all outputs safe and locks interrupts, both until the next reset.  For fault handlers.  Each pin becomes a plain
+ * output at its safe level, whatever its PWM does.
  */
 void epg_zephyr_safe_state(void);
 
