@@ -21,7 +21,7 @@ def main() -> None:
         objects = [compile_c(s, folder, [RUNTIME / "include"], WARNINGS) for s, folder in zip(sources, folders)]
         lines = run([link(objects, Path(name) / "exchange"), str(options.thousands)]).splitlines()
     head = ["bytes", "write", "read", "take, nothing new", "write against a reader", "read against a writer"]
-    note = "The best of five series. Against another thread: it does nothing else, so the words pass between the two caches all the time."
+    note = "The best of five series. The other thread does nothing else, so the words change caches all the time."
     show("exchange", [Table("Exchange, ns", head, [line.split() for line in lines], [note])], options.write, PROGRAM)
 
 
