@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs a tier of EPG's tests by ctest, and says at the end what was skipped and which tests were slowest.
+"""Run a tier of EPG's tests with ctest, then list the skipped tests and the slowest tests.
 
 The targets ``check``, ``check_all`` and ``check_long`` start it::
 
     python tests/run.py check --build build/tests
     EPG_EXPECTED_SKIPS=tests/expected_skips.txt python tests/run.py check_all --build build/tests
 
-``check_all`` runs the tests of ``check``, too.  Exit code 0: every test passed or was skipped; with the environment
-variable ``EPG_EXPECTED_SKIPS``, every reason for a skip must also be listed in the file that it names.
-``--write-costs tests/costs.txt`` keeps how long the files took, for the order and the grouping of later runs.
+``check_all`` also runs the tests of ``check``.  Exit code 0 means that every test passed or was skipped.  If the
+environment variable ``EPG_EXPECTED_SKIPS`` names a file, that file must also list every reason for a skip.
+``--write-costs tests/costs.txt`` records the time that each file took.  Later runs use it to order and group the files.
 """
 
 from __future__ import annotations
@@ -34,12 +34,12 @@ BEGINNING = "*: "
 
 @dataclass(frozen=True)
 class Outcome:
-    """One test, as tests/conftest.py has logged it."""
+    """One test as tests/conftest.py logged it."""
 
     test: str
     seconds: float
     skipped: str
-    """Why the test was skipped; empty if it ran."""
+    """The reason why the test was skipped; empty if it ran."""
 
 
 def main(arguments: list[str]) -> int:
@@ -85,7 +85,7 @@ def read_log(log: Path) -> list[Outcome]:
 
 
 def report(outcomes: list[Outcome]) -> str:
-    """The reasons for skips, each once, and the slowest tests."""
+    """Each reason for a skip once, and the slowest tests."""
     lines = [""]
     reasons = Counter(outcome.skipped for outcome in outcomes if outcome.skipped)
     if reasons:
@@ -102,7 +102,7 @@ def report(outcomes: list[Outcome]) -> str:
 
 
 def costs(outcomes: list[Outcome]) -> str:
-    """Lines of ``tier seconds file`` for files that take a second or more, for tests/costs.txt."""
+    """Lines ``tier seconds file`` for tests/costs.txt, for the files that take a second or more."""
     seconds: dict[tuple[str, str], float] = defaultdict(float)
     tiers = table()
     for outcome in outcomes:
@@ -112,10 +112,10 @@ def costs(outcomes: list[Outcome]) -> str:
 
 
 def unexpected_skips(outcomes: list[Outcome], expected: str) -> list[str]:
-    """Skipped tests, as ``test: reason``, that no line of ``expected`` allows.
+    """The skipped tests, as ``test: reason``, that no line of ``expected`` allows.
 
     A line is the beginning of ``test: reason``, or ``*: `` and the beginning of a reason.  Empty lines and lines
-    that begin with ``#`` mean nothing.
+    that begin with ``#`` are ignored.
     """
     lines = [line for line in expected.splitlines() if line and not line.startswith("#")]
     reasons = tuple(line.removeprefix(BEGINNING) for line in lines if line.startswith(BEGINNING))

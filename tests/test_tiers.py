@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The tiers of tests: which test belongs where, how ctest groups them, what the end of a run says."""
+"""The tiers of tests: the tier of each test, the groups that ctest runs, and the report at the end of a run."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def test_a_skip_is_expected_by_test_or_by_reason() -> None:
 
 
 def test_pytest_logs_outcomes_and_selects_tiers(tmp_path: Path) -> None:
-    """The real pytest, with this project's conftest.py."""
+    """Run the real pytest with this project's conftest.py."""
     log = tmp_path / "log"
     command = [sys.executable, "-m", "pytest", "-q", "tests/check/test_names.py", "tests/cmake/matrix/test_fetch.py"]
     done = subprocess.run(

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which tests belong to which tier, and how they are grouped into tests of ctest.
+"""The tier of each test, and the groups of test files that ctest runs as one test.
 
 ``tests/tiers.txt`` names the tests of ``check_all`` and ``check_long``; all others belong to ``check``.
-``tests/costs.txt`` says how long the files take.
+``tests/costs.txt`` lists the time that each file takes.
 
 >>> table = read_table("check_all  tests/ros2\\ncheck_long tests/ros2/test_a.py::test_hours\\n")
 >>> table.tier("tests/ros2/test_a.py::test_minutes[3]"), table.tier("tests/ros2/test_a.py::test_hours[3]")
@@ -20,43 +20,43 @@ from pathlib import Path
 TESTS = Path(__file__).resolve().parent
 TIERS = ("check", "check_all", "check_long")
 ALONE = 15.0
-"""A file that takes longer than this (seconds) is a test of ctest by itself; a start of pytest takes one second."""
+"""Limit in seconds: ctest runs a file that takes longer as a test by itself.  A start of pytest takes one second."""
 
 
 @dataclass(frozen=True)
 class Table:
-    """Beginnings of test names, as pytest writes them, and their tiers."""
+    """The beginnings of test names, as pytest writes them, each with its tier."""
 
     tiers: Mapping[str, str]
 
     def tier(self, test: str) -> str:
-        """The tier of a test: the longest beginning of its name decides."""
+        """The tier of a test: the longest matching beginning of its name decides."""
         found = [path for path in self.tiers if begins(test, path)]
         return self.tiers[max(found, key=len)] if found else TIERS[0]
 
     def tiers_in(self, file: str) -> set[str]:
-        """The tiers to which tests of a file belong."""
+        """The tiers of the tests in a file."""
         return {self.tier(file)} | {tier for path, tier in self.tiers.items() if path.startswith(f"{file}::")}
 
 
 @dataclass(frozen=True)
 class Group:
-    """Files whose tests of one tier ctest runs as one test."""
+    """Files of which ctest runs all tests of one tier as one test."""
 
     name: str
     tier: str
     cost: float
-    """How long they take, in seconds."""
+    """Time for all files, in seconds."""
     files: tuple[str, ...]
 
 
 def begins(test: str, path: str) -> bool:
-    """Whether ``path`` is the whole beginning of a test's name: a folder, a file, a function or a parameter."""
+    """True if ``path`` names the test or contains it: a folder, a file, a function or a parameter."""
     return test == path or (test.startswith(path) and test[len(path)] in "/:[")
 
 
 def read_table(text: str) -> Table:
-    """Lines of ``tier path``; empty lines and lines that begin with ``#`` mean nothing.  Raises :class:`ValueError`."""
+    """Read lines ``tier path``.  Empty lines and lines that begin with ``#`` are ignored.  Raises :class:`ValueError`."""
     tiers = {}
     for line in text.splitlines():
         if line and not line.startswith("#"):
@@ -68,18 +68,18 @@ def read_table(text: str) -> Table:
 
 
 def table() -> Table:
-    """The table of this project."""
+    """The table in tests/tiers.txt."""
     return read_table((TESTS / "tiers.txt").read_text(encoding="utf-8"))
 
 
 def read_costs(text: str) -> dict[tuple[str, str], float]:
-    """Seconds by tier and file, from lines of ``tier seconds file``."""
+    """Seconds by tier and file, from lines ``tier seconds file``."""
     rows = (line.split(maxsplit=2) for line in text.splitlines() if line and not line.startswith("#"))
     return {(tier, file): float(seconds) for tier, seconds, file in rows}
 
 
 def groups(files: Iterable[str], tiers: Table, costs: Mapping[tuple[str, str], float]) -> list[Group]:
-    """All tests of ctest: cheap files of a folder share one, the others have one each."""
+    """All tests of ctest.  Files of a folder that take little time share one test; each other file has its own."""
     together: dict[tuple[str, str], list[str]] = defaultdict(list)
     for file in sorted(files):
         for tier in sorted(tiers.tiers_in(file)):
@@ -96,7 +96,7 @@ def groups(files: Iterable[str], tiers: Table, costs: Mapping[tuple[str, str], f
 
 
 def main() -> int:
-    """Prints ``name|tier|cost|file,file`` per group, for tests/CMakeLists.txt."""
+    """Print ``name|tier|cost|file,file`` per group, for tests/CMakeLists.txt."""
     files = [f"tests/{path.relative_to(TESTS).as_posix()}" for path in TESTS.rglob("test_*.py")]
     costs = read_costs((TESTS / "costs.txt").read_text(encoding="utf-8"))
     for group in groups(files, table(), costs):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Builds Pico SDK projects for tests, in folders of EPG's cache used again: a second build takes half a second.
+"""Build Pico SDK projects for tests, in folders of EPG's cache that are kept: a second build takes half a second.
 
 >>> # build("tests/emulator/programs", board="pico", targets=["serial"]) / "serial.elf"
 """
@@ -18,7 +18,7 @@ from .toolchain import HERE, ROOT, Missing, arm_gcc, locked, pico_sdk, tool
 
 
 class BuildError(Exception):
-    """CMake or the compiler has failed; the message is what they said."""
+    """CMake or the compiler failed; the message is their output."""
 
 
 def build(
@@ -30,10 +30,10 @@ def build(
     environment: Mapping[str, str] | None = None,
     stock_arithmetic: bool = False,
 ) -> Path:
-    """Configures and builds ``targets`` (all, if empty) and returns the build folder.
+    """Configure and build ``targets`` (all targets, if empty) and return the build folder.
 
-    ``project`` is relative to the repository.  RP2040 images take float and double from the compiler unless
-    ``stock_arithmetic``.  Raises :class:`BuildError`, or :class:`Missing` for SDK or compiler.
+    ``project`` is relative to the repository.  RP2040 images use the compiler's float and double arithmetic unless
+    ``stock_arithmetic``.  Raises :class:`BuildError`, or :class:`Missing` if the SDK or the compiler is missing.
     """
     source = (ROOT / project).resolve()
     settings = {"PICO_BOARD": board, "PICO_SDK_PATH": str(pico_sdk()), "CMAKE_BUILD_TYPE": "Release"}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The programs that test the emulator, and a board that runs their cases."""
+"""Fixtures: the programs that test the emulator, and a board that runs their cases."""
 
 from __future__ import annotations
 
@@ -16,26 +16,26 @@ from .toolchain import arm_gcc, node, pico_sdk, rp2040js, skip_if_missing
 
 @pytest.fixture(scope="session")
 def programs() -> Path:
-    """Folder with serial.elf and cases.elf."""
+    """The folder with serial.elf and cases.elf."""
     skip_if_missing(pico_sdk, arm_gcc, node, rp2040js)
     return build("tests/emulator/programs")
 
 
 class Board:
-    """Runs cases of ``cases.elf``."""
+    """Runs the cases of ``cases.elf``."""
 
     def __init__(self, pico: Emulator) -> None:
         self.pico = pico
         pico.run_until("main")
 
     def begin(self, case: str, *arguments: int) -> None:
-        """Starts a case and does not wait for it."""
+        """Start a case and do not wait for its end."""
         for n, value in enumerate(arguments):
             self.pico.write_word("arguments", value, offset=4 * n)
         self.pico.write_word("request", self.pico.call("symbol", name=case)["address"])
 
     def case(self, case: str, *arguments: int, milliseconds: float = 50) -> list[int]:
-        """Runs a case to its end; returns its results."""
+        """Run a case to its end and return its results."""
         done = self.pico.word("done")
         self.begin(case, *arguments)
         end = self.pico.cycle + milliseconds * 125_000

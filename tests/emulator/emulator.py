@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The RP2040 emulator, driven from Python; docs/emulator.md says what it does and what is exact.
+"""The RP2040 emulator, driven from Python.  docs/emulator.md states what it emulates and what is exact.
 
 >>> # with Emulator(elf) as pico:
 >>> #     pico.run_until_text("ready", milliseconds=500)
@@ -26,17 +26,18 @@ CYCLES_PER_MILLISECOND = CLOCK // 1000
 
 
 class EmulatorError(Exception):
-    """A command was refused, or the emulator has ended."""
+    """The emulator refused a command, or has ended."""
 
 
 class Emulator:
     """One RP2040 with an image.  Commands are those of ``machine/commands.mjs``; times are cycles at 125 MHz."""
 
     def __init__(self, image: Path, *, stock: bool = False, **options: Any) -> None:
-        """Loads ``image`` (ELF or UF2) and stands before its first instruction.
+        """Load ``image`` (ELF or UF2) and stop before its first instruction.
 
-        ``stock``: with the boot ROM that ``EPG_RP2040_BOOTROM`` names, else with the stand-in.  ``options`` are those
-        of the command ``load``: ``usb={"seed": 3, "phase": 120, "clock_error": 500}``, ``boot_cycles``, ``flash_size``.
+        ``stock``: use the boot ROM that ``EPG_RP2040_BOOTROM`` names, instead of EPG's replacement for it.  ``options``
+        are those of the command ``load``: ``usb={"seed": 3, "phase": 120, "clock_error": 500}``, ``boot_cycles``,
+        ``flash_size``.
         """
         environment = {**os.environ, "EPG_RP2040JS": str(rp2040js())}
         self._process = subprocess.Popen(
@@ -64,14 +65,14 @@ class Emulator:
         self.close()
 
     def close(self) -> None:
-        """Ends the emulator."""
+        """End the emulator."""
         assert self._process.stdin is not None and self._process.stdout is not None
         self._process.stdin.close()
         self._process.wait(timeout=10)
         self._process.stdout.close()
 
     def call(self, command: str, **parameters: Any) -> Any:
-        """One command of the driver."""
+        """Send one command to the driver and return its result."""
         assert self._process.stdin is not None and self._process.stdout is not None
         self._number += 1
         message = {"id": self._number, "call": command, "with": parameters}
@@ -88,13 +89,13 @@ class Emulator:
     # Time -------------------------------------------------------------------------------------------------------------
 
     def run(self, *, cycles: int = 0, milliseconds: float = 0, **stops: Any) -> dict[str, Any]:
-        """Runs so long, or until one of ``stops`` (text, data, at, configured; see commands.mjs); returns the state."""
+        """Run for this time, or until one of ``stops`` (text, data, at, configured; see commands.mjs); return the state."""
         state: dict[str, Any] = self.call("run", cycles=cycles + round(milliseconds * CYCLES_PER_MILLISECOND), **stops)
         self.cycle = state["cycle"]
         return state
 
     def run_until_text(self, text: str, *, milliseconds: float = 1000, port: int = 0) -> str:
-        """Runs until a serial port has said ``text``; returns all it said since the last time."""
+        """Run until a serial port has printed ``text``; return everything it printed since the last call."""
         state = self.run(milliseconds=milliseconds, text=text, port=port)
         said = self.receive(port=port)
         if state["reason"] != "text" and text not in said:
@@ -102,7 +103,7 @@ class Emulator:
         return said
 
     def run_until(self, place: str | int, *, milliseconds: float = 1000, core: int | None = None) -> dict[str, Any]:
-        """Runs until a core is about to execute the code at a symbol or address."""
+        """Run until a core is about to execute the code at a symbol or address."""
         stops = {} if core is None else {"core": core}
         state = self.run(milliseconds=milliseconds, at=place, **stops)
         if state["reason"] != "at":
@@ -112,30 +113,30 @@ class Emulator:
     # Serial port ------------------------------------------------------------------------------------------------------
 
     def send(self, text: str | bytes, *, port: int = 0) -> None:
-        """Gives the host text to send to a serial port of the device."""
+        """Give the USB host text that it sends to a serial port of the device."""
         data = text.encode() if isinstance(text, str) else text
         self.call("usb_send", hex=data.hex(), port=port)
 
     def receive(self, *, port: int = 0) -> str:
-        """Takes what the firmware has said; bytes that are no UTF-8 show as replacement characters."""
+        """Take the text that the firmware printed.  Bytes that are not UTF-8 become replacement characters."""
         return self.receive_bytes(port=port).decode(errors="replace")
 
     def receive_bytes(self, *, port: int = 0) -> bytes:
-        """The same for a protocol that is no text."""
+        """Take the bytes that the firmware sent, for a protocol that is not text."""
         return bytes.fromhex(self.call("usb_receive", port=port))
 
     # Memory -----------------------------------------------------------------------------------------------------------
 
     def read(self, place: str | int, length: int | None = None, *, offset: int = 0) -> bytes:
-        """Memory at a symbol (by default all of it) or address."""
+        """The memory at a symbol (by default the whole symbol) or address."""
         parameters = {} if length is None else {"length": length}
         return bytes.fromhex(self.call("read", at=place, offset=offset, **parameters))
 
     def word(self, place: str | int, *, offset: int = 0, signed: bool = False, size: int = 4) -> int:
-        """An integer at a symbol or address."""
+        """The integer at a symbol or address."""
         return int.from_bytes(self.read(place, size, offset=offset), "little", signed=signed)
 
     def write_word(self, place: str | int, value: int, *, offset: int = 0, size: int = 4) -> None:
-        """Changes an integer in RAM."""
+        """Change an integer in RAM."""
         data = (value % (1 << (8 * size))).to_bytes(size, "little")
         self.call("write", at=place, offset=offset, hex=data.hex())

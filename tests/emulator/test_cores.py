@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Two cores: launch, mailboxes, spinlocks, dividers, events, interrupts, faults."""
+"""The emulator's two cores: launch, mailboxes, spinlocks, dividers, events, interrupts, faults."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from .conftest import Board
 
 
 def quotients(seed: int) -> int:
-    """What ``divide_many()`` adds up."""
+    """The sum that ``divide_many()`` must return."""
     total, x = 0, seed
     for n in range(1, 500):
         x = (x * 1664525 + 1013904223) % 2**32
@@ -21,7 +21,7 @@ def quotients(seed: int) -> int:
 
 
 def test_launch_mailboxes_and_spinlocks(board: Board) -> None:
-    for _ in range(2):  # the second time after a reset of core 1
+    for _ in range(2):  # the second round follows a reset of core 1
         results = board.case("case_two_cores")
         assert results[:4] == [0, 101, 77, 1000]
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Instructions against another emulator: registers and flags of random ones, with random operands."""
+"""The emulator's instructions against another emulator: registers and flags after random instructions."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def random_value(source: random.Random) -> int:
 
 
 def random_instruction(source: random.Random) -> int:
-    """A 16-bit data-processing instruction of Armv6-M on r0 to r7 (Architecture Reference Manual, A5.2)."""
+    """A random 16-bit data-processing instruction of Armv6-M on r0 to r7 (Architecture Reference Manual, A5.2)."""
     group = source.randrange(6)
     if group == 0:  # shift by immediate, add, subtract, move, compare
         return source.randrange(0x0000, 0x4000)
@@ -36,7 +36,7 @@ def random_instruction(source: random.Random) -> int:
 
 
 def random_access(source: random.Random, registers: list[int]) -> int:
-    """A load or store, with a base register made to point at memory."""
+    """A random load or store, after its base register has been set to an address in memory."""
     target, base, offset = source.randrange(8), source.randrange(8), source.randrange(8)
     if source.random() < 0.5:
         operation = source.randrange(8)
@@ -97,7 +97,7 @@ def test_random_instructions(board: Board) -> None:
 
 
 def test_cycles_of_instructions(board: Board) -> None:
-    """Cortex-M0+ Technical Reference Manual, table 3-1, with memory that has no wait states."""
+    """Cortex-M0+ Technical Reference Manual, table 3-1, for memory without wait states."""
     expected = {
         "0888": 2,  # ldrh from SRAM
         "1860": 2,  # str to SRAM
@@ -115,7 +115,7 @@ def test_cycles_of_instructions(board: Board) -> None:
     registers = [0, DATA, DATA, DATA, 1, 2, 3, 4, 0, 0, 0, 0, 0, 0x20031000]
     cycles = {}
     for code in expected:
-        # One instruction each: a branch to itself ends after it, because only its own two bytes are code.
+        # One instruction per run: only its own two bytes are code, so that a branch to itself also ends after one.
         [[_, _, cycles[code], fault]] = board.pico.call(
             "execute", at=CODE, runs=[{"code": code, "registers": registers, "flags": 0, "once": True}]
         )

@@ -20,7 +20,7 @@ BRIDGE = {"slice": 1, "channel": 0, "pinA": 14, "pinB": 15}
 
 @dataclass
 class Reference:
-    """Semi-implicit steps of a microsecond."""
+    """Semi-implicit integration with steps of one microsecond."""
 
     angle: float = 0.0
     speed: float = 0.0
@@ -43,7 +43,7 @@ class Reference:
 
 
 def drive(board: Board, duty: float) -> None:
-    """Duty on slice 1, its sign by the direction pins, as the firmware would."""
+    """Set the duty cycle on slice 1 and its sign on the direction pins, as the firmware does."""
     board.case("case_pwm", 6249, round(abs(duty) * 6250), 0, 16, 0)
     board.case("case_pins", 14, 1, int(duty > 0), 0)
     board.case("case_pins", 15, 1, int(duty < 0), 0)
@@ -108,7 +108,7 @@ def test_friction_holds_a_small_duty(board: Board) -> None:
 
 
 def test_end_stops_and_the_encoder(board: Board) -> None:
-    """The encoder's edges are those of the angle, and end with it."""
+    """The encoder's edges follow the angle, and stop when the motor reaches an end stop."""
     motor(board, stops=[-0.5, 0.3])
     for duty, angle in ((0.7, 0.3), (-0.7, -0.5), (0.7, 0.3)):
         drive(board, duty)
@@ -129,7 +129,7 @@ def test_edges_come_when_the_shaft_passes_them(board: Board) -> None:
     board.pico.run(milliseconds=20)
     edges = board.pico.call("take", log="pins")
     after = state(board)
-    speed = (before["speed"] + after["speed"]) / 2 * PAN["gear"] * PAN["countsPerRadian"]  # counts/s, all but constant
+    speed = (before["speed"] + after["speed"]) / 2 * PAN["gear"] * PAN["countsPerRadian"]  # counts/s, almost constant
     assert len(edges) == pytest.approx(speed * 0.02, abs=1.5)
     gaps = [(later[0] - earlier[0]) / 125e6 for earlier, later in itertools.pairwise(edges)]
     assert all(gap == pytest.approx(1 / speed, rel=0.02) for gap in gaps)

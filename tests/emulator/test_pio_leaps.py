@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""PIO blocks that run late and leap over idle cycles give what the cycle-by-cycle run gives, to the cycle."""
+"""PIO blocks that run late and skip idle cycles give exactly the results of a run cycle by cycle."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def encoders() -> Path:
 
 
 def trace(image: Path, *, lockstep: bool, variant: int, shortest: int) -> list[list[int]]:
-    """Every write of the program to its results, with cycle and value, while four encoders walk."""
+    """Every write of the program to its results, with cycle and value, while four encoders turn."""
     with Emulator(image) as pico:
         pico.run_until("main")
         for n in range(4):

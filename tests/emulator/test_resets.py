@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Watchdog, resets and flash."""
+"""The emulator's watchdog, resets and flash."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def test_a_reboot_by_software(board: Board) -> None:
     state = board.pico.run(milliseconds=5)
     assert [reset["cause"] for reset in state["resets"]] == ["watchdog"]
     board.pico.run(milliseconds=5)
-    assert board.results()[60:62] == [1, 0]  # by the watchdog, but nobody starved it
+    assert board.results()[60:62] == [1, 0]  # reset by the watchdog, but on request: it did not time out
 
 
 def test_the_run_pin_forgets_the_cause(board: Board) -> None:
@@ -47,7 +47,7 @@ def test_flash_is_erased_and_programmed_while_core_1_waits(board: Board) -> None
     status, microseconds, turns, different, erased = board.case("case_flash", 0, milliseconds=200)[:5]
     assert (status, different, erased) == (0, 0, 0xFFFFFFFF)
     assert 45_400 <= microseconds < 46_000
-    assert turns < 2000  # of core 1, in 45 ms: it was locked out
+    assert turns < 2000  # rounds of core 1 in 45 ms: it was locked out meanwhile
     assert board.pico.call("faults") == []
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An image as it is shipped, with the boot ROM's own floating point, on a dump of that ROM."""
+"""A release image, which uses the boot ROM's floating point, runs on a dump of that ROM."""
 
 from __future__ import annotations
 

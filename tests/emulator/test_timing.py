@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""PWM, PIO, timers and pins to the cycle."""
+"""The emulator's PWM, PIO, timers and pins, exact to the cycle."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def edges_of(board: Board, pin: int) -> list[tuple[int, int]]:
 @pytest.mark.parametrize("divider", [16, 40, 23], ids=["1", "2.5", "1.4375"])
 @pytest.mark.parametrize(("top", "a", "b"), [(999, 300, 700), (6249, 1, 6249), (99, 0, 100)])
 def test_pwm_levels(board: Board, top: int, a: int, b: int, divider: int) -> None:
-    """Each period is (TOP + 1) x divider long and high for as many counts as the level says."""
+    """Each period lasts (TOP + 1) x divider cycles.  The output is high for as many counts as the level."""
     board.pico.call("watch_pins", pins=[2, 3])
     board.case("case_pwm", top, a, b, divider, 0)
     board.pico.call("take", log="pins")
@@ -40,7 +40,7 @@ def test_pwm_levels(board: Board, top: int, a: int, b: int, divider: int) -> Non
 
 
 def test_phase_correct_and_inverted(board: Board) -> None:
-    """Twice as long a period, pulses around its ends; channel A the other way round."""
+    """The period is twice as long, with pulses around its ends; channel A is inverted."""
     board.pico.call("watch_pins", pins=[2, 3])
     board.case("case_pwm", 999, 300, 300, 16, 3)
     board.pico.call("take", log="pins")
@@ -59,7 +59,7 @@ def test_phase_correct_and_inverted(board: Board) -> None:
 def test_pwm_registers(board: Board) -> None:
     enabled, between, other, more, stopped, advanced = board.case("case_pwm_registers")[:6]
     assert enabled == 1 << 1 | 1 << 5
-    assert 0 < other < between < 30  # started together: the time between the reads
+    assert 0 < other < between < 30  # the slices started together: this is the time between the reads
     assert more == 1 << 1 | 1 << 2 | 1 << 5
     assert stopped == 100
     assert 100 + 2 <= advanced < 120
@@ -67,7 +67,7 @@ def test_pwm_registers(board: Board) -> None:
 
 @pytest.mark.parametrize(("tick", "period"), [(12_500, 6250), (12_500, 2500)])
 def test_a_tick_and_what_it_writes(board: Board, tick: int, period: int) -> None:
-    """Slices started in one cycle stay in phase: each tick's level takes effect one period after the tick."""
+    """Slices that start in the same cycle stay in phase: the level that a tick writes takes effect one period later."""
     board.pico.call("watch_exceptions", numbers=[PWM_WRAP])
     board.pico.call("watch_pwm", slices=[1])
     board.case("case_pwm_tick", tick, period)
@@ -75,8 +75,8 @@ def test_a_tick_and_what_it_writes(board: Board, tick: int, period: int) -> None
     assert len(entries) == 50
     assert {later - earlier for earlier, later in itertools.pairwise(entries)} == {tick}
     taken = [entry[0] for entry in board.pico.call("take", log="pwm") if entry[2] > 0]
-    assert len(taken) == 50  # the last one when the slices stop
-    # The entry is 15 cycles after the wrap: hardware's own latency.
+    assert len(taken) == 50  # the last level takes effect when the slices stop
+    # The interrupt's entry is 15 cycles after the wrap: the latency of the hardware.
     assert {cycle - entry for cycle, entry in zip(taken[:49], entries, strict=False)} == {period - 15}
 
 
@@ -114,7 +114,7 @@ def test_pio_flags_interrupt_a_processor(board: Board) -> None:
 
 
 def test_pio_sees_a_pin_after_two_cycles(board: Board) -> None:
-    """Synchroniser 2 cycles; the MOV that finds the new level shows it in the same cycle here."""
+    """The synchroniser takes 2 cycles; the MOV that reads the new level writes it to its output in the same cycle."""
     board.case("case_pio_latency")
     board.pico.call("watch_pins", pins=[6, 9])
     for level in (1, 0, 1):
@@ -129,7 +129,7 @@ def test_pio_sees_a_pin_after_two_cycles(board: Board) -> None:
 @pytest.mark.parametrize("wait", [20, 100, 1001])
 def test_an_alarm_comes_in_its_microsecond(board: Board, wait: int) -> None:
     seen, due, number = board.case("case_alarm", wait)[:3]
-    assert seen - due in (0, 1)  # the handler reads the clock some cycles later
+    assert seen - due in (0, 1)  # the handler reads the clock a few cycles later
     assert number == 2
 
 
@@ -144,7 +144,7 @@ def test_systick_has_a_period_of_rvr_plus_1(board: Board) -> None:
 
 
 def test_pins(board: Board) -> None:
-    """Who drives wins: output, outside, pull."""
+    """Of several drivers of a pin, the output wins over the outside, and the outside over the pull resistor."""
     assert board.case("case_pins", 14, 0, 0, 1)[0] == 1  # pull-up
     assert board.case("case_pins", 14, 0, 0, 2)[0] == 0  # pull-down
     board.pico.call("drive", pin=14, level=1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The USB host at the other end: serial port both ways, cable, bus reset, reboot by picotool's request."""
+"""The emulator's USB host: serial port in both directions, cable, bus reset, reboot by picotool's request."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def test_lines_both_ways(pico: Emulator) -> None:
 
 
 def test_an_idle_host_does_not_disturb(pico: Emulator) -> None:
-    """NAK costs the processor nothing: no interrupt in 20 ms without data."""
+    """NAK does not cost the processor any time: no interrupt in 20 ms without data."""
     pico.run(milliseconds=20)
     pico.call("watch_exceptions", numbers=[USB_INTERRUPT])
     pico.run(milliseconds=20)
@@ -93,7 +93,7 @@ def test_a_bus_reset_enumerates_anew(pico: Emulator) -> None:
 
 @pytest.mark.parametrize(("request_code", "reason"), [(1, "usb boot"), (2, "end")])
 def test_reboot_by_the_reset_interface(pico: Emulator, request_code: int, reason: str) -> None:
-    """What ``picotool reboot -f`` sends: into BOOTSEL (1), or into the application (2)."""
+    """The requests of ``picotool reboot -f``: into BOOTSEL (1), or into the application (2)."""
     pico.call("usb_control", type=0x21, request=request_code, index=pico.call("usb")["reset_interface"])
     state = pico.run(milliseconds=200)
     if reason == "usb boot":
@@ -104,7 +104,7 @@ def test_reboot_by_the_reset_interface(pico: Emulator, request_code: int, reason
 
 
 def test_runs_repeat(programs: Path) -> None:
-    """The same seed gives the same run to the cycle; another one does not."""
+    """Two runs with the same seed are equal to the cycle; a run with another seed differs."""
 
     def cycle_of_answer(seed: int) -> int:
         with Emulator(programs / "serial.elf", usb={"seed": seed, "clock_error": 300, "phase": 123}) as pico:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What emulator tests need besides Python, found where EPG looks for it, or a reason to skip.
+"""The tools that emulator tests need besides Python, found where EPG looks for them, or a reason to skip.
 
 >>> # sdk = pico_sdk()            # folder of the Pico SDK
 >>> # package = rp2040js()        # folder of the npm package, installed into EPG's cache once
@@ -34,11 +34,11 @@ UNICORN = "2.1.4"
 
 
 class Missing(Exception):
-    """Something is not installed; the message is one sentence with the command that gets it."""
+    """A tool is not installed; the message is one sentence with the command that installs it."""
 
 
 def skip_if_missing(*needs: object) -> None:
-    """Calls each of ``needs`` and skips the test with the reason when one is :class:`Missing`."""
+    """Call each of ``needs``.  If one raises :class:`Missing`, skip the test with its message."""
     for need in needs:
         try:
             need()  # type: ignore[operator]
@@ -58,7 +58,7 @@ def tool(name: str) -> Path:
 
 
 def pico_sdk() -> Path:
-    """Folder of the Pico SDK, with TinyUSB."""
+    """The folder of the Pico SDK, with TinyUSB."""
     folder = tool("pico_sdk")
     if not (folder / "lib" / "tinyusb" / "src").is_dir():
         raise Missing(f"the Pico SDK has no TinyUSB: git -C {folder} submodule update --init lib/tinyusb")
@@ -82,12 +82,12 @@ def node() -> str:
 
 
 def rp2040js() -> Path:
-    """Folder of the npm package."""
+    """The folder of the npm package rp2040js."""
     return npm_package(HERE, "rp2040js")
 
 
 def npm_package(locked_by: Path, name: str) -> Path:
-    """Folder of the npm package that the lock file in ``locked_by`` has; installed into EPG's cache once."""
+    """The folder of the npm package that the lock file in ``locked_by`` names; installed into EPG's cache once."""
     version = json.loads((locked_by / "package.json").read_text(encoding="utf-8"))["dependencies"][name]
     folder = cache_folder() / f"{name}-{version}"
     package = folder / "node_modules" / name
@@ -114,7 +114,7 @@ def _install_package(locked_by: Path, name: str, folder: Path) -> None:
 
 
 def unicorn() -> Any:
-    """The Python module of the CPU emulator, which is installed into EPG's cache once."""
+    """The Python module of the CPU emulator Unicorn; installed into EPG's cache once."""
     try:
         return importlib.import_module("unicorn")
     except ImportError:
@@ -154,7 +154,7 @@ def pioasm() -> Path:
 
 
 def stand_in_rom() -> Path:
-    """ELF file of the boot ROM that EPG has written for the emulator."""
+    """The ELF file of the boot ROM that EPG provides for the emulator, in place of the chip's own."""
     sources = [HERE / "rom" / name for name in ("rom.S", "rom.c", "rom.ld")]
     digest = hashlib.sha256(b"".join(path.read_bytes() for path in sources)).hexdigest()[:16]
     output = cache_folder() / "test-build" / f"stand-in-rom-{digest}.elf"
@@ -171,14 +171,15 @@ def stand_in_rom() -> Path:
 
 
 def stock_rom() -> Path | None:
-    """A dump of the real boot ROM that ``EPG_RP2040_BOOTROM`` names, if it does."""
+    """The dump of the real boot ROM that ``EPG_RP2040_BOOTROM`` names; None if it is not set."""
     named = os.environ.get("EPG_RP2040_BOOTROM")
     return Path(named) if named else None
 
 
 @contextmanager
 def locked(path: Path) -> Iterator[None]:
-    """Holds a lock beside ``path`` against other test processes."""
+    """Hold a lock beside ``path`` against other test processes."""
+
     path.parent.mkdir(parents=True, exist_ok=True)
     with open(path.parent / f".{path.name}.lock", "w", encoding="utf-8") as file:
         if os.name != "nt":
