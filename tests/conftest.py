@@ -19,7 +19,7 @@ from tests.tiers import table  # noqa: E402
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark every test with its tier: ``-m check_all`` then selects that tier."""
+    """Marks every test with its tier: ``-m check_all`` then selects that tier."""
     tiers = table()
     for item in items:
         item.add_marker(tiers.tier(item.nodeid))
@@ -27,7 +27,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 @pytest.hookimpl(trylast=True)
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, exitstatus: int) -> None:
-    """Report to ctest if every test was skipped, and append all outcomes to the file that ``EPG_TEST_LOG`` names."""
+    """Reports to ctest if every test was skipped, and appends all outcomes to the file that ``EPG_TEST_LOG`` names."""
     seconds: dict[str, float] = defaultdict(float)
     skipped: dict[str, str] = {}
     for outcome, reports in terminalreporter.stats.items():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Run a tier of EPG's tests with ctest, then list the skipped tests and the slowest tests.
+"""Runs a tier of EPG's tests with ctest, then lists the skipped tests and the slowest tests.
 
 The targets ``check``, ``check_all`` and ``check_long`` start it::
 

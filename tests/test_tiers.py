@@ -87,7 +87,7 @@ def test_a_skip_is_expected_by_test_or_by_reason() -> None:
 
 
 def test_pytest_logs_outcomes_and_selects_tiers(tmp_path: Path) -> None:
-    """Run the real pytest with this project's conftest.py."""
+    """Runs the real pytest with this project's conftest.py."""
     log = tmp_path / "log"
     command = [sys.executable, "-m", "pytest", "-q", "tests/check/test_names.py", "tests/cmake/matrix/test_fetch.py"]
     done = subprocess.run(

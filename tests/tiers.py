@@ -56,7 +56,7 @@ def begins(test: str, path: str) -> bool:
 
 
 def read_table(text: str) -> Table:
-    """Read lines ``tier path``.  Empty lines and lines that begin with ``#`` are ignored.  Raises :class:`ValueError`."""
+    """Reads lines ``tier path``.  Ignores empty lines and lines that begin with ``#``.  Raises :class:`ValueError`."""
     tiers = {}
     for line in text.splitlines():
         if line and not line.startswith("#"):
@@ -96,7 +96,7 @@ def groups(files: Iterable[str], tiers: Table, costs: Mapping[tuple[str, str], f
 
 
 def main() -> int:
-    """Print ``name|tier|cost|file,file`` per group, for tests/CMakeLists.txt."""
+    """Prints ``name|tier|cost|file,file`` per group, for tests/CMakeLists.txt."""
     files = [f"tests/{path.relative_to(TESTS).as_posix()}" for path in TESTS.rglob("test_*.py")]
     costs = read_costs((TESTS / "costs.txt").read_text(encoding="utf-8"))
     for group in groups(files, table(), costs):

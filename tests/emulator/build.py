@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Build Pico SDK projects for tests, in folders of EPG's cache that are kept: a second build takes half a second.
+"""Builds Pico SDK projects for tests, in folders of EPG's cache that are kept: a second build takes half a second.
 
 >>> # build("tests/emulator/programs", board="pico", targets=["serial"]) / "serial.elf"
 """
@@ -30,7 +30,7 @@ def build(
     environment: Mapping[str, str] | None = None,
     stock_arithmetic: bool = False,
 ) -> Path:
-    """Configure and build ``targets`` (all targets, if empty) and return the build folder.
+    """Configures and builds ``targets`` (all targets, if empty) and returns the build folder.
 
     ``project`` is relative to the repository.  RP2040 images use the compiler's float and double arithmetic unless
     ``stock_arithmetic``.  Raises :class:`BuildError`, or :class:`Missing` if the SDK or the compiler is missing.

@@ -29,13 +29,13 @@ class Board:
         pico.run_until("main")
 
     def begin(self, case: str, *arguments: int) -> None:
-        """Start a case and do not wait for its end."""
+        """Starts a case and does not wait for its end."""
         for n, value in enumerate(arguments):
             self.pico.write_word("arguments", value, offset=4 * n)
         self.pico.write_word("request", self.pico.call("symbol", name=case)["address"])
 
     def case(self, case: str, *arguments: int, milliseconds: float = 50) -> list[int]:
-        """Run a case to its end and return its results."""
+        """Runs a case to its end and returns its results."""
         done = self.pico.word("done")
         self.begin(case, *arguments)
         end = self.pico.cycle + milliseconds * 125_000

@@ -33,7 +33,7 @@ class Emulator:
     """One RP2040 with an image.  Commands are those of ``machine/commands.mjs``; times are cycles at 125 MHz."""
 
     def __init__(self, image: Path, *, stock: bool = False, **options: Any) -> None:
-        """Load ``image`` (ELF or UF2) and stop before its first instruction.
+        """Loads ``image`` (ELF or UF2) and stops before its first instruction.
 
         ``stock``: use the boot ROM that ``EPG_RP2040_BOOTROM`` names, instead of EPG's replacement for it.  ``options``
         are those of the command ``load``: ``usb={"seed": 3, "phase": 120, "clock_error": 500}``, ``boot_cycles``,
@@ -65,14 +65,14 @@ class Emulator:
         self.close()
 
     def close(self) -> None:
-        """End the emulator."""
+        """Ends the emulator."""
         assert self._process.stdin is not None and self._process.stdout is not None
         self._process.stdin.close()
         self._process.wait(timeout=10)
         self._process.stdout.close()
 
     def call(self, command: str, **parameters: Any) -> Any:
-        """Send one command to the driver and return its result."""
+        """Sends one command to the driver and returns its result."""
         assert self._process.stdin is not None and self._process.stdout is not None
         self._number += 1
         message = {"id": self._number, "call": command, "with": parameters}
@@ -89,13 +89,16 @@ class Emulator:
     # Time -------------------------------------------------------------------------------------------------------------
 
     def run(self, *, cycles: int = 0, milliseconds: float = 0, **stops: Any) -> dict[str, Any]:
-        """Run for this time, or until one of ``stops`` (text, data, at, configured; see commands.mjs); return the state."""
+        """Runs for this time or until one of ``stops`` (text, data, at, configured: see commands.mjs).
+
+        Returns the state.
+        """
         state: dict[str, Any] = self.call("run", cycles=cycles + round(milliseconds * CYCLES_PER_MILLISECOND), **stops)
         self.cycle = state["cycle"]
         return state
 
     def run_until_text(self, text: str, *, milliseconds: float = 1000, port: int = 0) -> str:
-        """Run until a serial port has printed ``text``; return everything it printed since the last call."""
+        """Runs until a serial port has printed ``text``; returns everything it printed since the last call."""
         state = self.run(milliseconds=milliseconds, text=text, port=port)
         said = self.receive(port=port)
         if state["reason"] != "text" and text not in said:
@@ -103,7 +106,7 @@ class Emulator:
         return said
 
     def run_until(self, place: str | int, *, milliseconds: float = 1000, core: int | None = None) -> dict[str, Any]:
-        """Run until a core is about to execute the code at a symbol or address."""
+        """Runs until a core is about to execute the code at a symbol or address."""
         stops = {} if core is None else {"core": core}
         state = self.run(milliseconds=milliseconds, at=place, **stops)
         if state["reason"] != "at":
@@ -113,16 +116,16 @@ class Emulator:
     # Serial port ------------------------------------------------------------------------------------------------------
 
     def send(self, text: str | bytes, *, port: int = 0) -> None:
-        """Give the USB host text that it sends to a serial port of the device."""
+        """Gives the USB host text that it sends to a serial port of the device."""
         data = text.encode() if isinstance(text, str) else text
         self.call("usb_send", hex=data.hex(), port=port)
 
     def receive(self, *, port: int = 0) -> str:
-        """Take the text that the firmware printed.  Bytes that are not UTF-8 become replacement characters."""
+        """Takes the text that the firmware printed.  Bytes that are not UTF-8 become replacement characters."""
         return self.receive_bytes(port=port).decode(errors="replace")
 
     def receive_bytes(self, *, port: int = 0) -> bytes:
-        """Take the bytes that the firmware sent, for a protocol that is not text."""
+        """Takes the bytes that the firmware sent, for a protocol that is not text."""
         return bytes.fromhex(self.call("usb_receive", port=port))
 
     # Memory -----------------------------------------------------------------------------------------------------------
@@ -137,6 +140,6 @@ class Emulator:
         return int.from_bytes(self.read(place, size, offset=offset), "little", signed=signed)
 
     def write_word(self, place: str | int, value: int, *, offset: int = 0, size: int = 4) -> None:
-        """Change an integer in RAM."""
+        """Changes an integer in RAM."""
         data = (value % (1 << (8 * size))).to_bytes(size, "little")
         self.call("write", at=place, offset=offset, hex=data.hex())

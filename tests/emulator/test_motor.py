@@ -43,7 +43,7 @@ class Reference:
 
 
 def drive(board: Board, duty: float) -> None:
-    """Set the duty cycle on slice 1 and its sign on the direction pins, as the firmware does."""
+    """Sets the duty cycle on slice 1 and its sign on the direction pins, as the firmware does."""
     board.case("case_pwm", 6249, round(abs(duty) * 6250), 0, 16, 0)
     board.case("case_pins", 14, 1, int(duty > 0), 0)
     board.case("case_pins", 15, 1, int(duty < 0), 0)

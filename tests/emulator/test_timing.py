@@ -114,7 +114,7 @@ def test_pio_flags_interrupt_a_processor(board: Board) -> None:
 
 
 def test_pio_sees_a_pin_after_two_cycles(board: Board) -> None:
-    """The synchroniser takes 2 cycles; the MOV that reads the new level writes it to its output in the same cycle."""
+    """The synchroniser takes 2 cycles; in the emulator, the MOV that reads the new level sets its pin in that cycle."""
     board.case("case_pio_latency")
     board.pico.call("watch_pins", pins=[6, 9])
     for level in (1, 0, 1):
@@ -144,7 +144,7 @@ def test_systick_has_a_period_of_rvr_plus_1(board: Board) -> None:
 
 
 def test_pins(board: Board) -> None:
-    """Of several drivers of a pin, the output wins over the outside, and the outside over the pull resistor."""
+    """A pin has the level of the chip's output, else of the outside, else of its pull resistor."""
     assert board.case("case_pins", 14, 0, 0, 1)[0] == 1  # pull-up
     assert board.case("case_pins", 14, 0, 0, 2)[0] == 0  # pull-down
     board.pico.call("drive", pin=14, level=1)

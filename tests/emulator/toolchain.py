@@ -38,7 +38,7 @@ class Missing(Exception):
 
 
 def skip_if_missing(*needs: object) -> None:
-    """Call each of ``needs``.  If one raises :class:`Missing`, skip the test with its message."""
+    """Calls each of ``needs``.  If one raises :class:`Missing`, skips the test with its message."""
     for need in needs:
         try:
             need()  # type: ignore[operator]
@@ -178,8 +178,7 @@ def stock_rom() -> Path | None:
 
 @contextmanager
 def locked(path: Path) -> Iterator[None]:
-    """Hold a lock beside ``path`` against other test processes."""
-
+    """Holds a lock beside ``path`` against other test processes."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with open(path.parent / f".{path.name}.lock", "w", encoding="utf-8") as file:
         if os.name != "nt":
