@@ -1,5 +1,6 @@
-# Included by project() in builds for the stand-in boot ROM: executables take float and double from the compiler, because
-# that ROM has no floating-point functions.  (The SDK has a variable for double only; the property works for both.)
+# project() includes this file in builds for EPG's replacement of the boot ROM.  That ROM has no floating-point
+# functions: executables use the compiler's float and double.  (The SDK has a variable for double only; the property
+# sets both.)
 function(epg_use_compiler_arithmetic directory)
   get_property(targets DIRECTORY "${directory}" PROPERTY BUILDSYSTEM_TARGETS)
   foreach(target IN LISTS targets)

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Simulated time in cycles of clk_sys, and what is to happen at which cycle.
+// Simulated time in cycles of clk_sys, and the alarms that are called at a given cycle.
 
 export class Alarm {
     constructor(clock, callback, durable) {
         this.clock = clock;
-        this.durable = durable; // outlives a reset of the chip
+        this.durable = durable; // survives a reset of the chip
         this.callback = callback;
         this.cycle = 0;
         this.scheduled = false;
         this.next = null;
     }
 
-    /** Calls back at `cycle`, or at once when that has passed; replaces an earlier request. */
+    /** Calls back at `cycle`, or at once if that has passed; replaces an earlier request. */
     at(cycle) {
         if (this.scheduled) {
             this.cancel();
@@ -28,13 +28,13 @@ export class Alarm {
         }
     }
 
-    /** The package's name for it. */
+    /** The same with a delay, under the name that the package uses. */
     schedule(nanoseconds) {
         this.at(this.clock.now + Math.ceil(nanoseconds / this.clock.nanosecondsPerCycle));
     }
 }
 
-/** Alarms of one cycle are called in the order in which they were requested. */
+/** Calls alarms of the same cycle in the order in which they were requested. */
 export class CycleClock {
     constructor(frequency) {
         this.frequency = frequency;
@@ -47,7 +47,7 @@ export class CycleClock {
         return this.first === null ? Infinity : this.first.cycle;
     }
 
-    /** Moves to the next alarm and calls it. */
+    /** Moves the time to the next alarm and calls it. */
     fireNext() {
         const alarm = this.first;
         this.first = alarm.next;
@@ -56,12 +56,12 @@ export class CycleClock {
         alarm.callback();
     }
 
-    /** `durable`: of something outside the chip, which a reset of the chip leaves alone. */
+    /** `durable`: the alarm belongs to something outside the chip, which a reset of the chip does not affect. */
     createAlarm(callback, durable = false) {
         return new Alarm(this, callback, durable);
     }
 
-    /** The chip is reset: what its peripherals had requested will not come. */
+    /** The chip is reset: cancels the alarms of its peripherals. */
     forgetChip() {
         for (let item = this.first; item !== null; item = item.next) {
             if (!item.durable) {
@@ -99,7 +99,7 @@ export class CycleClock {
         }
     }
 
-    // What the package's peripherals ask of a clock.
+    // The functions of a clock that the package's peripherals call.
     get nanos() {
         return this.now * this.nanosecondsPerCycle;
     }

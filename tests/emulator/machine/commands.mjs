@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The commands of the driver: each method takes a command's parameters and returns what is answered.
+// The commands of the driver.  Each method takes the parameters of a command and returns the answer.
 import { readFileSync } from 'node:fs';
 import { Encoder, ConstantSpeed, RandomWalk, ScheduledMotion } from './encoder.mjs';
 import { readElf, readUf2 } from './elf.mjs';
@@ -64,7 +64,7 @@ export class Commands {
         }
     }
 
-    /** What has come over serial port `port` and was not taken yet. */
+    /** The bytes that arrived over serial port `port` and that no command has taken yet. */
     bytesOf(port) {
         if (!this.received.has(port)) {
             this.received.set(port, []);
@@ -77,9 +77,9 @@ export class Commands {
     }
 
     /**
-     * Runs {cycles} more or up to cycle {until}.  Stops early: {text} when the output of serial port {port} (default
-     * the first, 0) contains it, {data} when there is any, {at} before the instruction at a symbol or address (of
-     * {core}, default either), {configured} when USB is.
+     * Runs {cycles} more or up to cycle {until}.  Stops earlier at one of these: {text}, when the output of serial port
+     * {port} (default 0, the first) contains it; {data}, when that port has any output; {at}, before the instruction at
+     * a symbol or address (of {core}, by default of either); {configured}, when USB is configured.
      */
     run({ cycles, until, text, data = false, port = 0, at, core, configured }) {
         const { machine } = this;
@@ -148,19 +148,19 @@ export class Commands {
         return this.machine.faults;
     }
 
-    /** A reset from outside, as by the RUN pin. */
+    /** A reset from outside the chip, as by the RUN pin. */
     reset() {
         this.machine.reset('run pin');
         return null;
     }
 
-    /** The supply fails and comes back; flash keeps what it has. */
+    /** Switches the supply off and on; flash keeps its contents. */
     cut_power() {
         this.machine.cutPower();
         return null;
     }
 
-    /** {scratch, reason}: what survives a watchdog reset. */
+    /** {scratch, reason}: the registers that survive a watchdog reset. */
     watchdog() {
         const { reason, scratch } = this.machine.watchdogMemory;
         return { reason, scratch: [...scratch] };
@@ -190,8 +190,8 @@ export class Commands {
     }
 
     /**
-     * Executes instructions by themselves: each of {runs} has {code: hex, registers: [r0 ... r12, sp], flags: NZCV, once} and
-     * gives [registers, flags, cycles, fault or null].  The code is put at {at}, and spoils what core 0 did.
+     * Executes single instructions: each of {runs} has {code: hex, registers: [r0 ... r12, sp], flags: NZCV, once} and
+     * gives [registers, flags, cycles, fault or null].  Writes the code to {at}, and destroys the state of core 0.
      */
     execute({ at, runs }) {
         const { machine } = this;
@@ -219,18 +219,18 @@ export class Commands {
         });
     }
 
-    /** A register of a peripheral, as core 0 would read it. */
+    /** The value of a peripheral's register, as core 0 would read it. */
     read_register({ address }) {
         return this.machine.cores[0].readUint32(address) >>> 0;
     }
 
-    /** Writes a register of a peripheral, its SET, CLR and XOR aliases included. */
+    /** Writes a register of a peripheral, or one of its SET, CLR and XOR aliases. */
     write_register({ address, value }) {
         this.machine.cores[0].writeUint32(address, value);
         return null;
     }
 
-    /** Runs the PIO blocks cycle by cycle from now on, as if everything they do could be seen. */
+    /** Runs the PIO blocks cycle by cycle from now on, even where nothing outside could see the difference. */
     pio_lockstep() {
         for (const block of this.machine.pio) {
             block.forced = true;
@@ -239,7 +239,10 @@ export class Commands {
         return null;
     }
 
-    /** State machine {machine} of PIO {block}; {set: {x, y}} changes registers that no processor can reach. */
+    /**
+     * The state of state machine {machine} of PIO {block}.  {set: {x, y}} changes registers that no processor can
+     * reach.
+     */
     pio({ block, machine: number, set = {} }) {
         this.machine.settle();
         const unit = this.machine.pio[block].units[number];
@@ -268,7 +271,7 @@ export class Commands {
 
     /**
      * Logs every write to flash under `flash`: [cycle, offset, bytes (4: erased, 1: programmed), value].  With
-     * {stop_after}, run() stops once after so many of them, with the reason `flash`.
+     * {stop_after}, run() stops once after that many writes, with the reason `flash`.
      */
     watch_flash({ stop_after: stopAfter = Infinity }) {
         const { machine } = this;
@@ -292,7 +295,7 @@ export class Commands {
         this.logs[log].push(entry);
     }
 
-    /** Takes what a log (pins, pwm, exceptions, writes, flash) has. */
+    /** Takes the entries of a log (pins, pwm, exceptions, writes, flash). */
     take({ log }) {
         const entries = this.logs[log];
         if (entries === undefined) {
@@ -304,7 +307,7 @@ export class Commands {
 
     // Pins and PWM -------------------------------------------------------------------------------------------------------
 
-    /** Drives a pin from outside: {pin, level}; level null lets go. */
+    /** Drives a pin from outside: {pin, level}.  Level null stops driving it. */
     drive({ pin, level }) {
         this.machine.pads.drive(need(pin, 'pin'), level === null ? -1 : level);
         return null;
@@ -326,8 +329,8 @@ export class Commands {
     }
 
     /**
-     * Records for {slices} what takes effect: [cycle, slice, a, b, top, wrap], `wrap` the number of the wrap at which it
-     * did; with {wraps} each wrap of them too.
+     * Records the values of {slices} when they take effect: [cycle, slice, a, b, top, wrap], where `wrap` is the number
+     * of the wrap.  With {wraps}, records every wrap of these slices.
      */
     watch_pwm({ slices, wraps = false }) {
         const watched = new Set(slices);
@@ -369,9 +372,9 @@ export class Commands {
     // Spans of code ------------------------------------------------------------------------------------------------------
 
     /**
-     * Watches code of {core} from {from} up to {to} (symbols or addresses; `to: "return"` for the return of the function
-     * `from`), under {name}: cycles and instructions of each passage, its accesses to flash, and how many lines of
-     * the flash cache (8 bytes) these were in.
+     * Watches the code of {core} from {from} up to {to} (symbols or addresses; `to: "return"` is the return of the
+     * function `from`) under {name}.  Records the cycles and instructions of each passage, its accesses to flash, and
+     * the number of different lines of the flash cache (8 bytes) that these accesses used.
      */
     watch_span({ name, core, from, to }) {
         const { machine } = this;
@@ -398,7 +401,7 @@ export class Commands {
         return null;
     }
 
-    /** Accesses of a core to flash count in all spans that are open there, one within another too. */
+    /** An access of a core to flash counts in every span that is open on that core, also in nested ones. */
     recordFlash(core) {
         const spans = [...this.spans.values()].filter((span) => span.open?.core === core);
         this.machine.hookFlash(core, spans.length === 0 ? null : (user, address) => {
@@ -444,7 +447,10 @@ export class Commands {
         });
     }
 
-    /** {passages: [[cycle, cycles, instructions]], flash: [[cycle, pc, address]], flash_total, flash_lines}; forgets. */
+    /**
+     * {passages: [[cycle, cycles, instructions]], flash: [[cycle, pc, address]], flash_total, flash_lines}; clears
+     * them.
+     */
     span({ name }) {
         const span = this.spans.get(name);
         if (span === undefined) {
@@ -466,14 +472,17 @@ export class Commands {
         return null;
     }
 
-    /** Takes what came over serial port {port}, as hex. */
+    /** Takes the bytes that arrived over serial port {port}, as hex. */
     usb_receive({ port = 0 }) {
         const hex = Buffer.from(this.bytesOf(port)).toString('hex');
         this.received.set(port, []);
         return hex;
     }
 
-    /** Floods serial port {port} with packets: {text} repeated, or printable characters by {seed}; {on: false} ends it. */
+    /**
+     * Floods serial port {port} with packets: {text} repeated, or printable characters by {seed}.  {on: false} stops
+     * it.
+     */
     usb_flood({ on = true, text, seed = 1, port = 0 }) {
         const random = new Random(seed);
         let at = 0;
@@ -511,7 +520,9 @@ export class Commands {
         return { state, serial, ports: described, reset_interface: resetInterface, dtr: isOpen, id };
     }
 
-    /** Reads a descriptor: {kind, number, index} are the request's; hex, or null if the device has none.  Takes time. */
+    /**
+     * Reads a descriptor with request {kind, number, index}: hex, or null if the device does not have it.  Takes time.
+     */
     usb_descriptor({ kind, number = 0, index = 0, type = 0x80, request = 6 }) {
         const { machine } = this;
         const value = (need(kind, 'kind') << 8) | number;
@@ -529,7 +540,7 @@ export class Commands {
         return answer === null ? null : Buffer.from(answer).toString('hex');
     }
 
-    /** A control transfer without data: {type, request, value, index}; what `picotool reboot -f` sends, for instance. */
+    /** A control transfer without data: {type, request, value, index}, as `picotool reboot -f` sends it. */
     usb_control({ type, request, value = 0, index = 0 }) {
         this.machine.usbHost.controlOut(type, request, value, index, null);
         return null;
@@ -537,7 +548,7 @@ export class Commands {
 
     // UARTs --------------------------------------------------------------------------------------------------------------
 
-    /** What is wired to {uart} sends {hex} at its own {baud}, which stays; {damaged: true}: with wrong stop bits. */
+    /** The device on {uart} sends {hex} at its own {baud}, which it keeps.  {damaged: true}: with wrong stop bits. */
     uart_send({ uart, hex = '', baud, damaged = false }) {
         const device = this.theUart(uart);
         device.outside.baud = baud ?? device.outside.baud;
@@ -548,7 +559,7 @@ export class Commands {
         return { waiting: device.outside.queue.length };
     }
 
-    /** Takes what {uart} has sent, as hex. */
+    /** Takes the bytes that {uart} has sent, as hex. */
     uart_receive({ uart }) {
         this.theUart(uart);
         return this.usb_receive({ port: `uart${uart}` });
@@ -582,7 +593,7 @@ export class Commands {
         return encoder;
     }
 
-    /** {name} -> edges given so far, up minus down. */
+    /** {name} -> number of edges up minus number of edges down since the start. */
     encoder_count({ name }) {
         return this.theEncoder(name).count;
     }
@@ -605,7 +616,7 @@ export class Commands {
         return null;
     }
 
-    /** Breaks or mends an encoder: its pins stay where they are. */
+    /** Breaks or repairs an encoder.  While it is broken, its pins keep their levels. */
     encoder_dead({ name, dead = true }) {
         this.theEncoder(name).dead = dead;
         return null;

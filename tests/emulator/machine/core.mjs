@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// One Cortex-M0+: the package's instructions, with exceptions, faults, sleep and the bus as the architecture has them.
+// One Cortex-M0+: the package executes the instructions; exceptions, faults, sleep and the bus follow the architecture.
 //
-// What differs from the package: exceptions take time; interrupts stay pending when their line falls; PRIMASK holds
-// interrupts back but wakes from WFI; WFE waits for its own core's event; faults (unaligned, no device, no such
-// instruction, BKPT without debugger) escalate to HardFault and lockup; NVIC, SysTick and SIO are the core's own.
+// Differences from the package: exceptions take time; an interrupt stays pending when its line falls; PRIMASK blocks
+// interrupts but lets them end WFI; WFE waits for an event of its own core; faults (unaligned access, no device,
+// undefined instruction, BKPT without debugger) escalate to HardFault and lockup; NVIC, SysTick and SIO are per core.
 import { CortexM0Core } from './package.mjs';
 import { PrivateBus } from './private_bus.mjs';
 
-// Cortex-M0+ Technical Reference Manual, 3.2 and 5.2: 15 cycles from interrupt to the first instruction of its handler,
-// with memory that has no wait states.  The return takes 12 on top of the BX or POP.
+// Cortex-M0+ Technical Reference Manual, 3.2 and 5.2: 15 cycles from the interrupt to the first instruction of its
+// handler, for memory without wait states.  The return takes 12 cycles in addition to the BX or POP.
 const EXCEPTION_ENTRY = 15;
 const EXCEPTION_RETURN = 12;
 
@@ -17,7 +17,7 @@ const SVCALL = 11;
 const PENDSV = 14;
 const SYSTICK = 15;
 const EXTERNAL = 16;
-const LOWEST = 4; // below every priority that can be set
+const LOWEST = 4; // lower than every priority that software can set
 const WFE = 0xbf20;
 const OWN_OPERATIONS = 0b11111100; // of the opcodes 0100000xxx: LSLS, LSRS, ASRS, ADCS, SBCS, RORS
 
@@ -39,8 +39,8 @@ export class Core extends CortexM0Core {
         this.machine = machine;
         this.number = number;
         this.time = 0; // cycle at which the next instruction starts
-        this.extra = 0; // cycles that the running instruction takes on top
-        this.running = false; // in reset, or in the boot ROM's wait for a launch
+        this.extra = 0; // additional cycles of the running instruction
+        this.running = false; // false in reset, and while the boot ROM waits for a launch
         this.lockedUp = false;
         this.waitsForEvent = false;
         this.instructions = 0;
@@ -57,14 +57,14 @@ export class Core extends CortexM0Core {
         this.rom16 = new Uint16Array(chip.bootrom.buffer);
         this.rom8 = new Uint8Array(chip.bootrom.buffer);
         this.onFlash = null; // (core, address) of each access to flash, fetches included
-        this.watches = []; // of writes to RAM: {low, high, call(core, address, size, value)}
+        this.watches = []; // watched writes to RAM: {low, high, call(core, address, size, value)}
         this.forbidden = []; // ranges [low, high) that the MPU protects
-        this.writeLow = 0; // all of them lie between these
+        this.writeLow = 0; // bounds that include all ranges of both lists
         this.writeHigh = 0;
         this.privateBus = new PrivateBus(this, chip, machine.clock);
     }
 
-    /** Starts at `entry` with cleared state. */
+    /** Starts at `entry` with all state cleared. */
     start(entry, stack, vectors) {
         this.registers.fill(0);
         this.VTOR = vectors;
@@ -98,7 +98,7 @@ export class Core extends CortexM0Core {
         return this.running && !this.waiting;
     }
 
-    /** One instruction, or the entry into an exception.  Advances `time`. */
+    /** Executes one instruction, or enters an exception.  Advances `time`. */
     step() {
         if (this.interruptsUpdated && this.takeException()) {
             return;
@@ -115,7 +115,7 @@ export class Core extends CortexM0Core {
             } else {
                 this.time += this.executeInstruction();
                 if ((opcode & 0xf700) === 0xb500) {
-                    this.time += 1; // PUSH with LR and POP with PC: the package does not count that register
+                    this.time += 1; // the package does not count LR in PUSH and PC in POP
                 }
             }
         } catch (fault) {
@@ -132,12 +132,12 @@ export class Core extends CortexM0Core {
         }
         if (this.waiting) {
             this.waitsForEvent = this.fetch(pc) === WFE;
-            this.interruptsUpdated = true; // one that is pending already ends the sleep
+            this.interruptsUpdated = true; // an interrupt that is already pending ends the sleep
             this.wake(this.time);
         }
     }
 
-    /** Shifts by a register, ADCS and SBCS, whose carry and overflow the package has wrong for some operands. */
+    /** Shifts by a register, ADCS and SBCS: the package computes carry and overflow wrongly for some operands. */
     operate(opcode) {
         const { registers } = this;
         if (this.onFlash !== null && this.opcodePC >>> 28 === 1) {
@@ -147,7 +147,7 @@ export class Core extends CortexM0Core {
         const by = registers[(opcode >> 3) & 7] & 0xff;
         let result = value;
         const operation = (opcode >> 6) & 7;
-        if (operation === 5 || operation === 6) { // subtracting is adding the complement
+        if (operation === 5 || operation === 6) { // subtraction adds the complement
             const other = operation === 5 ? registers[(opcode >> 3) & 7] : ~registers[(opcode >> 3) & 7] >>> 0;
             const sum = value + other + (this.C ? 1 : 0);
             result = sum >>> 0;
@@ -181,7 +181,7 @@ export class Core extends CortexM0Core {
         this.cycles += 1;
     }
 
-    /** Ends WFI or WFE if there is reason to. */
+    /** Ends WFI or WFE if there is a reason to. */
     wake(cycle) {
         if (!this.waiting || this.lockedUp) {
             return;
@@ -197,7 +197,7 @@ export class Core extends CortexM0Core {
         }
     }
 
-    /** An event from SEV of either core, or from an exception. */
+    /** An event: from SEV of either core, or from an exception. */
     signalEvent() {
         this.eventRegistered = true;
         this.wake(this.machine.clock.now);
@@ -233,7 +233,7 @@ export class Core extends CortexM0Core {
         return masked && this.PM ? Math.min(active, 0) : active;
     }
 
-    /** Number of the exception that would be taken; 0 for none.  `masked`: heed PRIMASK. */
+    /** The number of the exception that would be taken; 0 if there is none.  `masked`: respect PRIMASK. */
     highestPending(masked) {
         const current = this.executionPriority(masked);
         const interrupts = this.pendingInterrupts & this.enabledInterrupts;
@@ -307,7 +307,8 @@ export class Core extends CortexM0Core {
         if (from >= EXTERNAL) {
             const bit = 1 << (from - EXTERNAL);
             this.activeInterrupts &= ~bit;
-            this.pendingInterrupts |= this.interruptLines & bit; // the line is still up: again
+            // the line is still high: the interrupt becomes pending again
+            this.pendingInterrupts |= this.interruptLines & bit;
         }
         this.machine.exceptionLeft(this, from);
     }
@@ -486,7 +487,7 @@ export class Core extends CortexM0Core {
         }
     }
 
-    /** Offset into the flash; the four XIP windows (data sheet of the RP2040, 2.6.3.1) show the same. */
+    /** Offset in the flash.  The four XIP windows (data sheet of the RP2040, 2.6.3.1) show the same contents. */
     flashOffset(address) {
         if (this.onFlash !== null) {
             this.onFlash(this, address);
@@ -516,7 +517,7 @@ export class Core extends CortexM0Core {
     }
 }
 
-/** Narrow writes to peripherals reach all byte lanes (data sheet of the RP2040, 2.1.4). */
+/** A narrow write to a peripheral reaches all byte lanes (data sheet of the RP2040, 2.1.4). */
 export function replicate(value, size) {
     if (size === 1) {
         return ((value & 0xff) * 0x01010101) >>> 0;

@@ -41,7 +41,8 @@ function readSymbols(file) {
             if (name && type <= 2 && file.readUInt16LE(entry + 14) !== 0 && !name.startsWith('$')) {
                 const value = file.readUInt32LE(entry + 4);
                 const known = symbols.get(name);
-                if (known === undefined || file[entry + 12] >> 4 !== 0) { // a global one hides local ones
+                // a global symbol hides local symbols of the same name
+                if (known === undefined || file[entry + 12] >> 4 !== 0) {
                     symbols.set(name, {
                         address: type === 2 ? value & ~1 : value, size: file.readUInt32LE(entry + 8), code: type === 2,
                     });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Incremental encoders outside the chip: they drive two pins, and know how many edges they gave.
+// Incremental encoders outside the chip.  They drive two pins and count the edges that they have made.
 import { Random } from './usb_host.mjs';
 
 // Positive counts: A leads B.  Index = count modulo 4; bit 0 is A, bit 1 is B.
@@ -11,7 +11,7 @@ export class Encoder {
         this.pinA = pinA;
         this.pinB = pinB;
         this.count = 0;
-        this.dead = false; // a broken wire: the pins stay
+        this.dead = false; // a broken encoder: the pins keep their levels
         this.show();
     }
 
@@ -21,7 +21,7 @@ export class Encoder {
         this.machine.pads.drive(this.pinB, phase >> 1);
     }
 
-    /** One edge. */
+    /** Makes one edge. */
     step(direction) {
         this.count += direction;
         if (!this.dead) {
@@ -57,8 +57,8 @@ export class ScheduledMotion {
 }
 
 /**
- * A walk with reversals: edges `shortest` to `longest` cycles apart, `burst` of them at the shortest distance in a row
- * now and then, turning round with the given probability after each.
+ * A random walk with reversals.  Edges are `shortest` to `longest` cycles apart; now and then `burst` edges in a row
+ * have the shortest distance.  After each edge the direction reverses with the given probability.
  */
 export class RandomWalk {
     constructor(machine, encoder, { seed = 1, shortest, longest, reversal = 0.1, burst = 0 }) {

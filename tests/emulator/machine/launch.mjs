@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Core 1 in the boot ROM: what wait_for_vector does there (data sheet of the RP2040, 2.8.2), as a state machine.
+// Core 1 in the boot ROM: wait_for_vector of that ROM (data sheet of the RP2040, 2.8.2) as a state machine.
 //
 // The ROM drains core 1's mailbox, sends a 0, and then echoes the sequence 0, 0, 1, vectors, stack, entry.
 const EXPECTED = [0, 0, 1];
@@ -12,7 +12,7 @@ export class Launch {
         this.words = [];
     }
 
-    /** PSM has released core 1. */
+    /** The power-on state machine (PSM) has released core 1. */
     begin() {
         const { sio } = this.machine;
         this.waiting = true;
@@ -21,7 +21,7 @@ export class Launch {
         this.answer(0);
     }
 
-    /** PSM holds core 1 in reset. */
+    /** The PSM holds core 1 in reset. */
     hold() {
         this.waiting = false;
         this.machine.cores[1].stop();
@@ -34,7 +34,7 @@ export class Launch {
         cores[0].signalEvent();
     }
 
-    /** A word for core 1; false if its own program reads them. */
+    /** Takes a word for core 1; returns false if core 1's own program reads the words. */
     receive() {
         if (!this.waiting) {
             return false;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// An RP2040 whose processors, PIO blocks, PWM slices and timers keep step to the cycle.
+// An RP2040 with processors, PIO blocks, PWM slices and timers that are synchronous to the cycle.
 //
 //   const machine = new Machine({ rom });
 //   machine.load(readElf('program.elf'));
 //   machine.run(125_000);                     // a millisecond at 125 MHz
 //
-// Each core has a time of its own; the one that is behind goes next, and whatever else is due first comes first.  An
-// instruction's accesses happen at its first cycle.
+// Each core has its own time.  The core that is behind runs next, unless another event is due earlier.  An instruction
+// accesses memory in its first cycle.
 import { CycleClock } from './clock.mjs';
 import { Core, Fault, replicate } from './core.mjs';
 import { Launch } from './launch.mjs';
@@ -28,7 +28,8 @@ const SRAM_END = 0x20042000;
 const BOOT2_COPY = 0x20041f00;
 const BOOT2_SIZE = 256;
 const ROM_END = 0x4000;
-const DPRAM = 0x50100000; // four times 4 kB: its aliases neither set nor clear bits (raspberrypi/pico-feedback 75)
+// appears four times, every 4 kB: its aliases do not set or clear bits (raspberrypi/pico-feedback 75)
+const DPRAM = 0x50100000;
 const XIP_CONTROL = 0x14000;
 const XIP_SRAM = 0x15000000;
 const XIP_SRAM_SIZE = 16 * 1024;
@@ -36,7 +37,7 @@ const XIP_SRAM_SIZE = 16 * 1024;
 const SSI_ENABLE = 0x08;
 const CHIP_ID_B2 = 0x20002927;
 
-// Data sheet of the RP2040, 2.8.1.1 and pico-bootrom: scratch 4 to 7 ask for a jump instead of a boot from flash.
+// Data sheet of the RP2040, 2.8.1.1, and pico-bootrom: scratch 4 to 7 request a jump instead of a boot from flash.
 const BOOT_MAGIC = 0xb007c0d3;
 
 export class Machine {
@@ -66,7 +67,7 @@ export class Machine {
         this.usbBootAddress = romSymbols.get('rom_reset_usb_boot')?.address ?? -1;
         this.usbOptions = usb;
         this.uartData = () => {}; // (byte, number)
-        this.uartOutside = [0, 1].map(() => ({ baud: 115200, queue: [] })); // what is wired to the UARTs
+        this.uartOutside = [0, 1].map(() => ({ baud: 115200, queue: [] })); // the devices on the UARTs
         this.flashOff = false;
         this.build(null);
         this.usbHost = new UsbHost(this, usb);
@@ -94,7 +95,7 @@ export class Machine {
             throw new Fault('breakpoint or undefined instruction', this.current.opcodePC);
         };
         chip.logger = this.logger();
-        chip.updateClkSys = () => { // this machine's clock_sys has its frequency from the start
+        chip.updateClkSys = () => { // clk_sys of this machine has its frequency from the start
             chip.clkSys = chip.clocks.sysFreq || chip.clkSys;
         };
         this.launch = new Launch(this);
@@ -151,7 +152,9 @@ export class Machine {
         };
     }
 
-    /** While the SSI is disabled or in command mode, a read of flash gives rubbish on the chip, and a fault here. */
+    /**
+     * While the SSI is disabled or in command mode, a read of flash gives random data on the chip; here it is a fault.
+     */
     wrapFlashInterface(ssi) {
         const write = ssi.writeUint32.bind(ssi);
         ssi.writeUint32 = (offset, value) => {
@@ -190,7 +193,7 @@ export class Machine {
         this.boot();
     }
 
-    /** What the boot ROM does before it leaves to the image. */
+    /** Does what the boot ROM does before it jumps to the image. */
     boot() {
         const [core] = this.cores;
         const { scratch } = this.watchdogMemory;
@@ -201,7 +204,7 @@ export class Machine {
             core.start(this.entry, SRAM_END, 0);
         } else {
             this.chip.sram.set(this.chip.flash.subarray(0, BOOT2_SIZE), BOOT2_COPY - SRAM);
-            core.start(BOOT2_COPY, BOOT2_COPY, 0); // its stack is below it
+            core.start(BOOT2_COPY, BOOT2_COPY, 0); // its stack is below its code
         }
         core.time += this.bootCycles;
     }
@@ -211,7 +214,7 @@ export class Machine {
         this.pendingReset = cause;
     }
 
-    /** The supply goes and comes back: what SRAM has then is anything. */
+    /** The supply is switched off and on: after that, the contents of SRAM are random. */
     cutPower() {
         for (let at = 0, noise = 0x2545f491; at < this.chip.sram.length; at++) {
             noise = Math.imul(noise, 1664525) + 1013904223 | 0; // Numerical Recipes, 7.1
@@ -250,7 +253,7 @@ export class Machine {
             const time = core === null ? Infinity : core.time;
             const event = clock.first === null ? Infinity : clock.first.cycle;
             if (this.lockstepBlocks.length > 0 && !this.advanceLockstep(Math.min(time, event, end))) {
-                continue; // a core has woken up
+                continue; // an event has woken a core
             }
             if (event <= time && event < end) {
                 clock.fireNext();
@@ -303,7 +306,7 @@ export class Machine {
         this.lockstepBlocks = this.pio.filter((block) => block.lockstep);
     }
 
-    /** Brings everything that runs late up to now. */
+    /** Brings everything that runs late up to the present cycle. */
     settle() {
         this.pio.forEach((block) => block.advance(this.clock.now));
     }
@@ -328,7 +331,7 @@ export class Machine {
             return this.xipSram[(address - XIP_SRAM) >> 2];
         }
         if (address >>> 12 === XIP_CONTROL) {
-            return address & 0xff ? 0 : 3; // CTRL: the cache is on, and bad memory accesses fault
+            return address & 0xff ? 0 : 3; // CTRL: the cache is on, and invalid memory accesses fault
         }
         throw new Fault('read of an address where nothing is', address);
     }
@@ -344,7 +347,7 @@ export class Machine {
             this.programFlash(address & 0xffffff, value, size);
         } else if (address - XIP_SRAM >= 0 && address - XIP_SRAM < XIP_SRAM_SIZE && size === 4) {
             this.xipSram[(address - XIP_SRAM) >> 2] = value;
-        } else if (address >>> 12 !== XIP_CONTROL && address >= ROM_END) { // ROM takes writes, without effect
+        } else if (address >>> 12 !== XIP_CONTROL && address >= ROM_END) { // a write to ROM has no effect
             throw new Fault('write to an address where nothing is', address);
         }
     }
@@ -361,7 +364,7 @@ export class Machine {
         this.usb.DPRAMUpdated(offset);
     }
 
-    /** The stand-in ROM's way to the flash: words erase, bytes program (which clears bits only). */
+    /** EPG's boot ROM writes flash through this: words erase, bytes program (which can only clear bits). */
     programFlash(offset, value, size) {
         if (offset + size > this.flashSize) {
             return;

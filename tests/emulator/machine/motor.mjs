@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // A DC motor behind an H-bridge, with gear, inertia, friction and end stops, that turns an encoder.
 //
-// Between two changes of what the bridge does, the motion is solved exactly (zero-order hold): at duty d
+// Between two changes of the bridge's state, the motion is solved exactly (zero-order hold).  At duty d
 //
 //   J dw/dt = k (V d - k w) / R - b w - c sign(w),    d theta/dt = w
 //
-// on the motor's shaft, with Coulomb friction c, which also holds a motor at rest.  Duty is the mean of a PWM period,
-// taken over when the period begins; direction pins act at once.  The edges of the encoder come at the instants at
-// which the shaft passes them.
+// on the motor's shaft, with Coulomb friction c, which also holds a motor at rest.  Duty is the mean of a PWM period
+// and changes when a period begins; direction pins act at once.  Each edge of the encoder comes at the instant at which
+// the shaft passes it.
 
-const STEP = 1e-4; // s; the longest stretch that is solved at once, for the encoder's edges
+const STEP = 1e-4; // s; the longest interval that is solved at once, for the encoder's edges
 
 export const JIWY = {
     pan: {
@@ -24,9 +24,9 @@ export const JIWY = {
 
 export class Motor {
     /**
-     * `bridge`: {slice, channel, pinA, pinB}, the value's PWM and the direction pins, or {slice, channel, slice2,
-     * channel2} for a bridge with two PWM inputs.  `parameters`: see JIWY; `coulomb` in N m (1 % of stall torque);
-     * `stops`: [lowest, highest] angle of the load in rad, or null; `angle`: at the start.
+     * `bridge`: {slice, channel, pinA, pinB} for one PWM output and two direction pins, or {slice, channel, slice2,
+     * channel2} for a bridge with two PWM inputs.  `parameters`: see JIWY.  `coulomb` is in N m (1 % of the stall
+     * torque), `stops` the [lowest, highest] angle of the load in rad, or null, and `angle` the angle at the start.
      */
     constructor(machine, encoder, bridge, parameters) {
         this.machine = machine;
@@ -56,7 +56,7 @@ export class Motor {
         return slice === this.bridge.slice || slice === this.bridge.slice2;
     }
 
-    /** -1 ... 1 and whether the bridge drives, brakes or coasts. */
+    /** The duty, -1 ... 1, and the state of the bridge: it drives, brakes or coasts. */
     readBridge() {
         const { bridge, machine } = this;
         const value = this.dutyOf(bridge.slice, bridge.channel);
@@ -97,14 +97,14 @@ export class Motor {
         this.predict();
     }
 
-    /** Moves the state to now. */
+    /** Computes the state at the present cycle. */
     advance() {
         const { now } = this.machine.clock;
         this.move(this, (now - this.time) * this.secondsPerCycle);
         this.time = now;
     }
 
-    /** Acceleration by the bridge and damping, as w' = gain - rate w; without friction. */
+    /** The acceleration by bridge and damping, as w' = gain - rate w, without friction. */
     get dynamics() {
         const { p, drive } = this;
         const damping = drive.mode === 'coast' ? p.friction : this.damping;
@@ -112,7 +112,7 @@ export class Motor {
         return { gain: torque / p.inertia, rate: damping / p.inertia, dry: this.coulomb / p.inertia };
     }
 
-    /** Moves `state` (speed, angle) by `duration` under the present drive. */
+    /** Moves `state` (speed, angle) by `duration` with the present state of the bridge. */
     move(state, duration) {
         const { gain, rate, dry } = this.dynamics;
         let left = duration;
@@ -127,7 +127,7 @@ export class Motor {
             const final = (gain - direction * dry) / rate;
             const excess = state.speed - final;
             let span = left;
-            if (final * direction < 0) { // it will come to rest
+            if (final * direction < 0) { // the motor comes to rest within the interval
                 span = Math.min(span, Math.log(excess / -final) / rate);
             }
             const decay = Math.exp(-rate * span);
@@ -144,7 +144,7 @@ export class Motor {
             (direction > 0 && state.angle >= this.stops[1]));
     }
 
-    /** An end stop takes all speed. */
+    /** At an end stop, the speed becomes 0. */
     limit(state) {
         if (this.stops === null) {
             return;
@@ -158,7 +158,7 @@ export class Motor {
         }
     }
 
-    /** The encoder's edges of the next stretch, if the bridge stays as it is. */
+    /** Predicts the encoder's edges in the next interval, if the bridge does not change. */
     predict() {
         const { now, frequency } = this.machine.clock;
         this.stepAlarm.at(now + Math.round(STEP * frequency));
@@ -171,7 +171,7 @@ export class Motor {
         const start = this.angle * this.p.countsPerRadian;
         const span = end.angle * this.p.countsPerRadian - start;
         for (let count = from; count !== to; count += direction) {
-            const line = direction > 0 ? count + 1 : count; // a count is left where its line is passed
+            const line = direction > 0 ? count + 1 : count; // down, the count changes at the line that it began with
             const share = span === 0 ? 0 : Math.min(1, Math.max(0, (line - start) / span));
             this.edges.push([now + Math.round(share * STEP * frequency), direction]);
         }

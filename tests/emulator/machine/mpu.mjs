@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The memory protection unit, as far as it forbids writes (Armv6-M Architecture Reference Manual, B3.5): what a stack
-// guard needs.  Reads and execution are not checked.
+// The memory protection unit, limited to the protection against writes (Armv6-M Architecture Reference Manual, B3.5),
+// which is enough for a stack guard.  Reads and execution are not checked.
 
 const REGIONS = 8;
 const CTRL_ENABLE = 1;
 const RBAR_VALID = 1 << 4;
 const RASR_ENABLE = 1;
-const FORBIDS_WRITES = [true, false, false, false, false, true, true, true]; // by the AP field, privileged
+// indexed by the AP field, for privileged code
+const FORBIDS_WRITES = [true, false, false, false, false, true, true, true];
 
 export class Mpu {
-    /** `changed(ranges)` is told the ranges [low, high) that may not be written. */
+    /** `changed(ranges)` is called with the ranges [low, high) in which writes are forbidden. */
     constructor(changed) {
         this.changed = changed;
         this.reset();
@@ -23,7 +24,7 @@ export class Mpu {
         this.changed([]);
     }
 
-    /** HFNMIENA: the unit works in the HardFault handler too. */
+    /** HFNMIENA: the MPU is also active in the HardFault handler. */
     get protectsHardFault() {
         return (this.control & 2) !== 0;
     }
@@ -65,7 +66,9 @@ export class Mpu {
         this.changed(this.ranges());
     }
 
-    /** Eighths of each region, unless its subregion is disabled; a region of higher number would win, which is ignored. */
+    /**
+     * Eighths of each region, except disabled subregions.  The priority of a region with a higher number is ignored.
+     */
     ranges() {
         const ranges = [];
         if (!(this.control & CTRL_ENABLE)) {

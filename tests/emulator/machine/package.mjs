@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The npm package rp2040js, from the folder that EPG_RP2040JS names (emulator.py installs it into EPG's cache).
 //
-// Only its processor core and the peripherals that the harness leaves alone (clocks, PLLs, pads, IO bank, ADC,
-// I2C, SPI, RTC, DMA) are used.  Files are named one by one because the package exports no more than its index.
+// The emulator uses its processor core and those peripherals that it does not replace (clocks, PLLs, pads, IO bank,
+// ADC, I2C, SPI, RTC, DMA).  Files are imported one by one because the package exports only its index.
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 

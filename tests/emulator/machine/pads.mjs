@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The 30 GPIO pads: who drives them, what the chip sees, and a log of their edges.
+// The 30 GPIO pads: their drivers, the level that the chip reads, and a log of their edges.
 //
-// A pad's level is the chip's output where that is enabled, else what the test drives from outside, else the pull
-// resistor's; a pad that floats reads low.
+// A pad has the level of the chip's output if that is enabled, else the level that the test drives from outside, else
+// that of the pull resistor.  A floating pad reads low.
 
 const PIN_COUNT = 30;
 const PAD_AFTER_RESET = 0x56; // data sheet of the RP2040, 2.19.6.3: input enabled, pull-down, 4 mA, Schmitt trigger
@@ -12,8 +12,8 @@ export class Pads {
     constructor(machine, chip) {
         this.machine = machine;
         this.chip = chip;
-        this.inputs = 0; // what the chip's input buffers give, one bit per pin
-        this.levels = 0; // of the pads
+        this.inputs = 0; // outputs of the chip's input buffers, one bit per pin
+        this.levels = 0; // levels of the pads
         this.enables = 0; // outputs that are enabled
         this.external = machine.external; // per pin: -1 not driven, else the level
         chip.gpio.forEach((pin, index) => {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// A PIO block (data sheet of the RP2040, 3), in step with the processors to the cycle.
+// A PIO block (data sheet of the RP2040, 3), synchronous to the processors to the cycle.
 //
-// A block whose state machines can be seen from outside only through its registers runs late: it is brought up to date
-// when a processor reads it, with the changes of its inputs applied at the cycles at which they came.  One that drives
-// pins, raises interrupts or shares flags runs cycle by cycle.
+// A block whose state machines are visible outside only through its registers runs late: it is brought up to date when
+// a processor reads it, and the changes of its inputs are applied at the cycles at which they happened.  A block that
+// drives pins, raises interrupts or shares flags runs cycle by cycle.
 import { BasePeripheral } from './package.mjs';
 import { StateMachine } from './pio_machine.mjs';
 
 const SYNCHRONISER = 2; // cycles from pad to state machine (3.5.6.3)
-const LATE_INPUTS = 4096; // changes of inputs after which the block is brought up to date
+const LATE_INPUTS = 4096; // number of input changes after which the block is brought up to date
 
 export class PioBlock extends BasePeripheral {
     constructor(machine, chip, index, firstInterrupt) {
@@ -16,7 +16,7 @@ export class PioBlock extends BasePeripheral {
         this.machine = machine;
         this.index = index;
         this.firstInterrupt = firstInterrupt;
-        this.time = 0; // all cycles before it are done
+        this.time = 0; // all cycles before this one are executed
         this.instructions = new Uint32Array(32);
         this.pins = 0; // as the state machines see them
         this.inputCycles = [];
@@ -24,8 +24,8 @@ export class PioBlock extends BasePeripheral {
         this.inputHead = 0;
         this.pinValues = 0; // names that the package's pins read
         this.pinDirections = 0;
-        this.machines = []; // the package looks there for state machines that wait for a pin
-        this.shared = false; // state machines that share flags, or can be seen
+        this.machines = []; // the package searches this for state machines that wait for a pin
+        this.shared = false; // true if state machines share flags, or are visible outside
         this.forced = false; // lockstep on request
         this.units = [0, 1, 2, 3].map((unit) => new StateMachine(this, unit));
         this.reset();
@@ -98,7 +98,7 @@ export class PioBlock extends BasePeripheral {
         this.time = end;
     }
 
-    /** What may be seen of the state machines without reading a register decides how the block runs. */
+    /** Decides how the block runs: late, if its state machines are visible only through registers. */
     analyse() {
         const running = this.units.some((unit) => unit.enabled);
         let outputs = this.enables[0] !== 0 || this.enables[1] !== 0 || this.units.some((unit) => unit.sideCount > 0);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // One PIO state machine (data sheet of the RP2040, 3.4 and 3.5), exact to the cycle.
 //
-// run() executes many cycles at once, and leaps over those in which nothing can change: a state machine whose registers
-// and FIFOs come back to what they were, while its inputs stay, goes on repeating itself.
+// run() executes many cycles at once and skips those in which nothing can change.  If the registers and FIFOs of a
+// state machine return to earlier values while its inputs are constant, the state machine repeats itself.
 
 const FIFO_DEPTH = 4;
-const RESTLESS = 256; // instructions after which a loop that was not recognised is looked for anew
+const RESTLESS = 256; // number of instructions after which the search for a loop starts again
 
 class Fifo {
     constructor() {
@@ -51,7 +51,7 @@ export class StateMachine {
         this.isr = this.osr = 0;
         this.isrCount = 0;
         this.osrCount = 32;
-        this.forced = -1; // an instruction to execute instead of the next
+        this.forced = -1; // instruction to execute instead of the next one, or -1
         this.stalled = false;
         this.fraction = 0;
         this.writeClockDivider(1 << 16);
@@ -105,7 +105,10 @@ export class StateMachine {
         this.sideCount = (value >>> 29) & 7;
     }
 
-    /** SM_RESTART: shift counters, ISR, delay, stall and forced instruction; not X, Y, OSR and the program counter. */
+    /**
+     * SM_RESTART clears shift counters, ISR, delay, stall and forced instruction, but not X, Y, OSR or the program
+     * counter.
+     */
     restart() {
         this.isr = this.isrCount = 0;
         this.osrCount = 32;
@@ -145,7 +148,7 @@ export class StateMachine {
                 if (this.unchanged()) {
                     const length = this.time - mark.time;
                     this.time += Math.floor((end - this.time - 1) / length) * length;
-                    mark.pc = -2; // at most one more round
+                    mark.pc = -2; // search for at most one more round
                 } else {
                     this.setMark();
                     count = 0;
@@ -155,7 +158,7 @@ export class StateMachine {
                 count = 0;
             }
             this.execute();
-            if (this.stalled && !this.block.shared) { // nothing but an event from outside can end that
+            if (this.stalled && !this.block.shared) { // only an event from outside can end this stall
                 this.time = this.stallUntil(end);
             }
         }
@@ -352,7 +355,7 @@ export class StateMachine {
     }
 
     shiftIn(argument) {
-        if (this.stalled) { // the bits are in, the word waits for room
+        if (this.stalled) { // the bits are shifted in; the word waits for space in the FIFO
             return this.autopushNow();
         }
         const bits = argument & 0x1f || 32;

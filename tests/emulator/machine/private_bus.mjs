@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What each Cortex-M0+ has for itself: NVIC, SysTick, MPU and system control (data sheet of the RP2040, 2.4.8).
+// The private peripherals of each Cortex-M0+: NVIC, SysTick, MPU and system control (data sheet of the RP2040, 2.4.8).
 import { Mpu } from './mpu.mjs';
 
 const SYST_CSR = 0x010;
@@ -27,7 +27,7 @@ const MPU_LAST = 0xda0;
 const SEVONPEND = 1 << 4;
 const SYSRESETREQ = 1 << 2;
 
-/** Counts down from RVR to 0, so its period is RVR + 1 cycles (Armv6-M Architecture Reference Manual, B3.3). */
+/** Counts down from RVR to 0: its period is RVR + 1 cycles (Armv6-M Architecture Reference Manual, B3.3). */
 class SysTick {
     constructor(core, clock) {
         this.core = core;
@@ -61,7 +61,7 @@ class SysTick {
     }
 
     runFrom(value) {
-        // From 0 the next count loads RVR: the period's first.
+        // After 0, the next count loads RVR: the first count of the period.
         const counts = value === 0 ? this.reload + 1 : value;
         this.zeroAt = this.clock.now + counts * this.scale;
         if (this.reload === 0 && value === 0) {
@@ -149,7 +149,7 @@ export class PrivateBus {
             case SYST_CVR:
                 return this.sysTick.value;
             case SYST_CALIB:
-                return 0xc0000000; // no reference to calibrate with
+                return 0xc0000000; // no reference clock for calibration
             case NVIC_ISER:
             case NVIC_ICER:
                 return core.enabledInterrupts >>> 0;
@@ -170,7 +170,7 @@ export class PrivateBus {
             case SCR:
                 return this.systemControl;
             case CCR:
-                return 0x208; // STKALIGN and UNALIGN_TRP, both fixed
+                return 0x208; // STKALIGN and UNALIGN_TRP, which are always 1
             case SHPR2:
                 return core.SHPR2;
             case SHPR3:
@@ -212,7 +212,7 @@ export class PrivateBus {
             case NVIC_ISPR:
                 core.pend(value);
                 return;
-            case NVIC_ICPR: // a line that is up pends again at once
+            case NVIC_ICPR: // an interrupt whose line is high becomes pending again at once
                 core.pendingInterrupts &= ~(value & ~(core.interruptLines & ~core.activeInterrupts));
                 return;
             case ICSR:

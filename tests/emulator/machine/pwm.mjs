@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The eight PWM slices (data sheet of the RP2040, 4.5), free-running, exact to the cycle.
 //
-// Compare values and TOP are double-buffered: what software writes takes effect when the counter wraps, and `taken`
-// reports that.  The modes in which channel B is an input are not simulated.
+// Compare values and TOP are double-buffered: a new value takes effect when the counter wraps, which `taken` reports.
+// The modes in which channel B is an input are not simulated.
 import { BasePeripheral, IRQ } from './package.mjs';
 
 const SLICES = 8;
@@ -24,12 +24,12 @@ class Slice {
 
     reset() {
         this.csr = 0;
-        this.divider = 16; // in sixteenths
+        this.divider = 16; // unit 1/16
         this.written = { a: 0, b: 0, top: 0xffff };
-        this.a = this.b = 0; // in effect
+        this.a = this.b = 0; // the levels in effect
         this.top = 0xffff;
         this.held = 0; // counts into the period, while stopped
-        this.start = 0; // of the period, in sixteenths of a cycle
+        this.start = 0; // start of the period, in 1/16 cycle
         this.wrapAlarm.cancel();
         this.levelAlarm.cancel();
         this.setLevels(0);
@@ -39,12 +39,12 @@ class Slice {
         return (this.csr & CSR_ENABLE) !== 0;
     }
 
-    /** Counts of one period: up, or up and down. */
+    /** Counts in one period: up only, or up and down. */
     get length() {
         return this.csr & CSR_PHASE_CORRECT ? 2 * (this.top + 1) : this.top + 1;
     }
 
-    /** Counts into the period. */
+    /** Number of counts since the start of the period. */
     get position() {
         return this.running ? Math.floor((this.clock.now * 16 - this.start) / this.divider) : this.held;
     }
@@ -111,7 +111,7 @@ class Slice {
         this.moveTo(position);
     }
 
-    /** The enable bits of several slices change in one cycle. */
+    /** Changes the enable bits of several slices in the same cycle. */
     enable(on) {
         const { position } = this;
         this.csr = on ? this.csr | CSR_ENABLE : this.csr & ~CSR_ENABLE;
@@ -132,7 +132,7 @@ class Slice {
 
     scheduleWrap() {
         const { length, position } = this;
-        this.wrapAlarm.at(this.cycleOf(position < length ? length : 0x10000)); // beyond TOP it runs to the end
+        this.wrapAlarm.at(this.cycleOf(position < length ? length : 0x10000)); // a counter beyond TOP runs up to 0xffff
     }
 
     wrap() {
@@ -219,7 +219,7 @@ export class Pwm extends BasePeripheral {
         this.updateInterrupt();
     }
 
-    /** The package's name: channel B as an input. */
+    /** Channel B as an input, under the package's name. */
     gpioOnInput() {}
 
     updateInterrupt() {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Resets of peripherals and of core 1 by software (data sheet of the RP2040, 2.13 and 2.14), and registers that are
-// nothing but memory here.
+// Resets of peripherals and of core 1 by software (data sheet of the RP2040, 2.13 and 2.14), and registers that behave
+// as plain memory in this emulator.
 import { BasePeripheral } from './package.mjs';
 
 const ALL_PERIPHERALS = 0x1ffffff;
@@ -18,7 +18,7 @@ const UART0 = 1 << 22;
 const UART1 = 1 << 23;
 const USB = 1 << 24;
 
-/** Peripherals that are held in reset.  All are, when the chip starts. */
+/** The peripherals that are held in reset.  When the chip starts, these are all of them. */
 export class Resets extends BasePeripheral {
     constructor(machine, chip) {
         super(chip, 'RESETS');
@@ -76,7 +76,7 @@ export class Resets extends BasePeripheral {
     }
 }
 
-/** The power-on state machine: software uses it to reset core 1. */
+/** The power-on state machine.  Software uses it to reset core 1. */
 export class PowerOn extends BasePeripheral {
     constructor(machine, chip) {
         super(chip, 'PSM');
@@ -119,7 +119,7 @@ export class PowerOn extends BasePeripheral {
     }
 }
 
-/** Registers that keep what is written. */
+/** Registers that keep the value that was written. */
 export class Registers extends BasePeripheral {
     constructor(chip, name, values = {}) {
         super(chip, name);

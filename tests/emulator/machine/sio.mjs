@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The single-cycle I/O block (data sheet of the RP2040, 2.3.1), seen by two cores: GPIO, mailboxes, spinlocks, dividers.
+// The single-cycle I/O block (data sheet of the RP2040, 2.3.1) of both cores: GPIO, mailboxes, spinlocks, dividers.
 import { IRQ, RPSIO } from './package.mjs';
 
 const GPIO_MASK = 0x3fffffff;
 const MAILBOX_DEPTH = 8;
 
-/** The divider of one core: results are there at once, where the chip takes 8 cycles that the SDK waits for. */
+/** The divider of one core.  Results are ready at once; the chip needs 8 cycles, for which the SDK waits. */
 class Divider {
     constructor() {
         this.dividend = 0;
@@ -44,7 +44,7 @@ class Divider {
     divide(signed) {
         const p = signed ? this.dividend | 0 : this.dividend >>> 0;
         const q = signed ? this.divisor | 0 : this.divisor >>> 0;
-        if (q === 0) { // 2.3.1.5: the largest quotient of the right sign, and the dividend remains
+        if (q === 0) { // 2.3.1.5: the largest quotient of the right sign; the remainder is the dividend
             this.quotient = signed && p < 0 ? 1 : 0xffffffff;
             this.remainder = p >>> 0;
         } else {

@@ -115,7 +115,7 @@ export class Timer extends BasePeripheral {
         this.update();
     }
 
-    /** An armed alarm fires when the low word of the time becomes its target. */
+    /** An enabled alarm fires when the low word of the time equals its target. */
     rearm() {
         const now = this.micros;
         this.alarms.forEach((alarm, n) => {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// A UART and what is wired to it (data sheet of the RP2040, 4.2: Arm's PL011): whole characters at their times.
+// A UART and the device connected to it (data sheet of the RP2040, 4.2: Arm's PL011), in whole characters.
 //
-// Levels of the pins are not simulated: a character goes out or comes in when a pin of this UART has its function.
-// The other end sends and samples at its own baud rate; when the two differ by more than 4 %, characters are damaged.
+// The levels of the pins are not simulated: a character is transferred if a pin of this UART has the UART's function.
+// The other device sends and samples at its own baud rate.  Characters are damaged if the rates differ by more than 4
+// %.
 import { BasePeripheral, IRQ } from './package.mjs';
 
 const FIFO_SIZE = 32;
@@ -11,7 +12,7 @@ const PINS = [
     { tx: [0, 12, 16, 28], rx: [1, 13, 17, 29] },
     { tx: [4, 8, 20, 24], rx: [5, 9, 21, 25] },
 ];
-const TOLERANCE = 0.04; // half a bit within ten, less what sampling takes
+const TOLERANCE = 0.04; // half a bit in ten, minus the uncertainty of sampling
 
 const DR = 0x00;
 const FR = 0x18;
@@ -26,9 +27,9 @@ const MIS = 0x40;
 const ICR = 0x44;
 const DMACR = 0x48;
 
-const FRAMING_ERROR = 1 << 8; // of an entry of the FIFO
+const FRAMING_ERROR = 1 << 8; // bit of an entry of the FIFO
 const OVERRUN = 1 << 11;
-const RX = 1 << 4; // of the interrupts
+const RX = 1 << 4; // bit of the interrupt registers
 const TX = 1 << 5;
 const TIMEOUT = 1 << 6;
 const OVERRUN_INTERRUPT = 1 << 10;
@@ -45,13 +46,13 @@ export class Uart extends BasePeripheral {
         this.arriving = this.clock.createAlarm(() => this.arrived());
         this.silence = this.clock.createAlarm(() => this.raise(TIMEOUT));
         this.onData = () => {}; // (byte, number of the UART)
-        this.outside = machine.uartOutside[number]; // {baud, queue}: what the other end sends
+        this.outside = machine.uartOutside[number]; // {baud, queue}: the bytes that the other device sends
         this.reset();
     }
 
     reset() {
         this.registers = { [IBRD]: 0, [FBRD]: 0, [LCR_H]: 0, [CR]: 0x300, [IFLS]: 0x12, [IMSC]: 0, [DMACR]: 0 };
-        this.divider = 0; // 64ths, taken over by a write to LCR_H
+        this.divider = 0; // unit 1/64; takes effect at a write to LCR_H
         this.tx = [];
         this.rx = [];
         this.overrun = false;
@@ -66,7 +67,7 @@ export class Uart extends BasePeripheral {
         return (this.registers[CR] & 1) !== 0;
     }
 
-    /** Cycles of a bit. */
+    /** The number of cycles in one bit. */
     get bit() {
         return (16 * this.divider) / 64;
     }
@@ -131,7 +132,8 @@ export class Uart extends BasePeripheral {
         this.machine.setInterrupt(irq, (this.raw & this.registers[IMSC]) !== 0);
     }
 
-    // To the other end -------------------------------------------------------------------------------------------------
+    // To the other device
+    // -------------------------------------------------------------------------------------------------
 
     put(byte) {
         if (this.tx.length === FIFO_SIZE) {
@@ -150,7 +152,7 @@ export class Uart extends BasePeripheral {
             this.shifting = this.tx.shift();
             this.sending.at(this.clock.now + Math.round(10 * this.bit));
             if (this.tx.length === this.level(0)) {
-                this.raise(TX); // on the way down only
+                this.raise(TX); // only when the level falls
             }
         }
     }
@@ -168,7 +170,7 @@ export class Uart extends BasePeripheral {
 
     // From the other end -----------------------------------------------------------------------------------------------
 
-    /** The other end has something to send. */
+    /** The other device has a character to send. */
     awaitNext() {
         if (this.outside.queue.length > 0 && !this.arriving.scheduled) {
             this.arriving.at(this.clock.now + Math.round((10 * this.clock.frequency) / this.outside.baud));
@@ -198,7 +200,7 @@ export class Uart extends BasePeripheral {
     }
 
     take() {
-        const entry = (this.rx.shift() ?? 0) | (this.overrun ? OVERRUN : 0); // a state, not a mark of this entry
+        const entry = (this.rx.shift() ?? 0) | (this.overrun ? OVERRUN : 0); // a flag of the UART, not of this entry
         if (this.rx.length < this.level(3)) {
             this.raw &= ~RX;
         }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The USB device controller's registers and buffers (data sheet of the RP2040, 4.1).
 //
-// A buffer that the firmware makes available stays so until the host (usb_host.mjs) has moved its packet: while the
-// host has nothing to send or does not read, it answers NAK, as on a real bus.
+// A buffer that the firmware has made available stays available until the host (usb_host.mjs) has moved its packet.  As
+// on a real bus, the device answers NAK while the host has nothing to send or does not read.
 import { BasePeripheral, IRQ } from './package.mjs';
 
 const SIE_BUS_RESET = 1 << 19;
@@ -13,7 +13,7 @@ const SIE_SUSPENDED = 1 << 4;
 const SIE_VBUS = 1;
 const SIE_WRITE_CLEAR = 0xff0f0810;
 
-// What each interrupt is derived from (4.1.3, INTR and SIE_STATUS).
+// The source of each interrupt (4.1.3, INTR and SIE_STATUS).
 const SIE_INTERRUPTS = [
     [SIE_SETUP, 1 << 16],
     [SIE_RESUME, 1 << 15],
@@ -55,12 +55,12 @@ export class UsbDevice extends BasePeripheral {
         this.power = 0;
         this.muxing = 0;
         this.enabled = this.forced = 0;
-        this.half = new Uint8Array(32); // buffer of the pair that the host serves next, per endpoint and direction
+        this.half = new Uint8Array(32); // which buffer of a pair the host serves next, by endpoint and direction
         this.update();
         this.host?.deviceChanged();
     }
 
-    /** Pull-up on D+, which tells the host that a device is there. */
+    /** The pull-up on D+, by which the host detects a device. */
     get present() {
         return (this.mainControl & 1) !== 0 && (this.sieControl & (1 << 16)) !== 0;
     }
@@ -85,7 +85,7 @@ export class UsbDevice extends BasePeripheral {
             case 0x60:
                 return this.abort;
             case 0x64:
-                return this.abort; // done at once
+                return this.abort; // the abort is complete at once
             case 0x68:
                 return this.stallArm;
             case 0x74:
@@ -160,7 +160,7 @@ export class UsbDevice extends BasePeripheral {
         this.machine.setInterrupt(IRQ.USBCTRL, ((this.raw & this.enabled) | this.forced) !== 0);
     }
 
-    /** The package's name: a word of the buffer memory was written. */
+    /** A word of the buffer memory was written.  The package defines the name. */
     DPRAMUpdated(offset) {
         if (offset >= 0x80 && offset < 0x100) {
             const endpoint = (offset - 0x80) >> 3;
@@ -168,7 +168,7 @@ export class UsbDevice extends BasePeripheral {
         }
     }
 
-    // What the host does ---------------------------------------------------------------------------------------------
+    // Actions of the host ---------------------------------------------------------------------------------------------
 
     raise(sieBit) {
         this.sieStatus |= sieBit;
@@ -199,7 +199,7 @@ export class UsbDevice extends BasePeripheral {
         this.raise(SIE_SETUP);
     }
 
-    /** The buffer that the host would be served with now, or null for NAK. */
+    /** The buffer with which the device would answer the host now, or null for NAK. */
     buffer(endpoint, out) {
         const register = 0x80 + 8 * endpoint + (out ? 4 : 0);
         const index = 2 * endpoint + (out ? 1 : 0);
@@ -216,14 +216,14 @@ export class UsbDevice extends BasePeripheral {
             length: bits & BUFFER_LENGTH };
     }
 
-    /** The host takes a packet. */
+    /** The host takes a packet from the device. */
     takeIn(buffer) {
         const data = this.ram.slice(buffer.address, buffer.address + buffer.length);
         this.finish(buffer, BUFFER_AVAILABLE | BUFFER_FULL, 0);
         return data;
     }
 
-    /** The host delivers a packet of at most `buffer.length` bytes. */
+    /** The host sends the device a packet of at most `buffer.length` bytes. */
     giveOut(buffer, data) {
         this.ram.set(data, buffer.address);
         this.finish(buffer, BUFFER_AVAILABLE | BUFFER_LENGTH, BUFFER_FULL | data.length);

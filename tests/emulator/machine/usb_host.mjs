@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A USB host: attaches, enumerates, and moves the packets of CDC serial ports, with the times of a real bus.
+// A USB host.  It attaches, enumerates, and moves the packets of CDC serial ports with the times of a real bus.
 //
-// Bus state machine: detached -> waiting for the pull-up -> bus reset -> enumeration -> configured.  Frames start every
-// millisecond of the host's own clock.  Each packet takes a time drawn from `packetDelay`.
+// States of the bus: detached -> waiting for the pull-up -> bus reset -> enumeration -> configured.  A frame starts
+// every millisecond of the host's own clock.  Each packet takes a random time from `packetDelay`.
 
-const RESET_TIME = 10_000; // microseconds of bus reset, and of rest after it
+const RESET_TIME = 10_000; // microseconds of bus reset, and of the pause after it
 const DEBOUNCE = 2_000;
-const SUSPEND_TIME = 3_000; // without frames, a device sees suspend
+const SUSPEND_TIME = 3_000; // microseconds without frames until a device detects suspend
 const CONTROL_DELAY = 10;
 const DESCRIPTOR_DEVICE = 1;
 const DESCRIPTOR_CONFIGURATION = 2;
@@ -15,7 +15,9 @@ const CLASS_CDC = 2;
 const CLASS_CDC_DATA = 10;
 const CLASS_VENDOR = 0xff;
 
-/** A small generator, so that runs repeat (xorshift32; G. Marsaglia, "Xorshift RNGs", 2003). */
+/**
+ * A small random generator with a seed, so that runs are repeatable (xorshift32; G. Marsaglia, "Xorshift RNGs", 2003).
+ */
 export class Random {
     constructor(seed) {
         this.state = (Math.imul(seed, 0x9e3779b1) ^ 0x6a09e667) >>> 0 || 1;
@@ -31,12 +33,14 @@ export class Random {
     }
 }
 
-/** The times of a quiet desktop: 45 to 105 us a packet, one in ten waits up to a frame more. */
+/**
+ * Times as on a desktop computer with low load: 45 to 105 us per packet; one packet in ten waits up to a frame more.
+ */
 export function desktopDelay(random) {
     return 45 + random.next() * (random.next() < 0.1 ? 1000 : 60);
 }
 
-/** A serial port of the device: interface, endpoints, what waits to be sent. */
+/** A serial port of the device: interface, endpoints, bytes that wait to be sent. */
 class Port {
     constructor(number, comm) {
         this.number = number;
@@ -65,16 +69,16 @@ export class UsbHost {
         this.stateAlarm = this.clock.createAlarm(() => this.stateStep(), true);
         this.frameAlarm = this.clock.createAlarm(() => this.frameStarts(), true);
         this.endpointAlarms = new Map();
-        this.floods = new Map(); // number of a port -> what floods it, as long as the test wants
+        this.floods = new Map(); // number of a port -> source of its flood, until the test stops it
         this.clear();
     }
 
-    /** What the test has to do with the first port. */
+    /** The first port, the one that most tests use. */
     get port() {
         return this.ports[0] ?? null;
     }
 
-    /** Configured, and a terminal has opened the first port. */
+    /** True if the device is configured and a terminal has opened the first port. */
     get isOpen() {
         return this.state === 'configured' && this.port !== null && this.port.dtr;
     }
@@ -87,7 +91,7 @@ export class UsbHost {
         this.device = null;
         this.serial = '';
         this.ports = []; // in the order of their interfaces
-        this.early = new Map(); // number of a port -> bytes to send, before it is known
+        this.early = new Map(); // number of a port -> bytes to send, stored until the port is enumerated
         this.resetInterface = -1;
         for (const alarm of this.endpointAlarms.values()) {
             alarm.cancel();
@@ -104,7 +108,7 @@ export class UsbHost {
 
     // Attachment -------------------------------------------------------------------------------------------------------
 
-    /** The chip was reset: a new device, on the same cable. */
+    /** The chip was reset: the host sees a new device on the same cable. */
     deviceReplaced() {
         this.clear();
         this.stateAlarm.cancel();
@@ -129,7 +133,7 @@ export class UsbHost {
         this.deviceChanged();
     }
 
-    /** Pulls the cable.  A board with its own supply sees no more frames: suspend. */
+    /** Pulls the cable.  A board with its own supply then receives no frames and detects suspend. */
     detach() {
         this.attached = false;
         this.clear();
@@ -258,7 +262,7 @@ export class UsbHost {
         this.usb.setup([type, request, value & 255, value >> 8, index & 255, index >> 8, length & 255, length >> 8]);
     }
 
-    /** Serves endpoint 0 for the transfer under way. */
+    /** Serves endpoint 0 for the present transfer. */
     serveControl(out) {
         const transfer = this.current;
         if (transfer === null) {
@@ -310,7 +314,7 @@ export class UsbHost {
 
     // Serial ports -----------------------------------------------------------------------------------------------------
 
-    /** Opens or closes the terminal: line coding 115200 8N1 and DTR, or DTR down. */
+    /** Opens the terminal (line coding 115200 8N1, then DTR) or closes it (DTR off). */
     setLine(open, number = 0, done = null) {
         const port = this.ports[number];
         if (port === undefined) {
@@ -341,7 +345,7 @@ export class UsbHost {
         this.bufferChanged(port.out, true);
     }
 
-    /** Sends for ever: `make(length)` gives the bytes of each packet; null stops. */
+    /** Sends without end: `make(length)` returns the bytes of each packet.  Null stops it. */
     setFlood(make, number = 0) {
         this.floods.set(number, make);
         const port = this.ports[number];
@@ -351,7 +355,7 @@ export class UsbHost {
         }
     }
 
-    /** The firmware has changed a buffer, or the host has something to do: a packet may move after its delay. */
+    /** The firmware has changed a buffer, or the host has data to send: after its delay, a packet can move. */
     bufferChanged(endpoint, out) {
         const key = 2 * endpoint + (out ? 1 : 0);
         let alarm = this.endpointAlarms.get(key);

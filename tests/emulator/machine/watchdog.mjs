@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The watchdog (data sheet of the RP2040, 4.7): its counter, the cause of the last reset, eight words that survive one.
+// The watchdog (data sheet of the RP2040, 4.7): its counter, the cause of the last reset, eight words that survive it.
 import { BasePeripheral } from './package.mjs';
 
 const REASON_TIMER = 1;
 const REASON_FORCE = 2;
 
-/** What a reset by the watchdog leaves alone. */
+/** The registers that a reset by the watchdog does not clear. */
 export class WatchdogMemory {
     constructor() {
         this.reason = 0;
@@ -21,12 +21,12 @@ export class Watchdog extends BasePeripheral {
         this.memory = memory;
         this.control = 0x07000000;
         this.tick = 0;
-        this.left = 0; // counts, while stopped
+        this.left = 0; // remaining counts, while stopped
         this.endsAt = 0; // the cycle at which a running counter reaches 0
         this.alarm = this.clock.createAlarm(() => this.trigger(REASON_TIMER));
     }
 
-    /** Cycles per count: erratum RP2040-E1 counts twice per microsecond. */
+    /** Cycles per count.  Erratum RP2040-E1: the watchdog counts twice per microsecond. */
     get scale() {
         return this.clock.frequency / 2e6;
     }

@@ -37,7 +37,7 @@ static void core_1_adds(void)
     }
 }
 
-/* Launch, mailboxes both ways, spinlocks, and a second launch after a reset. */
+/* Launch, mailboxes in both directions, spinlocks, and a second launch after a reset. */
 void case_two_cores(void)
 {
     shared = 0;
@@ -79,7 +79,7 @@ static void core_1_divides(void)
     }
 }
 
-/* Each core has a divider of its own. */
+/* Each core has its own divider. */
 void case_divide_on_both(void)
 {
     uint32_t sum = 0;
@@ -106,7 +106,7 @@ static void core_1_sleeps(void)
     }
 }
 
-/* WFE returns for one event each: core 1 counts those of core 0. */
+/* WFE returns once per event: core 1 counts the events of core 0. */
 void case_events(void)
 {
     shared = 0;
@@ -114,7 +114,7 @@ void case_events(void)
     multicore_reset_core1();
     multicore_launch_core1(core_1_sleeps);
     busy_wait_us(100);
-    results[0] = shared; /* events that the launch has left registered */
+    results[0] = shared; /* events that were registered during the launch */
     for (uint32_t n = 1; core_1_done == 0; n++) {
         __sev();
         busy_wait_us(10);
@@ -139,7 +139,7 @@ static void core_1_waits_for_wraps(void)
     }
 }
 
-/* The wrap interrupt reaches the core that has enabled it. */
+/* The wrap interrupt reaches the core that enabled it. */
 void case_interrupt_of_core_1(void)
 {
     results[8] = results[9] = results[10] = 0;
@@ -163,7 +163,7 @@ static void on_wrap_of_core_0(void)
     handled++;
 }
 
-/* With PRIMASK set, an interrupt ends WFI and is taken when PRIMASK is cleared. */
+/* While PRIMASK is set, an interrupt ends WFI; its handler runs when PRIMASK is cleared. */
 void case_masked_sleep(void)
 {
     handled = 0;
@@ -193,11 +193,11 @@ static void step(uint32_t digit)
 static void on_low(void)
 {
     step(1);
-    irq_set_pending(31); /* higher: at once */
+    irq_set_pending(31); /* higher priority: runs at once */
     __dsb();
     __isb();
     step(3);
-    irq_set_pending(29); /* the same: afterwards */
+    irq_set_pending(29); /* same priority: runs afterwards */
     __dsb();
     __isb();
     step(4);

@@ -1,4 +1,4 @@
-/* Faults of the kind that arguments[0] says. */
+/* Faults; arguments[0] selects the kind. */
 #include "cases.h"
 #include "hardware/structs/mpu.h"
 #include "pico/multicore.h"
@@ -13,7 +13,7 @@ static void cause(void)
         __asm volatile("str %0, [%1]" : : "l"(1u), "l"(0x20000001u) : "memory"); /* unaligned */
         break;
     case 1:
-        *(volatile uint32_t *)(uintptr_t)0x60000000u = 1; /* nothing is there */
+        *(volatile uint32_t *)(uintptr_t)0x60000000u = 1; /* no device at this address */
         break;
     case 2:
         __asm volatile("udf #0");
@@ -25,11 +25,13 @@ static void cause(void)
         ((void (*)(void))(uintptr_t)0x40000001u)(); /* not executable */
         break;
     case 5:
-        __asm volatile("mov r0, %0\n\tbx r0" : : "r"((uintptr_t)&cause & ~(uintptr_t)1u) : "r0"); /* no Thumb bit */
+        /* address without the Thumb bit */
+        __asm volatile("mov r0, %0\n\tbx r0" : : "r"((uintptr_t)&cause & ~(uintptr_t)1u) : "r0");
         break;
     case 7: { /* a stack that grows into its guard */
         mpu_hw->rbar = (0x20030000u & ~0xffu) | M0PLUS_MPU_RBAR_VALID_BITS;
-        mpu_hw->rasr = 1u | (7u << 1) | (0xfbu << 8) | 0x10000000u; /* 256 bytes, of which only the third 32 */
+        /* 256 bytes, in which only the third subregion of 32 bytes is enabled */
+        mpu_hw->rasr = 1u | (7u << 1) | (0xfbu << 8) | 0x10000000u;
         mpu_hw->ctrl = 5;
         *(volatile uint32_t *)(uintptr_t)0x2003003cu = 1;
         *(volatile uint32_t *)(uintptr_t)0x20030060u = 2;
@@ -37,14 +39,14 @@ static void cause(void)
         break;
     }
     case 6:
-        __asm volatile("cpsid i\n\tsvc #0"); /* may not be taken */
+        __asm volatile("cpsid i\n\tsvc #0"); /* cannot be taken while PRIMASK is set */
         break;
     default:
         break;
     }
 }
 
-/* The handler notes the stacked PC and cause; with arguments[1] it faults again. */
+/* The handler records the stacked PC and the cause.  If arguments[1] is set, it causes another fault. */
 void __attribute__((used)) note_fault(const uint32_t *frame)
 {
     fault_seen++;

@@ -1,4 +1,4 @@
-/* Flash: writing it, and code in it and not in it. */
+/* Flash: erasing and programming it, and code in flash and in RAM. */
 #include "cases.h"
 
 #include <string.h>
@@ -29,7 +29,7 @@ static void __not_in_flash_func(core_1_turns)(void)
     }
 }
 
-/* Erases and programs while core 1 is locked out; programs again without erasing: bits are only cleared. */
+/* Erases and programs while core 1 is locked out, then programs again without erasing: this can only clear bits. */
 void case_flash(void)
 {
     for (uint32_t n = 0; n < sizeof page; n++) {
@@ -54,7 +54,7 @@ void case_flash(void)
     multicore_reset_core1();
 }
 
-/* The same sum from flash and from RAM; volatile, so that it is not computed ahead. */
+/* The same sum from flash and from RAM; volatile, so that the compiler does not compute it in advance. */
 void __attribute__((noinline)) case_from_flash(void)
 {
     uint32_t sum = 0;

@@ -12,7 +12,7 @@ static void load(PIO pio, const uint16_t *words, uint8_t length)
     pio_add_program_at_offset(pio, &program, 0);
 }
 
-/* High for 3 and low for 5 cycles of a state machine that runs at clk_sys / (arguments[0] / 256): delays and divider. */
+/* A wave, high for 3 and low for 5 cycles at clk_sys / (arguments[0] / 256): delays and divider. */
 void case_pio_wave(void)
 {
     const uint16_t words[] = {
@@ -32,7 +32,7 @@ void case_pio_wave(void)
     pio_sm_set_enabled(pio0, 0, false);
 }
 
-/* Shifts words out on pin 7 with a clock by side-set on pin 8, and back in by a second state machine. */
+/* Shifts words out on pin 7, with a clock by side-set on pin 8, and a second state machine shifts them in. */
 void case_pio_shift(void)
 {
     const uint16_t words[] = {
@@ -78,7 +78,7 @@ static void on_pio(void)
     results[1]++;
 }
 
-/* One state machine raises flag 0 every 32 cycles and waits until it is cleared: a processor does that. */
+/* A state machine raises flag 0 every 32 cycles and waits until a processor clears it. */
 void case_pio_flags(void)
 {
     const uint16_t words[] = {
@@ -100,7 +100,7 @@ void case_pio_flags(void)
     pio_set_irq0_source_enabled(pio0, pis_interrupt0, false);
 }
 
-/* Copies pin 9 to pin 6: the synchroniser's two cycles, and one for the instruction. */
+/* Copies pin 9 to pin 6: two cycles for the synchroniser, one for the instruction. */
 void case_pio_latency(void)
 {
     const uint16_t words[] = {

@@ -6,7 +6,7 @@
 #include "hardware/sync.h"
 #include "pico/stdlib.h"
 
-/* Slice 1 (pins 2 and 3): arguments are TOP, levels A and B, divider in sixteenths, flags (1 phase-correct, 2 invert A). */
+/* Slice 1 (pins 2, 3).  Arguments: TOP, levels A and B, divider in 1/16, flags (1: phase-correct, 2: invert A). */
 void case_pwm(void)
 {
     gpio_set_function(2, GPIO_FUNC_PWM);
@@ -21,7 +21,7 @@ void case_pwm(void)
     pwm_set_enabled(1, true);
 }
 
-/* What the registers say: EN as a mask, the counter twice, and PH_ADV. */
+/* The contents of the registers: EN as a mask, the counter twice, and PH_ADV. */
 void __not_in_flash_func(case_pwm_registers)(void)
 {
     pwm_config config = pwm_get_default_config();
@@ -53,7 +53,7 @@ static void __not_in_flash_func(on_tick)(void)
     pwm_set_gpio_level(2, (uint16_t)(results[0] % 100u));
 }
 
-/* A tick of arguments[0] cycles on slice 3 that changes slice 1's level, whose period is arguments[1] cycles. */
+/* A tick of arguments[0] cycles on slice 3.  It changes the level of slice 1, whose period is arguments[1] cycles. */
 void case_pwm_tick(void)
 {
     results[0] = 0;

@@ -13,7 +13,7 @@ static void on_alarm(uint alarm)
     results[2] = alarm;
 }
 
-/* An alarm in arguments[0] microseconds: when it came, and its number. */
+/* An alarm after arguments[0] microseconds.  Results: the time at which it came, and its number. */
 void case_alarm(void)
 {
     const uint32_t number = 2;
@@ -47,7 +47,7 @@ void case_systick(void)
     exception_restore_handler(SYSTICK_EXCEPTION, before);
 }
 
-/* Starves a watchdog of arguments[0] ms after feeding it arguments[1] times; 0 ms: watchdog_reboot(). */
+/* Feeds a watchdog of arguments[0] ms arguments[1] times, then lets it time out.  0 ms: watchdog_reboot(). */
 void case_watchdog(void)
 {
     watchdog_hw->scratch[0] = 0x12345678;

@@ -9,7 +9,7 @@ volatile uint32_t results[64];
 volatile uint32_t request; /* address of a case */
 volatile uint32_t done;
 volatile uint32_t starts
-    __attribute__((section(".uninitialized_data.starts"))); /* what a reset by the watchdog keeps */
+    __attribute__((section(".uninitialized_data.starts"))); /* kept during a reset by the watchdog */
 
 typedef void (*case_t)(void);
 
@@ -20,7 +20,7 @@ static const case_t all_cases[] = {
     case_systick,   case_watchdog,        case_pins,   case_pio_latency,
 };
 
-/* Pins as the arguments say: pin, direction, level, pulls. */
+/* A pin as the arguments set it: pin, direction, level, pulls. */
 void case_pins(void)
 {
     const uint32_t pin = arguments[0];

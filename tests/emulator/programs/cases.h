@@ -1,6 +1,6 @@
 /*
- * Cases that a test asks for by name (it calls the emulator to write the function's address into `request`), with
- * arguments and results in memory.
+ * The cases.  A test selects one by its name: it lets the emulator write the address of the function to `request`.
+ * Arguments and results are in memory.
  */
 #ifndef CASES_H
 #define CASES_H

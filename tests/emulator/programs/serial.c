@@ -1,5 +1,5 @@
 /*
- * Says "ready" when a terminal opens, echoes each line, and counts what else happens to the port.
+ * Prints "ready" when a terminal opens, echoes each line, and counts the other events of the port.
  */
 #include <stdio.h>
 #include <string.h>

@@ -1,9 +1,9 @@
 /*
- * Functions of the stand-in boot ROM.
+ * The functions of the boot ROM that EPG provides for the emulator, in place of the chip's own.
  *
- * It serves images that are built with the compiler's own float and double arithmetic: there are no floating-point
- * tables.  Flash is erased and programmed by plain writes to the XIP window, which the emulator allows to code in ROM,
- * and takes the time a W25Q16JV takes typically (data sheet of the chip, revision H, 9.6).
+ * It is for images that are built with the compiler's own float and double: it has no floating-point tables.  It erases
+ * and programs flash by plain writes to the XIP window, which the emulator allows for code in ROM.  The duration of
+ * erasing and programming is the typical one of a W25Q16JV (data sheet of the chip, revision H, 9.6).
  */
 #include <stdint.h>
 
@@ -133,7 +133,7 @@ void rom_flash_range_erase(uint32_t offset, uint32_t count, uint32_t block_size,
 void rom_flash_range_program(uint32_t offset, const uint8_t *data, uint32_t count)
 {
     for (uint32_t at = 0; at < count; at++) {
-        /* The emulator keeps the bits that are 0, as programming cannot set any. */
+        /* The emulator clears bits only: programming cannot set a bit. */
         *(volatile uint8_t *)(XIP_BASE + offset + at) = data[at];
         if (at % PAGE == 0) {
             wait_us(PAGE_PROGRAM_US);
@@ -150,7 +150,7 @@ void rom_flash_enter_cmd_xip(void)
     SSI_ENABLE = 1;
 }
 
-/* The emulator stops at the two below and says so. */
+/* The emulator stops at the two functions below and reports which. */
 void rom_reset_usb_boot(uint32_t led_mask, uint32_t disabled_interfaces)
 {
     (void)led_mask;
