@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An agent of DDS-XRCE 1.0 for tests: boards connect to it, and it does to them whatever a test wants.
+"""An agent of DDS-XRCE 1.0 for tests: boards connect to it, and tests can make it fail in many ways.
 
 >>> with Agent(UdpLink()) as agent:                               # doctest: +SKIP
 ...     board = start_board(agent.address)                        # any client: a host executable, an emulated Pico
 ...     agent.topics.wait_for_sample("rt/pan_publisher")
 ...     agent.topics.publish("rt/pan_subscriber", float64(0.5))
-...     agent.to_board.loss = 0.1                                 # from here on every tenth frame is lost
-...     agent.restart()                                           # an agent that knows nothing of the board
+...     agent.to_board.loss = 0.1                                 # from now on every tenth frame is lost
+...     agent.restart()                                           # the new agent does not know the board
 """
 
 from .agent import Agent, Refusal

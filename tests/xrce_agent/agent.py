@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The agent: a thread that serves a link, and what tests do to it."""
+"""The agent: a thread that serves a link, and the faults that tests cause."""
 
 from __future__ import annotations
 
@@ -44,26 +44,26 @@ AGENT_INFO = COOKIE + VERSION + VENDOR + b"\0"
 
 @dataclass
 class Refusal:
-    """CREATEs that get an error instead of an entity."""
+    """CREATE requests that the agent answers with an error instead of creating the entity."""
 
     status: Status
     kind: Kind | None = None
-    """None: of any kind."""
+    """The kind of entity; None: any kind."""
     name: str = ""
-    """What the name of the participant or topic contains."""
+    """A part of the name of the participant or topic."""
     times: int = 1_000_000
-    """So often, then no longer."""
+    """The number of refusals; later requests succeed."""
 
     def meets(self, kind: Kind, name: str) -> bool:
         return self.times > 0 and self.kind in (None, kind) and self.name in name
 
 
 class Agent:
-    """Serves ``link`` in a thread of its own.
+    """Serves ``link`` in its own thread.
 
-    Behaves as eProsima's agent where a board can tell: a client that connects again with its old key keeps its
-    entities and its readers, so that their samples arrive while it creates them anew; an agent that has been restarted
-    answers pings of clients that it does not know.
+    Behaves like eProsima's agent wherever a board can detect a difference.  A client that connects again with its old
+    key keeps its entities and its readers: their samples arrive while the client creates them again.  An agent that was
+    restarted answers pings of clients that it does not know.
     """
 
     def __init__(
@@ -74,18 +74,18 @@ class Agent:
         heartbeat: float = 0.2,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        """``clock`` is in seconds: of a simulation, in which nothing waits for the clock on the wall."""
+        """``clock`` returns seconds: those of a simulation if nothing may wait for real time."""
         self.link = link
         self._clock = clock
         self.topics = topics if topics is not None else Topics()
-        self.lock = self.topics.lock  # one for all: a sample goes from a board to another in one go
+        self.lock = self.topics.lock  # one lock for all: a sample passes from board to board in one step
         self.to_board, self.from_board = Faults(), Faults()
         self.refusals: list[Refusal] = []
         self.clients: dict[bytes, Client] = {}
         self.created: list[tuple[float, bytes]] = []
-        """When which client has connected, ever."""
+        """Every connection since the start: its time and its client."""
         self.mute: set[Id] = set()
-        """Submessages that are not answered."""
+        """Submessages that the agent does not answer."""
         self.clock_offset = 0.0
         """Seconds by which the agent's clock is ahead."""
         self.log = Log()
@@ -104,7 +104,8 @@ class Agent:
         self._thread.start()
         self.start()
 
-    # What tests do to it -------------------------------------------------------------------------------------------
+    # Faults that tests cause
+    # -------------------------------------------------------------------------------------------
 
     @property
     def address(self) -> str:
@@ -118,7 +119,7 @@ class Agent:
             self._wake()
 
     def kill(self) -> None:
-        """Ends as a process that is killed: nobody is told, nothing is kept, entities vanish from the topics."""
+        """Ends like a killed process: it informs no client, keeps no data, and its entities disappear from the topics."""
         with self.lock:
             self._alive = False
             self.link.close()
@@ -135,7 +136,7 @@ class Agent:
         self.start()
 
     def freeze(self) -> None:
-        """As a process that is stopped: what arrives waits in the system's buffer."""
+        """Stops like a suspended process: bytes that arrive wait in the system's buffer."""
         self._frozen = True
 
     def thaw(self) -> None:
@@ -143,7 +144,7 @@ class Agent:
         self._wake()
 
     def inject(self, data: bytes, raw: bool = False) -> None:
-        """Sends ``data`` to every peer as if it were a message; ``raw``: as bytes of the line without a frame."""
+        """Sends ``data`` to every peer as if it were a message; ``raw``: as bytes of the line, without a frame."""
         with self.lock:
             for peer in self._peers:
                 self.log.add(False, peer, data, "injected")
@@ -187,7 +188,7 @@ class Agent:
             wait = max(0.0, min(due, next_beat, time.monotonic() + 0.05) - time.monotonic())
             try:
                 ready = select.select(files, [], [], wait)[0]
-            except (OSError, ValueError):  # closed meanwhile
+            except (OSError, ValueError):  # the link was closed meanwhile
                 continue
             if self._wake_read in ready:
                 os.read(self._wake_read, 4096)
@@ -200,7 +201,7 @@ class Agent:
                     self._run_later()
                     if time.monotonic() >= next_beat:
                         next_beat = time.monotonic() + self._heartbeat
-                        self.link.open()  # a device that has come back
+                        self.link.open()  # the device has come back
                         self._beat()
 
     def _run_later(self) -> None:
@@ -247,7 +248,7 @@ class Agent:
                 self._outside(peer, header, body)
                 return
             key = header.key if header.session < WITHOUT_KEY else self._peers.get(peer, b"")
-            client = self.clients.get(key)  # whatever the session, as eProsima's agent
+            client = self.clients.get(key)  # also with another session number, as in eProsima's agent
             if client is None:
                 self._stranger(peer, header, body)
                 return
@@ -259,7 +260,7 @@ class Agent:
             self.malformed += 1
 
     def _outside(self, peer: Hashable, header: Header, body: bytes) -> None:
-        """Without a session."""
+        """Handles a message outside any session."""
         for part in submessages(body):
             if part.id in self.mute:
                 continue
@@ -269,7 +270,7 @@ class Agent:
                 self._send(peer, header.pack() + self._info(part, peer in self._peers))
 
     def _stranger(self, peer: Hashable, header: Header, body: bytes) -> None:
-        """A session that this agent does not know: of before it was started."""
+        """Handles a message of a session that this agent does not know, because it began before the agent was started."""
         for part in itertools.islice(submessages(body), 1):
             if part.id == Id.GET_INFO and Id.GET_INFO not in self.mute:
                 self._send(peer, header.pack() + self._info(part, False))
@@ -318,7 +319,7 @@ class Agent:
             self._peers = {p: k for p, k in self._peers.items() if k != key}
 
     def _info(self, part: Submessage, known: bool) -> bytes:
-        """The answer to a ping; ``known``: there is a session."""
+        """The answer to a ping; ``known``: a session exists."""
         variant = b"\x01\x0d" + AGENT_INFO
         activity = b"\x01\x0d\0" + struct.pack("<hxxI", 1, 0)  # available; no addresses
         return submessage(Id.INFO, part.payload[:4] + bytes([Status.OK, known]) + variant + activity)
@@ -392,7 +393,7 @@ class Agent:
             self._send(client.peer, message)
 
     def _reply(self, client: Client, content: bytes) -> None:
-        """On no stream."""
+        """Sends a reply on no stream."""
         self._send(client.peer, Header(client.session, 0, 0, client.key).pack() + content)
 
     def _pump(self, client: Client) -> None:

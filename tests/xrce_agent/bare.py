@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``programs/bare_client.c``, built once per version of its sources and of the client library."""
+"""Builds ``programs/bare_client.c`` once per version of its sources and of the client library."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ PROGRAMS = Path(__file__).resolve().parent / "programs"
 
 
 def libraries() -> tuple[Path, Path]:
-    """Folders of eProsima's client and of Micro-CDR."""
+    """The folders of eProsima's client and of Micro-CDR."""
     return tool("micro_xrce_dds_client"), tool("micro_cdr")
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What an agent keeps of one client: its session's streams, its entities and what it wants to read."""
+"""The agent's data about one client: the streams of its session, its entities and its requests to read."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from .topics import DEPTH, Endpoint, ReaderEnd, Topics
 from .wire import BEST_EFFORT_STREAM, REPLACE, REUSE, Id, Kind, Status, Submessage, submessage
 
 UNLIMITED = 0xFFFF
-"""Of READ_DATA's ``max_samples``."""
+"""Value of READ_DATA's ``max_samples`` that means no limit."""
 
 
 class Reading:
-    """A READ_DATA that has not ended: samples wait here, the oldest give way, as in a DDS history."""
+    """An active READ_DATA.  Samples wait here; if there are too many, the oldest are dropped, as in a DDS history."""
 
     def __init__(self, request: bytes, stream: int, samples: int, seconds: float, depth: int) -> None:
         self.request, self.stream = request, stream
@@ -30,7 +30,7 @@ class Reading:
         return self._left == 0 or (self._end is not None and time.monotonic() > self._end)
 
     def take(self) -> None:
-        """The first sample that waits has been sent."""
+        """Removes the first waiting sample, which was sent."""
         self.waiting.popleft()
         if self._left != UNLIMITED:
             self._left -= 1
@@ -74,7 +74,7 @@ class Client:
         return self._reliable.setdefault(stream, ReliableOutput(self.session, self.key, stream))
 
     def push(self, stream: int, content: bytes) -> list[bytes] | None:
-        """Messages that carry ``content``; None: the window is full."""
+        """The messages that carry ``content``; None if the window is full."""
         if stream >= 0x80:
             return self.reliable_output(stream).push(content, self.mtu)
         output = self._best_effort.setdefault(stream, BestEffortOutput(self.session, self.key, stream))
@@ -88,11 +88,11 @@ class Client:
 
     @property
     def node(self) -> str:
-        """The name of its participant."""
+        """The name of the participant."""
         return next((d.name for d in self.objects.values() if d.kind == Kind.PARTICIPANT), "")
 
     def create(self, identity: bytes, new: Description, flags: int) -> Status:
-        """Source: DDS-XRCE 1.0, table 7, on what happens if there is such an object."""
+        """Source: DDS-XRCE 1.0, table 7, for the result if the object exists already."""
         old = self.objects.get(identity)
         if old is not None and not flags & (REUSE | REPLACE):
             return Status.ALREADY_EXISTS
@@ -155,7 +155,7 @@ class Client:
             self._topics.write(writer, data)
 
     def read(self, payload: Submessage) -> Status:
-        """READ_DATA: samples of a reader are wanted from now on, or no longer."""
+        """Handles READ_DATA: from now on the client wants the samples of a reader, or no longer."""
         reader = payload.reader
         request = reader.take(4)
         identity = request[2:]
@@ -173,7 +173,7 @@ class Client:
         return Status.OK
 
     def next_data(self) -> list[bytes]:
-        """Messages with samples that wait, as far as there is room."""
+        """Messages with waiting samples, as far as there is space."""
         messages: list[bytes] = []
         for reading in self.readings.values():
             while reading.waiting and not reading.over:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A client program, built once."""
+"""Fixture: a client program, built once."""
 
 from __future__ import annotations
 

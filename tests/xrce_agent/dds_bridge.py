@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Topics of boards on a DDS network: what eProsima's agent does with Fast DDS, here with CycloneDDS for Python.
+"""The topics of boards on a DDS network: eProsima's agent uses Fast DDS for this, this bridge CycloneDDS for Python.
 
-Every writer and reader of a board becomes one on DDS, of the same topic, type and QoS, in a participant of its node's
-name.  Types are those of tests.ros2.messages; a board's topic of another type stays between boards.
+Every writer and reader of a board gets a counterpart on DDS with the same topic, type and QoS, in a participant with
+the name of its node.  The types are those of tests.ros2.messages; a topic of another type stays between boards.
 
 >>> with Agent(UdpLink()) as agent, DdsBridge(agent.topics, domain=7):      # doctest: +SKIP
 ...     ...
@@ -26,11 +26,11 @@ from tests.ros2 import messages
 from .topics import Endpoint, ReaderEnd, Topics
 
 ENCAPSULATION = b"\x00\x01\x00\x00"
-"""CDR, little endian: stands before a message on DDS, and not on XRCE."""
+"""The header for CDR, little endian.  It precedes a message on DDS, but not on XRCE."""
 
 
 def known_types() -> dict[str, Any]:
-    """By DDS name; of several of one name the first: the others are wrong on purpose."""
+    """Types by DDS name.  Of several with the same name, the first counts: the others are wrong on purpose."""
     found = [item for item in vars(messages).values() if isinstance(item, type) and issubclass(item, IdlStruct)]
     return {item.__idl__.idl_transformed_typename: item for item in reversed(found) if item is not IdlStruct}
 
@@ -93,7 +93,7 @@ class DdsBridge:
 
 
 class _Deliver(Listener):
-    """Hands samples of a DDS reader to the board's."""
+    """Passes samples of a DDS reader to the board's reader."""
 
     def __init__(self, topics: Topics, end: ReaderEnd) -> None:
         super().__init__()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What happens to frames on their way: loss, delay, duplicates, another order, cut and changed bytes.
+"""Faults of frames on their way: loss, delay, duplicates, another order, cut and changed bytes.
 
-All of it can be set at any time.  Chance has a seed, so that the same frames meet the same faults.
+A test can change each of them at any time.  The random generator has a seed: the same frames meet the same faults.
 """
 
 from __future__ import annotations
@@ -12,25 +12,25 @@ from dataclasses import dataclass
 
 @dataclass
 class Faults:
-    """Of one direction; probabilities are of each frame."""
+    """The faults of one direction; each probability is per frame."""
 
     loss: float = 0.0
     duplicate: float = 0.0
     reorder: float = 0.0
-    """Held back for 1 to 20 ms, so that others overtake it."""
+    """Delays a frame by 1 to 20 ms, so that later frames overtake it."""
     truncate: float = 0.0
-    """Only a part, of at least one byte, arrives."""
+    """Only a part of the frame arrives, at least one byte."""
     corrupt: float = 0.0
-    """One to four bytes are other ones.  On a serial line the frame's CRC shows that; of datagrams, the system's
-    checksums do, so that this is for somebody who forges them."""
+    """Changes one to four bytes.  On a serial line the frame's CRC detects this.  For datagrams the system's checksums
+    detect it: there, this fault imitates an attacker who forges datagrams."""
     delay: tuple[float, float] = (0.0, 0.0)
-    """Least and largest, in seconds; frames keep their order if both are the same."""
+    """Shortest and longest delay, in seconds; frames keep their order if both are equal."""
 
     def clear(self) -> None:
         self.__init__()  # type: ignore[misc]
 
     def arrivals(self, chance: random.Random) -> list[float]:
-        """Seconds until a frame arrives, twice if it is doubled; empty if it is lost."""
+        """Seconds until each arrival of a frame: two for a duplicated frame, none for a lost frame."""
         if chance.random() < self.loss:
             return []
         copies = 2 if chance.random() < self.duplicate else 1
@@ -41,7 +41,7 @@ class Faults:
         return held + chance.uniform(*self.delay)
 
     def damage(self, data: bytes, chance: random.Random) -> bytes:
-        """What arrives of ``data``: a datagram, or the bytes of a frame on the line."""
+        """The part of ``data`` that arrives; ``data`` is a datagram, or the bytes of a frame on the line."""
         if len(data) > 1 and chance.random() < self.truncate:
             data = data[: chance.randrange(1, len(data))]
         if chance.random() < self.corrupt:

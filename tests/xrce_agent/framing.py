@@ -3,8 +3,8 @@
 
     7E, source, destination, length (2), payload, CRC of the payload (2)
 
-All but the first byte is stuffed: 7E and 7D become 7D and the byte xor 20.  CRC-16 with the polynomial 8005, reflected,
-beginning with 0.  The agent's address is 0; it answers to the address that a client gives itself.
+All bytes after the first are stuffed: 7E and 7D become 7D and the byte xor 20.  The CRC-16 has the polynomial 8005,
+reflected, and starts with 0.  The agent's address is 0; it answers to the address that a client has chosen.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ def frame(payload: bytes, source: int, destination: int) -> bytes:
 
 
 class Deframer:
-    """Finds frames in bytes as they come; what is none is counted and left out."""
+    """Finds frames in a stream of bytes.  It counts bytes that are not a valid frame as broken, and drops them."""
 
     def __init__(self, address: int = AGENT) -> None:
         self._address = address
@@ -54,7 +54,7 @@ class Deframer:
         self.broken = 0
 
     def feed(self, data: bytes) -> list[tuple[int, bytes]]:
-        """Payloads that are whole now, each with its source."""
+        """The payloads that are now complete, each with its source."""
         payloads = []
         for byte in data:
             if byte == BEGIN:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How an agent is reached: UDP, or a serial line, which is a pseudo terminal or a device that is there already."""
+"""Links to an agent: UDP, or a serial line, which is a pseudo terminal or an existing device."""
 
 from __future__ import annotations
 
@@ -19,37 +19,38 @@ from .framing import AGENT, Deframer, frame
 
 READ = 65536
 PATIENCE = 2.0
-"""Seconds for a port to become free."""
+"""Seconds to wait until a port is free."""
 
 
 class Link(Protocol):
-    """Frames to and from peers.  ``open`` and ``close`` may be called again and again; the address stays the same."""
+    """Frames to and from peers.  ``open`` and ``close`` can be called repeatedly; the address does not change."""
 
     def open(self) -> None: ...
 
     def close(self) -> None: ...
 
     def fileno(self) -> int:
-        """To wait for; -1 while it is closed."""
+        """The file descriptor to wait for; -1 while the link is closed."""
 
     def receive(self) -> list[tuple[Hashable, bytes]]:
-        """Frames that are there, with who sent them."""
+        """The frames that have arrived, each with its sender."""
 
     @property
     def checked(self) -> bool:
-        """Whether a damaged frame is seen to be one."""
+        """True if the receiver detects a damaged frame."""
 
     def raw(self, peer: Hashable, data: bytes) -> bytes:
         """The bytes that carry a message: the datagram, or its frame on the line."""
 
     def send_raw(self, peer: Hashable, data: bytes) -> None:
-        """Such bytes, or any."""
+        """Sends such bytes, or any other bytes."""
 
 
 class UdpLink:
-    """A port of the loopback interface; 0 takes a free one.
+    """A port of the loopback interface; 0 selects a free one.
 
-    It is none of those that the system gives to sockets which ask for any: closed for a moment, it would be taken.
+    The port is outside the range from which the system chooses free ports.  Otherwise another socket could get it while
+    this link is closed.
     """
 
     def __init__(self, port: int = 0, host: str = "127.0.0.1") -> None:
@@ -74,7 +75,7 @@ class UdpLink:
             try:
                 self._bind()
             except OSError:
-                # A thread that was waiting for the old socket holds it for a moment still.
+                # A thread that waited for the old socket still holds it for a moment.
                 if time.monotonic() > end:
                     raise
                 time.sleep(0.001)
@@ -104,7 +105,7 @@ class UdpLink:
                 data, peer = self._socket.recvfrom(READ)
             except BlockingIOError:
                 break
-            except ConnectionError:  # a board that is gone has answered so
+            except ConnectionError:  # the port of a board that has ended
                 continue
             frames.append((peer, data))
         return frames
@@ -119,7 +120,7 @@ class UdpLink:
 
 
 class SerialLink:
-    """What pseudo terminals and devices have in common; peers are addresses on the line, of which there is one."""
+    """The common part of pseudo terminals and devices.  Peers are addresses on the line; there is only one."""
 
     checked = True
 
@@ -129,7 +130,7 @@ class SerialLink:
 
     @property
     def broken(self) -> int:
-        """Frames that were none."""
+        """Number of frames that were not valid."""
         return self._deframer.broken
 
     def fileno(self) -> int:
@@ -149,14 +150,14 @@ class SerialLink:
         return [*self._deframer.feed(data)]
 
     def _nobody(self) -> None:
-        """Nothing is at the other end."""
+        """Called when no program is at the other end."""
 
     def raw(self, peer: Hashable, data: bytes) -> bytes:
         assert isinstance(peer, int)
         return frame(data, AGENT, peer)
 
     def send_raw(self, peer: Hashable, data: bytes) -> None:
-        """What does not fit is lost, as on a line."""
+        """Sends bytes.  Bytes that do not fit are lost, as on a serial line."""
         with contextlib.suppress(OSError):
             if self._file >= 0:
                 os.write(self._file, data)
@@ -169,7 +170,10 @@ class SerialLink:
 
 
 class PtyLink(SerialLink):
-    """A pseudo terminal whose other end has a name: ``--serial-device <path>``.  Closed, the name is gone."""
+    """A pseudo terminal whose other end has a path: ``--serial-device <path>``.
+
+    While it is closed, there is no path.
+    """
 
     def __init__(self, path: Path) -> None:
         super().__init__()
@@ -190,7 +194,7 @@ class PtyLink(SerialLink):
         self.path.symlink_to(os.ttyname(self._other))
 
     def close(self) -> None:
-        """As a cable that is pulled: the board's end hangs up."""
+        """Closes the terminal, like a pulled cable: the board's end hangs up."""
         if self._other >= 0:
             os.close(self._other)
             self._other = -1
@@ -199,7 +203,7 @@ class PtyLink(SerialLink):
 
 
 class DeviceLink(SerialLink):
-    """A terminal that a board or an emulator has made, opened whenever it is there."""
+    """A terminal that a board or an emulator has made; opened as soon as it exists."""
 
     def __init__(self, path: Path, baud: int = termios.B115200) -> None:
         super().__init__()
@@ -215,7 +219,7 @@ class DeviceLink(SerialLink):
         try:
             self._file = os.open(self.path, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
         except OSError:
-            return  # it is not there (yet): the agent tries again
+            return  # it does not exist (yet): the agent tries again
         tty.setraw(self._file)
         settings = termios.tcgetattr(self._file)
         settings[4] = settings[5] = self._baud

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every frame that passes an agent, with the time of two clocks and what became of it."""
+"""A log of every frame that passes an agent, with the time on two clocks and the faults that changed it."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ class Frame:
     peer: Hashable
     data: bytes
     fate: str
-    """"" if it arrived as it was; "lost", "cut", "late"..."""
+    """Empty if it arrived unchanged; "lost", "cut", "late"..."""
 
     def submessages(self) -> list[Id]:
-        """What it holds; nothing if it is broken."""
+        """The submessages in the frame; none if it is broken."""
         try:
             return [Id(part.id) for part in submessages(split(self.data)[1])]
         except (WireError, ValueError):
@@ -52,6 +52,6 @@ class Log:
         self._frames.clear()
 
     def of(self, identity: Id, from_board: bool, since: float = 0.0) -> list[Frame]:
-        """Frames with such a submessage."""
+        """The frames with such a submessage."""
         found = (frame for frame in self if frame.from_board == from_board and frame.monotonic >= since)
         return [frame for frame in found if identity in frame.submessages()]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""ROS 2 messages as CDR, without the encapsulation header: what XRCE carries."""
+"""ROS 2 messages as CDR without the encapsulation header, which is the form that XRCE carries."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ def boolean(value: bool) -> bytes:
 
 @dataclass(frozen=True)
 class Diagnostics:
-    """diagnostic_msgs/msg/DiagnosticArray with its one status."""
+    """A diagnostic_msgs/msg/DiagnosticArray with its single status."""
 
     stamp: float
-    """Seconds."""
+    """In seconds."""
     level: str
     name: str
     message: str

@@ -11,7 +11,7 @@ import tty
 
 
 class Cable:
-    """``ends`` are the names of two terminals."""
+    """``ends`` are the paths of the two terminals."""
 
     def __init__(self) -> None:
         pairs = [os.openpty() for _ in range(2)]
@@ -29,7 +29,7 @@ class Cable:
         while not self._ending.is_set():
             for master in select.select(self._masters, [], [], 0.05)[0]:
                 other = self._masters[1 - self._masters.index(master)]
-                with contextlib.suppress(OSError):  # what nobody takes is lost
+                with contextlib.suppress(OSError):  # bytes that the other end does not read are lost
                     os.write(other, os.read(master, 4096))
 
     def __enter__(self) -> Cable:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""eProsima's agent, where there is one: ``EPG_XRCE_AGENT`` names the program, or ``MicroXRCEAgent`` is on ``PATH``.
+"""eProsima's agent, if it is installed: ``EPG_XRCE_AGENT`` names the program, or ``MicroXRCEAgent`` is on ``PATH``.
 
-It is confined to the loopback interface and to one DDS domain, so that tests see nothing of each other.
+It is limited to the loopback interface and to one DDS domain, so that tests do not disturb each other.
 """
 
 from __future__ import annotations
@@ -54,13 +54,13 @@ def free_port() -> int:
 
 
 def free_domain() -> int:
-    """One that other test processes hardly have at the same time; ROS 2 allows 0 to 101 on Linux."""
+    """A domain that other test processes probably do not use; ROS 2 allows 0 to 101 on Linux."""
     return 30 + (os.getpid() + time.time_ns() // 10**9) % 70
 
 
 @contextmanager
 def on_loopback() -> Iterator[None]:
-    """CycloneDDS of this process sees the loopback interface only, in domains that it has not joined before."""
+    """Limits CycloneDDS of this process to the loopback interface, in domains that it has not joined before."""
     before = os.environ.get("CYCLONEDDS_URI")
     os.environ["CYCLONEDDS_URI"] = CYCLONE
     try:
@@ -74,7 +74,7 @@ def on_loopback() -> Iterator[None]:
 
 @dataclass
 class RealAgent:
-    """``arguments`` as "udp4 -p 8888" or "serial -D /dev/pts/3"."""
+    """``arguments``: for example "udp4 -p 8888" or "serial -D /dev/pts/3"."""
 
     arguments: list[str]
     domain: int
@@ -97,7 +97,7 @@ class RealAgent:
         self.process = subprocess.Popen(
             [str(program()), *self.arguments],
             env=environment,
-            stdin=subprocess.PIPE,  # it ends when its input does
+            stdin=subprocess.PIPE,  # the agent ends when its input ends
             stdout=subprocess.DEVNULL,
         )
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a CREATE says about an entity, in the binary form or in XML.
+"""The description of an entity in a CREATE, in the binary form or in XML.
 
 Source: DDS-XRCE 1.0, 7.7.3 and annex A (binary), the DDS-XML profiles of Fast DDS (XML).
 """
@@ -25,24 +25,24 @@ class Qos:
 
 @dataclass(frozen=True)
 class Description:
-    """An entity as its CREATE describes it; what its kind does not have is empty."""
+    """An entity as its CREATE describes it; fields that its kind does not have are empty."""
 
     kind: Kind
     parent: bytes = b""
-    """Participant of a topic, publisher or subscriber; publisher or subscriber of a writer or reader."""
+    """The participant of a topic, publisher or subscriber; the publisher or subscriber of a writer or reader."""
     name: str = ""
-    """Of a participant, or of the topic."""
+    """The name of a participant, or of the topic."""
     type: str = ""
-    """Of the topic."""
+    """The type of the topic."""
     topic: bytes = b""
-    """Object id of a writer's or reader's topic; XML names it instead."""
+    """The object id of a writer's or reader's topic; XML gives the topic's name instead."""
     qos: Qos = Qos(reliable=True)
     domain: int = 0
     form: int = BINARY
 
 
 def read_description(payload: CdrReader) -> Description:
-    """Of a CREATE behind its request and object id."""
+    """Reads the description in a CREATE, after its request id and object id."""
     try:
         kind = Kind(payload.u8())
     except ValueError as error:

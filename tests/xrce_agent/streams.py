@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Streams of a session: reliable ones number, store, acknowledge and repeat; best-effort ones drop what is old.
+"""Streams of a session.  Reliable ones number, store, acknowledge and repeat; best-effort ones drop old messages.
 
 Source: DDS-XRCE 1.0, 8.4; windows of 16 messages as in eProsima's agent.
 """
@@ -35,7 +35,7 @@ class BestEffortInput:
 
 
 class ReliableInput:
-    """Hands out every message once, in order."""
+    """Returns every message once, in order."""
 
     def __init__(self) -> None:
         self._next = 0
@@ -57,7 +57,7 @@ class ReliableInput:
         return ready
 
     def heartbeat(self, first: int, last: int) -> list[bytes]:
-        """What the sender still has; what it has no longer cannot come any more."""
+        """The numbers of the messages that the sender still has.  Earlier messages cannot arrive any more."""
         if later(first, self._next):
             self._next = first
             self._stored = {number: body for number, body in self._stored.items() if not later(first, number)}
@@ -76,7 +76,7 @@ class ReliableInput:
 
 
 class Fragments:
-    """Puts submessages together that came in pieces."""
+    """Joins the fragments of submessages."""
 
     def __init__(self) -> None:
         self._data = b""
@@ -95,7 +95,7 @@ class BestEffortOutput:
         self._next = 0
 
     def push(self, content: bytes, mtu: int) -> list[bytes]:
-        """Messages to send: none if it is too large, as nothing can be cut here."""
+        """Messages to send; none if the content is too large, because this stream has no fragments."""
         header = Header(self._session, self._stream, self._next, self._key).pack()
         if len(header) + len(content) > mtu:
             return []
@@ -132,7 +132,7 @@ class ReliableOutput:
         return messages
 
     def acknack(self, first: int, missing: int) -> list[bytes]:
-        """What the other side wants again."""
+        """The messages that the other side requests again."""
         if not later(first, self._next):
             while self._unacknowledged and later(first, next(iter(self._unacknowledged))):
                 self._unacknowledged.popitem(last=False)
@@ -140,7 +140,7 @@ class ReliableOutput:
         return [self._unacknowledged[number] for number in wanted if number in self._unacknowledged]
 
     def heartbeat(self) -> bytes | None:
-        """To be sent now and then while something is not acknowledged."""
+        """A heartbeat, to be sent from time to time while messages are not acknowledged."""
         if not self._unacknowledged:
             return None
         first, last = next(iter(self._unacknowledged)), (self._next - 1) % SEQUENCES

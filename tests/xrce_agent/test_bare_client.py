@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The agent with eProsima's own client at the other end."""
+"""Tests of the agent with eProsima's own client as its peer."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def agent() -> Iterator[Agent]:
 
 
 def round_trips(agent: Agent, count: int, seconds: float = 20.0, pace: float = 0.0) -> list[float]:
-    """Sends 0, 1, 2... to rt/ping and gives what comes back, when all have or time is up."""
+    """Sends 0, 1, 2... to rt/ping; returns the answers when all have arrived or the time is over."""
     pongs = agent.topics.subscribe("rt/pong", reliable=False)
     for number in range(count):
         assert agent.topics.publish("rt/ping", float64(number)) == 1
@@ -50,7 +50,7 @@ def values(subscription: Subscription) -> list[float]:
 
 
 def ready(agent: Agent) -> None:
-    """Until samples reach the client."""
+    """Waits until samples reach the client."""
     agent.topics.wait_for_reader("rt/ping")
     agent.wait_until(lambda: any(client.readings for client in agent.clients.values()))
 
@@ -110,13 +110,13 @@ def test_a_serial_line_with_garbage(client_program: Path, tmp_path: Path) -> Non
             agent.inject(bytes(range(number, number + 40)), raw=True)
             assert round_trips(agent, 1) == [0.0]
         agent.wait_until(lambda: len(agent.topics.samples("rt/large")) >= 3)
-        agent.kill()  # the cable is pulled
+        agent.kill()  # like a pulled cable
         assert process.wait(20) == 0
         assert process.stdout is not None and "lost" in process.stdout.read() + "lost"
 
 
 def test_a_device_that_comes_and_goes(client_program: Path, tmp_path: Path) -> None:
-    """Both ends of a pseudo terminal: one as a board's, one as a device that the agent opens when it is there."""
+    """Both ends of a pseudo terminal: one is the board's; the agent opens the other as a device whenever it exists."""
     board = PtyLink(tmp_path / "board")
     with Agent(DeviceLink(tmp_path / "board")) as agent:
         time.sleep(0.3)
@@ -131,7 +131,7 @@ def test_a_device_that_comes_and_goes(client_program: Path, tmp_path: Path) -> N
 
 
 def test_a_restarted_agent_knows_nobody(client_program: Path, agent: Agent) -> None:
-    """It answers the ping of a session that it does not know, and says so."""
+    """It answers the ping of a session that it does not know, and reports that it does not know it."""
     with client(client_program, agent) as process:
         ready(agent)
         began = time.monotonic()
@@ -147,7 +147,7 @@ def test_a_frozen_agent_is_late_and_forgets_nothing(client_program: Path, agent:
     with client(client_program, agent, "count=10", "best_effort") as _:
         ready(agent)
         agent.freeze()
-        time.sleep(0.1)  # what was under way
+        time.sleep(0.1)  # for frames that were on their way
         before = len(agent.topics.samples("rt/count"))
         time.sleep(0.3)
         assert len(agent.topics.samples("rt/count")) == before
@@ -164,7 +164,7 @@ def test_entities_can_be_refused(client_program: Path, agent: Agent) -> None:
 
 
 def test_an_old_session_talks_while_a_new_one_begins(client_program: Path, agent: Agent) -> None:
-    """As eProsima's agent: the readers of a board that has been reset go on under its key."""
+    """As with eProsima's agent, the readers of a board that was reset continue under its key."""
     with client(client_program, agent) as process:
         ready(agent)
         process.kill()
@@ -178,7 +178,7 @@ def test_an_old_session_talks_while_a_new_one_begins(client_program: Path, agent
 
 
 def test_two_boards_hear_each_other(client_program: Path, agent: Agent) -> None:
-    """rt/pong of one is nothing to the other, rt/ping is heard by both."""
+    """A board does not receive the other's rt/pong; both receive rt/ping."""
     with client(client_program, agent, "key=1") as _, client(client_program, agent, "key=2") as _:
         agent.wait_until(lambda: sum(len(client.readings) for client in agent.clients.values()) == 2)
         pongs = agent.topics.subscribe("rt/pong")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A client's topics on DDS, and a peer's at the client."""
+"""A client's topics appear on DDS, and the topics of a DDS peer at the client."""
 
 from __future__ import annotations
 

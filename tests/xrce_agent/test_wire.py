@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The agent's parts without a board: framing, streams, faults, descriptions of entities."""
+"""The parts of the agent without a board: framing, streams, faults, descriptions of entities."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def test_crc_is_the_one_of_the_catalogue() -> None:
 @QUICK
 @given(st.lists(st.binary(min_size=1, max_size=300), max_size=5), st.binary(max_size=40), st.integers(1, 9))
 def test_frames_come_out_as_they_went_in(payloads: list[bytes], noise: bytes, chunk: int) -> None:
-    """However the line cuts them, and whatever stood before the first."""
+    """Wherever the line cuts the frames, and whatever bytes precede the first frame."""
     line = noise.replace(b"\x7e", b"") + b"".join(frame(payload, 1, 0) for payload in payloads)
     deframer = Deframer()
     found = [payload for at in range(0, len(line), chunk) for payload in deframer.feed(line[at : at + chunk])]
@@ -54,7 +54,7 @@ def test_sequence_numbers_wrap() -> None:
 @settings(max_examples=25, deadline=None, derandomize=True, database=None)
 @given(st.randoms(use_true_random=False), st.floats(0, 0.5))
 def test_a_reliable_stream_brings_all_in_order(chance: random.Random, loss: float) -> None:
-    """Over a line that loses, doubles and exchanges messages, past the wrap of sequence numbers."""
+    """Over a line that loses, duplicates and reorders messages, beyond the wrap of sequence numbers."""
     output, inside = ReliableOutput(0x81, b"", 0x80), ReliableInput()
     output._next = inside._next = 0xFFF0
     inside._announced = 0xFFEF

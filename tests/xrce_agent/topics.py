@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Topics between boards and tests, in the place of DDS: who matches whom, and what has been said.
+"""Topics between boards and tests, in place of DDS: matching of endpoints, and all samples so far.
 
-Matching is that of DDS as far as ROS 2 uses it: same topic, same type, and a best-effort writer gives nothing to a
+Endpoints match as in DDS, as far as ROS 2 uses it: same topic, same type; a best-effort writer does not match a
 reliable reader.  A :class:`Topics` outlives the agents that use it, as a DDS domain does.
 """
 
@@ -14,18 +14,18 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 DEPTH = 10
-"""Of a history, unless somebody says another one: ROS 2's default."""
+"""Depth of a history by default, as in ROS 2."""
 
 
 @dataclass(frozen=True)
 class Sample:
     time: float
-    """``time.monotonic()`` when it came."""
+    """``time.monotonic()`` at its arrival."""
     topic: str
     data: bytes
     """CDR without its encapsulation header."""
     writer: str
-    """Node name of the board, "" for a test."""
+    """The board's node name, or "" for a test."""
 
 
 @dataclass(eq=False)
@@ -34,13 +34,13 @@ class Endpoint:
 
     topic: str
     type: str | None
-    """None: any."""
+    """None: any type."""
     reliable: bool
     depth: int = DEPTH
     node: str = ""
 
     def matches(self, reader: Endpoint) -> bool:
-        """Whether this writer gives to ``reader``."""
+        """True if ``reader`` receives the samples of this writer."""
         types = self.type is None or reader.type is None or self.type == reader.type
         return self.topic == reader.topic and types and (self.reliable or not reader.reliable)
 
@@ -51,7 +51,7 @@ class ReaderEnd(Endpoint):
 
 
 class Subscription:
-    """What a test receives of a topic, as a peer with this QoS would."""
+    """The samples that a test receives of a topic, like a peer with this QoS."""
 
     def __init__(self, topics: Topics, topic: str, type_name: str | None, reliable: bool) -> None:
         self._topics = topics
@@ -74,9 +74,9 @@ class Topics:
         self.readers: list[ReaderEnd] = []
         self.writers: list[Endpoint] = []
         self.listeners: list[Callable[[str, Endpoint], None]] = []
-        """Called with "attach" or "detach" and the endpoint of a board: what a bridge wants to know."""
+        """Called with "attach" or "detach" and the endpoint of a board; a bridge needs this."""
         self.taps: list[Callable[[Endpoint, bytes], None]] = []
-        """Called with each sample of a board and its writer."""
+        """Called with each sample of a board, and its writer."""
 
     # Boards and bridges ------------------------------------------------------------------------------------------
 
@@ -104,7 +104,7 @@ class Topics:
             listener(what, end)
 
     def write(self, writer: Endpoint, data: bytes) -> None:
-        """A board's sample, for all readers that match."""
+        """Passes a board's sample to all readers that match."""
         with self.lock:
             self._samples.append(Sample(time.monotonic(), writer.topic, data, writer.node))
             self._give(writer, data)
@@ -121,7 +121,7 @@ class Topics:
     # Tests -------------------------------------------------------------------------------------------------------
 
     def publish(self, topic: str, data: bytes, reliable: bool = True, type_name: str | None = None) -> int:
-        """As a peer with this QoS would; returns how many readers match."""
+        """Publishes like a peer with this QoS; returns the number of readers that match."""
         with self.lock:
             return self._give(Endpoint(topic, type_name, reliable), data)
 
@@ -129,7 +129,7 @@ class Topics:
         return Subscription(self, topic, type_name, reliable)
 
     def samples(self, topic: str, since: float = 0.0, node: str | None = None) -> list[Sample]:
-        """What boards have written, whoever read it."""
+        """The samples that boards have written, also without a reader."""
         with self.lock:
             return [
                 sample
@@ -142,7 +142,7 @@ class Topics:
             self._samples.clear()
 
     def wait_until(self, condition: Callable[[], bool], seconds: float) -> bool:
-        """Whether ``condition`` has become true in that time; it is asked whenever something happens."""
+        """True if ``condition`` became true within that time; it is checked at every event."""
         end = time.monotonic() + seconds
         with self.lock:
             while not condition():
@@ -153,13 +153,13 @@ class Topics:
             return True
 
     def wait_for_sample(self, topic: str, seconds: float = 20.0, node: str | None = None) -> Sample:
-        """The next one that a board writes from now on."""
+        """The next sample that a board writes from now on."""
         since = time.monotonic()
         found = self.wait_until(lambda: bool(self.samples(topic, since, node)), seconds)
         assert found, f"nothing on {topic} within {seconds} s"
         return self.samples(topic, since, node)[0]
 
     def wait_for_reader(self, topic: str, seconds: float = 20.0) -> None:
-        """Until a board reads ``topic``."""
+        """Waits until a board reads ``topic``."""
         found = self.wait_until(lambda: any(reader.topic == topic for reader in self.readers), seconds)
         assert found, f"nobody reads {topic} within {seconds} s"

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Messages of DDS-XRCE on the wire.
 
-Source: OMG, "DDS for eXtremely Resource Constrained Environments" 1.0, chapter 8 and annex A; where that leaves a
-choice, what eProsima's client 2.4.3 and agent 2.4.2 do.
+Source: OMG, "DDS for eXtremely Resource Constrained Environments" 1.0, chapter 8 and annex A.  Where the standard
+leaves a choice, this module follows eProsima's client 2.4.3 and agent 2.4.2.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ NONE_STREAM = 0x00
 BEST_EFFORT_STREAM = 0x01
 RELIABLE_STREAM = 0x80
 WITHOUT_KEY = 0x80
-"""Session ids from here on stand in headers that do not hold the client's key."""
+"""From this session id on, headers do not contain the client's key."""
 
 LITTLE_ENDIAN = 0x01
 LAST_FRAGMENT = 0x02
@@ -35,7 +35,7 @@ SEQUENCES = 0x10000
 
 
 class WireError(ValueError):
-    """A message that ends too early or says what cannot be."""
+    """A message that ends too early, or has an invalid content."""
 
 
 class Id(IntEnum):
@@ -110,7 +110,7 @@ def submessage(identity: Id, payload: bytes, flags: int = 0) -> bytes:
 
 
 def split(data: bytes) -> tuple[Header, bytes]:
-    """Header and submessages of a message."""
+    """Splits a message into its header and its submessages."""
     if len(data) < 4:
         raise WireError("no whole header")
     session, stream, sequence = struct.unpack_from("<BBH", data)
@@ -122,7 +122,7 @@ def split(data: bytes) -> tuple[Header, bytes]:
 
 
 def submessages(body: bytes) -> Iterator[Submessage]:
-    """What stands one after the other, each at a multiple of four bytes."""
+    """The submessages of a message, each aligned to four bytes."""
     position = 0
     while position + SUBHEADER <= len(body):
         identity, flags, length = struct.unpack_from("<BBH", body, position)
@@ -148,7 +148,7 @@ class CdrReader:
         return self.data[start : start + size]
 
     def number(self, code: str) -> int:
-        """``code`` is one of ``struct``'s: "H"."""
+        """Reads a number; ``code`` is one of ``struct``'s, such as "H"."""
         size = struct.calcsize(code)
         value: int = struct.unpack(self._order + code, self.take(size, size))[0]
         return value
@@ -179,5 +179,5 @@ class CdrReader:
 
 
 def later(sequence: int, other: int) -> bool:
-    """Whether ``sequence`` comes after ``other``, modulo 2^16."""
+    """True if ``sequence`` comes after ``other``, modulo 2^16."""
     return 0 < (sequence - other) % SEQUENCES < SEQUENCES // 2

@@ -1,12 +1,12 @@
 /**
  * @file
- * eProsima's client, used as its own examples use it.
+ * eProsima's client, used as in its own examples.
  *
  *     bare_client udp:127.0.0.1:8888 | serial:/dev/pts/3 [options]
  *
- * Answers each sample of rt/ping with the same on rt/pong.  Options: "key=<n>", "best_effort", "xml" (entities described
- * in XML instead of the binary form), "count=<ms>" (a counter on rt/count), "large=<ms>" (1200 bytes on rt/large, which
- * go in fragments).  Says "connected", the time offset, and at the end why.
+ * Answers each sample of rt/ping with the same sample on rt/pong.  Options: "key=<n>", "best_effort", "xml" (describes
+ * entities in XML instead of the binary form), "count=<ms>" (a counter on rt/count), "large=<ms>" (1200 bytes on
+ * rt/large, which need several fragments).  Prints "connected", the time offset, and at the end the reason for ending.
  */
 #define _POSIX_C_SOURCE 200809L
 
@@ -108,7 +108,7 @@ static size_t transport_read(uxrCustomTransport *transport, uint8_t *data, size_
     }
     const ssize_t done = read(file, data, size);
     if (done <= 0 && (wait.revents & POLLHUP) != 0) {
-        ending = 1; /* the line is gone */
+        ending = 1; /* the line was closed */
     }
     *error = done <= 0;
     return done < 0 ? 0 : (size_t)done;
