@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whether generated C compiles under the strictest warnings EPG promises."""
+"""Checks that generated C compiles under the strictest warnings that EPG promises."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ needs_compiler = pytest.mark.skipif(shutil.which("gcc") is None, reason="gcc is 
 
 
 def include_options(cmake: str) -> list[str]:
-    """Where the headers are that ``<name>.cmake`` lists; copies in a user's ``targets`` folder are EPG's own files."""
+    """The folders of the headers that ``<name>.cmake`` lists; a copy in a user's ``targets`` counts as EPG's own."""
     headers = re.findall(r'"\$\{(?:EPG_TARGETS_DIR|CMAKE_SOURCE_DIR\}/targets)\}?/([^"]+\.h)"', cmake)
     inside = sorted({str(Path(header).parent) for header in headers})
     return [f"-I{ROOT / 'targets' / folder}" for folder in ("runtime/include", "platforms/host/include", *inside)]
 
 
 def compile_outputs(name: str, files: Mapping[str, str]) -> None:
-    """Asserts that every generated C file of target ``name`` compiles, but for those that are the model's own code."""
+    """Asserts that every generated C file of target ``name`` compiles, except the model's own code."""
     with tempfile.TemporaryDirectory() as made:
         folder = Path(made)
         for file, text in files.items():
@@ -46,5 +46,5 @@ def compile_outputs(name: str, files: Mapping[str, str]) -> None:
 
 
 def is_strict(file: str) -> bool:
-    """Whether a generated file is compiled with the project's warnings: all but the model's own code."""
+    """True if a generated file is compiled with the project's warnings: all files except the model's own code."""
     return not file.endswith("_export.c") and "_copies/" not in file

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An environment without variables of EPG."""
+"""Fixture: an environment without variables of EPG."""
 
 from __future__ import annotations
 

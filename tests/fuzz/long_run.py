@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How much is tried: HYPOTHESIS_PROFILE=longer tries four times as much, the same in each run; HYPOTHESIS_PROFILE=long
-twenty times as much, and other things in each run.
+"""The number of examples.  HYPOTHESIS_PROFILE=longer tries four times as many, the same ones in each run;
+HYPOTHESIS_PROFILE=long tries twenty times as many, and different ones in each run.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ PROFILE = settings(
     phases=tuple(Phase) if LONG else (Phase.explicit, Phase.generate),
     print_blob=True,
 )
-"""Settings of every property test here: a normal run is the same each time."""
+"""Settings of every property test in this folder: each normal run uses the same examples."""
 
 
 def examples(normal: int) -> int:
-    """Examples of a property test that has ``normal`` ones in a normal run."""
+    """The number of examples of a property test that has ``normal`` examples in a normal run."""
     return normal * {"long": 20, "longer": 4}.get(os.environ.get("HYPOTHESIS_PROFILE", ""), 1)

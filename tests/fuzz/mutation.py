@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Mutations of a project's files: some that look at the structure of a file, some that do not."""
+"""Mutations of a project's files: some use the structure of a file, some do not."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ ODD_SCALARS = (
     "&a 1", "*a", "<<", "? x", "- x", "'it''s'", "2026-01-01", "1_000", "0b1", "+1", "1.", ".5", "1e3", "'1'", "=",
     "!", "@x", "`x`",
 )  # fmt: skip
-"""Values as they may be written in YAML: numbers at every edge, words with a meaning elsewhere, text that escapes."""
+"""Values in YAML: numbers at every limit, words with a special meaning elsewhere, text with escapes."""
 
 ODD_TEXT = (
     "*/", "/*", "//", "\\", '"', "'", "\n", "\r", "\0", "\x1b[31m", "\x85", "\u2028", "%n", "??/", "${x}", "$<1:x>",
@@ -33,7 +33,7 @@ ODD_TEXT = (
     "é", "\ufeff", "\ud7ff", "if", "return", "static", "struct", "extern", "double ", "xx_P[0] = ", "u[99]", "y[0]",
     "xx_", "aaaaaaaaaaaaaaaaaaaaaaaa" * 20, "(" * 200, "{" * 200,
 )  # fmt: skip
-"""Pieces to put into any other file: C, C++, XML."""
+"""Pieces to insert into any other file: C, C++, XML."""
 
 _TOKEN = re.compile(r"[A-Za-z_]\w*|[0-9][\w.]*|\s+|[^\w\s]")
 _VALUE = re.compile(r"(?<=: )[^,{}\n\[\]]+")
@@ -50,37 +50,37 @@ def _replaced(text: str, match: re.Match[str] | None, new: str) -> str:
 
 
 def _value(draw: Draw, text: str) -> str:
-    """Another scalar in place of a value."""
+    """Replaces a value by another scalar."""
     return _replaced(text, _place(draw, list(_VALUE.finditer(text))), str(draw(st.sampled_from(ODD_SCALARS))))
 
 
 def _other_value(draw: Draw, text: str) -> str:
-    """The value of another key."""
+    """Replaces a value by the value of another key."""
     places = list(_VALUE.finditer(text))
     other = _place(draw, places)
     return _replaced(text, _place(draw, places), other[0]) if other else text
 
 
 def _number(draw: Draw, text: str) -> str:
-    """Another number of the same unit."""
+    """Replaces a number by another one with the same unit."""
     number = draw(st.one_of(st.integers(0, 40), st.floats(allow_nan=False, allow_infinity=False), st.integers()))
     return _replaced(text, _place(draw, list(re.finditer(r"(?<![\w.])[0-9][0-9.]*", text))), repr(number))
 
 
 def _rename(draw: Draw, text: str) -> str:
-    """Another name for a key."""
+    """Replaces a key."""
     match = _place(draw, list(_KEY.finditer(text)))
     return _replaced(text, match, str(draw(st.sampled_from((*ODD_SCALARS, *_KEY.findall(text))))))
 
 
 def _rename_everywhere(draw: Draw, text: str) -> str:
-    """A harmless new name wherever the old one stands."""
+    """Replaces a key by a harmless new name everywhere in the text."""
     match = _place(draw, list(_KEY.finditer(text)))
     return re.sub(rf"\b{match[0]}\b", f"{match[0]}_2", text) if match else text
 
 
 def _line(draw: Draw, text: str) -> str:
-    """A line deleted, doubled or exchanged with another."""
+    """Deletes, duplicates or indents a line, exchanges it with another, or inserts a comment."""
     lines = text.splitlines(keepends=True)
     if not lines:
         return text
@@ -101,7 +101,7 @@ def _line(draw: Draw, text: str) -> str:
 
 
 def _token(draw: Draw, text: str) -> str:
-    """A word or sign deleted, doubled, exchanged with the next, or another in its place."""
+    """Deletes, duplicates or replaces a word or sign."""
     match = _place(draw, list(_TOKEN.finditer(text)))
     if match is None:
         return text
@@ -116,7 +116,7 @@ def _insert(draw: Draw, text: str) -> str:
 
 
 def _nest(draw: Draw, text: str) -> str:
-    """Brackets in brackets, at a limit or far beyond it."""
+    """Inserts nested brackets, with a depth at a limit or far beyond it."""
     depth = draw(st.sampled_from((3, 31, 32, 33, 3000)))
     assert isinstance(depth, int)
     bracket = draw(st.sampled_from(("[]", "{}", "()")))
@@ -132,7 +132,7 @@ def _cut(draw: Draw, text: str) -> str:
 
 
 def _near_number(draw: Draw, text: str) -> str:
-    """A number not far from the one that was there."""
+    """Replaces a number by one of similar size."""
     match = _place(draw, list(re.finditer(r"(?<![\w.\[])[0-9][0-9.]*(?![\w\]])", text)))
     if match is None:
         return text
@@ -162,7 +162,7 @@ def _blank_line(draw: Draw, text: str) -> str:
 
 
 def _swap(draw: Draw, text: str) -> str:
-    """Two neighbouring lines of one depth exchanged."""
+    """Exchanges two adjacent lines of the same depth."""
     lines = text.splitlines(keepends=True)
     depth = [len(line) - len(line.lstrip()) for line in lines]
     places = [
@@ -176,7 +176,7 @@ def _swap(draw: Draw, text: str) -> str:
 
 
 _GENTLE = (_near_number, _near_number, _flag, _blank_line, _swap)
-"""Mutations after which a file is often right still: they lead behind the checks."""
+"""Mutations after which a file is often still correct, so that they reach the code behind the checks."""
 
 YAML_MUTATIONS = (
     *(_GENTLE * 3), _rename_everywhere, _value, _value, _other_value, _number, _rename, _line, _token, _insert, _nest,
@@ -187,7 +187,7 @@ TEXT_MUTATIONS = (*(_GENTLE * 2), _token, _token, _line, _insert, _insert, _numb
 
 @st.composite
 def mutated(draw: Draw, text: str, mutations: Sequence[Callable[[Draw, str], str]], most: int = 3) -> bytes:
-    """``text`` after one to ``most`` mutations, now and then in another encoding or with bytes that are none."""
+    """``text`` after one to ``most`` mutations, sometimes in another encoding or with invalid bytes."""
     for _ in range(draw(st.integers(1, most))):  # type: ignore[call-overload]
         mutation = draw(st.sampled_from(list(mutations)))
         text = mutation(draw, text)  # type: ignore[operator]

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A project in a folder of its own, EPG run on it within this process, and what must hold whatever its files are.
+"""A project in its own folder, a run of EPG on it in this process, and the promises that hold for all files.
 
-:meth:`Project.generate` asserts, after every run: EPG ends in time with status 0 (and no error) or 1 (and at least one
-error with a position); there is no traceback; nothing outside the output folder has changed; a run that fails leaves
-the output folder as it was; a run that succeeds leaves exactly the files it lists, complete and in UTF-8.
+:meth:`Project.generate` asserts after every run that EPG ends in time, with status 0 (and no error) or 1 (and at least
+one error with a position); that there is no traceback; that nothing outside the output folder has changed; that a run
+that fails leaves the output folder unchanged; that a run that succeeds leaves exactly the files it lists, complete and
+in UTF-8.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ _OWN = {".epg-outputs.json", ".epg-warnings.txt"}
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a run of EPG gave; ``files`` are those of the output folder."""
+    """The result of a run of EPG; ``files`` are those of the output folder."""
 
     status: int
     printed: str
@@ -46,13 +47,13 @@ class Outcome:
 
 
 class TookTooLong(BaseException):
-    """EPG computes for too long; no handler of exceptions in EPG catches it."""
+    """EPG computes for too long.  EPG has no exception handler that catches this class."""
 
 
 class Project:
-    """Files of one project and the command that makes outputs of them, with paths relative to the folder.
+    """The files of one project and the command that generates from them, with paths relative to the folder.
 
-    ``arguments`` are those of ``epg generate``; without ``--tcf`` among them, of ``epg generate-model``.
+    ``arguments`` are those of ``epg generate``; if ``--tcf`` is not among them, those of ``epg generate-model``.
     """
 
     def __init__(self, folder: Path, files: Mapping[str, bytes], arguments: Sequence[str], name: str = "robot") -> None:
@@ -68,7 +69,7 @@ class Project:
             path.write_bytes(data)
 
     def generate(self, seconds: float = 10.0, targets: str = "") -> Outcome:
-        """Runs ``epg generate`` in the folder and checks what the module's text promises."""
+        """Runs ``epg generate`` in the folder and checks the promises that this module's docstring lists."""
         before = _tree(self.folder)
         command = [*self.command, "--output", OUTPUT, "--source-dir", str(self.folder)]
         status, printed, messages = run_epg(command, self.folder, seconds, targets)
@@ -105,7 +106,7 @@ def project_files(folder: Path, inside: str = "") -> dict[str, bytes]:
 
 
 def run_epg(command: Sequence[str], folder: Path, seconds: float, targets: str = "") -> tuple[int, str, str]:
-    """Status, output and messages of ``epg`` run in ``folder``; TookTooLong when it takes longer than ``seconds``."""
+    """Status, output and messages of ``epg`` in ``folder``.  Raises TookTooLong if it takes more than ``seconds``."""
     output, messages = io.StringIO(), io.StringIO()
     here = Path.cwd()
     os.environ["EPG_TARGETS_PATH"] = targets
@@ -120,7 +121,7 @@ def run_epg(command: Sequence[str], folder: Path, seconds: float, targets: str =
 
 
 def check_messages(messages: str) -> None:
-    """Every line is one of a diagnostic, printable, and each diagnostic begins with a place and ends with its id."""
+    """Each line belongs to a diagnostic and is printable; a diagnostic begins with a position and ends with its id."""
     for line in messages.split("\n"):
         assert all(char.isprintable() or char == "\t" for char in line), line
         assert not line or MESSAGE.fullmatch(line) or _EXCERPT.match(line), line
@@ -128,7 +129,7 @@ def check_messages(messages: str) -> None:
 
 @contextlib.contextmanager
 def time_limit(seconds: float) -> Iterator[None]:
-    """Raises :class:`TookTooLong` inside the block when it computes longer than that, however busy the machine is."""
+    """Raises :class:`TookTooLong` in the block after so many seconds of processor time, independent of the load."""
     if not hasattr(signal, "setitimer"):
         yield
         return

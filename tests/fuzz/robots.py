@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Robots that are right by construction: random components, wires, conversions and parameters with a model that fits.
+"""Robots that are correct by construction: random components, wires, conversions and parameters with a suitable model.
 
-Whatever :func:`robots` draws must generate and compile; names are as odd as names may be.
+Everything that :func:`robots` draws must generate and compile.  Names are as unusual as the rules allow.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from epg.models.identifiers import is_reserved
 
 ARGUMENTS = ("--tcf", "robot.tcf", "--model", "model", "--bindings", "bindings.yaml")
 
-#: names that are legal and near to something that is not: macros, types, functions, names of generated files
+#: Legal names that resemble illegal ones: macros, types, functions, names of generated files
 ODD_NAMES = (
     "x", "x_config", "t", "h", "H", "inputs", "outputs", "start", "read", "model", "model_init", "plant", "values",
     "u", "y", "i", "index", "self", "samples", "signals", "setpoints", "application", "monitor", "fail_safe",
@@ -52,7 +52,7 @@ descriptions = st.one_of(
 
 @dataclass(frozen=True)
 class Component:
-    """A component and the ends it offers: ``(reference, direction, unit)``."""
+    """A component and the ports that it offers: ``(reference, direction, unit)``."""
 
     name: str
     text: dict[str, Any]
@@ -61,7 +61,7 @@ class Component:
 
 @dataclass
 class Robot:
-    """The files of a project for :class:`tests.fuzz.project.Project`, and what they are made of."""
+    """The files of a project for :class:`tests.fuzz.project.Project`, and the parts that they describe."""
 
     files: dict[str, bytes]
     components: list[Component] = field(default_factory=list)
@@ -71,7 +71,7 @@ class Robot:
 
 @st.composite
 def components(draw: st.DrawFn, name: str, topic: str) -> Component:
-    """A component of any kind that EPG brings."""
+    """A component of any of EPG's own kinds."""
     kind = draw(
         st.sampled_from(
             [
@@ -192,7 +192,7 @@ def ros_components(draw: st.DrawFn, name: str, kind: str, topic: str) -> Compone
 
 @st.composite
 def communications(draw: st.DrawFn) -> dict[str, Any]:
-    """How a host communicates."""
+    """The communication of a host."""
     middleware = draw(st.sampled_from(("none", "files", "console", "dds", "xrce")))
     text: dict[str, Any] = {"middleware": middleware}
 
@@ -239,7 +239,7 @@ def robots(draw: st.DrawFn, most: int = 8) -> Robot:
     driven = draw(st.lists(st.sampled_from(sinks), max_size=6, unique=True)) if sinks else []
     ports = draw(st.lists(names, min_size=len(wanted) + 7, max_size=len(wanted) + 7, unique_by=str.casefold))
     inputs = dict(zip(ports, wanted))
-    # several sinks may hang on one output
+    # several sinks may use the same output
     outputs: dict[str, list[tuple[str, str, str]]] = {ports[-1]: []}
     for sink in driven:
         outputs.setdefault(draw(st.sampled_from(ports[len(wanted) :])), []).append(sink)
@@ -301,7 +301,7 @@ def _end(draw: st.DrawFn, end: tuple[str, str, str], key: str) -> object:
 
 
 def yaml_text(value: dict[str, Any]) -> str:
-    """A map as YAML: its keys a line each, and what is inside as JSON, which is YAML too."""
+    """A mapping as YAML: one line per key, with its value as JSON, which is also YAML."""
     lines = []
     for key, inner in value.items():
         if isinstance(inner, dict) and inner:
@@ -327,7 +327,7 @@ def _flow(value: object) -> str:
 
 
 def _quoted(text: str) -> str:
-    """A string in double quotes, with escapes for what YAML does not allow as it is."""
+    """A string in double quotes, with escapes for the characters that YAML does not allow."""
     shown = (
         char if char.isprintable() else f"\\U{ord(char):08x}" for char in text.replace("\\", "\\\\").replace('"', '\\"')
     )

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whatever stands in a file: code that compiles, or errors with a position.  What must hold is asserted in project.py.
+"""For any contents of a file, EPG makes code that compiles, or reports errors with a position (see project.py).
 
-Three ways to make files: arbitrary bytes, mutations of files that are right, and robots that are right by
-construction, as they are and mutated.
+The files are made in three ways: arbitrary bytes, mutations of correct files, and robots that are correct by
+construction, unchanged and mutated.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ MODEL_ALONE = ("--model", "model")
 
 @cache
 def all_kinds() -> dict[str, bytes]:
-    """A project on the host with every kind of component and a plant."""
+    """A project on the host with every component kind and a plant."""
     files = project_files(ROOT / "tests/cmake/projects/all_kinds")
     return {name: data for name, data in files.items() if name != "CMakeLists.txt"}
 
@@ -50,7 +50,7 @@ def test_arbitrary_bytes(tmp_path: Path, file: str, data: bytes) -> None:
 
 @needs_compiler
 def test_mutated_files_of_a_project(tmp_path: Path) -> None:
-    """At least a fifth of the mutated projects compile: the mutations reach behind the checks."""
+    """At least a fifth of the mutated projects compile: the mutations reach the code behind the checks."""
     counts: Counter[str] = Counter()
 
     @settings(PROFILE, max_examples=examples(140))
@@ -76,7 +76,7 @@ seen: set[int] = set()
 
 
 def _compile_if_new(files: Any, name: str) -> None:
-    """Compiles what was not compiled before: many mutations give the same code."""
+    """Compiles only code that was not compiled before, because many mutations give the same code."""
     texts = hash(tuple((file, text) for file, text in sorted(files.items()) if file.endswith((".c", ".h"))))
     if texts not in seen:
         seen.add(texts)
@@ -93,7 +93,7 @@ def test_robots_that_are_right_compile(tmp_path: Path, robot: Robot, name: str) 
 
 
 NO_TARGETS = ("read", "write", "safe", "pwm", "constant")
-"""Legal names of components that no target can have, or not with every component."""
+"""Legal names of components that no target can have, or that only some components can have."""
 
 
 @settings(PROFILE, max_examples=examples(45))
@@ -131,7 +131,7 @@ KINDS = ("write", "write_cpp", "write_tokens", "fmu", "configured", "whole fmu")
 @needs_compiler
 @pytest.mark.parametrize("kind", KINDS)
 def test_mutated_exports(tmp_path: Path, kind: str) -> None:
-    """Sources and metadata of a model; the generated interface compiles, the model's own code is the model's."""
+    """Sources and metadata of a model: the generated interface compiles.  The model's own code is not checked."""
     files = export(kind)
     arguments = ("--model", "model/sources" if kind in ("fmu", "configured") else "model")
     counts: Counter[bool] = Counter()

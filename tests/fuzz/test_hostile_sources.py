@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sources made to be slow to read: nothing that EPG looks for in them takes more than linear time, or recurses.
+"""Sources that are made to be slow to read: EPG reads each in linear time and without recursion.
 
-Every text is put at several places of every form of a model.  A normal run takes 32 KiB of each, in which anything
-quadratic already takes seconds; a long run takes 1 MiB, for which EPG may need two seconds.
+Every text is put at several places of every form of a model.  A normal run uses 32 KiB of each text, for which
+a quadratic algorithm already takes seconds.  A long run uses 1 MiB, for which EPG may take two seconds.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from tests.fuzz.project import TookTooLong, time_limit
 from tests.models.exports import Export
 
 SIZE = 1 << 20 if LONG else 1 << 15
-SECONDS = 2.0  # of computing
+SECONDS = 2.0  # of processor time
 
 
 def _fill(text: str) -> str:
@@ -148,7 +148,7 @@ def _inserted(original: str, text: str, place: str) -> str:
 
 
 def test_xml_of_many_pieces(tmp_path: Path) -> None:
-    """Text between many elements, deep elements, document types and entities."""
+    """Text between many elements, deeply nested elements, document types and entities."""
     path = tmp_path / "tokens.xml"
     for text in (
         "<tokens>" + _fill("x<b/>") + "</tokens>",

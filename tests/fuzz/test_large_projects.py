@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Thousands of components, ports, wires and parameters, right and each of them wrong: time grows with their number."""
+"""Thousands of components, ports, wires and parameters, all right or all wrong: the time is proportional to them."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from tests.fuzz.project import Project
 from tests.fuzz.robots import ARGUMENTS
 
 COUNT = 10_000 if LONG else 2_000
-SECONDS = COUNT / 800  # of computing; what is quadratic takes several times that at the larger count
+SECONDS = COUNT / 800  # of processor time; a quadratic algorithm takes several times that
 
 
 def project() -> dict[str, bytes]:
-    """One constant for each input of a model, and as many parameters."""
+    """One constant for each input of a model, and the same number of parameters."""
     numbers = range(COUNT)
     components = "".join(f"  c{i}: {{kind: constant, value: {i}}}\n" for i in numbers)
     inputs = "".join(f"  p{i}: {{}}\n" for i in numbers)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The property tests again, with four times as many examples."""
+"""The property tests with four times as many examples."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The output folder: whatever an earlier run, another program or a user left in it."""
+"""The output folder, with any contents that an earlier run, another program or a user left in it."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from tests.fuzz.test_files import WITH_PLANT, all_kinds
     ids=lambda value: repr(value[:12]),
 )
 def test_a_damaged_list_of_outputs(manifest: bytes, tmp_path: Path) -> None:
-    """It is made again, and nothing outside the folder is deleted."""
+    """EPG makes the list again, and deletes nothing outside the folder."""
     files = all_kinds() | {f"{OUTPUT}/.epg-outputs.json": manifest}
     outcome = Project(tmp_path / "p", files, WITH_PLANT).generate()
     assert outcome.good
@@ -46,7 +46,7 @@ def test_a_run_that_fails_changes_nothing(tmp_path: Path) -> None:
     project = Project(tmp_path / "p", all_kinds(), WITH_PLANT)
     assert project.generate().good
     (project.folder / "bindings.yaml").write_bytes(b"version: 1\n")
-    assert not project.generate().good  # generate() compares the folder before and after
+    assert not project.generate().good  # generate() also asserts that the folder is unchanged
 
 
 def test_a_file_in_the_place_of_the_folder(tmp_path: Path) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Hostile bytes for a board that is a ROS 2 node: xrce/ has the programs, which run here without libFuzzer.
+"""Hostile bytes for a board that is a ROS 2 node.  The programs are in xrce/ and run here without libFuzzer.
 
 With clang, a longer search (docs/development.md):
 
@@ -24,7 +24,7 @@ INPUTS = 20_000
 
 @pytest.fixture(scope="module")
 def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder they are in, under sanitizers."""
+    """The folder of the programs, built with sanitizers."""
     try:
         libraries()
     except Missing as missing:
@@ -44,7 +44,7 @@ def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize("name", ["xrce_fuzz", "message_fuzz"])
 def test_samples_and_random_inputs(programs: Path, name: str) -> None:
-    """Samples are what libFuzzer has found to lead to different places, and what was a bug once."""
+    """The samples are inputs that reach different code, as found by libFuzzer, and inputs that once showed a bug."""
     corpus = PROJECT / f"{name}.txt"
     command = [str(programs / name), f"-corpus={corpus}", f"-random={INPUTS}"]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=600)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whatever stands in the files of a user's ``targets`` folder: boards, chips, platforms and component kinds."""
+"""Any contents of the files of a user's ``targets`` folder: boards, chips, platforms and component kinds."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ FOLDERS = (
 
 @cache
 def with_targets() -> dict[str, bytes]:
-    """A project with a folder of its own for everything its target needs."""
+    """A project with its own folder of targets, which holds everything that its target needs."""
     files = dict(all_kinds())
     for folder in FOLDERS:
         if (ROOT / "targets" / folder).is_dir():
@@ -37,7 +37,7 @@ def with_targets() -> dict[str, bytes]:
 
 
 def descriptions() -> list[str]:
-    """The files that describe something."""
+    """The files that describe an item."""
     return sorted(name for name in with_targets() if name.startswith("targets/") and name.endswith(".yaml"))
 
 

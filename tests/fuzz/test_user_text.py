@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Text of a user at every place where it reaches an output: it is seen as it is, and nothing of it takes effect."""
+"""A user's text at every place at which it reaches an output: it appears unchanged and has no other effect."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def replaced(files: dict[str, bytes], name: str, old: str, new: str) -> dict[str
 @needs_compiler
 @pytest.mark.parametrize("text", HOSTILE, ids=repr)
 def test_descriptions_units_and_names_of_a_model(text: str, tmp_path: Path) -> None:
-    """What a model says of itself stands in comments; none of it is compiled."""
+    """The description of a model is only in comments; no part of it is compiled."""
     files = replaced(all_kinds(), "model/model.yaml", "  button: {}", f"  button: {{description: {in_yaml(text)}}}")
     files = replaced(files, "model/model.yaml", "  heat: {}", f"  heat: {{unit: {in_yaml(text)}}}")
     shown = "".join(char if char.isprintable() else "?" for char in text) or "Copy"
@@ -65,7 +65,7 @@ def test_descriptions_units_and_names_of_a_model(text: str, tmp_path: Path) -> N
         files = replaced(files, "model/model.yaml", "name: Copy", f"name: {in_yaml(text)}")
         files = replaced(files, "bindings.yaml", "model: Copy", f"model: {in_yaml(shown)}")
     outcome = Project(tmp_path / "p", files, WITH_PLANT).generate()
-    if not outcome.good:  # a name of blanks is none
+    if not outcome.good:  # a name of spaces is not a name
         assert not text.strip() or "[unit-mismatch]" in outcome.messages, outcome.messages
         return
     compile_outputs("robot", outcome.files)
@@ -101,7 +101,7 @@ def test_names_that_reach_code_are_names(file: str, old: str, new: str, text: st
     "text", [text for text in HOSTILE if text.strip() and "\n" not in text and "*/" not in text], ids=repr
 )
 def test_names_of_20sim(text: str, tmp_path: Path) -> None:
-    """Ports and parameters of an export may be called anything that a comment holds."""
+    """Ports and parameters of an export may have any name that a comment can contain."""
     from tests.fuzz.test_files import export
 
     name = text.replace("\r", "").replace("\\", "\\\\") or "x"
@@ -130,7 +130,7 @@ def needs_names(name: str) -> None:
 
 @pytest.mark.parametrize("folder", FOLDERS, ids=repr)
 def test_folders_of_any_name(folder: str, tmp_path: Path) -> None:
-    """CMake finds the very files; a name that its lists cannot hold is an error that says so."""
+    """CMake finds exactly these files; a name that its lists cannot contain is an error with that reason."""
     needs_names(folder)
     files = {
         name.replace("model/", f"{folder}/", 1) if name.startswith("model/") else name: data
@@ -174,7 +174,7 @@ def test_folders_whose_name_is_no_text(tmp_path: Path) -> None:
 
 @needs_compiler
 def test_what_is_seen_when_it_runs(tmp_path: Path) -> None:
-    """Port names of 20-sim in the header of a trace are as 20-sim has them."""
+    """The header of a trace contains the port names exactly as in 20-sim."""
     from tests.fuzz.test_files import export
     from tests.models.exports import Export
 
@@ -222,7 +222,7 @@ def test_what_is_seen_when_it_runs(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ['a"b', "a>b", "a<b", "a\\b", "a\nb"], ids=repr)
 def test_files_that_cannot_be_included(name: str, tmp_path: Path) -> None:
-    """C++ sources and headers are included by name, and C has no way to escape in it."""
+    """C++ sources and headers are included by name, and C has no escape sequences in such a name."""
     needs_names(name)
     files = all_kinds()
     for suffix, key, old in ((".cpp", "sources", "sources: [copy.c]"), (".h", "header", "header: copy.h")):
@@ -246,7 +246,7 @@ def test_files_that_cannot_be_included(name: str, tmp_path: Path) -> None:
 
 
 def test_other_commands_show_names_on_one_line(tmp_path: Path) -> None:
-    """A name with controls in it neither moves the cursor of a terminal nor begins a line of a bindings file."""
+    """A name with control characters neither moves the cursor of a terminal nor begins a line of a bindings file."""
     from tests.fuzz.test_files import export
 
     files = dict(export("write"))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Text of a user for Zephyr: none of it takes effect in the devicetree overlay, in Kconfig, or in CMake's part.
+"""A user's text for Zephyr: it has no effect in the devicetree overlay, in Kconfig, or in CMake's part.
 
-Each text is either refused with a position, or the three files are those of a project without it, but for what the text
-names.  (That dtc reads in the overlay what was meant is tested in ``tests/zephyr/generate``.)
+Each text is either refused with a position, or the three files are those of a project without it, except for the names
+that the text gives.  (``tests/zephyr/generate`` tests that dtc reads the overlay as intended.)
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ components:
 
 @cache
 def files() -> dict[str, bytes]:
-    """JIWY on a Pico with Zephyr, with a board and a chip of the user's own."""
+    """JIWY on a Pico with Zephyr, with the user's own board and chip."""
     found = project_files(ROOT / "examples/jiwy/model", "model")
     found |= {"robot.tcf": TCF.encode()}
     found["robot.bindings.yaml"] = (ROOT / "examples/jiwy/jiwy.bindings.yaml").read_bytes()
@@ -119,7 +119,7 @@ def test_texts_of_a_tcf(old: str, new: str, text: str, usual: dict[str, str], tm
 def test_texts_of_a_board(old: str, new: str, text: str, usual: dict[str, str], tmp_path: Path) -> None:
     board = "targets/boards/rpi_pico/board.yaml"
     outcome = generated(tmp_path / "p", replaced(files(), board, old, new.format(in_yaml(text))))
-    if outcome.good and "zephyr: {" in new:  # the board's name, quoted, where CMake compares it with BOARD
+    if outcome.good and "zephyr: {" in new:  # the quoted name of the board, which CMake compares with BOARD
         assert all(outcome.files[name] == usual[name] for name in ("robot.overlay", "robot.Kconfig"))
         return
     check(outcome, usual)
@@ -127,7 +127,7 @@ def test_texts_of_a_board(old: str, new: str, text: str, usual: dict[str, str], 
 
 @pytest.mark.parametrize("text", HOSTILE, ids=repr)
 def test_texts_of_a_model(text: str, usual: dict[str, str], tmp_path: Path) -> None:
-    """What 20-sim says of a port stands in comments of C alone."""
+    """20-sim's description of a port is only in comments of C."""
     changed = files()
     source = changed["model/xxsubmod.c"].decode()
     assert "/* setpoint_pan" in source

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How much the tests notice: small faults are put into EPG, one at a time, and some test must fail.
+"""A measure of the tests: small faults are put into EPG, one at a time, and a test must fail for each of them.
 
-``choice`` finds the mutants, which ``python_source`` and ``c_source`` make, ``workshop`` and ``runtime`` try one of
-them, ``trial`` many, ``results`` keeps what came out.  ``python -m tests.mutants --help`` says how to run it.
+``python_source`` and ``c_source`` make the mutants and ``choice`` selects some.  ``workshop`` and ``runtime`` try one
+mutant, ``trial`` many, and ``results`` stores the results.  ``python -m tests.mutants --help`` explains how to run it.
 """

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tries mutants of the generator and the runtime against the tests::
 
-python -m tests.mutants --check     # fails if a mutant that was caught before survives now
-python -m tests.mutants --choose    # tries 200 mutants, without those that tests/mutants/caught.txt has
+    python -m tests.mutants --check     # fails if a mutant that was caught before now survives
+    python -m tests.mutants --choose    # tries 200 mutants that tests/mutants/caught.txt does not list
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def _choose(options: argparse.Namespace, everything: list[Choice], folder: Path)
 
 
 def _check(options: argparse.Namespace, everything: list[Choice], folder: Path) -> int:
-    """Tries those that were caught, with all tests: which of them are the quickest changes from run to run."""
+    """Tries the mutants that were caught before, with all tests: which tests are the quickest varies between runs."""
     before = [result for result in results.read(options.results) if result.state == CAUGHT]
     results_of = {one: result for result in before for one in find(everything, result.identity)}
     for result in before:

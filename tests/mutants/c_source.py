@@ -58,7 +58,7 @@ def _tokens(source: str) -> list[Token]:
 
 
 def _statements(tokens: list[Token]) -> Iterator[tuple[str, list[Token]]]:
-    """Each statement in a function, or its head if it has a body, and the function's name."""
+    """Each statement in a function (its head, if it has a body), and the function's name."""
     function, depth, parentheses, inner = "", 0, 0, 0
     statement: list[Token] = []
     for token in tokens:
@@ -91,7 +91,7 @@ def _function(tokens: list[Token]) -> str:
 
 
 def _changes(statement: list[Token]) -> Iterator[tuple[int, int, str]]:
-    """The tokens from ``begin`` to before ``end``, and the text instead of them."""
+    """The tokens from ``begin`` to before ``end``, and the text that replaces them."""
     words = [token.text for token in statement]
     if _removable(statement):
         yield 0, len(statement), ""

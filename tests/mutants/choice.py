@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which mutants are tried: a seeded choice in each area, or those of earlier results wherever they are now."""
+"""The choice of mutants: a random choice with a seed in each area, or the mutants of earlier results."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from .workshop import ROOT
 
 AREAS = {"check": "epg/check/", "resolve": "epg/resolve/", "emit": "epg/emit/", "runtime": "targets/runtime/src/"}
 LONG_ENOUGH = 30
-"""Characters of a statement that is looked for in any function if it is not in the function of the identity."""
+"""A statement with this many characters is searched in all functions if the function of its identity lacks it."""
 
 
 @dataclass(frozen=True)
 class Choice:
-    """A mutant and its area: empty for files that are in none of them."""
+    """A mutant and its area; the area is empty for a file outside all areas."""
 
     area: str
     mutant: Mutant
 
 
 def all_mutants() -> list[Choice]:
-    """All mutants of the generator and of the runtime, of files in no area too: statements move."""
+    """All mutants of the generator and of the runtime, also of files outside all areas, because statements move."""
     found = []
     for folder, pattern, mutants in (
         ("epg", "*.py", python_source.mutants),
@@ -42,7 +42,7 @@ def all_mutants() -> list[Choice]:
 
 
 def choose(everything: Sequence[Choice], area: str, count: int, seed: int, folder: Path) -> list[Choice]:
-    """At most one mutant of a statement, each with an identity that nothing else has."""
+    """At most one mutant per statement, each with a unique identity."""
     often = Counter(one.mutant.identity for one in everything)
     names = Counter(name for name in {(one.mutant.file, *_statement(one)) for one in everything})
     twice = Counter(name[1:] for name in names)
@@ -65,7 +65,7 @@ def _statement(one: Choice) -> tuple[str, str]:
 
 
 def find(everything: Sequence[Choice], identity: Identity) -> list[Choice]:
-    """Where a mutant is now: in functions of its name, or else in the only other place with its statement."""
+    """The present places of a mutant: in functions of its name, or else in the only other place with its statement."""
     found = [one for one in everything if one.mutant.identity == identity]
     if not found and len(identity.before) >= LONG_ENOUGH:
         changes = (identity.before, identity.after)

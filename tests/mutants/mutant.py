@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A mutant: one small change of one statement, and the identity by which a later run finds it again.
 
-The identity says nothing of files, lines and comments: a mutant outlives moves of code.
+The identity does not contain files, lines or comments: it stays valid when code moves.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ class Identity:
 class Mutant:
     identity: Identity
     file: str
-    """From the root of the project, with slashes."""
+    """Path from the root of the project, with slashes."""
     lines: range
     """The lines of the statement, or of its head if it has a body."""
     at_import: bool

@@ -28,13 +28,13 @@ CALLS = {"any": "all", "all": "any", "min": "max", "max": "min"}
 LEFT_OUT = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.Import, ast.ImportFrom, ast.Assert)
 BODIES = ("body", "orelse", "finalbody", "handlers", "cases")
 LONGEST = 120
-"""Characters of a statement that is an identity; in a longer one, it is an expression around the change."""
+"""A shorter statement is an identity by itself; in a longer one, the identity is an expression around the change."""
 NOT_RUN = ("annotation", "returns", "format_spec")
 
 
 @dataclass(frozen=True)
 class Edit:
-    """``new`` in place of a field of ``owner``, or of one entry of a list there."""
+    """Puts ``new`` in place of a field of ``owner``, or in place of one entry of a list there."""
 
     owner: ast.AST
     field: str
@@ -72,7 +72,7 @@ def mutants(source: str, file: str) -> Iterator[Mutant]:
 
 
 def _changed(source: str, number: int) -> ast.Module:
-    """A module with one of its changes.  Functions keep their lines."""
+    """The module with one of its changes.  Functions keep their lines."""
     tree = ast.parse(source)
     place = next(itertools.islice(_places(tree), number, None))
     place.edit.put()
@@ -81,7 +81,7 @@ def _changed(source: str, number: int) -> ast.Module:
 
 @dataclass(frozen=True)
 class Place:
-    """An edit, the nodes around it from the statement inwards, and where the statement stands."""
+    """An edit, the nodes around it from the statement inwards, and the position of the statement."""
 
     edit: Edit
     around: list[Any]
@@ -136,7 +136,7 @@ def _removable(statement: ast.stmt) -> bool:
 
 
 def _expressions(around: list[ast.AST]) -> Iterator[tuple[list[ast.AST], str, int | None, ast.AST]]:
-    """What a statement computes, without the statements in its body: nodes around, field, index and node."""
+    """The expressions of a statement without those in its body: the nodes around, field, index and node."""
     for field, value in ast.iter_fields(around[-1]):
         if field in NOT_RUN:
             continue
@@ -188,7 +188,7 @@ def _calls(node: ast.Call) -> Iterator[ast.AST]:
 
 
 def _conditions(field: str, node: ast.AST) -> Iterator[ast.AST]:
-    """The opposite of a condition for which no operator above gives it."""
+    """The opposite of a condition, if no operator above makes it."""
     if field == "test" and isinstance(node, (ast.Name, ast.Attribute, ast.Call, ast.Subscript, ast.NamedExpr)):
         yield ast.UnaryOp(ast.Not(), node)
 
@@ -204,7 +204,7 @@ def _last_line(statement: ast.stmt) -> int:
 
 
 class _WithoutProse(ast.NodeTransformer):
-    """Strings that contain a blank are messages: a mutant outlives other words in them."""
+    """Replaces strings that contain a space, because they are messages: a mutant stays the same if its words change."""
 
     def visit_Constant(self, node: ast.Constant) -> ast.AST:
         prose = isinstance(node.value, str) and " " in node.value
@@ -212,7 +212,7 @@ class _WithoutProse(ast.NodeTransformer):
 
 
 def _one_line(node: ast.AST) -> str:
-    """A node as text, of a statement with a body only its head."""
+    """A node as text on one line; only the head of a statement that has a body."""
     head = copy.copy(node)
     for field in BODIES:
         if isinstance(getattr(head, field, None), list):

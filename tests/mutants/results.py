@@ -28,7 +28,7 @@ class Result:
 
 
 def read(path: Path) -> list[Result]:
-    """Raises :class:`ValueError` for a line that is not a result."""
+    """Reads the results.  Raises :class:`ValueError` for a line that is not a result."""
     results = []
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
         if not line or line.startswith("#"):

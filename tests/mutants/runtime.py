@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The C tests of the runtime with one mutated source: all other objects are compiled once."""
+"""The C tests of the runtime with one mutated source; all other objects are compiled once."""
 
 from __future__ import annotations
 
@@ -31,11 +31,11 @@ FOLDERS = [
 ]
 OPTIONS = ["-std=c11", "-ffp-contract=off", "-pthread", "-w", *(f"-I{folder}" for folder in FOLDERS)]
 LIMIT = 60
-"""Seconds after which a C test does not end."""
+"""Seconds after which a C test counts as endless."""
 
 
 class Objects:
-    """Objects of the runtime, the drivers and the tests."""
+    """The objects of the runtime, the drivers and the tests."""
 
     def __init__(self, folder: Path) -> None:
         folder.mkdir()
@@ -53,7 +53,7 @@ class Objects:
         return output
 
     def catch(self, mutant: Mutant, folder: Path) -> bool:
-        """True if a C test fails: first those of the programs that concern the mutated file."""
+        """True if a C test fails.  The tests that belong to the mutated file run first."""
         source = folder / Path(mutant.file).name
         source.write_text(mutant.text(), encoding="utf-8")
         mutated = source.with_suffix(".o")
@@ -71,7 +71,7 @@ class Objects:
 
 
 def _distance(tests: Path, name: str) -> int:
-    """0 for the tests that are named after a file, 1 for others that include its header, 2 for the rest."""
+    """0 for the tests that have the name of the file, 1 for others that include its header, 2 for the rest."""
     if name.startswith(tests.stem.removesuffix("_tests")):
         return 0
     return 1 if f"epg/{name}.h" in tests.read_text(encoding="utf-8") else 2
@@ -83,7 +83,7 @@ def compile_object(source: Path, output: Path, options: Sequence[str]) -> bool:
 
 
 def differs(mutant: Mutant, folder: Path) -> bool:
-    """True if a mutant compiles, and not to the code of the original."""
+    """True if a mutant compiles, and its object code differs from the original's."""
     source = folder / Path(mutant.file).name
     codes = []
     for text in ((ROOT / mutant.file).read_text(encoding="utf-8"), mutant.text()):

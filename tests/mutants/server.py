@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A plugin of pytest that collects tests once, and then runs some of them as often as it is asked to.
+"""A plugin of pytest that collects tests once, and then runs some of them at every request.
 
-Each time they run in a fork, after the functions of one module have been replaced by those of a mutant.  Requests and
-answers are lines of JSON in the pipes whose numbers ``EPG_MUTANTS_PIPES`` gives.
+Each run is in a fork, after the functions of one module have been replaced by those of a mutant.  Requests and
+answers are lines of JSON in the pipes whose numbers are in ``EPG_MUTANTS_PIPES``.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ import pytest
 
 FOLDER = str(Path(__file__).resolve().parents[2]) + os.sep
 MEMORY = 3 << 30
-"""Bytes at which a fork is stopped: a mutant may fill the memory."""
+"""Limit of a fork's memory in bytes: a mutant may fill the memory."""
 CALLS = 20
-"""How many calls of a function are looked at in each test: more take much time, and rarely run other lines."""
+"""Number of calls of a function that are traced in each test: more take much time and rarely run other lines."""
 Lines = set[tuple[str, int]]
 
 
@@ -45,7 +45,7 @@ def pytest_runtestloop(session: pytest.Session) -> bool | None:
 
 
 def _fork(session: pytest.Session, request: dict[str, Any]) -> bool:
-    """True if the tests passed."""
+    """Runs tests in a fork; True if they passed."""
     child = os.fork()
     if child == 0:
         os.setsid()
@@ -90,7 +90,7 @@ def _run(session: pytest.Session, request: dict[str, Any]) -> int:
 
 
 def replace_functions(module: CodeType) -> None:
-    """Gives each function of a module the code that it has in ``module``: the same names at the same lines."""
+    """Gives each function of a module its code in ``module``, found by the same name and the same line."""
     codes: dict[tuple[str, int], CodeType] = {}
     found = [module]
     while found:
@@ -108,7 +108,7 @@ def replace_functions(module: CodeType) -> None:
 def _record(session: pytest.Session, items: Sequence[pytest.Item], path: Path) -> int:
     """Writes ``{test: [seconds, {file: [line, ...]}]}`` of the tests that pass.
 
-    What the first test of a file runs in fixtures counts for all tests of the file.
+    The lines that fixtures run during the first test of a file count for all tests of the file.
     """
     record: dict[str, tuple[float, Lines]] = {}
     fixtures: dict[str, Lines] = defaultdict(set)
@@ -133,7 +133,7 @@ def _record(session: pytest.Session, items: Sequence[pytest.Item], path: Path) -
 
 
 def _used() -> float:
-    """Seconds of processors that this process and the programs it has started used: other work does not count."""
+    """Processor seconds of this process and of the programs it has started, so that other programs do not count."""
     return sum(os.times()[:4])
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Mutants of small sources, their identities, and which results count as worse."""
+"""Mutants of small sources, their identities, and the results that count as worse than before."""
 
 from __future__ import annotations
 
@@ -136,7 +136,7 @@ def is_small(number: int) -> bool:
 
 
 def test_functions_are_replaced_where_they_are() -> None:
-    """Those that other modules have imported, too: ``imported`` is such a name."""
+    """Functions are also replaced where other modules have imported them, as here under the name ``imported``."""
     imported = is_small
     source = inspect.getsource(inspect.getmodule(is_small) or is_small)
     mutant = next(m for m in python_source.mutants(source, "x") if m.identity.after == "return number <= 10")

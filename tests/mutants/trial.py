@@ -27,7 +27,7 @@ IN_PROCESS = [
 ]
 """Tests that call EPG in their own process."""
 CLOSED_LOOP = ["tests/runtime/test_faulty_robot.py"]
-"""Tests that start EPG as a user does, for mutants that survive the others in areas whose code then runs."""
+"""Tests that start EPG as a user does.  They run for mutants that survive the others, in areas that such tests run."""
 RUNS = ("emit", "runtime")
 
 
@@ -35,14 +35,14 @@ class Trial:
     """Copies of the project in ``folder``, one for each of ``jobs`` threads."""
 
     def __init__(self, folder: Path, jobs: int, at_most: float) -> None:
-        """``at_most`` bounds the seconds of tests that one mutant of Python meets."""
+        """``at_most`` limits the seconds of tests for one mutant of Python."""
         self._folder = folder
         self._jobs = jobs
         self._at_most = at_most
         self._free: SimpleQueue[Workshop] = SimpleQueue()
 
     def run(self, chosen: Sequence[Choice]) -> Iterator[tuple[Choice, bool]]:
-        """Each mutant, and whether a test catches it, in any order."""
+        """Each mutant, and True if a test catches it, in any order."""
         workshops = []
         began = time.monotonic()
         for number in range(self._jobs):

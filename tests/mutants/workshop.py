@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A copy of the project in a temporary folder, in which one mutant after another meets the tests."""
+"""A copy of the project in a temporary folder, in which the tests run against one mutant after another."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ from .mutant import Mutant
 
 ROOT = Path(__file__).resolve().parents[2]
 SOME = 6.0
-"""Seconds of tests, the quickest first, that a mutant meets which is tried for the first time."""
+"""Seconds of tests, the quickest first, for a mutant that is tried for the first time."""
 ALL = float("inf")
 LIMIT = 400
-"""A mutant with which a run of pytest takes longer than this, in seconds, is caught: it does not end."""
+"""If a run of pytest takes longer than this, in seconds, the mutant counts as caught: the run is endless."""
 
 Coverage = Mapping[str, tuple[float, Mapping[str, Sequence[int]]]]
 """Seconds and lines by file, for each test."""
@@ -60,14 +60,14 @@ class Workshop:
         self._server.wait()
 
     def record(self, part: int, parts: int) -> Coverage:
-        """The lines that each test of a part of the files runs.  Tests that fail without a mutant are left out."""
+        """The lines that each test of a part of the files runs.  Tests that fail without a mutant are omitted."""
         path = self.folder / "record.json"
         self._ask({"record": str(path), "part": part, "parts": parts, "limit": 3600})
         found = json.loads(path.read_text("utf-8"))
         return {test: (seconds, lines) for test, (seconds, lines) in found.items()}
 
     def catches(self, mutant: Mutant, coverage: Coverage, at_most: float) -> bool:
-        """True if a test fails that runs the line of a mutant of Python.  ``at_most`` bounds the seconds of tests."""
+        """True if a test fails that runs the line of a mutant of Python.  ``at_most`` limits the seconds of tests."""
         tests = tests_of(mutant, coverage, at_most)
         seconds = sum(coverage[test][0] for test in tests)
         if not tests:
@@ -82,7 +82,7 @@ class Workshop:
         return not self._ask(request)
 
     def catches_last(self, mutant: Mutant, tests: Sequence[str]) -> bool:
-        """True if a test fails, whatever lines it runs."""
+        """True if a test fails, independent of the lines that it runs."""
         with self._mutated(mutant.file, mutant.text()):
             return not self._passes(tests)
 
@@ -103,7 +103,7 @@ class Workshop:
             self._write(path, original)
 
     def _write(self, path: Path, text: str) -> None:
-        """Each time with another time stamp: Python and Ninja know by it that the file has changed."""
+        """Writes a file with a new time stamp, by which Python and Ninja see that it has changed."""
         self._clock += 10
         path.write_text(text, encoding="utf-8")
         stamp = path.stat().st_mtime + self._clock
@@ -118,7 +118,7 @@ class Workshop:
 
 
 def run(command: Sequence[str | Path], folder: Path, environment: Mapping[str, str], limit: float) -> int:
-    """The exit code of a program, which is stopped with all it has started after ``limit`` seconds: then -1."""
+    """The exit code of a program, or -1 if it was stopped with all its child processes after ``limit`` seconds."""
     process = subprocess.Popen(
         [str(part) for part in command],
         cwd=folder,
@@ -137,9 +137,9 @@ def run(command: Sequence[str | Path], folder: Path, environment: Mapping[str, s
 
 
 def tests_of(mutant: Mutant, coverage: Coverage, at_most: float) -> list[str]:
-    """The tests that run a mutant's line: those of the file that is named after its module, then the quickest first.
+    """The tests that run a mutant's line: first those of the file that is named after its module, then the quickest.
 
-    All of that file, or one test at least; others as long as the sum of their times is not above ``at_most`` seconds.
+    All tests of that file, or at least one test; others while the sum of their times is at most ``at_most`` seconds.
     """
     own = f"/test_{Path(mutant.file).stem}.py::"
     tests = []
@@ -167,7 +167,7 @@ def _copy_project(folder: Path) -> None:
 
 
 def _environment(folder: Path) -> dict[str, str]:
-    """Without variables of EPG, and with a cache whose templates are not the user's: a mutant may spoil them."""
+    """The environment without variables of EPG, and with its own cache: a mutant may damage the templates there."""
     cache = folder / "cache"
     cache.mkdir()
     users = cache_folder()

@@ -104,8 +104,7 @@ class Agent:
         self._thread.start()
         self.start()
 
-    # Faults that tests cause
-    # -------------------------------------------------------------------------------------------
+    # Faults that tests cause ----------------------------------------------------------------------------------------
 
     @property
     def address(self) -> str:
@@ -119,7 +118,7 @@ class Agent:
             self._wake()
 
     def kill(self) -> None:
-        """Ends like a killed process: it informs no client, keeps no data, and its entities disappear from the topics."""
+        """Ends like a killed process: it informs no client, keeps no data, and its entities leave the topics."""
         with self.lock:
             self._alive = False
             self.link.close()
@@ -270,7 +269,7 @@ class Agent:
                 self._send(peer, header.pack() + self._info(part, peer in self._peers))
 
     def _stranger(self, peer: Hashable, header: Header, body: bytes) -> None:
-        """Handles a message of a session that this agent does not know, because it began before the agent was started."""
+        """Handles a message of a session that this agent does not know: the session began before the agent's start."""
         for part in itertools.islice(submessages(body), 1):
             if part.id == Id.GET_INFO and Id.GET_INFO not in self.mute:
                 self._send(peer, header.pack() + self._info(part, False))

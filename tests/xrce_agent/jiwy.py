@@ -11,7 +11,7 @@ from .messages import float64, read_float64
 
 
 def follow(agent: Agent, seconds: float) -> float:
-    """Moves pan between -0.4 and 0.4 rad with a period of 4 s; the largest difference of setpoint and position, in rad."""
+    """Moves pan by 0.4 rad to each side in 4 s; the largest difference between setpoint and position, in rad."""
     largest = 0.0
     began = time.monotonic()
     while (now := time.monotonic() - began) < seconds:

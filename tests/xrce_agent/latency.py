@@ -22,8 +22,8 @@ class Step:
     after_arrival: float
     """From the moment at which the control side can read the value to the output."""
     cycles: int
-    """Number of cycles that began after that, up to the cycle of the output.  1: the next cycle; 0: a cycle that had just
-    begun but had not read its setpoints yet."""
+    """Number of cycles that began after that, up to the cycle of the output.  1: the next cycle; 0: a cycle that had
+    just begun but had not read its setpoints yet."""
     in_cycle: float
     """From the tick (on the host: the begin of the cycle) to the output."""
 

@@ -132,8 +132,7 @@ export class Uart extends BasePeripheral {
         this.machine.setInterrupt(irq, (this.raw & this.registers[IMSC]) !== 0);
     }
 
-    // To the other device
-    // -------------------------------------------------------------------------------------------------
+    // To the other device -------------------------------------------------------------------------------------------
 
     put(byte) {
         if (this.tx.length === FIFO_SIZE) {

@@ -158,7 +158,7 @@ void agent_receive(agent_t *agent, const uint8_t *frame, size_t size)
             agent->expected = (uint16_t)(agent->expected + (reliable ? 1U : 0U));
             take_submessages(agent, frame + 4, size - 4);
         }
-        if (reliable) { /* what is between has been lost */
+        if (reliable) { /* the frames between were lost */
             send_acknack(agent, (uint16_t)(ahead == 0 || ahead >= AGENT_WINDOW ? 0U : (1U << (ahead + 1U)) - 1U));
         }
     }

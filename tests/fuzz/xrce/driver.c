@@ -4,8 +4,9 @@
  *
  *     xrce_fuzz [-random=<count>] [-seed=<seed>] [-corpus=<text file>] [file...]
  *
- * Each file is an input, and so is each line of the text file, in hexadecimal digits.  Then `count` inputs are made from
- * them: pieces of two put together, with bytes changed, or nothing but chance.  The same seed makes the same inputs.
+ * Each file is an input, and so is each line of the text file, in hexadecimal digits.  Then the driver makes `count`
+ * more inputs: pieces of two inputs joined, with changed bytes, or random bytes only.  The same seed makes the same
+ * inputs.
  */
 #include <inttypes.h>
 #include <stdint.h>
@@ -71,7 +72,7 @@ static void run_random(void)
     free(exact);
 }
 
-/** Keeps an input in memory of exactly its size, and runs it. */
+/** Copies an input to memory of exactly its size, so that sanitizers detect a read beyond it, and runs it. */
 static int run_sample(const uint8_t *data, size_t size)
 {
     uint8_t *exact = malloc(size > 0 ? size : 1);

@@ -1,8 +1,8 @@
 /**
  * @file
- * Hostile bytes for the functions that read messages.  Each message is in memory of exactly its size, as are the values.
+ * Hostile bytes for the functions that read messages.  Each message and its values are in memory of exactly their size.
  *
- * What has been read and is written again must be read as the same.
+ * A value that was read, written and read again must be the same.
  */
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes a corpus of libFuzzer as lines for the tests: ``python samples.py corpus >> xrce_fuzz.txt``.
+"""Converts a corpus of libFuzzer to lines for the tests: ``python samples.py corpus >> xrce_fuzz.txt``.
 
-Short inputs first; long ones, which say little more, are left out.
+Short inputs come first.  Long inputs are omitted, because they rarely reach other code.
 """
 
 from __future__ import annotations

@@ -2,10 +2,10 @@
  * @file
  * Hostile bytes for a board with the middleware `xrce`.
  *
- * An input says how the board is connected and how far it is (waiting, creating, running); then it is a list of events:
- * bytes, frames and samples of a stranger, damaged answers of an honest agent, time, a line that is pulled, a line
- * without room.  After it, the honest agent is there again, and within ten seconds the board must be running and a
- * setpoint must reach the model, whatever has happened.  Sanitizers watch.
+ * An input begins with the connection of the board and its progress (waiting, creating, running).  A list of events
+ * follows: bytes, frames and samples of a stranger, damaged answers of an honest agent, time, an unplugged line, a line
+ * without space.  Then only the honest agent remains.  Within ten seconds the board must be running and a setpoint must
+ * reach the model, whatever has happened before.  Sanitizers check the whole run.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -39,7 +39,7 @@ static struct {
     bool out_escaped;
     uint8_t damage_at;
     unsigned int since_beat; /* ms */
-    uint8_t damage;          /* exclusive or of one byte of the next frame from the agent; 0: none */
+    uint8_t damage;          /* XOR mask for one byte of the agent's next frame; 0: none */
 } line;
 
 static agent_t agent;
@@ -93,7 +93,7 @@ static void put_frame(const uint8_t *data, size_t size)
     put_stuffed((uint8_t)(crc >> 8));
 }
 
-/** The agent's next frame; false: none. */
+/** The agent's next frame, or NULL. */
 static agent_frame_t *next_frame(void)
 {
     agent_frame_t *frame = agent_next(&agent);
@@ -129,7 +129,7 @@ static size_t read_line(void *context, void *data, size_t size)
     return count;
 }
 
-/** Takes stuffed bytes of the board apart. */
+/** Removes the byte stuffing of the board's frames. */
 static void take_out(uint8_t byte)
 {
     if (byte == BEGIN) {
@@ -156,7 +156,7 @@ static size_t write_line(void *context, const void *data, size_t size)
     (void)context;
     const uint8_t *bytes = data;
     if (size > line.room) {
-        abort(); /* it has asked how much there is */
+        abort(); /* the board asks for the free space first */
     }
     line.room -= size;
     if (line.datagrams) {
@@ -323,7 +323,7 @@ static void start(bool datagrams)
     epg_xrce.start(&target, &stream);
 }
 
-/** A cycle and a poll, `milliseconds` after the last. */
+/** Runs a cycle and a poll, `milliseconds` after the last ones. */
 static void step(unsigned int milliseconds)
 {
     fake_port.now_ns += (milliseconds - 1) * MS;
@@ -358,7 +358,7 @@ static uint8_t take(input_t *input)
     return *input->data++;
 }
 
-/** Up to `most` bytes, as many as the next one says. */
+/** Takes up to `most` bytes; the next byte of the input sets the number. */
 static size_t take_some(input_t *input, const uint8_t **bytes, size_t most)
 {
     const size_t wanted = (size_t)take(input) * 2 % (most + 1);
@@ -369,7 +369,7 @@ static size_t take_some(input_t *input, const uint8_t **bytes, size_t most)
     return size;
 }
 
-/** A frame on a stream with whatever submessages; `ahead` of the number that the board expects. */
+/** Sends a frame on a stream with arbitrary submessages; `ahead`: distance to the number that the board expects. */
 static void strange_frame(input_t *input, uint8_t which, int ahead)
 {
     static const uint8_t ids[4] = {0x00, 0x01, 0x80, 0x00};
@@ -386,7 +386,7 @@ static void strange_frame(input_t *input, uint8_t which, int ahead)
     agent_queue(&agent, frame, 4 + size);
 }
 
-/** A submessage whose length is right. */
+/** Sends a submessage with the correct length. */
 static void strange_submessage(input_t *input, uint8_t which, int ahead)
 {
     static const uint8_t ids[4] = {0x00, 0x01, 0x80, 0x80};
@@ -466,7 +466,7 @@ static void check(bool good, const char *what)
     }
 }
 
-/** The honest agent alone: the board comes back, and a setpoint reaches the model. */
+/** Only the honest agent: the board connects again, and a setpoint reaches the model. */
 static void recover(void)
 {
     static const uint8_t enable = 1, half[8] = {0, 0, 0, 0, 0, 0, 0xE0, 0x3F};
@@ -492,11 +492,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     input_t input = {data, size};
     const uint8_t how = take(&input);
     start((how & 1) != 0);
-    if ((how & 6) == 2) { /* in the middle of creating */
+    if ((how & 6) == 2) { /* while the board creates its entities */
         for (unsigned int i = 0; i < 2U + (how >> 4); i++) {
             step(1);
         }
-    } else if ((how & 6) != 0) { /* running */
+    } else if ((how & 6) != 0) { /* while the board is running */
         for (unsigned int i = 0; i < 200 && state() != EPG_XRCE_RUNNING; i++) {
             step(1);
         }
