@@ -10,14 +10,14 @@ from .program import PROGRAMS, Program, compile_program, platform_sources
 
 @pytest.fixture(scope="session")
 def motor(tmp_path_factory: pytest.TempPathFactory) -> Program:
-    """The motor target, with AddressSanitizer and UndefinedBehaviorSanitizer."""
+    """The motor target, built with AddressSanitizer and UndefinedBehaviorSanitizer."""
     folder: Path = tmp_path_factory.mktemp("motor")
     return Program(compile_program(folder / "motor", [PROGRAMS / "motor.c", *platform_sources()]))
 
 
 @pytest.fixture(scope="session")
 def patient_motor(tmp_path_factory: pytest.TempPathFactory) -> Program:
-    """The same, but never disabled by overruns, which a busy machine may cause in real time."""
+    """The same, but overruns, which a loaded machine may cause in real time, never disable it."""
     folder: Path = tmp_path_factory.mktemp("patient_motor")
     sources = [PROGRAMS / "motor.c", *platform_sources()]
     return Program(compile_program(folder / "motor", sources, defines=["OVERRUN_LIMIT=0"]))

@@ -43,14 +43,14 @@ def compile_program(
 
 
 def platform_sources(*, main: bool = True) -> list[Path]:
-    """All of the runtime and the host platform, as the build system would compile it."""
+    """All sources of the runtime and the host platform, as the build system would compile them."""
     sources = sorted((RUNTIME / "src").glob("*.c")) + sorted((HOST / "src").glob("*.c"))
     return [source for source in sources if main or source.name != "main.c"]
 
 
 @dataclass(frozen=True)
 class Run:
-    """A run that has ended, and the files it wrote."""
+    """A run that has ended, and the files that it wrote."""
 
     status: int
     stdout: str
@@ -64,7 +64,7 @@ class Run:
 
     @property
     def trace(self) -> dict[str, list[float]]:
-        """Columns of the trace by name."""
+        """The columns of the trace by name."""
         with (self.folder / "trace.csv").open(newline="") as file:
             rows = list(csv.reader(file))
         return {name: [float(row[i]) for row in rows[1:]] for i, name in enumerate(rows[0])}
@@ -84,7 +84,7 @@ class Program:
     path: Path
 
     def arguments(self, folder: Path, duration: float, setpoints: str | None, *more: str) -> list[str]:
-        """Command line that writes every file into ``folder``; ``setpoints`` is the text of the setpoint file."""
+        """Arguments that write every file into ``folder``; ``setpoints`` is the text of the setpoint file."""
         folder.mkdir(parents=True, exist_ok=True)
         command = [str(self.path), "--duration", str(duration), *more]
         for name, suffix in (("topics", "csv"), ("trace", "csv"), ("statistics", "json")):
@@ -106,12 +106,12 @@ class Program:
         return Run(done.returncode, done.stdout, done.stderr, folder)
 
     def run_good(self, folder: Path, duration: float, setpoints: str | None = None, *more: str) -> Run:
-        """As ``run``, for a run that must succeed without a word on stderr."""
+        """Like ``run``, for a run that must succeed and must not print to stderr."""
         run = self.run(folder, duration, setpoints, *more)
         assert (run.status, run.stderr) == (0, "")
         return run
 
 
 def rows(*events: str) -> str:
-    """Text of a setpoint file."""
+    """The text of a setpoint file."""
     return "\n".join(("time,topic,value", *events)) + "\n"

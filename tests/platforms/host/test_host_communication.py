@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The communication side alone: what it hands to the control side, and when."""
+"""The communication side alone: the setpoints that it hands to the control side, and their times."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def delivery(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def deliver(program: Path, folder: Path, events: str, mode: str, end: float, *times: float) -> list[list[str]]:
-    """What is said in each call; the header of the topics first."""
+    """The output of each call; first the header of the topics."""
     (folder / "in.csv").write_text(events)
     command = [str(program), str(folder / "in.csv"), mode, str(end), *map(str, times)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -69,12 +69,12 @@ def test_real_time_publishes_once_and_stays_on_schedule(delivery: Path, tmp_path
     events = rows("0.001,a,1", "0.002,b,2", "0.05,a,3")
     assert deliver(delivery, tmp_path, events, "realtime", 100, 0.1, 9, 10.2, 19.9, 20, 47, 49.9, 50.1, 60) == [
         ["0.0001,p,1.5"],
-        # Late: both are there, and were received now.
+        # Late: both have arrived by then, and count as received now.
         ["setpoint 0 = 1 at 9.000 ms, published", "setpoint 1 = 2 at 9.000 ms, published"],
         ["0.0102,p,1.5"],
         [],
         ["0.02,p,1.5"],
-        ["0.047,p,1.5"],  # for 30 and 40 ms together
+        ["0.047,p,1.5"],  # one message instead of those of 30 and 40 ms
         [],
         ["setpoint 0 = 3 at 50.100 ms, published", "0.0501,p,1.5"],
         ["0.06,p,1.5"],

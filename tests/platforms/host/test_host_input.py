@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Wrong options and setpoint files: what is said, and the exit status."""
+"""Wrong options and setpoint files: the message and the exit status."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The parts below: distribution of times, and numbers in files."""
+"""The parts of the host platform: distribution of times, and numbers in files."""
 
 from __future__ import annotations
 

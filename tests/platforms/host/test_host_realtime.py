@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Real time.  Times of a shared machine are not asserted, only that what is reported is consistent."""
+"""Real time.  A shared machine has no reliable times: the tests only assert that the reports are consistent."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="re
 
 
 def assert_consistent(run: Run, ticks: int) -> None:
-    """Every tick ran a cycle or is counted as missed, and all cycles belong to ticks of the same phase."""
+    """Every tick has a cycle or counts as missed, and all cycles belong to ticks of the same phase."""
     statistics, trace = run.statistics, run.trace
     assert statistics["cycles"] + statistics["missed"] == ticks
     assert len(trace["time"]) == statistics["cycles"]
@@ -66,7 +66,7 @@ def test_two_seconds_at_one_millisecond(patient_motor: Program, tmp_path: Path) 
     assert f"scheduler    {statistics['scheduler']}" in run.stdout
     if statistics["scheduler"] == "SCHED_OTHER":
         assert "SCHED_FIFO refused: " in run.stdout
-    # The setpoint comes no earlier than its time, and the plant follows as in simulated time.
+    # The setpoint arrives at its time or later, and the plant follows as in simulated time.
     arrival = trace["inputs.setpoint"].index(1.0)
     assert trace["time"][arrival] >= 0.1
     assert abs(trace["inputs.position"][-1] - 1.0) < 0.05
@@ -86,7 +86,8 @@ def test_publications_in_real_time(patient_motor: Program, tmp_path: Path) -> No
 
 
 def test_slow_cycles_miss_ticks_but_keep_the_phase(motor: Program, tmp_path: Path) -> None:
-    # 5.3 ms of computation in each cycle: only every sixth tick runs one, and the fault of three overruns comes.
+    # 5.3 ms of computation in each cycle: only every sixth tick has a cycle, and three overruns in a row cause the
+    # fault.
     run = motor.run_good(tmp_path, 0.5, rows("0.1,motor_setpoint,1005.3", "0.3,motor_setpoint,0"), "--realtime")
     assert_consistent(run, 500)
     statistics = run.statistics
@@ -128,7 +129,7 @@ def test_age_of_setpoints_in_real_time(tmp_path: Path) -> None:
 def test_user_without_privileges(patient_motor: Program) -> None:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        folder.chmod(0o777)  # that user cannot reach pytest's own folders
+        folder.chmod(0o777)  # the other user has no access to pytest's own folders
         program = shutil.copy(patient_motor.path, folder / "motor")
         done = subprocess.run(
             [program, "--realtime", "--duration", "0.2", "--statistics", str(folder / "statistics.json")],

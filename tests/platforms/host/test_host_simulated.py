@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Simulated time: what a user sees in the files of a run."""
+"""Simulated time: the contents of the files that a run writes for the user."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def test_trace_has_a_row_per_cycle_and_the_plant_follows(motor: Program, tmp_pat
     assert trace["time"] == [k / 1000 for k in range(2000)]
     assert set(trace["lateness"]) == set(trace["computation"]) == set(trace["fault"]) == {0.0}
     assert set(trace["enabled"]) == {1.0}
-    # The encoder counts from 0 although the shaft starts at 12.5 rad, and both agree to a count ever after.
+    # The encoder counts from 0 although the shaft starts at 12.5 rad; from then on both agree within one count.
     count = 2 * math.pi / 4096
     shift = [angle - 12.5 - position for angle, position in zip(trace["plant.outputs.angle"], trace["inputs.position"])]
     assert all(-count < difference < 2 * count for difference in shift)
@@ -42,7 +42,7 @@ def test_trace_has_a_row_per_cycle_and_the_plant_follows(motor: Program, tmp_pat
 
 def test_order_within_a_cycle(motor: Program, tmp_path: Path) -> None:
     trace = motor.run_good(tmp_path, 0.1).trace
-    # Cycle k sees the plant after k periods, and its own output reaches the plant before the next step.
+    # Cycle k reads the plant after k periods, and its output reaches the plant before the next step.
     assert trace["plant.steps"] == [7.0 * k for k in range(100)]
     assert trace["model.steps"] == [float(k + 1) for k in range(100)]
     for duty, driven in zip(trace["outputs.duty"], trace["plant.inputs.duty"]):
@@ -79,7 +79,7 @@ def test_publications_on_their_own_schedule(motor: Program, tmp_path: Path) -> N
     trace = run.trace
     for time, topic, value in run.topics:
         column = {"motor_position": "inputs.position", "motor_echo": "inputs.setpoint"}[topic]
-        assert value == trace[column][round(time * 1000)]  # of the cycle at the same moment
+        assert value == trace[column][round(time * 1000)]  # value of the cycle at the same time
     assert len(run.topics) == 2 * 31
 
 
@@ -93,7 +93,7 @@ def test_enabling_and_disabling(motor: Program, tmp_path: Path) -> None:
     assert min(driven[:200]) > 0.5
     assert run.statistics["enabled"] is False
     assert run.statistics["fault"] == "none"
-    # The motor coasts to a stand; position and topics stay live meanwhile.
+    # The motor coasts until it stops; meanwhile position and topics are still updated.
     position = run.trace["inputs.position"]
     assert position[399] > position[199] + 0.1
     assert position[399] - position[380] < 0.02
@@ -112,7 +112,7 @@ def test_digital_input_from_the_file(motor: Program, tmp_path: Path) -> None:
 
 @pytest.fixture(scope="module")
 def held_motor(tmp_path_factory: pytest.TempPathFactory) -> Program:
-    """The motor whose plant says in every cycle that the emergency stop is not pressed."""
+    """A motor whose plant reports in every cycle that the emergency stop is not pressed."""
     sources = [PROGRAMS / "motor.c", *platform_sources()]
     output = tmp_path_factory.mktemp("held_motor") / "motor"
     return Program(compile_program(output, sources, defines=["PLANT_HOLDS_INPUT"]))
@@ -127,7 +127,7 @@ def test_a_forced_input_wins_over_the_plant(held_motor: Program, tmp_path: Path)
 
 
 def test_an_open_wire_has_the_level_of_the_pull_resistor(held_motor: Program, tmp_path: Path) -> None:
-    # The motor's input has a pull-up: it reads 1 when its wire is broken, and nothing stops the motor.
+    # The motor's input has a pull-up: with a broken wire it would read 1, and the motor would not stop.
     run = held_motor.run_good(tmp_path, 0.3, rows("0.1,$component:emergency_stop,open"))
     assert run.trace["enabled"] == [1.0] * 300
 
@@ -139,7 +139,7 @@ def test_a_plant_that_diverges_ends_the_run(tmp_path: Path, value: str, shown: s
     for more in ((), ("--realtime",)):
         run = program.run(tmp_path, 0.5, rows("0,motor_setpoint,5"), *more)
         assert run.status == 1
-        # 1000 of 7 plant steps each control period of 1 ms
+        # the thousandth step, at 7 plant steps per control period of 1 ms
         assert f"error: the plant has diverged: plant.outputs.angle is {shown} at 0.143 s\nhint: " in run.stderr
         assert len(run.trace["time"]) == 143
         assert set(run.trace["inputs.position"]) > {0.0}
@@ -154,7 +154,7 @@ def test_non_finite_setpoints_are_dropped_and_counted(motor: Program, tmp_path: 
 
 
 def test_values_of_one_moment_count_as_one_delivery(motor: Program, tmp_path: Path) -> None:
-    # The last of them is dropped: the one before it must be delivered all the same.
+    # The last event is dropped, but the event before it must still be delivered.
     run = motor.run_good(
         tmp_path, 0.05, rows("0.01,motor_setpoint,1", "0.01,motor_setpoint,2", "0.01,motor_setpoint,nan")
     )
@@ -166,19 +166,20 @@ def test_stall_takes_simulated_time_and_misses_ticks(motor: Program, tmp_path: P
     run = motor.run_good(tmp_path, 0.1, rows("0.0095,$stall,0.0025"))
     trace = run.trace
     ticks = [round(time * 1000) for time in trace["time"]]
-    # Cycle 10 lasts until 12.5 ms: tick 11 is missed, cycle 12 runs half a millisecond late, 13 is on time again.
+    # Cycle 10 lasts until 12.5 ms: tick 11 is missed, cycle 12 starts half a millisecond late, cycle 13 is on time
+    # again.
     assert ticks == [*range(11), *range(12, 100)]
     assert trace["computation"][10] == 0.0025
     assert trace["lateness"][11] == 0.0005
     assert [lateness for k, lateness in enumerate(trace["lateness"]) if k != 11] == [0.0] * 98
-    # The plant has moved on meanwhile, driven by the outputs of cycle 9.
+    # Meanwhile the plant continues, driven by the outputs of cycle 9.
     assert trace["plant.steps"][11] == math.floor(12.5 * 7)
     assert trace["plant.steps"][12] == 13 * 7
     statistics = run.statistics
     assert (statistics["cycles"], statistics["missed"]) == (99, 1)
     assert statistics["overruns"] == 2
     assert (statistics["lateness_max"], statistics["lateness_min"]) == (0.0005, 0.0)
-    assert statistics["computation_max"] < 0.0025  # real time, in which nothing stalled
+    assert statistics["computation_max"] < 0.0025  # this is real time, in which there was no stall
     assert statistics["enabled"] is True
 
 
@@ -188,8 +189,8 @@ def test_outputs_of_a_stalled_cycle_come_at_its_end(motor: Program, tmp_path: Pa
     angle = trace["plant.outputs.angle"]
     assert trace["outputs.duty"][9] > 0 > trace["outputs.duty"][10]
     assert trace["time"][10:12] == [0.01, 0.03]
-    # Positive duty acts for the whole 20.5 ms, although the cycle has long read the new setpoint.
-    # Its row, recorded when it ends, is the first to show where that has brought the motor.
+    # The duty of cycle 9 acts for the whole 20.5 ms, although cycle 10 has read the new setpoint at its begin.
+    # The row of cycle 10, recorded at its end, is the first that shows the resulting angle.
     assert angle[10] - angle[9] > 5 * (angle[9] - angle[8]) > 0
     assert angle[11] == angle[10]
     assert trace["plant.inputs.duty"][9] > 0 > trace["plant.inputs.duty"][10]
@@ -218,7 +219,7 @@ def test_ticks_missed_at_the_very_end_are_counted(motor: Program, tmp_path: Path
 
 
 def test_computation_time_leaves_out_the_plant(motor: Program, tmp_path: Path) -> None:
-    # Seven million steps of the plant, within one control cycle.
+    # Seven million steps of the plant within one control cycle.
     statistics = motor.run_good(tmp_path, 0.1, rows("0.05,$stall,1000")).statistics
     assert statistics["computation_max"] < 0.5 * statistics["wall_time"]
 
@@ -227,7 +228,7 @@ def test_age_of_setpoints(tmp_path: Path) -> None:
     sources = [PROGRAMS / "motor.c", *platform_sources()]
     program = Program(compile_program(tmp_path / "motor", sources, defines=["SETPOINT_TIMEOUT_NS=20000000"]))
     run = program.run_good(tmp_path / "run", 0.2, rows("0.0405,motor_setpoint,1", "0.055,motor_setpoint,2"))
-    # 20 ms after its time, and not after that of the cycle that saw it first.
+    # The setpoint times out 20 ms after its own time, not 20 ms after the cycle that first used it.
     assert run.trace["inputs.setpoint"] == [0.25] * 41 + [1.0] * 14 + [2.0] * 21 + [0.0] * 124
     assert run.statistics["setpoint_timeouts"] == 1
 
@@ -272,7 +273,7 @@ def test_without_plant_sensors_stand_still(tmp_path: Path) -> None:
 
 
 def test_simulated_time_needs_no_linux(tmp_path: Path) -> None:
-    """The sources as a system without Linux sees them: simulated time works, real time says what it needs."""
+    """The sources as on a system without Linux: simulated time works; real time reports that it needs Linux."""
     sources = [PROGRAMS / "motor.c", *platform_sources()]
     flags = ["-U__linux__", "-U__linux", "-Ulinux", "-D_POSIX_C_SOURCE=200809L"]
     program = Program(compile_program(tmp_path / "motor", sources, sanitize=flags))

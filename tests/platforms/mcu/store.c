@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The store's records on a family whose two sectors are arrays: power cuts, sectors that cannot be read, refusals.
+ * The store's records on a family whose two sectors are arrays: power failures, unreadable sectors, refused requests.
  */
 #include <stdio.h>
 #include <string.h>
@@ -14,7 +14,7 @@
 
 static uint8_t sectors[2][SECTOR];
 static bool readable[2];
-static int steps; /* until the supply fails, one for each byte programmed */
+static int steps; /* number of bytes that can be programmed until the supply fails */
 static bool permitted;
 
 static void require(bool good, int line)
@@ -37,7 +37,7 @@ static bool program(uint8_t *to, const uint8_t *from, size_t size)
         if (steps-- <= 0) {
             return false;
         }
-        REQUIRE(to[i] == 0xFF); /* no place is programmed twice */
+        REQUIRE(to[i] == 0xFF); /* no byte is programmed twice */
         to[i] = from[i];
     }
     return true;
@@ -79,7 +79,7 @@ static void newest_counts(void)
     REQUIRE(write_text("first") && stored("first"));
     REQUIRE(write_text("second") && stored("second"));
     REQUIRE(write_text("third") && stored("third"));
-    readable[0] = false; /* as by an error of ECC: the third record is there */
+    readable[0] = false; /* like an ECC error: the third record is still readable */
     REQUIRE(stored("second"));
     readable[0] = true;
     readable[1] = false;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The code that families of chips share knows no chip: it compiles for a family that does not exist, and runs here."""
+"""The code that all families share does not depend on a chip: it compiles for a fictitious family and runs here."""
 
 from __future__ import annotations
 

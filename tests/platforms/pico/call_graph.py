@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What code can reach, read from an ELF file: calls, branches, and addresses of functions and tables in literal pools.
+"""The code and data that code can reach, from an ELF file: calls, branches, and addresses in literal pools.
 
-An address that code holds is taken for a call or a read that may happen, so the graph has more edges than any run has,
-and none too few as long as addresses are not computed.
+An address in a literal pool counts as a possible call or read.  The graph therefore has more edges than any run, and
+misses none as long as the code does not compute addresses.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class Symbol:
 
 
 class Image:
-    """Symbols, code and data of an ELF file for Cortex-M."""
+    """The symbols, code and data of an ELF file for Cortex-M."""
 
     def __init__(self, elf: Path) -> None:
         self.symbols = sorted(_symbols(elf), key=lambda symbol: symbol.address)
@@ -42,7 +42,7 @@ class Image:
         return next(symbol for symbol in self.symbols if symbol.name == name)
 
     def at(self, address: int) -> Symbol | None:
-        """The symbol that holds ``address``."""
+        """The symbol that contains ``address``."""
         index = bisect_right(self._addresses, address) - 1
         while index >= 0 and self._addresses[index] > address - 0x10000:
             symbol = self.symbols[index]
@@ -52,7 +52,7 @@ class Image:
         return None
 
     def reachable(self, *roots: str, stop: frozenset[str] = frozenset()) -> dict[Symbol, tuple[str, ...]]:
-        """All symbols that code of ``roots`` can reach, each with the way there; not beyond those named in ``stop``."""
+        """All symbols that code of ``roots`` can reach, each with its path; the search ends at those in ``stop``."""
         ways: dict[Symbol, tuple[str, ...]] = {}
         waiting = [(self.named(root), (root,)) for root in roots]
         while waiting:
@@ -97,7 +97,7 @@ def _symbols(elf: Path) -> list[Symbol]:
 
 
 def _memory(elf: Path) -> list[tuple[int, bytes]]:
-    """Loaded segments by the address they are used at."""
+    """Loaded segments by the address at which they are used."""
     data = elf.read_bytes()
     offset, size, count = struct.unpack_from("<I", data, 28)[0], *struct.unpack_from("<HH", data, 42)
     segments = []
@@ -109,7 +109,7 @@ def _memory(elf: Path) -> list[tuple[int, bytes]]:
 
 
 def _edges(elf: Path) -> dict[int, list[int]]:
-    """Function -> targets of its calls and branches, and the words of its literal pools."""
+    """Each function with the targets of its calls and branches, and the words of its literal pools."""
     edges: dict[int, list[int]] = {}
     current = 0
     for line in binutils("objdump", "-d", "--no-show-raw-insn", str(elf)).splitlines():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What an image's build has compiled of EPG's own C, compiled again with warnings as errors."""
+"""EPG's own C sources in the build of an image, compiled again with warnings as errors."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tests.emulator.toolchain import ROOT
 
 STRICT = ("-Wall", "-Wextra", "-Wconversion", "-Wdouble-promotion", "-Werror")
 NOT_OURS = "_export"
-"""In the names of generated files that hold the user's model."""
+"""Parts of the names of generated files that contain the user's model."""
 
 
 def own_sources(build: Path) -> dict[Path, list[str]]:
@@ -27,7 +27,7 @@ def own_sources(build: Path) -> dict[Path, list[str]]:
 
 
 def problems(command: list[str]) -> str:
-    """What the compiler says with all of :data:`STRICT`; nothing is written."""
+    """The compiler's messages with all of :data:`STRICT`; it writes no file."""
     output = command.index("-o")
     arguments = command[:output] + command[output + 2 :]
     done = subprocess.run([*arguments, *STRICT, "-fsyntax-only"], capture_output=True, text=True, check=False)

@@ -21,7 +21,7 @@ def freertos_kernel() -> Path:
 
 
 def skip_unless_buildable(platform: str) -> None:
-    """Skips the test when the SDK, the compiler, or the kernel of ``platform`` is missing."""
+    """Skips the test if the SDK, the compiler, or the kernel of ``platform`` is missing."""
     skip_if_missing(pico_sdk, arm_gcc, *([freertos_kernel] if platform == "freertos" else []))
 
 
@@ -31,7 +31,7 @@ def skip_unless_emulated(platform: str) -> None:
 
 
 def images(board: str, platform: str, *names: str, middleware: str = "none") -> Path:
-    """The build folder with ``names``.elf; SDK and compiler must be there."""
+    """Builds ``names``.elf and returns their folder; SDK and compiler must be installed."""
     variables = {"PLATFORM": platform, "MIDDLEWARE": middleware}
     return build(PROJECT, board=board, targets=names, variables=variables)
 
@@ -51,6 +51,6 @@ def size_of(elf: Path) -> Size:
 
 
 def binutils(program: str, *arguments: str) -> str:
-    """What a program of the toolchain prints."""
+    """The output of a program of the toolchain."""
     path = arm_gcc().parent / f"arm-none-eabi-{program}"
     return subprocess.run([path, *arguments], capture_output=True, text=True, check=True).stdout

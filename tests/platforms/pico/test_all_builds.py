@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every image that the predefined configurations give: JIWY and RELbot (a model in C++), by middleware."""
+"""Every image of the predefined configurations builds: JIWY and RELbot (a model in C++), by middleware."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ PAIRWISE = [
     for board, platform, middleware in CELLS
     if (BOARDS.index(board) + PLATFORMS.index(platform) + MIDDLEWARES.index(middleware)) % 2 == 0
 ]
-"""Every board, every platform and every middleware, each with each other."""
+"""Each pair of board and platform, board and middleware, platform and middleware is in at least one of these."""
 
 
 @pytest.mark.parametrize(("board", "platform", "middleware"), PAIRWISE)

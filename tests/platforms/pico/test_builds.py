@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Images for all four targets: they build, EPG's part without a warning, and how large they are."""
+"""The images for all four targets build, EPG's part without a warning, and have a bounded size."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from tests.platforms.pico.compiled import own_sources, problems
 from tests.platforms.pico.images import TARGETS, images, size_of, skip_unless_buildable
 
 RAM = {"pico": 256 * 1024, "pico2": 512 * 1024}
-"""Bytes, without the two scratch banks for stacks."""
+"""In bytes, without the two scratch banks, which contain stacks."""
 
 
-# The radio is off: the chip and its port layer are those of the boards without one.
+# The radio is not used: chip and port layer are the same as on the boards without a radio.
 WIRELESS = [("pico_w", "bare_metal"), ("pico2_w", "freertos")]
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """JIWY's firmware moves JIWY: two simulated motors on the pins, commands over the USB serial port.
 
-The console's setpoints are a person's; docs/emulator.md says how the motors are computed.
+The test sends setpoints on the console as a user does.  docs/emulator.md describes the computation of the motors.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from tests.emulator.emulator import Emulator
 from tests.platforms.pico.images import PLATFORMS, images, skip_unless_emulated
 
 PAN_COUNT = math.pi / 1112
-"""rad at the camera for one count of the pan encoder."""
+"""Angle of the camera for one count of the pan encoder, in rad."""
 TILT_COUNT = math.pi / 2 / 221
 AXES = {
     "pan": {"pins": (10, 11), "bridge": {"slice": 1, "channel": 0, "pinA": 7, "pinB": 8}, "stops": [0, math.pi]},
@@ -65,7 +65,7 @@ def test_jiwy_homes_and_goes_where_it_is_told(board: str, platform: str) -> None
 
 @pytest.mark.parametrize("platform", PLATFORMS)
 def test_picotool_reboots_the_board(platform: str) -> None:
-    """The request that `picotool reboot -f` sends: the interface's, class RESET_REQUEST_FLASH."""
+    """The request of `picotool reboot -f`: to the interface, of class RESET_REQUEST_FLASH."""
     skip_unless_emulated(platform)
     elf = images("pico", platform, "jiwy_firmware", middleware="console") / "jiwy_firmware.elf"
     with Emulator(elf, usb={"seed": 3}) as pico:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What CMake says when something is missing or does not fit: one sentence, and what mends it."""
+"""CMake's message if a part is missing or does not fit: one sentence, and its remedy."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def target(platform: str = "bare_metal", communication: str = NONE) -> str:
 
 
 def configure(folder: Path, text: str, *arguments: str, bare: bool = False, **environment: str) -> str:
-    """What CMake prints for a project, in one line; ``bare``: nothing is installed in its usual place."""
+    """CMake's output for a project, on one line; ``bare``: no tool is installed in its usual place."""
     return " ".join(output(folder, text, *arguments, bare=bare, **environment).split())
 
 
@@ -97,7 +97,7 @@ PARTS = ("git", "arm_gcc", "pico_sdk", "picotool", "freertos_kernel", "micro_cdr
 
 @pytest.mark.parametrize("cache", ["cache", "my cache"])
 def test_all_that_is_missing_is_said_at_once(cache: str, tmp_path: Path) -> None:
-    """On a bare computer: each part with the command that `epg doctor` has for it, on one line."""
+    """On a bare computer, one run reports each missing part with the command of `epg doctor`, on one line."""
     path = tmp_path / "bin"
     path.mkdir()
     for program in ("cmake", "ninja", "id"):
@@ -125,7 +125,7 @@ def test_what_the_target_needs_besides_the_sdk_is_said_at_once(tmp_path: Path) -
 
 
 def test_picotool_is_built_with_the_sdk_that_is_there(tmp_path: Path) -> None:
-    """Its build stops without an SDK."""
+    """The build of picotool needs the SDK, and stops without it."""
     skip_if_missing(arm_gcc, pico_sdk)
     arguments = [f"-DPICO_SDK_PATH={pico_sdk()}", "-DFETCHCONTENT_FULLY_DISCONNECTED=ON"]
     assert f" -DPICO_SDK_PATH={pico_sdk()} " in configure(tmp_path, SDK, *arguments, bare=True)
@@ -198,7 +198,7 @@ def test_two_owners_of_usb(tmp_path: Path) -> None:
 
 
 ONLY_IN_THE_SYSROOT = 'Could not find a package configuration file provided by "EPG"'
-"""What CMake says under the SDK's toolchain; EPG's pages must say what to do then, as EPG is not reached."""
+"""CMake's message under the SDK's toolchain.  CMake does not reach EPG, so EPG's pages must give the remedy."""
 
 
 def test_the_package_under_the_sdks_toolchain(tmp_path: Path) -> None:
@@ -216,7 +216,7 @@ def test_the_package_under_the_sdks_toolchain(tmp_path: Path) -> None:
 
 
 def configure_package(folder: Path, find: str, option: str) -> str:
-    """What CMake prints for a project that finds EPG by ``find``, after project() and under the SDK's toolchain."""
+    """CMake's output for a project that finds EPG by ``find``, after project() and under the SDK's toolchain."""
     folder.mkdir()
     (folder / "CMakeLists.txt").write_text(
         f"cmake_minimum_required(VERSION 3.22)\ninclude({pico_sdk()}/external/pico_sdk_import.cmake)\n"

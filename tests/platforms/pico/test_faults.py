@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What happens to the outputs when something must not happen; RP2040 images in the emulator.
+"""The outputs become safe after each fault of the program; RP2040 images in the emulator.
 
-The bench: an H-bridge driven at a quarter of full duty (pins 2, 7, 8), and a lamp that is off when pin 15 is high.
+The bench has an H-bridge at a quarter of full duty (pins 2, 7, 8), and a lamp that is off when pin 15 is high.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ FAULT, PANIC, STUCK, ENABLE, DISABLE, FLASH, STOP, START = range(1, 9)
 FAULT_NONE, FAULT_NOT_FINITE, FAULT_OVERRUN, FAULT_WATCHDOG, FAULT_PROCESSOR = 0, 1, 3, 11, 12
 WATCHDOG_MS, CORE0_TIMEOUT_MS = 100, 500
 MODEL = "bench_model_private_bench_"
-"""What EPG puts before the names of a model's own variables."""
+"""EPG's prefix for the names of a model's own variables."""
 NOT_PERMITTED = -4
 """PICO_ERROR_NOT_PERMITTED."""
 
 
 @pytest.fixture(params=PLATFORMS)
 def pico(request: pytest.FixtureRequest) -> Iterator[Emulator]:
-    """The bench after 20 ms: it drives."""
+    """The bench after 20 ms, while it drives the motor."""
     skip_unless_emulated(request.param)
     with Emulator(images("pico", request.param, "user_bench") / "user_bench.elf") as emulator:
         emulator.call("watch_pins", pins=[VALUE, DIRECTION_A, DIRECTION_B, LAMP])
@@ -38,19 +38,19 @@ def pico(request: pytest.FixtureRequest) -> Iterator[Emulator]:
 
 
 def levels(pico: Emulator) -> dict[int, int]:
-    """Level of each pin; all of them are driven."""
+    """The level of each pin; the chip drives all of them."""
     states = {pin: pico.call("pin", pin=pin) for pin in SAFE}
     assert all(state["output"] for state in states.values()), states
     return {pin: state["level"] for pin, state in states.items()}
 
 
 def edges(pico: Emulator, pin: int) -> list[int]:
-    """When the pin has changed since the last call."""
+    """The cycles at which the pin has changed since the last call."""
     return [cycle for cycle, number, *_ in pico.call("take", log="pins") if number == pin]
 
 
 def status(pico: Emulator) -> tuple[bool, int]:
-    """Enabled and fault, as user code has read them last."""
+    """Enabled and fault, as the user's code read them last."""
     enabled, fault = struct.unpack_from("<B3xI", pico.read("status", 8))
     return bool(enabled), fault
 
@@ -65,7 +65,7 @@ def order(pico: Emulator, what: int, milliseconds: float = 3) -> None:
 
 
 def assert_stays_safe(pico: Emulator, milliseconds: float) -> None:
-    """Safe now and for so long: no edge on any output."""
+    """The outputs are safe now and stay so for this time: no output has an edge."""
     pico.call("take", log="pins")
     assert levels(pico) == SAFE
     pico.run(milliseconds=milliseconds)
@@ -74,7 +74,7 @@ def assert_stays_safe(pico: Emulator, milliseconds: float) -> None:
 
 
 def assert_reset_and_safe(pico: Emulator, fault: int, within: float) -> None:
-    """The watchdog resets within so many ms; afterwards everything runs, disabled, until somebody enables."""
+    """The watchdog resets within this many ms.  Then everything runs, but disabled until a request to enable."""
     before = len(pico.run(cycles=1)["resets"])
     state = pico.run(milliseconds=within)
     assert len(state["resets"]) == before + 1, state
@@ -131,7 +131,7 @@ def test_a_value_that_is_not_finite(pico: Emulator) -> None:
 
 
 def test_overruns_disable_and_missed_ticks_are_counted(pico: Emulator) -> None:
-    """A step of about 2.4 ms: each cycle runs once, late, and two ticks have none."""
+    """A step takes about 2.4 ms: each cycle runs once, late, and two ticks have no cycle."""
     pico.write_word(MODEL + "loops", 2_400 * 125 // 5)
     pico.run(milliseconds=30)
     assert status(pico) == (False, FAULT_OVERRUN)
@@ -167,7 +167,7 @@ def test_stop_and_start(pico: Emulator) -> None:
 
 
 def test_no_other_core_is_needed_for_safety(pico: Emulator) -> None:
-    """A second order finds core 0 gone: after its fault nothing of it runs."""
+    """After a fault of core 0, core 0 executes nothing any more: a second order has no effect."""
     order(pico, FAULT, milliseconds=1)
     turns = pico.word("turns")
     order(pico, ENABLE, milliseconds=10)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The control loop in the emulator: RP2040 images with the compiler's arithmetic.  Times are cycles of 8 ns.
 
-Contention for the bus and the flash cache are not simulated; docs/emulator.md says what is.
+The emulator does not simulate contention for the bus or the flash cache; docs/emulator.md lists what it simulates.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ WRAP_EXCEPTION = 16 + 4
 
 @pytest.fixture(scope="module", params=PLATFORMS)
 def pico(request: pytest.FixtureRequest) -> Iterator[Emulator]:
-    """A user's executable that has run for 0.1 s, with everything watched."""
+    """A user's executable after 0.1 s, with all events recorded."""
     skip_unless_emulated(request.param)
     elf = images("pico", request.param, "user_jiwy") / "user_jiwy.elf"
     with Emulator(elf) as emulator:
@@ -37,7 +37,7 @@ def pico(request: pytest.FixtureRequest) -> Iterator[Emulator]:
 
 @pytest.fixture(scope="module")
 def ticks(pico: Emulator) -> list[int]:
-    """When core 1 has entered the handler; no other core has."""
+    """The cycles at which core 1 entered the handler; the other core never enters it."""
     log = [entry for entry in pico.call("take", log="exceptions") if entry[3]]
     assert {core for _, core, _, _ in log} == {1}
     return [cycle for cycle, *_ in log]
@@ -45,7 +45,7 @@ def ticks(pico: Emulator) -> list[int]:
 
 @pytest.fixture(scope="module")
 def wraps(pico: Emulator) -> dict[int, list[int]]:
-    """Wraps of each slice."""
+    """The wraps of each slice."""
     found: dict[int, list[int]] = {}
     for cycle, slice_, *_ in pico.call("take", log="pwm"):
         found.setdefault(slice_, []).append(cycle)
@@ -80,7 +80,7 @@ def test_no_fault(pico: Emulator) -> None:
 
 
 def test_statistics_tell_the_same(pico: Emulator, ticks: list[int]) -> None:
-    """Lateness and computation time as the firmware measures them, against what the harness sees."""
+    """The firmware's lateness and computation times agree with the times that the emulator measures."""
     assert statistics(pico)["missed"] == 0
     assert statistics(pico)["overruns"] == 0
     assert statistics(pico)["outputs_late"] == 0

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where code lies: nothing that the control cycle can reach is in flash, in a user's executable that runs from flash.
+"""No code that the control cycle can reach is in flash, even in a user's executable that runs from flash.
 
-RP2040's emulator finds accesses that happen (test_loop.py); the call graph finds those that could, on both chips.
+The RP2040 emulator finds accesses that happen (test_loop.py); the call graph finds possible accesses, on both chips.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ from tests.platforms.pico.call_graph import FLASH, RAM, Image
 from tests.platforms.pico.images import TARGETS, binutils, images, skip_unless_buildable
 
 CYCLE = ("on_wrap", "application")
-"""The handler of the tick, and the table with the generated functions it calls."""
+"""The handler of the tick, and the table of the generated functions that it calls."""
 
 NOT_IN_A_CYCLE = frozenset({"start", "__wrap_panic", "__wrap___assert_func", "__wrap__exit"})
-"""Reached from those tables, but before the first cycle or after the last."""
+"""Functions in those tables that run before the first cycle or after the last."""
 
 
 @pytest.mark.parametrize(("board", "platform"), TARGETS)
@@ -55,13 +55,13 @@ def test_epgs_own_executables_run_from_ram(board: str, platform: str) -> None:
 
 @pytest.mark.parametrize("board", ["pico", "pico2"])
 def test_barriers_of_the_exchange_are_in_the_machine_code(board: str) -> None:
-    """Sequentially consistent accesses: on both cores a `dmb` or a load-acquire and store-release for each."""
+    """Sequentially consistent accesses: on each core a `dmb`, or a load-acquire and store-release, per access."""
     skip_unless_buildable("bare_metal")
     elf = images(board, "bare_metal", "jiwy_firmware") / "jiwy_firmware.elf"
     code = binutils("objdump", "-d", "--no-show-raw-insn", "--disassemble=epg_exchange_write", str(elf))
     ordered = re.findall(r"\t(dmb|lda|stl)\b", code)
-    # reading and slot are loaded; slot, latest and writes stored (writes loaded once more): six accesses
+    # Six accesses: reading and slot are loaded; slot, latest and writes are stored (and writes is loaded once more).
     assert len(ordered) >= 6, code
-    # the value is copied before `slot` says that it is there: a call or loop, then an ordered store
+    # The value is copied before `slot` announces it: a call or a loop, then an ordered store.
     copied = max(code.find("memcpy"), 0)
     assert re.search(r"\t(dmb|stl)\b", code[copied:]), code

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Stopping and starting again, with bytes on USB all the time: RP2040 images in the emulator."""
+"""A target stops and starts again while USB receives bytes all the time; RP2040 images in the emulator."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from tests.platforms.pico.images import PLATFORMS, images, skip_unless_emulated
 
 STOP, START, STOP_WITHIN = 7, 8, 9
 NODE, CONSOLE = 0, 1
-"""Serial ports."""
+"""Numbers of the serial ports."""
 ABOVE_COMMUNICATION = 3
 TIMES = 100
 
 
 @pytest.fixture(params=PLATFORMS)
 def pico(request: pytest.FixtureRequest) -> Iterator[Emulator]:
-    """JIWY in a user's program, one port flooded with what is not a message, the console open."""
+    """JIWY in a user's program; one port is flooded with bytes that are not a message, the console is open."""
     skip_unless_emulated(request.param)
     image = images("pico", request.param, "user_jiwy", middleware="xrce_console") / "user_jiwy.elf"
     with Emulator(image, usb={"seed": 7}) as emulator:
@@ -34,7 +34,7 @@ def pico(request: pytest.FixtureRequest) -> Iterator[Emulator]:
 
 
 def obeyed(pico: Emulator, order: int, milliseconds: float) -> bool:
-    """What <name>_stop() or <name>_start() has returned; the order is given ``milliseconds`` from now."""
+    """The result of <name>_stop() or <name>_start(); the order is given after ``milliseconds``."""
     pico.write_word("answer", 1000)
     pico.run(milliseconds=milliseconds)
     pico.write_word("order", order)
@@ -58,7 +58,7 @@ def assert_runs(pico: Emulator) -> None:
 
 
 def test_stopped_and_started_many_times(pico: Emulator) -> None:
-    """Wherever communication is when it is stopped: it leaves nothing locked, and its next run is as the first."""
+    """Communication can be stopped at any point: it leaves nothing locked, and its next run is like the first."""
     for number in range(TIMES):
         assert obeyed(pico, STOP, number * 0.137 % 3), number
         assert obeyed(pico, START, number * 0.071 % 2), number

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Parameters that `save` has put into flash: there again after a restart, also when the supply failed meanwhile.
+"""Parameters that `save` has put into flash are there after a restart, even if the supply failed meanwhile.
 
-JIWY's RP2040 images with the console; flash is erased and programmed by the emulator's boot ROM.
+JIWY's RP2040 images with the console; the emulator's boot ROM erases and programs flash.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ ERASE_MS = 45
 
 @pytest.fixture(params=PLATFORMS)
 def board(request: pytest.FixtureRequest) -> Iterator[Board]:
-    """JIWY, disabled, with nothing stored."""
+    """JIWY, disabled, with no stored parameters."""
     skip_unless_emulated(request.param)
     with Board(image(request.param), {"pan": 0.12, "tilt": 0.12}) as made:
         made.pico.call("watch_flash")
@@ -43,20 +43,20 @@ def value(board: Board, parameter: str = PARAMETER) -> float:
 
 
 def stored(board: Board) -> str:
-    """What the firmware has found at its start."""
+    """The stored parameters that the firmware found at its start."""
     found = re.search(r"stored=(\w+)\s", final_line(board, "version"))
     assert found is not None
     return found[1]
 
 
 def final_line(board: Board, command: str) -> str:
-    """What the answer to a command ends with, behind ``ok`` and its name."""
+    """The end of the answer to a command, after ``ok`` and its name."""
     rest = board.ask(command).rpartition(f"ok {command}")[2]
     return rest if "\n" in rest else rest + board.pico.run_until_text("\n", milliseconds=50)
 
 
 def restart(board: Board, command: str) -> None:
-    """By ``reset`` or ``cut_power``; the robot is left disabled."""
+    """Restarts by ``reset`` or ``cut_power``; the robot stays disabled."""
     board.pico.call(command)
     board.pico.receive()
     board.pico.run_until_text("ready", milliseconds=1000)
@@ -74,7 +74,7 @@ class Write:
 
 
 def writes(board: Board) -> list[Write]:
-    """Since the last call."""
+    """The writes since the last call."""
     return [Write(*entry) for entry in board.pico.call("take", log="flash")]
 
 
@@ -105,7 +105,7 @@ def test_saved_values_are_there_after_a_restart(board: Board, how: str) -> None:
 
 
 def test_the_sectors_take_turns(board: Board) -> None:
-    """And nothing else of flash is touched, where the image lies above all."""
+    """The two sectors are used in turn, and no other flash is changed, above all not the image."""
     sectors = []
     for number in range(3):
         board.ask(f"set {PARAMETER}={number}")
@@ -147,7 +147,7 @@ def test_nothing_is_written_while_enabled(board: Board) -> None:
 
 
 def test_the_supply_fails_at_any_moment(board: Board) -> None:
-    """Saves again and again, cut off after so many words erased and bytes programmed: always the old or the new."""
+    """The supply fails after any number of erased words and programmed bytes: the old or the new values are found."""
     board.ask(f"set {PARAMETER}=1")
     board.ask("save")
     log = writes(board)

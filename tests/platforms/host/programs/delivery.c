@@ -1,9 +1,9 @@
 /*
- * The communication side alone, between a setpoint file and a control object that writes down what it is asked.
+ * The communication side alone, between a setpoint file and a control object that records its calls.
  *
  *     delivery FILE simulated|realtime END_MS TIME_MS...
  *
- * calls the communication at each of the times and prints what it delivers and publishes.
+ * polls the communication at each of the times and prints the setpoints and topics that it delivers and publishes.
  */
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* Reads numbers, one per line, into a histogram; prints count, min, max, mean and the quantiles the tests ask for. */
+/* Reads numbers, one per line, into a histogram; prints count, min, max, mean and the quantiles that the tests need. */
 #include <inttypes.h>
 #include <stdio.h>
 

@@ -1,10 +1,10 @@
 /*
- * A target as the generator writes it, but small and by hand: a position controller with one quadrature encoder, one
+ * A target like the generator's, but small and written by hand: a position controller with one quadrature encoder, one
  * PWM output with a direction pin, one subscription, one publication, an enable topic and a fail-safe input, and a
  * DC motor as its plant.
  *
- * Setpoints of 1000 and above make the controller compute for (setpoint - 1000) milliseconds of monotonic time, for
- * the tests of overruns in real time.
+ * With a setpoint of 1000 or more, the controller computes for (setpoint - 1000) milliseconds of monotonic time.  The
+ * tests of overruns in real time use this.
  */
 #include <math.h>
 
@@ -16,7 +16,7 @@
 #define PERIOD_NS 1000000
 #endif
 #ifndef STEPS_PER_PERIOD
-#define STEPS_PER_PERIOD 7 /* no whole number of nanoseconds each */
+#define STEPS_PER_PERIOD 7 /* a step is not an integer number of nanoseconds */
 #endif
 #ifndef OVERRUN_LIMIT
 #define OVERRUN_LIMIT 3
@@ -180,7 +180,7 @@ static double plant_steps;
 static void plant_init(void)
 {
     speed = 0.0;
-    angle = 12.5; /* the encoder must count from 0 all the same */
+    angle = 12.5; /* the encoder must still count from 0 */
 }
 
 static void plant_actuate(void)
@@ -209,7 +209,7 @@ static void plant_sense(void)
     epg_plant_quadrature_set(0, (int64_t)floor(angle / RADIANS_PER_COUNT));
 }
 
-extern const epg_plant_t motor_plant; /* not static: it may be unused */
+extern const epg_plant_t motor_plant; /* not static, because it may be unused */
 const epg_plant_t motor_plant = {
     .steps_per_period = STEPS_PER_PERIOD,
     .init = plant_init,

@@ -1,4 +1,4 @@
-/* Reads the bits of doubles in hexadecimal, one per line; prints each as the host's files hold it. */
+/* Reads the bits of doubles in hexadecimal, one per line; prints each double as in the host's files. */
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /*
- * A program with a main() of its own: starts the target in real time, talks to it, stops it, and does so twice.  Its
- * plant, which runs in the control thread, tries to stop the target, too.
- * Prints what it saw; a line "failed: ..." and status 1 if something is not as promised.
+ * A program with its own main(): it starts the target in real time, communicates with it, stops it, and repeats this
+ * once.  Its plant, which runs in the control thread, also tries to stop the target.
+ * Prints its observations, or a line "failed: ..." with status 1 if one of them breaks a promise.
  */
 #define _POSIX_C_SOURCE 200809L
 #include <math.h>
@@ -66,7 +66,7 @@ static int run_once(void)
     if (!atomic_load(&plant_was_refused)) {
         return failed("the control thread has stopped itself");
     }
-    if (!epg_host_stop() || !epg_host_stop()) { /* the second one does nothing */
+    if (!epg_host_stop() || !epg_host_stop()) { /* the second call has no effect */
         return failed("stop");
     }
     if (duty_moving < 0.5) {

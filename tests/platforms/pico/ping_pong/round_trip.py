@@ -5,8 +5,8 @@
 >>> # with Board(images["best", "best"], ("best", "best")) as board:
 >>> #     board.measure(rate=30.0, count=100).times     # seconds
 
-A time begins when the agent hands the ping to USB and ends when the pong has left it: the host's packets, the board's
-poll of its communication, the echo, the way back.  No operating system, no agent's process, no DDS is part of it.
+A time begins when the agent hands the ping to USB, and ends when the pong has arrived there.  It contains the host's
+packets, the board's poll of its communication, the echo, and the way back; no operating system, agent process or DDS.
 """
 
 from __future__ import annotations
@@ -30,16 +30,16 @@ from summary import Run, head, rows, summarise, table  # noqa: E402  # of the ex
 __all__ = ["COMBINATIONS", "QOS", "Board", "Combination", "Run", "head", "programs", "rows", "summarise", "table"]
 
 QOS = {"default": True, "best": False}
-"""As the example's programs are named; whether it is reliable."""
+"""The names of QoS in the example's programs; True if reliable."""
 Combination = tuple[str, str]
 """The QoS of the publisher of /pong and of the subscriber of /ping."""
 COMBINATIONS: tuple[Combination, ...] = tuple((publisher, subscriber) for publisher in QOS for subscriber in QOS)
 PATIENCE = 500
-"""ms until a ping is lost."""
+"""Milliseconds after which a ping counts as lost."""
 
 
 def programs(platform: str, combinations: Iterable[Combination] = COMBINATIONS) -> dict[Combination, Path]:
-    """The example's images for a Pico; SDK and compiler must be there."""
+    """The example's images for a Pico; SDK and compiler must be installed."""
     target = f"rpi_pico_{platform}"
     names = {each: f"ping_pong_{each[0]}_{each[1]}_{target}" for each in combinations}
     folder = build(EXAMPLE, targets=sorted(names.values()), variables={"PING_PONG_TARGET": target})
@@ -47,7 +47,7 @@ def programs(platform: str, combinations: Iterable[Combination] = COMBINATIONS) 
 
 
 class Board:
-    """A Pico with one of the images, connected to its agent; ``seed`` draws phase and packet times of the USB host."""
+    """A Pico with one of the images, connected to its agent; ``seed`` sets phase and packet times of the USB host."""
 
     def __init__(self, image: Path, combination: Combination, seed: int = 1) -> None:
         self._reliable = QOS[combination[1]]
@@ -59,7 +59,7 @@ class Board:
         self.agent.topics.taps.append(lambda writer, data: self._take(writer.topic, data))
         self._pongs: dict[float, float] = {}
         self._count = 0
-        while not self._one():  # until the board is a node that answers
+        while not self._one():  # until the node on the board answers
             assert self.agent.now() < 3, f"no answer; {self.agent.tail()}"
 
     def __enter__(self) -> Board:
@@ -70,7 +70,7 @@ class Board:
         self.pico.close()
 
     def burst(self, count: int) -> list[float]:
-        """What comes back, in its order, of so many pings that go out together."""
+        """The answers, in their order, to ``count`` pings that are sent together."""
         self._pongs.clear()
         for number in range(1, count + 1):
             self.agent.topics.publish("rt/ping", float64(number), reliable=self._reliable)
@@ -82,7 +82,7 @@ class Board:
             self._pongs[read_float64(data)] = self.agent.now()
 
     def _one(self) -> float | None:
-        """Seconds of a round trip; None: no answer."""
+        """Seconds of a round trip; None if there is no answer."""
         self._count += 1
         number = float(self._count)
         begin = self.agent.now()
@@ -92,7 +92,7 @@ class Board:
         return self._pongs[number] - begin
 
     def measure(self, rate: float, count: int, label: str = "") -> Run:
-        """``count`` pings: about ``rate`` in Hz of them, at times that are drawn, or the next at once if 0."""
+        """Sends ``count`` pings: at random times with about ``rate`` in Hz; if 0, each after the last answer."""
         times = []
         for _ in range(count):
             time = self._one()

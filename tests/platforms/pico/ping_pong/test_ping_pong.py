@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``examples/ping_pong`` on an emulated Pico: every ping comes back at once, and the control loop does not notice."""
+"""``examples/ping_pong`` on an emulated Pico: each ping has an answer at once, the control loop is undisturbed."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .round_trip import Board, Combination, Run, programs, summarise, table
 
 BOTH: tuple[Combination, ...] = (("best", "best"), ("default", "default"))
 LONGEST = 0.0025
-"""Seconds: two polls of communication, of 1 ms at most, and USB's packets."""
+"""In seconds: two polls of communication, of at most 1 ms each, and USB's packets."""
 PINGS = 60
 
 

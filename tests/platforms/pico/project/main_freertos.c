@@ -5,7 +5,7 @@
 static StaticTask_t memory;
 static StackType_t stack[512];
 
-/** Of the task below; a test raises it above communication's. */
+/** Priority of the task below.  A test raises it above that of communication. */
 volatile uint32_t priority = 1;
 
 static void run(void *argument)

@@ -1,6 +1,6 @@
 /**
  * @file
- * What a test asks core 0 to do, by writing `order`; TARGET is the target it starts.
+ * Orders of a test to core 0, written to `order`.  TARGET is the target that core 0 starts.
  */
 #ifndef MISCHIEF_H
 #define MISCHIEF_H
@@ -15,7 +15,7 @@
 
 #include TARGET_HEADER
 
-/* start() is <target>_start(). */
+/* CALL(start)() is <target>_start(). */
 #define JOIN_(one, two) one##_##two
 #define JOIN(one, two) JOIN_(one, two)
 #define CALL(function) JOIN(TARGET, function)
@@ -49,7 +49,7 @@ static void obey(void)
 {
     const uint32_t now = order;
     if (now != ORDER_NONE) {
-        order = ORDER_NONE; /* not always: a test may have written it since */
+        order = ORDER_NONE; /* only then: the test may have written a new order meanwhile */
     }
     turns++;
     (void)CALL(status)(&status);
@@ -87,7 +87,7 @@ static void obey(void)
     }
 }
 
-/** TinyUSB calls this when a serial port has received something: within EPG's communication. */
+/** TinyUSB calls this when a serial port has received bytes, within EPG's communication. */
 void tud_cdc_rx_cb(uint8_t number);
 void tud_cdc_rx_cb(uint8_t number)
 {

@@ -1,6 +1,6 @@
 /*
- * A program that uses core 1 itself: it counts there, and starts and stops its target as a test says.  Core 1's program
- * is in flash and has a stack of its own or, as most programs, the one it is given.
+ * A program that uses core 1 itself: it counts there, and starts and stops its target when a test orders it.  Core 1's
+ * program is in flash.  It has its own stack or, as in most programs, the default one.
  */
 #include <stdbool.h>
 #include <stdint.h>
@@ -33,7 +33,7 @@ int main(void)
     for (;;) {
         const uint32_t now = order;
         if (now != ORDER_NONE) {
-            order = ORDER_NONE; /* not always: a test may have written it since */
+            order = ORDER_NONE; /* only then: the test may have written a new order meanwhile */
         }
         switch (now) {
         case ORDER_START:

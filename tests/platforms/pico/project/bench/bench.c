@@ -2,8 +2,8 @@
 
 #include <stdint.h>
 
-/* Written by the test. */
-volatile uint32_t bench_loops;    /* how long a step takes */
+/* The test writes these. */
+volatile uint32_t bench_loops; /* determines the duration of a step */
 volatile uint32_t bench_not_finite;
 volatile uint32_t bench_fault;
 volatile double bench_duty = 0.25;

@@ -1,6 +1,6 @@
 /**
  * @file
- * A controller that does what a test asks of it.
+ * A controller that a test controls through variables.
  */
 #ifndef BENCH_H
 #define BENCH_H

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * A family without an SDK and without a chip: as little as `epg/family.h` allows.
+ * A family without an SDK and without a chip: the minimum that `epg/family.h` allows.
  */
 #ifndef EPG_FAMILY_PORT_H
 #define EPG_FAMILY_PORT_H
