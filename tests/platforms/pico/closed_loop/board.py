@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""JIWY's firmware with the robot on its pins and somebody at its console.
+"""JIWY's firmware with the robot on its pins and a test at its console.
 
 >>> # with Board(image("bare_metal"), {"pan": 0.12, "tilt": 0.12}) as board:
 >>> #     board.home()
@@ -21,7 +21,7 @@ from tests.platforms.pico.images import images
 from .robot import AXES, Axis, connect
 
 HOMED = 900
-"""ms after which both axes have homed from 0.12 rad and stand."""
+"""Milliseconds after which both axes have homed from 0.12 rad and have stopped."""
 
 
 def image(platform: str) -> Path:
@@ -30,7 +30,7 @@ def image(platform: str) -> Path:
 
 
 class Board:
-    """A Pico that has started, its console open."""
+    """A Pico after its start, with its console open."""
 
     def __init__(self, elf: Path, angles: Mapping[str, float], *, swapped: Collection[str] = (), **usb: Any) -> None:
         self.pico = Emulator(elf, usb={"seed": 3, **usb})
@@ -52,7 +52,7 @@ class Board:
             assert abs(self.motor(axis.name)["angle"]) < axis.rad_per_count, "homed"
 
     def ask(self, command: str) -> str:
-        """Gives a command; everything said up to and with the answer."""
+        """Sends a command; returns the text up to the end of the answer."""
         word = "setpoint" if "=" in command.split()[0] else command.split()[0]
         self.pico.receive()
         self.pico.send(command + "\n")
@@ -66,11 +66,11 @@ class Board:
         return found
 
     def is_safe(self, *axes: Axis) -> bool:
-        """No pulse and no direction: the bridges' inputs are low."""
+        """True if there is no pulse and no direction: the inputs of the bridges are low."""
         return all(self.pico.call("pin", pin=pin)["level"] == 0 for axis in axes for pin in axis.outputs)
 
     def run_until_safe(self, *axes: Axis, milliseconds: int) -> int:
-        """Runs until all of ``axes`` are safe; the cycle of the last edge on their pins."""
+        """Runs until all of ``axes`` are safe; returns the cycle of the last edge on their pins."""
         last = -1
         for _ in range(milliseconds):
             self.pico.run(milliseconds=1)
@@ -87,6 +87,6 @@ class Board:
         assert self._edges(axes) == []
 
     def _edges(self, axes: Sequence[Axis]) -> list[int]:
-        """When pins of ``axes`` have changed since the last call."""
+        """The cycles at which pins of ``axes`` have changed since the last call."""
         watched = {pin for axis in axes for pin in axis.outputs}
         return [cycle for cycle, pin, *_ in self.pico.call("take", log="pins") if pin in watched]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What must hold of an image that has run a scenario."""
+"""The promises that an image must keep when it has run a scenario."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from .robot import AXES
 RMS_COUNTS, LARGEST_COUNTS = 2.0, 4.0
 """Tolerance between the image's axis and the host's, in counts of its encoder (2.8 mrad for pan, 7.1 mrad for tilt).
 
-The two are not the same physics: setpoints come 1 to 2 ms later over USB, outputs act 0.25 ms after the tick and not at
-it, the host's end stops are springs and its dry friction is viscous below 0.2 rad/s.
+The two differ in physics: setpoints arrive 1 to 2 ms later over USB; outputs act 0.25 ms after the tick instead of at
+the tick; on the host, end stops are springs and dry friction is viscous below 0.2 rad/s.
 """
 
 LATEST = 5
-"""Cycles within which a setpoint arrives: two packets of up to 1.1 ms each, the console's turn, the next tick."""
+"""Cycles within which a setpoint arrives: two packets of up to 1.1 ms each, the console's poll, the next tick."""
 
 
 def assert_all_is_well(compared: Comparison, *, latest: int = LATEST, largest: float = LARGEST_COUNTS) -> None:
-    """``latest`` in cycles, ``largest`` in counts, where a console takes longer to read a command than on a Pico's own
-    core for it."""
+    """``latest`` is in cycles, ``largest`` in counts.  They differ if a console needs longer to read a command than on
+    a Pico with its own core for communication."""
     assert_follows(compared)
     assert_near_the_host(compared, largest)
     assert_bits_of_the_host(compared)
@@ -30,7 +30,7 @@ def assert_all_is_well(compared: Comparison, *, latest: int = LATEST, largest: f
 
 
 def assert_follows(compared: Comparison) -> None:
-    """Homing and motion hold the scenario's limits, in the image as on the host."""
+    """Homing and motion keep the scenario's limits, in the image as on the host."""
     for columns in (compared.image.columns, compared.simulated):
         checks = compared.checks(columns)
         assert len(checks) >= 8
@@ -48,7 +48,7 @@ def assert_near_the_host(compared: Comparison, largest: float = LARGEST_COUNTS) 
 
 
 def assert_bits_of_the_host(compared: Comparison) -> None:
-    """Fed with the same counts and setpoints, the host computes the same bits in every cycle, up to the PWM's duty."""
+    """With the same counts and setpoints, the host computes the same bits in every cycle, including the PWM's duty."""
     duties = [f"plant.inputs.duty_{axis.name}" for axis in AXES]
     for name in (*CONTROL, *duties):
         image, host = compared.image.columns[name], compared.replayed[name]
@@ -59,7 +59,7 @@ def assert_bits_of_the_host(compared: Comparison) -> None:
 
 
 def assert_setpoints_unchanged(compared: Comparison, latest: int = LATEST) -> None:
-    """Every setpoint that was sent has reached the model, to the bit and in time, and nothing else has."""
+    """Every setpoint that was sent has reached the model bit by bit and in time; no other setpoint has."""
     image = compared.image
     interval = round(float(compared.scenario.interval) * 1000)
     for axis in AXES:

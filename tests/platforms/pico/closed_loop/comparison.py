@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A scenario run by an image and by the host: how well each follows, and how far they differ."""
+"""A scenario run by an image and by the host: how well each follows its setpoints, and their difference."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ CONTROL = tuple(f"{way}.{name}" for way, names in (("inputs", INPUTS), ("outputs
 
 @dataclass(frozen=True)
 class Comparison:
-    """``simulated``: the host with its own robot; ``replayed``: the host's controller fed with the image's inputs."""
+    """``simulated``: the host with its own robot; ``replayed``: the host's controller with the image's inputs."""
 
     scenario: Scenario
     image: Recording
@@ -46,7 +46,7 @@ class Comparison:
         return [held for tracking in self.tracking(columns) for held in check(tracking, evaluate(tracking))]
 
     def difference(self, axis: str) -> tuple[float, float]:
-        """RMS and largest distance in rad between the image's axis and the host's, once both have homed."""
+        """RMS and largest difference in rad between the image's axis and the host's, after both have homed."""
         begin = next(a.homing.until for a in self.scenario.axes if a.name == axis and a.homing is not None)
         first = round(begin * 1000)
         name = f"plant.outputs.angle_{axis}"
@@ -64,7 +64,7 @@ def compare(platform: str, scenario_file: Path, angles: Mapping[str, float], fol
 def compare_image(
     image: Path, scenario_file: Path, angles: Mapping[str, float], folder: Path, *, core: int = 1, console: int = 0
 ) -> Comparison:
-    """The same of any image; see :func:`record`."""
+    """The same for any image; see :func:`record`."""
     diagnostics = Diagnostics()
     scenario = load_scenario(scenario_file, diagnostics)
     diagnostics.stop_if_errors()

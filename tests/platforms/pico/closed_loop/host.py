@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The same configuration on the host: against the simulated robot, and fed with what an image has sampled."""
+"""The same configuration on the host: with the simulated robot, or with the inputs that an image has sampled."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ Columns = dict[str, "list[float]"]
 
 
 def host_programs(angles: Mapping[str, float]) -> Path:
-    """Build folder with jiwy_host and jiwy_replay_host; ``angles`` are where the simulated robot stands at first."""
+    """Build folder with jiwy_host and jiwy_replay_host; ``angles`` are the first angles of the simulated robot."""
     for tool, package in (("cmake", "cmake"), ("ninja", "ninja-build")):
         if not shutil.which(tool):
             pytest.skip(f"{tool} is missing: apt install {package}")

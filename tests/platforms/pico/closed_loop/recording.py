@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A scenario run by an image in the emulator: what each control cycle read, wrote and moved.
+"""A scenario run by an image in the emulator: the inputs, outputs and motion of each control cycle.
 
-The scenario's setpoints are sent over the console, each at its time since the first tick, so that they arrive as late
-as USB and the console make them.  Late in every control period, when the cycle is over, the harness reads the model's
-ports in the firmware's memory, and the motors.
+The scenario's setpoints are sent over the console, each at its time since the first tick, so that USB and the console
+delay them.  Late in every control period, when the cycle is over, the test reads the model's ports in the firmware's
+memory, and the state of the motors.
 """
 
 from __future__ import annotations
@@ -24,15 +24,15 @@ OUTPUTS = ("encoder_reset_pan", "encoder_reset_tilt", "pan_logging", "pwm_pan", 
 LAST_COUNT = 24
 """Offset of `last_count` in epg_quadrature_encoder_t: quadrature_encoder.h."""
 LATE = PERIOD * 9 // 10
-"""When a cycle is over, and its outputs are in effect."""
+"""Time in the period at which a cycle is over and its outputs are in effect."""
 
 
 @dataclass
 class Recording:
     """One value per control cycle of each signal, named as in the host's trace.
 
-    ``counts`` are those of the decoders, which no reset touches; ``sent`` the setpoints in their order; ``said`` the
-    console's statistics at the end.
+    ``counts`` are those of the decoders, which a reset does not change; ``sent`` are the setpoints in their order;
+    ``said`` are the console's statistics at the end.
     """
 
     columns: dict[str, list[float]] = field(default_factory=dict)
@@ -57,9 +57,9 @@ def record(
     core: int = 1,
     console: int = 0,
 ) -> Recording:
-    """Runs ``image`` through all of ``scenario``; ``angles`` are where the axes stand at first.
+    """Runs ``image`` through all of ``scenario``; ``angles`` are the first angles of the axes.
 
-    Ticks come to ``core``; ``console`` is the serial port of the console.
+    ``core`` handles the ticks; ``console`` is the serial port of the console.
     """
     with Emulator(image, usb={"seed": 3, "phase": 321}) as pico:
         connect(pico, angles, swapped=swapped)

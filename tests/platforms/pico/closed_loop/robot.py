@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""JIWY on the pins of a simulated Pico: motors behind its H-bridges, with the encoders that they turn.
+"""JIWY on the pins of a simulated Pico: motors behind its H-bridges, and the encoders that they turn.
 
 >>> # with Emulator(elf) as pico:
 >>> #     connect(pico, {"pan": 1.2, "tilt": 0.7})
@@ -25,7 +25,7 @@ WRAP_EXCEPTION = 16 + 4
 
 @dataclass(frozen=True)
 class Axis:
-    """Wiring of targets/robots/jiwy/rpi_pico_jiwy.tcf; ``upper`` is the angle of the far end stop, homing's is at 0."""
+    """Wiring of targets/robots/jiwy/rpi_pico_jiwy.tcf.  ``upper`` is the angle of the far end stop; homing finds 0."""
 
     name: str
     encoder_a: int
@@ -56,7 +56,7 @@ AXES = (
 
 
 def connect(pico: Emulator, angles: Mapping[str, float], *, swapped: Collection[str] = ()) -> None:
-    """Puts both axes onto the pins, at ``angles`` in rad; A and B of the axes in ``swapped`` are exchanged."""
+    """Connects both axes to the pins, at ``angles`` in rad; A and B of the axes in ``swapped`` are exchanged."""
     for axis in AXES:
         a, b = axis.encoder_a, axis.encoder_b
         if axis.name in swapped:
@@ -68,12 +68,12 @@ def connect(pico: Emulator, angles: Mapping[str, float], *, swapped: Collection[
 
 
 def angle(pico: Emulator, axis: str) -> float:
-    """Of the camera, in rad from the stop that homing finds."""
+    """Angle of the camera, in rad from the end stop that homing finds."""
     return float(pico.call("motor_state", name=axis)["angle"])
 
 
 def first_tick(pico: Emulator, *, core: int = 1, milliseconds: int = 200) -> int:
-    """Runs until ``core`` has entered its first tick; the cycle of the entry."""
+    """Runs until ``core`` has entered its first tick; returns the cycle of the entry."""
     pico.call("watch_exceptions", numbers=[WRAP_EXCEPTION])
     for _ in range(milliseconds):
         pico.run(milliseconds=1)

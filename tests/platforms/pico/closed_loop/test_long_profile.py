@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The RP2040 images of JIWY through the whole motion profile of examples/jiwy: 18 simulated seconds each."""
+"""JIWY's RP2040 images run the whole motion profile of examples/jiwy: 18 simulated seconds each."""
 
 from __future__ import annotations
 

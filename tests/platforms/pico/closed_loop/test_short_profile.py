@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The RP2040 images of JIWY in closed loop: homing and one motion, compared with the host."""
+"""JIWY's RP2040 images in closed loop: homing and one motion, compared with the host."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""JIWY's firmware with the middleware ``micro_ros``, built with a libmicroros of the user's, for FreeRTOS on a Pico."""
+"""JIWY's firmware with the middleware ``micro_ros``, for FreeRTOS on a Pico, built with the user's libmicroros."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from tests.platforms.pico.images import PROJECT, skip_unless_buildable, skip_unl
 from tests.platforms.pico.xrce.board import Jiwy
 
 VARIABLE = "EPG_TEST_MICRO_ROS_PICO"
-"""Names that library: MICRO_ROS_PATH is for this computer's."""
+"""Variable that names that library.  MICRO_ROS_PATH is the library for this computer."""
 FIRMWARE = "jiwy_firmware"
 
 
 def library() -> str:
-    """The user's libmicroros for Cortex-M0+, or a skip."""
+    """The user's libmicroros for Cortex-M0+; skips the test if it is missing."""
     folder = os.environ.get(VARIABLE)
     if not folder:
         pytest.skip(f"{VARIABLE} does not name a libmicroros for Cortex-M0+: docs/micro-ros.md says what one has")
@@ -32,7 +32,7 @@ def firmware(board: str = "pico", executable: str = FIRMWARE) -> Path:
 
 
 class MicroRosJiwy(Jiwy):
-    """As a Pico with ``xrce``: the same agent, the same topics."""
+    """A Pico like that with ``xrce``: the same agent, the same topics."""
 
     def __init__(self, seed: int = 3, executable: str = FIRMWARE) -> None:
         library()

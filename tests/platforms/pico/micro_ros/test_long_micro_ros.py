@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What an agent and a cable can do to JIWY's firmware with micro-ROS; its stack; a Pico 2."""
+"""JIWY's firmware with micro-ROS under faults of agent and cable; its stack; its build for a Pico 2."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def test_a_serial_line() -> None:
 
 
 def test_it_is_stopped_and_started_wherever_it_waits() -> None:
-    """By a task of the user's, which deletes EPG's: libmicroros has all its places again, each time."""
+    """A user's task stops it, which deletes EPG's task: each time, libmicroros has all its memory again."""
     with MicroRosJiwy(executable="user_jiwy") as jiwy:
         for milliseconds in (1, 4, 7, 9, 11, 13, 15, 17, 19, 22, 60):
             jiwy.agent.kill()
@@ -57,7 +57,7 @@ def test_it_is_stopped_and_started_wherever_it_waits() -> None:
 
 @pytest.mark.parametrize("seed", [3, 4])
 def test_a_quarter_is_left_of_the_stack(seed: int) -> None:
-    """The console does all it can while the node is made, lost and looked for."""
+    """The console does everything it can while the node is made, lost and searched."""
     draw = random.Random(seed)
     with MicroRosJiwy(seed) as jiwy:
         jiwy.agent.run(300)
@@ -83,5 +83,5 @@ def test_a_quarter_is_left_of_the_stack(seed: int) -> None:
 
 
 def test_a_pico_2_can_have_the_same_library() -> None:
-    """Linked, not run."""
+    """The image is linked, but does not run."""
     assert " clock_gettime" in binutils("nm", str(firmware("pico2")))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""JIWY's firmware with micro-ROS is the same node as with xrce; its waiting is noticed by nobody but itself."""
+"""JIWY's firmware with micro-ROS is the same node as with xrce; only its own communication waits for the agent."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.platforms.pico.xrce.scenarios import SILENCE, assert_holds, assert_is
 from .firmware import MicroRosJiwy
 
 HEAP = ("_malloc_r", "_sbrk")
-"""What every use of the C library's heap calls."""
+"""Every use of the C library's heap calls this."""
 
 
 @pytest.fixture(scope="module")
@@ -38,7 +38,7 @@ def test_it_is_the_node_that_xrce_is(board: MicroRosJiwy) -> None:
 
 
 def test_the_agent_is_restarted(jiwy: MicroRosJiwy) -> None:
-    """Positions come and setpoints arrive; memory comes from where the target has it, and is all given back."""
+    """Positions arrive and setpoints act again; the memory is the target's own, and all of it is free again."""
     restart(jiwy, times=3)
     assert_is_back(jiwy)
     assert [name for name in HEAP if jiwy.pico.call("span", name=name)["passages"]] == []
@@ -48,7 +48,7 @@ def test_the_agent_is_restarted(jiwy: MicroRosJiwy) -> None:
 
 
 def test_the_console_and_the_control_loop_go_on_while_it_waits(jiwy: MicroRosJiwy) -> None:
-    """The agent is there and silent: a ping waits 20 ms in vain every 0.2 s."""
+    """The agent is there but silent: every 0.2 s, a ping waits 20 ms for an answer."""
     jiwy.agent.freeze()
     jiwy.agent.run(SILENCE + 300)
     assert jiwy.stats()["connection"] == "waiting"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Encoders with wires swapped or dead: JIWY's images stop the motors, as docs/runtime.md and the .tcf say."""
+"""Encoders with swapped or broken wires: JIWY's images stop the motors, as docs/runtime.md and the .tcf promise."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from tests.platforms.pico.images import PLATFORMS, skip_unless_emulated
 PAN, TILT = AXES
 NEAR = {"pan": 0.12, "tilt": 0.12}
 MODEL_WRONG = 0.25
-"""rad in the wrong direction at which the model's own homing gives up: examples/jiwy/README.md."""
+"""Angle in the wrong direction, in rad, at which the model's own homing stops: examples/jiwy/README.md."""
 RUNAWAY = math.radians(20)
 STALL_TIME = 0.5
-"""s; both of the motion guards in targets/robots/jiwy/jiwy.tcf."""
+"""Seconds, for both motion guards in targets/robots/jiwy/jiwy.tcf."""
 COASTING = 0.1
-"""rad that pan goes on at most after homing's duty of 0.05: 1.3 rad/s, and a time constant of 57 ms."""
+"""Largest angle in rad that pan still moves after homing's duty of 0.05: 1.3 rad/s, time constant 57 ms."""
 
 
 @pytest.fixture(params=PLATFORMS)
@@ -30,7 +30,7 @@ def platform(request: pytest.FixtureRequest) -> Iterator[str]:
 
 
 def test_swapped_wires_are_noticed_by_homing(platform: str) -> None:
-    """The model drives down, counts go up: it stops that axis; the other homes."""
+    """The model drives down but the counts go up: the model stops that axis, and the other axis homes."""
     with Board(image(platform), {"pan": 1.0, "tilt": 0.12}, swapped=["pan"]) as board:
         board.run_until_safe(PAN, milliseconds=600)
         assert 1.0 - MODEL_WRONG - COASTING < board.motor("pan")["angle"] < 1.0 - MODEL_WRONG + 2 * PAN.rad_per_count
@@ -40,7 +40,7 @@ def test_swapped_wires_are_noticed_by_homing(platform: str) -> None:
 
 
 def test_swapped_wires_are_a_runaway_to_the_guard(platform: str) -> None:
-    """Without the model's own check the guard finds it, and both axes are safe."""
+    """Without the model's own check, the guard detects it and makes both axes safe."""
     with Board(image(platform), {"pan": 1.0, "tilt": 1.0}, swapped=["pan"]) as board:
         board.ask(r"set Pan\Homing\wrong=10")
         board.run_until_safe(*AXES, milliseconds=800)
@@ -65,7 +65,7 @@ def test_an_encoder_that_dies_while_the_axis_moves_is_a_stall(platform: str) -> 
 
 
 def test_an_encoder_that_is_dead_from_the_start_ends_homing(platform: str) -> None:
-    """It looks as if the axis stood: the model tries the other way, for as long as its limit says."""
+    """The axis seems to stand still: the model tries the other direction until its time limit."""
     with Board(image(platform), {"pan": 1.0, "tilt": 0.12}) as board:
         board.pico.call("encoder_dead", name="pan")
         board.ask(r"set Pan\Homing\limit=0.5")

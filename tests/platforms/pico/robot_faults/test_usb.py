@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""USB pulled during traffic, and garbage on it: control does not notice, and the console is there again afterwards."""
+"""USB is unplugged during traffic or receives garbage: control is undisturbed, and the console recovers."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SEED = 20250301
 
 @pytest.fixture(params=PLATFORMS)
 def board(request: pytest.FixtureRequest) -> Iterator[Board]:
-    """Both axes hold a position that the console has told them."""
+    """Both axes hold a position that was set over the console."""
     skip_unless_emulated(request.param)
     with Board(image(request.param), {"pan": 0.12, "tilt": 0.12}) as made:
         made.home()
@@ -66,7 +66,7 @@ def test_pulled_while_packets_move_both_ways(board: Board) -> None:
 
 
 def test_garbage(board: Board) -> None:
-    """All 256 bytes at random, with many line ends, and beginnings of commands that mean something."""
+    """All 256 byte values at random, with many line ends and many beginnings of valid commands."""
     draw = random.Random(SEED)
     words = [
         b"pan_subscriber=",

@@ -4,10 +4,10 @@
 >>> # processor = Processor(elf)
 >>> # processor.call("epg_control_start", processor.address("jiwy_control"), processor.address("application"))
 
-The image is loaded as its start-up code leaves it.  There is no time and there are no interrupts: whoever calls a
-function says what the microsecond timer and the PIO's FIFOs show.  Only where the firmware waits, the timer goes on.
-unicorn has none of the chip's coprocessors: that for pins is simulated here; instead of that for doubles, images have
-the compiler's own (COMPILER_ARITHMETIC).
+The image is in memory as after its start-up code.  There are no time and no interrupts: the caller of a function sets
+the microsecond timer and the PIO's FIFOs.  The timer advances only when the firmware waits.  unicorn does not have
+the chip's coprocessors.  This module simulates the one for pins; instead of the one for doubles, the images use the
+compiler's own arithmetic (COMPILER_ARITHMETIC).
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ SIO = 0xD0000000
 PRIVATE, PRIVATE_SIZE = 0xE0000000, 0x100000
 STACK = RAM + RAM_SIZE
 RETURN = 0xFFF0
-"""An address that no code has: a call ends there."""
+"""An address without code: a call ends there."""
 
 _PIN_WRITE = re.compile(r"\s*([0-9a-f]+):\t.*\tmcrr\t0, 4, r(\d+), r(\d+), cr([04])")
 """The GPIO coprocessor's write of one pin's level (cr0) or output enable (cr4): RP2350 data sheet, 3.6.1."""
@@ -44,7 +44,7 @@ GPIO_OUT, GPIO_OUT_SET, GPIO_OUT_CLR = 0x010, 0x018, 0x020
 
 
 class Processor:
-    """One core, its memories and its registers; ``counts`` are what the state machines of PIO0 show.
+    """One core, its memories and its registers; ``counts`` are the results of PIO0's state machines.
 
     ``target``: the name of the image's target, with which the names of its variables begin.
     """
@@ -67,7 +67,7 @@ class Processor:
             self.cpu.hook_add(self.module.UC_HOOK_CODE, self._pass_time, None, wait, wait)
 
     def _pass_time(self, cpu: Any, address: int, size: int, _: Any) -> None:
-        """``epg_port_wait_until(time_ns)`` begins: it will be that time when it looks."""
+        """``epg_port_wait_until(time_ns)`` begins: advances the timer to that time."""
         time_ns = cpu.reg_read(self.arm.UC_ARM_REG_R0) | cpu.reg_read(self.arm.UC_ARM_REG_R1) << 32
         self.time_us = max(self.time_us, -(-time_ns // 1000))
 
@@ -80,7 +80,7 @@ class Processor:
                 self.cpu.hook_add(self.module.UC_HOOK_CODE, self._write_pin, operands, address, address)
 
     def _write_pin(self, cpu: Any, address: int, size: int, operands: tuple[int, int, bool]) -> None:
-        """Does what the instruction would, and goes on behind it."""
+        """Does what the instruction would do, and continues after it."""
         pin, value = (cpu.reg_read(self.arm.UC_ARM_REG_R0 + number) for number in operands[:2])
         if operands[2]:
             self.outputs = self.outputs & ~(1 << pin) | (value & 1) << pin
@@ -101,9 +101,9 @@ class Processor:
         return self.symbols[symbol]
 
     def call(self, function: str, *arguments: int, stacked: Sequence[int] = (), longest: int = 1_000_000) -> int:
-        """Calls a function with words in r0 to r3 and on the stack; r0 of its return.
+        """Calls a function with words in r0 to r3 and on the stack; returns r0.
 
-        Raises :class:`AssertionError` when it has not returned after ``longest`` instructions.
+        Raises :class:`AssertionError` if the function has not returned after ``longest`` instructions.
         """
         stack = STACK - 4 * (len(stacked) + len(stacked) % 2)
         self.cpu.mem_write(stack, struct.pack(f"<{len(stacked)}I", *stacked))
@@ -117,7 +117,7 @@ class Processor:
         return int(self.cpu.reg_read(self.arm.UC_ARM_REG_R0))
 
     def trace(self, seen: Callable[[int], None], run: Callable[[], object]) -> None:
-        """Calls ``seen(pc)`` before each instruction that ``run()`` makes the processor execute."""
+        """Calls ``seen(pc)`` before each instruction that the processor executes during ``run()``."""
         hook = self.cpu.hook_add(self.module.UC_HOOK_CODE, lambda cpu, address, size, data: seen(address))
         try:
             run()
@@ -130,7 +130,7 @@ class Processor:
         return struct.unpack(f"<{count}d", bytes(self.cpu.mem_read(self.address(symbol), 8 * count)))
 
     def level(self, slice_: int, channel: int) -> int:
-        """What a compare register of the PWM holds."""
+        """The value of a compare register of the PWM."""
         return self.registers.get(PWM + PWM_SLICE * slice_ + PWM_CC, 0) >> 16 * channel & 0xFFFF
 
     def pin(self, pin: int) -> int:
@@ -147,7 +147,7 @@ class Processor:
         if address in (TIMER0_RAWL, TIMER0_RAWH):
             return self.time_us >> (32 if address == TIMER0_RAWH else 0) & 0xFFFFFFFF
         if address in (PIO0 + PIO_FSTAT, PIO0 + PIO_FLEVEL):
-            return 0  # nothing old, and never empty
+            return 0  # no old results, and never empty
         if PIO0 + PIO_RXF0 <= address < PIO0 + PIO_RXF0 + 16:
             return self.counts[(address - PIO0 - PIO_RXF0) // 4] & 0xFFFFFFFF
         return self.registers.get(address, 0)
@@ -177,7 +177,7 @@ def _symbols(elf: Path) -> dict[str, int]:
 
 
 def _segments(elf: Path) -> list[tuple[int, bytes]]:
-    """What is loaded, where it is when the program runs: ELF for the Arm architecture, program headers."""
+    """The loaded segments at their run addresses.  Source: ELF for the Arm architecture, program headers."""
     data = elf.read_bytes()
     (offset,), (size, count) = struct.unpack_from("<I", data, 28), struct.unpack_from("<HH", data, 42)
     found = []

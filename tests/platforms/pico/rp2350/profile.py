@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The control cycle of an RP2350 image over a motion that the host has made, cycle by cycle."""
+"""The control cycle of an RP2350 image with the inputs of a motion on the host, cycle by cycle."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ PWM_TOP = 7499
 
 @dataclass(frozen=True)
 class Cycle:
-    """What a cycle has computed: the model's ports, and duty of each axis as its pins say."""
+    """The results of a cycle: the model's ports, and the duty of each axis at its pins."""
 
     inputs: tuple[float, ...]
     outputs: tuple[float, ...]
@@ -29,7 +29,7 @@ class Cycle:
 
 
 def decoder_counts(columns: Mapping[str, Sequence[float]], axis: Axis) -> list[int]:
-    """The counts behind the positions of a host's trace, as they were before the resets."""
+    """The counts for the positions in a host's trace, without the offsets of resets."""
     positions, resets = columns[f"inputs.position_{axis.name}"], columns[f"outputs.encoder_reset_{axis.name}"]
     counts, origin, level = [], 0, False
     for position, reset in zip(positions, resets, strict=True):
@@ -41,7 +41,7 @@ def decoder_counts(columns: Mapping[str, Sequence[float]], axis: Axis) -> list[i
 
 
 def start(processor: Processor) -> None:
-    """As core 1 does, without its tick."""
+    """Starts control as core 1 does, but without its tick."""
     control = processor.address(f"{processor.target}_control")
     processor.call("epg_control_start", control, processor.address("application"))
 

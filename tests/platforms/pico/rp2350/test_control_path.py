@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The control cycle of both RP2350 images on an emulated Cortex-M33: the host's bits over the whole motion profile.
+"""The control cycle of both RP2350 images on an emulated Cortex-M33 gives the host's bits over the motion profile.
 
-The models of the examples use + - x / and comparisons only, so there is no tolerance.
+There is no tolerance: the models of the examples use only + - x / and comparisons.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ SCENARIO = ROOT / "examples" / "jiwy" / "tracking.yaml"
 
 
 def image(platform: str) -> Path:
-    """JIWY for Pico 2 with its console, and the compiler's doubles."""
+    """JIWY for Pico 2 with its console and the compiler's doubles."""
     skip_unless_buildable(platform)
     skip_if_missing(unicorn)
     variables = {"PLATFORM": platform, "MIDDLEWARE": "console", **COMPILER_ARITHMETIC}
@@ -37,7 +37,7 @@ def image(platform: str) -> Path:
 
 @pytest.fixture(scope="module")
 def host(tmp_path_factory: pytest.TempPathFactory) -> Columns:
-    """The host's run: homing and the motion profile, 18,000 cycles."""
+    """The host's run of homing and the motion profile, 18,000 cycles."""
     diagnostics = Diagnostics()
     scenario = load_scenario(SCENARIO, diagnostics)
     assert scenario is not None, diagnostics.items
@@ -63,7 +63,7 @@ def test_every_cycle_computes_the_bits_of_the_host(platform: str, host: Columns)
 
 
 def test_a_cycle_executes_few_thousand_instructions(host: Columns) -> None:
-    """Counted in every 200th cycle; docs/benchmarks.md has the parts."""
+    """Counted in every 200th cycle; docs/benchmarks.md lists the parts."""
     processor = Processor(image("bare_metal"))
     start(processor)
     counts: Counter[int] = Counter()

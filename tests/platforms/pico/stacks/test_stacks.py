@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Stacks are a quarter larger than what JIWY's RP2040 images have ever used of them; the compiler's doubles."""
+"""Each stack is a quarter larger than the largest use by JIWY's RP2040 images with the compiler's doubles."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tests.platforms.pico.stacks.workload import worst_of
 from tests.platforms.pico.test_faults import FAULT, MODEL, order
 
 SEED = 4
-"""The one of the first six whose exceptions nest deepest."""
+"""Of the first six seeds, this one nests exceptions deepest."""
 EMERGENCY_STACKS = "epg_pico_emergency_stacks"
 
 
@@ -29,7 +29,7 @@ def test_a_quarter_is_left(platform: str) -> None:
 @pytest.mark.parametrize("core", [0, 1])
 @pytest.mark.parametrize("platform", PLATFORMS)
 def test_a_quarter_is_left_of_the_stack_for_faults(platform: str, core: int) -> None:
-    """What is left of each half is still as it was cleared at the start."""
+    """The unused part of each half still has the value that it was cleared to at the start."""
     skip_unless_emulated(platform)
     with Emulator(images("pico", platform, "user_bench") / "user_bench.elf") as pico:
         pico.run(milliseconds=20)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The work that takes most of the stacks of JIWY's firmware, and how much it has taken.
+"""The work for which JIWY's firmware needs most of its stacks, and the bytes that it uses.
 
-Everything the console can do, with USB flooded, pulled and put back and asked for its descriptors meanwhile; faults and
-starts of the model; flash being written.  How exceptions nest depends on when packets come, hence the seeds.
+All functions of the console, while USB is flooded, unplugged, plugged in and asked for its descriptors; faults and
+starts of the model; writes to flash.  The nesting of exceptions depends on the times of packets, hence the seeds.
 """
 
 from __future__ import annotations
@@ -39,24 +39,24 @@ COMMANDS = (
     "enable",
 )
 PATTERN = (0xE96E96E9).to_bytes(4, "little")
-"""What stack.c paints with."""
+"""The value with which stack.c fills a stack."""
 KERNEL_PATTERN = bytes(4 * [0xA5])
-"""And FreeRTOS, tskSTACK_FILL_BYTE."""
+"""The value of FreeRTOS: tskSTACK_FILL_BYTE."""
 GUARD = 64
-"""Bytes at the bottom of core 0's stack that are not painted."""
+"""Bytes at the bottom of core 0's stack that are not filled."""
 DEVICE, CONFIGURATION, STRING = 1, 2, 3
 
 
 @dataclass(frozen=True)
 class Stack:
-    """Bytes."""
+    """Size and use of a stack, in bytes."""
 
     used: int
     size: int
 
 
 def worst_of(image: Path, seed: int) -> dict[str, Stack]:
-    """The stacks of ``image`` after it: "control", "communication", "main", which interrupts use, and the kernel's."""
+    """The stacks of ``image`` afterwards: "control", "communication", "main" (for interrupts), and the kernel's."""
     draw = random.Random(seed)
     clock = draw.uniform(-500, 500)
     with Board(image, {"pan": 0.12, "tilt": 0.12}, phase=draw.uniform(0, 1000), clock_error=clock) as board:

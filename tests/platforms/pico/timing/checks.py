@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What must hold of the timing of EPG's images."""
+"""The promises about the timing of EPG's images."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from tests.platforms.pico.closed_loop.robot import MOTOR_PERIOD
 from .measure import Timing
 
 LARGEST_ENTRY = 3
-"""Cycles of 8 ns by which a tick's handler may begin early or late."""
+"""Cycles of 8 ns by which the handler of a tick may begin early or late."""
 LARGEST_SECOND_READ = 1250
-"""And by which the second encoder may be read: the first one's position is computed before, in doubles."""
+"""The same for the read of the second encoder: before it, the first one's position is computed in doubles."""
 
 
 def assert_on_time(timing: Timing) -> None:

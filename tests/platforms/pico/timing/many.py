@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measurements over many seeds, as many at a time as there are processors."""
+"""Measurements over many seeds; as many run at the same time as there are processors."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .programs import Program
 
 
 def measure_many(program: Program, load: Load, seeds: Iterable[int], seconds: float) -> Timing:
-    """The sum of :func:`measure` over ``seeds``: so many USB hosts, each with its own phase, clock and packets."""
+    """The sum of :func:`measure` over ``seeds``: each is a USB host with its own phase, clock and packets."""
     image = program.image()
     total = Timing()
     with ThreadPoolExecutor(os.cpu_count()) as pool:

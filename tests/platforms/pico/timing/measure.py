@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""When a program's ticks, encoder reads and PWM levels come, as the emulator sees it, to the cycle of 8 ns.
+"""The times of a program's ticks, encoder reads and PWM levels, measured by the emulator, to the cycle of 8 ns.
 
-Of every control cycle k: the deviation from t0 + k T of the tick's first instruction and of the encoder reads, and of
-the PWM wrap at which a level that the cycle has written takes effect.  The firmware's own clock is not asked.
-Contention for the bus and the flash cache are not simulated.
+For every control cycle k, these deviate from t0 + k T: the first instruction of the tick, the encoder reads, and the
+PWM wrap at which a level that the cycle has written takes effect.  The firmware's own clock is not used.  Contention
+for the bus and the flash cache is not simulated.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ from .programs import Program
 
 MOTOR_SLICES = (1, 2)
 MOST_UNANSWERED = 3
-"""Setpoints that the host sends before it waits for an answer."""
+"""Number of setpoints that the host sends before it waits for an answer."""
 LINES = 2000
-"""Of the text that floods USB, before it repeats."""
+"""Length of the text that floods USB, before it repeats."""
 
 
 @dataclass(frozen=True)
 class Load:
-    """``period`` of communication in ms; ``flooded``: as many packets as USB takes, both ways, all the time."""
+    """``period`` of communication in ms; ``flooded``: always as many packets as USB can carry, in both directions."""
 
     period: int
     flooded: bool = False
@@ -45,7 +45,7 @@ LOADS = (Load(33), Load(10), Load(1), Load(33, flooded=True))
 
 @dataclass
 class Timing:
-    """Deviations in cycles of 8 ns; each maps a deviation to how many of them there were."""
+    """Deviations in cycles of 8 ns; each mapping counts the occurrences of each deviation."""
 
     cycles: int = 0
     missed: int = 0
@@ -66,10 +66,10 @@ class Timing:
 
 
 def measure(program: Program, load: Load, seed: int, seconds: float, *, image: Path | None = None) -> Timing:
-    """Runs ``program`` from reset for so many simulated seconds: homing, then a motion of both axes.
+    """Runs ``program`` from reset for this many simulated seconds: homing, then a motion of both axes.
 
-    ``image``: of the program, if it has been built before.  Phase and clock error (+-500 ppm) of the USB host are drawn
-    by ``seed``.
+    ``image``: of the program, if it is already built.  ``seed`` determines phase and clock error (+-500 ppm) of the USB
+    host.
     """
     draw = random.Random(seed)
     phase, clock_error = draw.uniform(0, 1000), draw.uniform(-500, 500)
@@ -96,7 +96,7 @@ def measure(program: Program, load: Load, seed: int, seconds: float, *, image: P
 
 
 def _exercise(pico: Emulator, load: Load, draw: random.Random, seconds: float) -> int:
-    """Sends setpoints for so long, if need be as fast as they are answered; bytes received."""
+    """Sends setpoints for this time, if necessary as fast as answers come; returns the number of received bytes."""
     start, received, unanswered = pico.cycle, 0, 0
     if load.flooded:
         pico.call("usb_flood", text="".join(_flood_lines(draw)))
@@ -126,7 +126,7 @@ def _flood_lines(draw: random.Random) -> Iterable[str]:
 
 
 def _overruns(pico: Emulator) -> int:
-    """As the firmware counts them; it must be driving still."""
+    """Overruns as the firmware counts them; asserts that the firmware still drives the motors."""
     pico.run(milliseconds=300)
     pico.receive()
     pico.send("\nstats\n")
@@ -141,7 +141,7 @@ Passages = list[list[int]]
 
 
 def evaluate(ticks: Passages, reads: Passages, writes: Passages, taken: Passages) -> Timing:
-    """What the spans of a run say; each passage is [cycle, cycles, instructions]."""
+    """Evaluates the spans of a run; each passage is [cycle, cycles, instructions]."""
     timing = Timing(cycles=len(ticks))
     entries = [cycle for cycle, *_ in ticks]
     zero = entries[0] + _commonest((entry - entries[0]) for entry in entries)
@@ -171,13 +171,13 @@ def evaluate(ticks: Passages, reads: Passages, writes: Passages, taken: Passages
 
 
 def _commonest(distances: Iterable[int]) -> int:
-    """The commonest distance modulo a period, nearest to 0."""
+    """The most frequent distance modulo a period, nearest to 0."""
     phase = Counter(distance % PERIOD for distance in distances).most_common(1)[0][0]
     return phase if phase < PERIOD // 2 else phase - PERIOD
 
 
 def _inside(passages: Passages, begin: int, end: int, position: dict[str, int], name: str) -> Passages:
-    """Passages within a span; spans are asked for in their order."""
+    """Passages within a span; spans must be requested in their order."""
     at = position[name]
     while at < len(passages) and passages[at][0] < begin:
         at += 1

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The programs whose timing is measured: EPG's images, and JIWY written by hand with other sorts of tick."""
+"""The programs whose timing is measured: EPG's images, and JIWY written by hand with other kinds of tick."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ PROJECT = "benchmarks/pico"
 
 @dataclass(frozen=True)
 class Program:
-    """An executable of ``benchmarks/pico`` and its functions: what the tick calls, what reads, what writes.
+    """An executable of ``benchmarks/pico`` and the functions that the tick calls, that read and that write.
 
-    ``period``: of communication in ms, where it is compiled in.
+    ``period``: of communication in ms, if it is compiled in.
     """
 
     title: str
@@ -29,7 +29,7 @@ class Program:
     period: int | None = None
 
     def image(self) -> Path:
-        """Builds it; SDK, compiler and kernel must be there."""
+        """Builds the image; SDK, compiler and kernel must be installed."""
         variables = {"PLATFORM": self.platform}
         if self.platform == "smp":
             variables["FREERTOS_KERNEL_PATH"] = str(freertos_kernel())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The timing of JIWY on bare metal over 20 USB hosts, 60 simulated seconds for each load."""
+"""The timing of JIWY on bare metal with 20 USB hosts, 60 simulated seconds for each load."""
 
 from __future__ import annotations
 

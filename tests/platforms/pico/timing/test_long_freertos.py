@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The timing of JIWY on FreeRTOS over 20 USB hosts, 60 simulated seconds for each load but the flood."""
+"""The timing of JIWY on FreeRTOS with 20 USB hosts, 60 simulated seconds for each load except the flood."""
 
 from __future__ import annotations
 

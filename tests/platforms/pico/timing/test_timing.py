@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Ticks, encoder reads and outputs of JIWY's RP2040 images against t0 + k T, as the emulator times them."""
+"""Ticks, encoder reads and outputs of JIWY's RP2040 images are at t0 + k T, measured by the emulator."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ BUSIEST = (Load(1), Load(33, flooded=True))
 
 @pytest.fixture(scope="module", params=PLATFORMS)
 def timings(request: pytest.FixtureRequest) -> dict[Load, Timing]:
-    """A second of each of the two loads that keep core 0 busiest."""
+    """One second of each of the two loads that keep core 0 busiest."""
     skip_unless_emulated(request.param)
     return {load: measure(generated(request.param, load.period), load, seed=1, seconds=1.0) for load in BUSIEST}
 
@@ -38,7 +38,7 @@ def test_usb_was_flooded(timings: dict[Load, Timing]) -> None:
 
 
 def test_an_alarm_pool_beside_communication_is_late() -> None:
-    """The same measurement finds the deviations of a tick that shares its core with USB."""
+    """The same measurement detects the deviations of a tick that shares its core with USB."""
     skip_unless_emulated("bare_metal")
     timing = measure(by_hand("by_hand_alarm_core0"), Load(33, flooded=True), seed=1, seconds=1.0)
     assert timing.cycles > 900
@@ -50,7 +50,7 @@ def passages(*starts: int, length: int = 100) -> list[list[int]]:
 
 
 def test_what_is_late_is_found() -> None:
-    """Of four ticks the third is 7 cycles late and the fifth is missing; the last output acts a wrap later."""
+    """The third of four ticks is 7 cycles late, the fifth is missing; the last output acts one wrap later."""
     ticks = [1000, 1000 + PERIOD, 1007 + 2 * PERIOD, 1000 + 3 * PERIOD, 1000 + 5 * PERIOD]
     reads = [tick + offset for tick in ticks for offset in (10, 30)]
     taken = [[tick + MOTOR_PERIOD, 1, 5, 0, 6249, 1] for tick in (*ticks[:2], ticks[2] - 7, ticks[3])]

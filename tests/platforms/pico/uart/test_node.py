@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A ROS 2 node whose agent is on a serial line, and its console on USB, in the emulator."""
+"""A ROS 2 node whose agent is on a serial line and whose console is on USB, in the emulator."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tests.xrce_agent.messages import float64, read_float64
 
 BAUD = 460800
 HOMED = 900
-"""ms after which both axes have homed from 0.12 rad."""
+"""Milliseconds after which both axes have homed from 0.12 rad."""
 
 
 @pytest.mark.parametrize("platform", PLATFORMS)
@@ -33,7 +33,7 @@ def node_image(platform: str, **variables: str) -> Path:
 
 
 def check_serial_line(elf: Path) -> None:
-    """JIWY holds a position that came over the line, and is found by an agent that has been away."""
+    """JIWY holds a position that arrived over the line, and connects again to an agent that was away."""
     with Emulator(elf, usb={"seed": 3}) as pico:
         connect(pico, {"pan": 0.12, "tilt": 0.12})
         pico.run(milliseconds=50)
@@ -46,7 +46,7 @@ def check_serial_line(elf: Path) -> None:
                 assert angle(pico, "pan") == pytest.approx(0.5, abs=3 * AXES[0].rad_per_count)
                 newest = read_float64(agent.heard("rt/pan_publisher")[-1].data)
                 assert newest == pytest.approx(0.5, abs=3 * AXES[0].rad_per_count)
-                agent.kill()  # nothing on a wire tells that: the board finds out by itself
+                agent.kill()  # a wire does not report this: the board must detect it itself
                 agent.run(1500)
                 agent.start()
                 agent.wait_for("rt/pan_publisher", milliseconds=3000)

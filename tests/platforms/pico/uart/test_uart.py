@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A serial line as transport: the console over a UART of the emulated chip, wired to the test."""
+"""A serial line as transport: the console over a UART of the emulated chip; the test is its other end."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tests.platforms.pico.images import PLATFORMS, TARGETS, skip_unless_buildabl
 
 BAUD = 921600
 RING = 256
-"""Bytes of the ring for what is received, as wired.tcf.in says."""
+"""Size in bytes of the ring buffer for received bytes: wired.tcf.in."""
 PROJECT = "tests/platforms/pico/uart/project"
 EPG_PICO_ERROR_RESOURCE = 4
 
@@ -85,7 +85,7 @@ def test_the_console_answers(pico: Emulator) -> None:
 
 
 def test_every_byte_of_bursts_arrives(pico: Emulator) -> None:
-    """Lines at the full rate, typed and taken back: the echo, twice as much, shows that bytes are what they were."""
+    """Lines at the full rate, typed and deleted: the echo, twice as long, proves that all bytes arrived unchanged."""
     assert "ok echo" in ask(pico, "echo on")
     draw = random.Random(1)
     lines = ["".join(draw.choice("abcdefghijklmnopqrstuvwxyz0123456789") for _ in range(70)) for _ in range(40)]
@@ -105,7 +105,7 @@ def test_a_uart_of_somebody_else_is_left_alone(user: Emulator) -> None:
 
 
 def test_bytes_without_room_are_counted(user: Emulator) -> None:
-    """Communication stands still for 10 ms: the ring takes what it can hold, and the rest is known to be lost."""
+    """Communication stops for 10 ms: the ring buffer keeps as many bytes as fit, and the rest is counted as lost."""
     user.run(milliseconds=30)
     assert (user.word("started"), user.word("lost")) == (1, 0)
     user.write_word("service_off", 1)
@@ -133,7 +133,7 @@ def test_interrupts_off_for_longer_than_the_chip_can_hold(user: Emulator) -> Non
 
 
 def test_damaged_bytes_are_dropped_and_counted(user: Emulator) -> None:
-    """Wrong stop bits, and an end that sends at another rate."""
+    """Wrong stop bits, and a device that sends at another rate."""
     user.run(milliseconds=30)
     say(user, "garbage", damaged=True)
     user.run(milliseconds=5)

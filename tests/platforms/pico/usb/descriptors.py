@@ -32,7 +32,7 @@ class Interface:
 
 @dataclass(frozen=True)
 class Function:
-    """An interface association: what one driver takes."""
+    """An interface association: the interfaces that one driver uses."""
 
     first: int
     count: int
@@ -51,7 +51,7 @@ class SerialPort:
 
 
 def parts(data: bytes) -> Iterator[bytes]:
-    """The descriptors that ``data`` consists of, without a gap or a rest."""
+    """The descriptors in ``data``, which must fill it without a gap."""
     at = 0
     while at < len(data):
         length = data[at]
@@ -62,7 +62,7 @@ def parts(data: bytes) -> Iterator[bytes]:
 
 
 def interfaces(configuration: bytes) -> list[Interface]:
-    """Checked: lengths, counts, numbers in order, endpoints that exist once."""
+    """The interfaces.  Checks lengths, counts, the order of numbers, and that each endpoint exists once."""
     head, *rest = parts(configuration)
     if (head[0], head[1]) != (9, CONFIGURATION) or int.from_bytes(head[2:4], "little") != len(configuration):
         raise DescriptorError("the configuration states another length than it has")
@@ -95,7 +95,7 @@ def functions(configuration: bytes) -> list[Function]:
 
 
 def serial_ports(configuration: bytes) -> list[SerialPort]:
-    """The serial ports, each of which must be what a CDC ACM driver wants."""
+    """The serial ports.  Each must have everything that a CDC ACM driver needs."""
     known = {interface.number: interface for interface in interfaces(configuration)}
     associations = {function.first: function for function in functions(configuration)}
     unions = _unions(configuration)
@@ -117,7 +117,7 @@ def serial_ports(configuration: bytes) -> list[SerialPort]:
 
 
 def _unions(configuration: bytes) -> dict[int, int]:
-    """Which data interface each CDC control interface names, checked against the interface it stands in."""
+    """The data interface that each CDC control interface names in its own union descriptor; checks that descriptor."""
     result: dict[int, int] = {}
     current, kinds = -1, set()
     for part in parts(configuration):
@@ -135,7 +135,7 @@ def _unions(configuration: bytes) -> dict[int, int]:
 
 
 def text(string: bytes) -> str:
-    """A string descriptor's text."""
+    """The text of a string descriptor."""
     if string[1] != STRING or string[0] != len(string):
         raise DescriptorError(f"no string: {string.hex()}")
     return string[2:].decode("utf-16-le")

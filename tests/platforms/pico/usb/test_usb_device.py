@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The USB device with one serial port and with two: descriptors, both ports at once, picotool's interface."""
+"""The USB device with one and with two serial ports: descriptors, both ports at once, picotool's interface."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ ONE_PORT = """
     09040100020a000000 07050202400000 07058202400000
     0904020000ff000105
 """
-"""Interfaces 0 and 1 are the port, 2 is picotool's: what udev rules and drivers may have learnt."""
+"""Interfaces 0 and 1 are the port, 2 is picotool's.  udev rules and drivers may depend on these numbers."""
 
 
 @pytest.fixture(scope="module")
@@ -126,7 +126,7 @@ def test_a_flooded_port_leaves_the_other_alone(two: Emulator) -> None:
 
 
 def test_a_port_that_nobody_has_opened(two: Emulator) -> None:
-    """The other one works, and who opens it later gets nothing old."""
+    """The other port works, and a program that opens this one later does not receive old bytes."""
     two.call("usb_open", open=False, port=0)
     two.run(milliseconds=5)
     two.send("lost\n", port=0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the device is called by a target configuration and by an executable's definitions."""
+"""The names of the device, from a target configuration and from an executable's definitions."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ DEVICE = 1
 
 
 def test_names() -> None:
-    """The product is named by a definition, which goes before the target configuration that names the rest."""
+    """A definition sets the product and has priority over the target configuration, which sets the other names."""
     skip_unless_emulated("bare_metal")
     with Emulator(images("pico", "bare_metal", "named_firmware") / "named_firmware.elf", usb={"seed": 5}) as pico:
         assert pico.run(milliseconds=1000, configured=True)["usb"] == "configured"

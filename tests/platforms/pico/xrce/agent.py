@@ -22,7 +22,7 @@ CLOCK = 1000 * CYCLES_PER_MILLISECOND
 HEARTBEAT = 0.2
 """Seconds between two heartbeats of the agent."""
 SLICE = 0.005
-"""Seconds after which the agent looks what is due although nothing has arrived."""
+"""Seconds after which the agent checks its timers even if no frame has arrived."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Said:
 
 
 class UsbLink:
-    """A serial port over USB: opened as a terminal, so that the board sees DTR."""
+    """A serial port over USB, opened as a terminal opens it: the board sees DTR."""
 
     address = "usb"
     checked = True  # frames have a CRC
@@ -47,12 +47,12 @@ class UsbLink:
 
     @property
     def stop(self) -> dict[str, object]:
-        """The emulator's condition for "something has arrived"."""
+        """The emulator's condition for "a byte has arrived"."""
         return {"data": True, "port": self._port}
 
     @property
     def broken(self) -> int:
-        """Frames from the board that were none."""
+        """Number of frames from the board that were not valid."""
         return self._deframer.broken
 
     def open(self) -> None:
@@ -83,7 +83,7 @@ class UsbLink:
 
 
 class UartLink(UsbLink):
-    """A UART of the chip, wired to the agent's computer."""
+    """A UART of the chip, connected to the agent's computer."""
 
     address = "uart"
 
@@ -112,7 +112,7 @@ class UartLink(UsbLink):
 
 
 class BoardAgent(Agent):
-    """An agent that works when the test lets time pass, instead of in a thread."""
+    """An agent without a thread: it works while the test lets time pass."""
 
     def __init__(self, pico: Emulator, link: UsbLink | None = None, seed: int = 1) -> None:
         self.pico = pico
@@ -123,14 +123,14 @@ class BoardAgent(Agent):
         self.topics.taps.append(self._hear)
 
     def now(self) -> float:
-        """Simulated seconds."""
+        """Simulated time in seconds."""
         return self.pico.cycle / CLOCK
 
     def _run(self) -> None:
-        """No thread."""
+        """Does nothing: there is no thread."""
 
     def _now(self) -> bytes:
-        """Of the year 2026, and the same in each run."""
+        """A time in the year 2026, the same in each run."""
         seconds, fraction = divmod(self.pico.cycle, CLOCK)
         return struct.pack("<iI", 1_790_000_000 + seconds, fraction * 10**9 // CLOCK)
 
@@ -138,7 +138,7 @@ class BoardAgent(Agent):
         self.said.append(Said(self.now(), writer.topic, data))
 
     def heard(self, topic: str, since: float = 0.0) -> list[Said]:
-        """What the board has published of a topic from ``since`` on."""
+        """The messages of a topic that the board has published from ``since`` on."""
         return [sample for sample in self.said if sample.topic == topic and sample.time >= since]
 
     def wait_for(self, topic: str, milliseconds: float = 2000) -> Said:
@@ -149,7 +149,7 @@ class BoardAgent(Agent):
         return self.heard(topic, before)[0]
 
     def turn(self) -> None:
-        """What is to be done now."""
+        """Does the work that is due."""
         if not self._alive or self._frozen:
             return
         self._receive()
@@ -162,7 +162,7 @@ class BoardAgent(Agent):
         self.run_until(lambda: False, milliseconds)
 
     def run_until(self, condition: Callable[[], bool], milliseconds: float) -> bool:
-        """Lets time pass until ``condition``, but no longer than so; whether it has come true."""
+        """Lets time pass until ``condition`` is true, at most this long; True if it became true."""
         end = self.pico.cycle + round(milliseconds * CYCLES_PER_MILLISECOND)
         while not condition():
             left = (end - self.pico.cycle) / CYCLES_PER_MILLISECOND

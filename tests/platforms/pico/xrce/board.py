@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""JIWY's predefined firmware as a ROS 2 node: the robot on its pins, an agent on one port, a person on the other.
+"""JIWY's predefined firmware as a ROS 2 node: the robot on its pins, an agent on one port, the console on the other.
 
 >>> # with Jiwy("bare_metal") as jiwy:
 >>> #     jiwy.home()
@@ -25,13 +25,13 @@ from .agent import BoardAgent
 
 AGENT_PORT, CONSOLE_PORT = 0, 1
 HOMED = 900
-"""ms after which both axes have homed from 0.12 rad and stand."""
+"""Milliseconds after which both axes have homed from 0.12 rad and have stopped."""
 SPANS = {
     "tick": ("on_wrap", "return"),
     "read": ("epg_port_quadrature_count", "return"),
     "write": ("epg_port_pwm_write", "return"),
 }
-"""What of the control cycle is timed: from one function to another, or to its own return."""
+"""The timed parts of the control cycle: from one function to another, or to its own return."""
 
 
 def image(platform: str, executable: str) -> Path:
@@ -39,13 +39,13 @@ def image(platform: str, executable: str) -> Path:
 
 
 class Jiwy:
-    """A Pico that has started, its console open, connected to its agent."""
+    """A Pico after its start, its console open, connected to its agent."""
 
     core = 1
-    """That control runs on."""
+    """The core of control."""
     spans: Mapping[str, tuple[str, str]] = SPANS
     start = 40
-    """ms from the reset, after which USB is configured."""
+    """Milliseconds from the reset until USB is configured."""
 
     def __init__(
         self, platform: str, executable: str = "jiwy_firmware", seed: int = 3, elf: Path | None = None
@@ -84,15 +84,15 @@ class Jiwy:
         self.agent.topics.publish("rt/tilt_subscriber", float64(tilt), reliable=False)
 
     def angle(self, axis: str) -> float:
-        """Where the camera is, in rad."""
+        """The true angle of the camera, in rad."""
         return angle(self.pico, axis)
 
     def position(self, axis: str) -> float:
-        """Where the node says that it is: the newest message."""
+        """The angle in the node's newest message."""
         return read_float64(self.agent.heard(f"rt/{axis}_publisher")[-1].data)
 
     def stats(self) -> dict[str, str]:
-        """What the console says, on the second serial port."""
+        """The statistics that the console prints, on the second serial port."""
         self.pico.receive(port=CONSOLE_PORT)
         self.pico.send("\nstats\n", port=CONSOLE_PORT)
         said = ""
@@ -106,18 +106,18 @@ class Jiwy:
         return dict(re.findall(r"(\w+)=(\S+)", said))
 
     def begin(self) -> None:
-        """What reconnects() and timing() say counts from here."""
+        """Restarts the counts of reconnects() and timing()."""
         self._reconnects = int(self.stats()["reconnects"])
         self.timing()
 
     def reconnects(self) -> int:
-        """Since :meth:`begin`: the agent's, and the console's."""
+        """The reconnections of the agent since :meth:`begin`, as the console counts them."""
         return int(self.stats()["reconnects"]) - self._reconnects
 
     def timing(self) -> Timing:
-        """Of all control cycles since the last call, by the emulator's clock."""
+        """The timing of all control cycles since the last call, by the emulator's clock."""
         ticks, *others = (self.pico.call("span", name=name)["passages"] for name in ("tick", "read", "write"))
-        whole = [tick for tick in ticks if tick[0] >= self._since]  # the last call may have come within a cycle
+        whole = [tick for tick in ticks if tick[0] >= self._since]  # the last call may have been within a cycle
         self._since = self.pico.cycle
         return evaluate(whole, *others, self.pico.call("take", log="pwm"))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What must hold of the control loop and of the board, whatever has been done to its communication."""
+"""The promises of control loop and board that hold for every fault of communication."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.platforms.pico.timing.checks import LARGEST_ENTRY, LARGEST_SECOND_REA
 from .board import Jiwy
 
 STACK_RESERVE = 1.25
-"""A stack has at least so much of what has been used of it."""
+"""A stack must be at least this many times as large as its largest use."""
 PUBLISHED = 0.033
 """Seconds between two publications."""
 NUMBER, SWITCH = "std_msgs::msg::dds_::Float64_", "std_msgs::msg::dds_::Bool_"
@@ -26,11 +26,11 @@ ENDS = {
     "rt/tilt_publisher": (NUMBER, False),
     "rt/diagnostics": ("diagnostic_msgs::msg::dds_::DiagnosticArray_", True),
 }
-"""What the node reads and writes: topic, its type, and whether it is reliable."""
+"""The topics of the node, each with its type; True if it is reliable."""
 
 
 def assert_undisturbed(jiwy: Jiwy) -> dict[str, str]:
-    """No cycle late, nothing counted that should not be, stacks large enough; the console's statistics."""
+    """No late cycle, no counted error, stacks large enough; returns the console's statistics."""
     stats = assert_nothing_counted(jiwy)
     assert_on_time(jiwy)
     assert jiwy.faults() == []
@@ -39,7 +39,7 @@ def assert_undisturbed(jiwy: Jiwy) -> dict[str, str]:
 
 
 def assert_nothing_counted(jiwy: Jiwy) -> dict[str, str]:
-    """Enabled, nothing counted that should not be, stacks large enough; the console's statistics."""
+    """Enabled, no counted error, stacks large enough; returns the console's statistics."""
     stats = jiwy.stats()
     assert (stats["enabled"], stats["fault"]) == ("1", "none")
     for name in ("overruns", "missed", "faults", "outputs_late", "setpoints_dropped", "setpoint_timeouts"):
@@ -50,7 +50,7 @@ def assert_nothing_counted(jiwy: Jiwy) -> dict[str, str]:
 
 
 def assert_it_tracks(jiwy: Jiwy, seconds: float) -> None:
-    """A sine of 0.4 rad in 2 s, a setpoint each 10 ms; positions come each 33 ms, both axes' from one cycle."""
+    """Follows a sine of 0.4 rad in 2 s, with a setpoint every 10 ms; both axes publish together, every 33 ms."""
     begin = jiwy.agent.now()
     distances = []
     while (time := jiwy.agent.now() - begin) < seconds:
@@ -67,10 +67,10 @@ def assert_it_tracks(jiwy: Jiwy, seconds: float) -> None:
 
 
 def assert_on_time(jiwy: Jiwy) -> None:
-    """Of each cycle since the last time: begun at its tick, and its outputs have acted at the same wrap after it.
+    """Each cycle since the last call began at its tick, and its outputs acted at the same wrap after it.
 
-    However long the cycle has computed: in motion the compiler's doubles take longer for some numbers than for others,
-    which ``control.output_delay`` hides.
+    This holds however long the cycle computes: the compiler's doubles take longer for some numbers than for others, but
+    ``control.output_delay`` hides the difference.
     """
     timing = jiwy.timing()
     assert timing.cycles > 300

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Steps of a setpoint to an emulated Pico, by USB: until the level of its PWM takes effect."""
+"""Steps of a setpoint that is sent to an emulated Pico by USB, until the level of its PWM takes effect."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from .agent import CLOCK, BoardAgent
 
 SLICE = 1
 SPANS = {"tick": ("on_wrap", 1), "given": ("epg_control_receive", 0)}
-"""Functions, and their cores: the control cycle's interrupt, and what gives a setpoint to the control side."""
+"""Functions and their cores: the control cycle's interrupt, and the delivery of a setpoint to the control side."""
 
 
 def programs(platform: str) -> dict[int, Path]:
-    """Images by output delay in us; SDK and compiler must be there."""
+    """Images by output delay in us; SDK and compiler must be installed."""
     target = f"rpi_pico_{platform}"
     folder = build(
         PROJECT,
@@ -31,7 +31,7 @@ def programs(platform: str) -> dict[int, Path]:
 
 
 def measure(image: Path, count: int, seed: int = 1) -> list[Step]:
-    """``count`` steps, 3 to 7 ms apart; phase and clock error of the USB host are drawn by ``seed``."""
+    """Sends ``count`` steps, 3 to 7 ms apart; ``seed`` determines phase and clock error of the USB host."""
     draw = random.Random(seed)
     usb = {"seed": seed, "phase": draw.uniform(0, 1000), "clock_error": draw.uniform(-500, 500), "open": False}
     with Emulator(image, usb=usb) as pico:
@@ -56,7 +56,7 @@ def measure(image: Path, count: int, seed: int = 1) -> list[Step]:
 
 
 def evaluate(sent: list[int], given: list[int], ticks: list[int], levels: list[int]) -> list[Step]:
-    """All in cycles of 8 ns, in their order; nothing may be missing."""
+    """Evaluates lists in cycles of 8 ns, each in its order; none may have gaps."""
     assert len(given) == len(levels) == len(sent)
     steps = []
     for begin, arrival, level in zip(sent, given, levels, strict=True):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is done to the board's communication while both axes hold a position: it comes back, the loop goes on."""
+"""Faults of the board's communication while both axes hold a position: it reconnects, the control loop continues."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from .checks import assert_undisturbed
 
 PAN, TILT = AXES
 SILENCE = 1000
-"""ms after which an agent that says nothing is lost."""
+"""Milliseconds after which a silent agent counts as lost."""
 LATEST = 100
-"""ms from the start of an agent to the board's first message, at most."""
+"""Milliseconds from the start of an agent to the board's first message, at most."""
 
 
 def hold(jiwy: Jiwy, where: float = 0.2) -> None:
-    """Both axes go to ``where`` because a topic says so; what is counted from here on is the scenario's."""
+    """Both axes go to ``where``, set by a topic; from here on, counters count for the scenario."""
     jiwy.point(where, where)
     jiwy.agent.run(500)
     assert_holds(jiwy, where)
@@ -28,13 +28,13 @@ def hold(jiwy: Jiwy, where: float = 0.2) -> None:
 
 
 def assert_holds(jiwy: Jiwy, where: float = 0.2) -> None:
-    """The axes are there, and so the node says."""
+    """The axes are at ``where``, and the node's messages say so."""
     assert jiwy.angle("pan") == pytest.approx(where, abs=3 * PAN.rad_per_count)
     assert jiwy.angle("tilt") == pytest.approx(where, abs=3 * TILT.rad_per_count)
 
 
 def assert_is_back(jiwy: Jiwy) -> None:
-    """Nothing has disturbed the loop; setpoints arrive, positions leave and say where the axes are."""
+    """The loop was undisturbed; setpoints arrive, and published positions are those of the axes."""
     assert_holds(jiwy)
     assert_undisturbed(jiwy)
     hold(jiwy, 0.3)
@@ -43,7 +43,7 @@ def assert_is_back(jiwy: Jiwy) -> None:
 
 
 def restart(jiwy: Jiwy, times: int) -> list[float]:
-    """Kills the agent and starts it again after 0 to 50 ms; ms until the board's first message each time."""
+    """Kills the agent and starts it again after 0 to 50 ms; milliseconds until the board's first message each time."""
     draw = random.Random(5)
     result = []
     for _ in range(times):
@@ -59,7 +59,7 @@ def restart(jiwy: Jiwy, times: int) -> list[float]:
 
 
 def freeze(jiwy: Jiwy) -> None:
-    """Nothing is answered, the port stays open: that agent is lost too, and found again."""
+    """The agent does not answer, but the port stays open: the board loses this agent, too, and finds it again."""
     begin = jiwy.agent.now()
     jiwy.agent.freeze()
     jiwy.agent.run(2 * SILENCE)
@@ -72,7 +72,7 @@ def freeze(jiwy: Jiwy) -> None:
 
 
 def garbage(jiwy: Jiwy) -> None:
-    """All bytes at random on both ports."""
+    """Random bytes on both ports."""
     draw = random.Random(7)
     for _ in range(40):
         jiwy.pico.send(draw.randbytes(draw.randint(1, 400)), port=AGENT_PORT)
@@ -82,7 +82,7 @@ def garbage(jiwy: Jiwy) -> None:
 
 
 def flood(jiwy: Jiwy) -> None:
-    """As fast as USB takes packets, on both ports: frames that are none, and commands."""
+    """Invalid frames and commands on both ports, as fast as USB takes packets."""
     draw = random.Random(9)
     frames = "".join(chr(draw.randrange(32, 126)) for _ in range(997))
     jiwy.pico.call("usb_flood", text=frames + "~", port=AGENT_PORT)
@@ -94,7 +94,7 @@ def flood(jiwy: Jiwy) -> None:
 
 
 def damage(jiwy: Jiwy) -> None:
-    """Frames that are lost, cut, changed, and overtaken by others, both ways."""
+    """Frames that are lost, cut, changed or reordered, in both directions."""
     for direction in (jiwy.agent.to_board, jiwy.agent.from_board):
         direction.loss, direction.corrupt, direction.truncate, direction.reorder = 0.1, 0.05, 0.05, 0.05
     jiwy.agent.run(1500)
@@ -105,14 +105,14 @@ def damage(jiwy: Jiwy) -> None:
 
 
 def recover(jiwy: Jiwy) -> None:
-    """The time in which the board must be back by itself, whatever has been done to it."""
+    """Waits the time in which the board must recover by itself after any fault."""
     jiwy.pico.send("\nwatch none\n", port=CONSOLE_PORT)
     jiwy.agent.run(2 * SILENCE)
     jiwy.agent.wait_for("rt/pan_publisher")
 
 
 def pull_the_cable(jiwy: Jiwy) -> None:
-    """The board's other supply stays, as on a robot."""
+    """The board keeps its other supply, as on a robot."""
     for milliseconds in (30, 300, 1500):
         jiwy.pico.call("usb_detach")
         jiwy.agent.kill()

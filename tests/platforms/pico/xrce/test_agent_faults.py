@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An agent that is restarted, frozen or mad, and a cable that is pulled: the board comes back, the loop goes on.
+"""An agent that restarts, freezes or sends garbage, and an unplugged cable: the board recovers, the loop continues.
 
-On FreeRTOS only what has to do with when the service runs; test_long_freertos_faults.py has the rest.
+FreeRTOS runs only the tests that depend on the scheduling of communication; test_long_freertos_faults.py has the rest.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def test_restarts(board: Jiwy) -> None:
 @pytest.mark.parametrize("scenario", SCENARIOS)
 def test_it_comes_back(board: Jiwy, scenario: str) -> None:
     if board.platform == "freertos" and scenario not in ON_FREERTOS:
-        return  # in the long tests
+        return  # it is one of the long tests
     hold(board)
     SCENARIOS[scenario](board)
     assert_is_back(board)

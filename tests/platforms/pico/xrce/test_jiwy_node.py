@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The predefined firmware is a ROS 2 node: names, topics, types and QoS, JIWY tracking, the console beside it."""
+"""The predefined firmware is a ROS 2 node: names, topics, types and QoS; JIWY follows setpoints; the console works."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def test_what_it_reads_and_writes(jiwy: Jiwy) -> None:
 
 
 def test_it_tracks(jiwy: Jiwy) -> None:
-    """A sine of 0.4 rad in 2 s, a setpoint each 10 ms; positions come each 33 ms, both axes' from one cycle."""
+    """Follows a sine of 0.4 rad in 2 s, with a setpoint every 10 ms; both axes publish together, every 33 ms."""
     jiwy.home()
     jiwy.begin()
     assert_it_tracks(jiwy, 2)
@@ -64,7 +64,7 @@ def test_a_value_that_is_none_is_dropped(jiwy: Jiwy) -> None:
 
 @pytest.mark.parametrize("platform", PLATFORMS)
 def test_in_a_program_of_the_users(platform: str) -> None:
-    """Which runs from flash, with a main() of its own; the control cycle does not read flash."""
+    """The program runs from flash and has its own main(); the control cycle does not read flash."""
     skip_unless_emulated(platform)
     with Jiwy(platform, "user_jiwy") as jiwy:
         jiwy.begin()
@@ -79,7 +79,7 @@ def test_in_a_program_of_the_users(platform: str) -> None:
 
 @pytest.mark.parametrize("platform", PLATFORMS)
 def test_stopped_and_started_it_is_a_node_again(platform: str) -> None:
-    """The agent stays; while the target is stopped nothing leaves the board."""
+    """The agent keeps running; while the target is stopped, the board sends no message."""
     skip_unless_emulated(platform)
     with Jiwy(platform, "user_jiwy") as jiwy:
         for _ in range(3):

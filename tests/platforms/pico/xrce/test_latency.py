@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""From a setpoint at the agent to the level of the PWM: the next control cycle, at one instant of it."""
+"""The time from a setpoint at the agent to the PWM level: it acts in the next control cycle, at a fixed time."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from .agent import CLOCK
 from .latency import measure, programs
 
 WRAP = 50e-6
-"""Seconds of a period of the output's PWM, at the begin of which a level that was written acts."""
+"""Period of the output's PWM in seconds.  A level that was written acts at the begin of the next one."""
 ENTRY = 15
 """Clock cycles from the tick to its handler's first instruction, from which the step counts."""
 READ = 15e-6
-"""Seconds of a cycle until it has taken its setpoints."""
+"""Seconds from the begin of a cycle until it has read its setpoints."""
 USB = 0.003
-"""Seconds that a frame takes to the control side at most: two frames of USB, and a poll of communication."""
+"""Longest time of a frame to the control side in seconds: two frames of USB, and a poll of communication."""
 STEPS = 60
 
 
@@ -32,7 +32,7 @@ def test_the_next_cycle(platform: str) -> None:
     for delay, image in programs(platform).items():
         steps = measure(image, STEPS)
         acts = 1e-6 * delay + WRAP
-        (instant,) = {round(step.in_cycle * CLOCK) for step in steps}  # the same in each cycle
+        (instant,) = {round(step.in_cycle * CLOCK) for step in steps}  # the same time in each cycle
         assert abs(instant - (acts * CLOCK - ENTRY)) <= LARGEST_ENTRY
         assert {step.cycles for step in steps} <= {0, 1}
         assert all(step.after_arrival >= acts - READ for step in steps if step.cycles == 0)

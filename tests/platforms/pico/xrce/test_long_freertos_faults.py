@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The faults of an agent that test_agent_faults.py leaves out on FreeRTOS."""
+"""The faults of an agent on FreeRTOS that test_agent_faults.py omits."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""200 restarts of the agent: the board finds each, nothing leaks, no control cycle notices."""
+"""200 restarts of the agent: the board finds each new agent, no memory is lost, no control cycle is disturbed."""
 
 from __future__ import annotations
 

@@ -1,12 +1,12 @@
 /**
  * @file
- * Reads the angles that the plant repeats: the file that the environment variable RECORDING names, a line with pan and
- * tilt in rad for each control cycle.
+ * Reads the angles that the plant repeats.  The environment variable RECORDING names the file, which has a line with
+ * pan and tilt in rad for each control cycle.
  */
 #include <stdio.h>
 #include <stdlib.h>
 
-/* What EPG puts before the names of a model's own variables. */
+/* EPG adds this prefix to the names of a model's own variables. */
 extern double jiwy_replay_plant_private_replay_angles[1000000][2];
 
 static void __attribute__((constructor)) read_recording(void)

@@ -1,4 +1,4 @@
-/* What a user's program can do to the target's serial line; the test says what, in memory. */
+/* A user's program that interferes with the target's serial line; the test selects how, through variables. */
 #include <stdint.h>
 
 #include "epg/pico.h"
@@ -24,7 +24,7 @@ static void without_interrupts(void)
     restore_interrupts(state);
 }
 
-/* The UART's interrupt goes on, communication does not. */
+/* The UART's interrupt still runs, communication does not. */
 static void without_service(void)
 {
     uint32_t disabled = 0;

@@ -1,4 +1,4 @@
-/* Echoes what comes on each serial port, with the port's number before each line. */
+/* Echoes the bytes of each serial port, with the port's number before each line. */
 #include "epg/pico.h"
 #include "parts.h"
 
@@ -20,7 +20,7 @@ static port_t ports[] = {
 };
 enum { PORTS = sizeof ports / sizeof ports[0] };
 
-/* What the device asks of the rest of the port layer. */
+/* The parts of the port layer that the device uses. */
 volatile uint32_t outputs_off;
 
 void epg_pico_outputs_off(void)
@@ -63,6 +63,6 @@ int main(void)
         for (int i = 0; i < PORTS; i++) {
             serve(&ports[i]);
         }
-        __wfe(); /* not WFI: the interrupt may have come before it */
+        __wfe(); /* not WFI: the interrupt may have come already */
     }
 }
