@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What `firmware` can be asked (enum request of its src/main.c)."""
+"""The requests to `firmware` (enum request of its src/main.c)."""
 
 READ, FETCH, PRESET, WATCH, SUSPEND, RESUME, SKIPPED, POKE = range(1, 9)
 

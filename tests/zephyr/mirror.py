@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Zephyr and its modules as Git repositories on this computer, for workspaces of west without a network.
 
-A repository holds the files of this computer's workspace, in one commit; Zephyr's manifest names the commits of the
-others, and no module that is not there.  Git is told to look there instead of where manifests lead, so manifests are
-used as they are.
+A repository has the files of this computer's workspace in one commit.  Zephyr's manifest names the commits of the
+others, and no module that is missing.  Git's configuration redirects the addresses in manifests to these
+repositories, so that the manifests are used unchanged.
 
 >>> # there = mirror(workspace("rpi_pico", "nucleo_h743zi"))
 >>> # there.add("https://example.org/robot", ROOT / "examples/zephyr_jiwy")
@@ -26,7 +26,7 @@ from .workspace import Workspace
 
 UPSTREAM = "https://github.com/zephyrproject-rtos"
 TAG = "v4.1.0"
-"""Under which manifests find this computer's Zephyr, whatever its own version is."""
+"""The tag by which manifests find this computer's Zephyr, whatever its own version is."""
 
 ZEPHYR = ("boards", "cmake", "drivers", "dts", "include", "kernel", "lib", "misc", "modules", "scripts", "share")
 ZEPHYR += ("snippets", "soc", "submanifests", "subsys", "arch", "CMakeLists.txt", "Kconfig", "Kconfig.constants")
@@ -34,22 +34,22 @@ ZEPHYR += ("Kconfig.zephyr", "SDK_VERSION", "VERSION", "version.h.in", "west.yml
 STM32 = ("CMakeLists.txt", "zephyr", "lib", "dts/st/h7", "stm32cube/CMakeLists.txt")
 STM32 += ("stm32cube/common_ll", "stm32cube/stm32h7xx")
 PARTS: dict[str, Sequence[str]] = {"zephyr": ZEPHYR, "stm32": STM32}
-"""Of the large ones only what builds of these tests read."""
+"""The parts of the large repositories that the builds of these tests read."""
 
 NAMES = {"rpi_pico": "hal_rpi_pico", "stm32": "hal_stm32", "cmsis": "cmsis", "cmsis_6": "cmsis_6"}
 REPOSITORIES = {"cmsis_6": "CMSIS_6"}
-"""Names of repositories that are not the project's."""
+"""Names of repositories that differ from the project's name."""
 
 
 @dataclass(frozen=True)
 class Mirror:
-    """Bare repositories in a folder of EPG's cache, by the host and path of the address that they stand for."""
+    """Bare repositories in a folder of EPG's cache, by the host and path of the address that they replace."""
 
     folder: Path
 
     @property
     def variables(self) -> dict[str, str]:
-        """Environment with which Git, and so west, takes these repositories for the ones on the network."""
+        """Environment with which Git, and therefore west, uses these repositories instead of those on the network."""
         return {
             "GIT_CONFIG_COUNT": "1",
             "GIT_CONFIG_KEY_0": f"url.file://{self.folder}/.insteadOf",
@@ -61,8 +61,8 @@ class Mirror:
     def add(self, address: str, source: Path, parts: Sequence[str] = (".",), tag: str = "", **contents: str) -> str:
         """Makes or renews the repository of an address from a folder's files; returns the commit.
 
-        With ``tag`` files that are ignored belong to it too, as some of Zephyr's do.  ``contents`` takes the place of
-        files of those names (``west.yml`` is ``west``).
+        With ``tag``, ignored files belong to it, too, as some of Zephyr's do.  ``contents`` replaces files of these
+        names (``west.yml`` is ``west``).
         """
         repository = self.folder / address.removeprefix("https://")
         if not (repository / "HEAD").is_file():

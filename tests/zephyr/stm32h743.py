@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A whole Zephyr image on an emulated STM32H743: unicorn's Cortex-M7, and registers of our own.
+"""A whole Zephyr image on an emulated STM32H743: unicorn's Cortex-M7, and EPG's own model of the registers.
 
 >>> # chip = Stm32h743(elf)
 >>> # chip.boot()
 >>> # chip.attach("TIM4", ("D", 12), ("D", 13), alternate_function=2)
 >>> # chip.move("TIM4", -70_000)
 
-There is no time, no SysTick and no cache.  Interrupts are entered between instructions when NVIC, PRIMASK and BASEPRI
-let them, and run to their end; they do not nest, and nothing switches threads.  Registers without a model keep what is
-written; of the clock tree only the flags move, on which its drivers wait (RM0433, 8.7 and 6.8).
+There is no time, no SysTick and no cache.  Interrupts are entered between instructions if NVIC, PRIMASK and BASEPRI
+allow it, and run to their end; they do not nest, and there is no switch of threads.  Registers without a model keep the
+value that was written.  Of the clock tree, only the flags change for which drivers wait (RM0433, 8.7 and 6.8).
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ MEMORIES = (
 PERIPHERALS, PERIPHERALS_SIZE = 0x40000000, 0x20000000
 PRIVATE, PRIVATE_SIZE = 0xE0000000, 0x100000
 RETURN = 0xFFF0
-"""An address that no code has, in the memory at 0: an interrupt ends there."""
+"""An address without code, in the memory at 0: an interrupt ends there."""
 
 RCC, PWR, GPIO, GPIO_SIZE = 0x58024400, 0x58024800, 0x58020000, 0x400
 RCC_CR, RCC_CFGR, RCC_BDCR, RCC_CSR = 0x000, 0x010, 0x070, 0x074
@@ -66,9 +66,9 @@ class Stm32h743:
         self.registers: dict[int, int] = {MPU_TYPE: 16 << 8, RCC + RCC_CR: 1}
         self.enabled: set[int] = set()
         self.interrupts = 0
-        """Interrupts that were served."""
+        """The interrupts that were served."""
         self.milliseconds = True
-        """Whether each look at SysTick finds another millisecond gone; else time stands still."""
+        """If True, each read of SysTick finds another millisecond passed; else time does not advance."""
         for base, size in ((FLASH, FLASH_SIZE), *MEMORIES):
             self.cpu.mem_map(base, size)
         for address, data in _load_segments(elf):
@@ -89,7 +89,7 @@ class Stm32h743:
         assert self.pc == self.symbols["main"] & ~1, f"main() was not reached: the processor is at {self.pc:#x}"
 
     def run(self, instructions: int) -> None:
-        """Executes so many instructions, and interrupts that are due at the end."""
+        """Executes this number of instructions, and the interrupts that are due at the end."""
         self._go(self.pc, 0xFFFFFFFE, instructions)
         self.serve()
 
@@ -126,9 +126,9 @@ class Stm32h743:
         self.cpu.context_restore(before)
 
     def call(self, function: str, *arguments: int, longest: int = 100_000) -> tuple[int, int]:
-        """Calls a function from where the program stands; its result, and how many instructions it took.
+        """Calls a function from the present state of the program; returns its result and its number of instructions.
 
-        ``arguments`` are words: the first four go into registers, the others onto the stack (AAPCS32 6.4).
+        ``arguments`` are words: the first four are passed in registers, the others on the stack (AAPCS32 6.4).
         """
         executed = 0
 
@@ -177,11 +177,11 @@ class Stm32h743:
                 self.serve()
 
     def _turn(self, timer: str, edges: int) -> int:
-        """Turns a shaft until the timer sets a flag; how far."""
+        """Turns a shaft until the timer sets a flag; returns the number of edges."""
         return self.timers[timer].move(edges) if self._connected(timer) else edges
 
     def _connected(self, timer: str) -> bool:
-        """Whether both pins have the timer's function."""
+        """True if both pins have the timer's function."""
         first, second, function = self.pins[timer]
         for port, pin in (first, second):
             index = ord(port) - ord("A")
@@ -232,21 +232,21 @@ class Stm32h743:
         value = self.registers.get(address, 0)
         if address == RCC + RCC_CR:  # an oscillator or PLL that is on is ready
             return value & ~0x2A022104 | (value & 0x15011000) << 1 | (value & 1) << 2 | (value & 0x80) << 1
-        if address == RCC + RCC_CFGR:  # the clock that was chosen is in use
+        if address == RCC + RCC_CFGR:  # the selected clock is in use
             return value & ~0x38 | (value & 7) << 3
         if address in (RCC + RCC_BDCR, RCC + RCC_CSR):
             return value | (value & 1) << 1
         if address in (PWR + PWR_CSR1, PWR + PWR_D3CR):
             return value | VOS_READY
-        if address in ADC_ISRS:  # on, and its regulator too
+        if address in ADC_ISRS:  # the ADC and its regulator are ready
             return value | 1 << 12 | 1
-        if address in ADC_CRS:  # calibrated
+        if address in ADC_CRS:  # the calibration is complete
             return value & ~(1 << 31)
         if address == SYST_CSR:  # COUNTFLAG: a millisecond has passed, which ST's library counts while it waits
             return value & ~(1 << 16) | self.milliseconds << 16
-        if address == RTC_ICSR:  # ready for what is asked of it
+        if address == RTC_ICSR:  # ready for every request
             return value | RTC_READY
-        if address - USART_ISR in USARTS:  # 3 and LPUART1: on, and everything is sent
+        if address - USART_ISR in USARTS:  # USART3 and LPUART1: enabled, and all bytes are sent
             return USART_READY
         return value
 
@@ -269,7 +269,10 @@ class Stm32h743:
 
 
 def _load_segments(elf: Path) -> list[tuple[int, bytes]]:
-    """What is in flash before the reset: ELF for the Arm architecture, program headers, physical addresses."""
+    """The contents of flash before the reset.
+
+    Source: ELF for the Arm architecture, program headers, physical addresses.
+    """
     data = elf.read_bytes()
     (offset,), (size, count) = struct.unpack_from("<I", data, 28), struct.unpack_from("<HH", data, 42)
     found = []

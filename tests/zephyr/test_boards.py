@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Builds for real boards by Zephyr's own test runner."""
+"""Builds for real boards with Zephyr's own test runner."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .workspace import c_library, need_twister, workspace
 
 
 def test_boards(tmp_path: Path) -> None:
-    """Real boards' builds; a warning is an error."""
+    """The builds for real boards succeed; a warning is an error."""
     boards = ("rpi_pico", "rpi_pico2/rp2350a/m33", "nucleo_h743zi")
     skip_if_missing(arm_gcc, c_library, lambda: need_twister(workspace(*boards)))
     statuses = statuses_of(tmp_path / "twister", *boards)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a user's prj.conf and overlay say otherwise than the target needs is said before anything is compiled."""
+"""Settings of a user's prj.conf and overlay that contradict the target are reported before the compiler starts."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A scenario forces an input that the plant drives, in Zephyr on this computer: the host's numbers."""
+"""A scenario in Zephyr on this computer forces an input that the plant drives; the numbers are those of the host."""
 
 from __future__ import annotations
 

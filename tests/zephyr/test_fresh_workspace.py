@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A workspace that nobody has used before: `west init`, `west update`, `west build`."""
+"""A new workspace works with `west init`, `west update`, `west build`."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .workspace import c_library, workspace
 
 @pytest.fixture(scope="module")
 def place(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
-    """The workspace of ``examples/zephyr_jiwy``; half a gigabyte, so it does not stay."""
+    """The workspace of ``examples/zephyr_jiwy``; deleted afterwards, because it takes half a gigabyte."""
     skip_if_missing(partial(workspace, *BOARDS), arm_gcc, c_library)
     folder = tmp_path_factory.mktemp("fresh") / "workspace"
     yield fresh_workspace("examples/zephyr_jiwy", folder)
@@ -35,7 +35,7 @@ def test_all_comes_from_the_manifest(place: Path) -> None:
 
 @pytest.mark.parametrize("board", BOARDS)
 def test_jiwy(board: str, place: Path) -> None:
-    """As the README says it; EPG is the workspace's own, which west is asked for."""
+    """The commands of the README; EPG is the one of the workspace, whose path west reports."""
     output = west(place, "build", "-b", board, "-d", f"build/{board}", "jiwy/app")
     assert "warning: " not in output
     build = place / "build" / board
@@ -51,7 +51,7 @@ def test_west_epg(place: Path) -> None:
 
 
 def test_two_boards_in_one_build(place: Path) -> None:
-    """sysbuild, by the command that the README prints: each image has its own target, on its own board."""
+    """sysbuild with the README's command: each image has its own target, on its own board."""
     example = place / "epg/examples/zephyr_two_boards"
     readme = (example / "README.md").read_text(encoding="utf-8")
     (command,) = (line for line in readme.splitlines() if line.startswith("west build "))
@@ -67,7 +67,7 @@ def test_two_boards_in_one_build(place: Path) -> None:
 
 
 def test_an_existing_application(place: Path) -> None:
-    """Its lamp and its decoder are there beside the controller, and prj.conf goes before EPG's defaults."""
+    """Its lamp and its decoder work beside the controller, and prj.conf has priority over EPG's defaults."""
     output = west(place, "build", "-b", "rpi_pico", "-d", "build/existing", "epg/examples/existing_zephyr_application")
     assert "warning: " not in output
     build = place / "build/existing/zephyr"
@@ -80,7 +80,7 @@ def test_an_existing_application(place: Path) -> None:
 
 
 def test_a_new_project(place: Path) -> None:
-    """`epg new`, then `west build` as its README says it."""
+    """`epg new`, then `west build` with the command of its README."""
     model = str(place / "epg/examples/jiwy/model")
     west(place, "epg", "new", "--target", "rpi_pico_zephyr_jiwy", "--model", model, "robot")
     assert "\nwest build -b rpi_pico\n" in (place / "robot/README.md").read_text(encoding="utf-8")

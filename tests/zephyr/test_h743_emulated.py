@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Zephyr's image for the STM32H743 on an emulated one: six timers count exactly, over wraps that nobody reads."""
+"""Zephyr's image for the STM32H743 on an emulated chip: six timers count exactly, over wraps between two reads."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ DECODERS = {
 }
 SHORT = [name for name in DECODERS if name not in ("TIM2", "TIM5")]
 LATENCY = 16383
-"""Counts that may pass between a match and its interrupt, as docs/zephyr-qdec.md says for 16 bits."""
+"""Counts that may pass between a match and its interrupt: docs/zephyr-qdec.md, for 16 bits."""
 ENOTSUP = 134
 
 
@@ -37,7 +37,7 @@ class Board:
         self.chip = Stm32h743(image)
         self.chip.boot()
         self.true = dict.fromkeys(DECODERS, 0)
-        """Counts as the decoders are to show them."""
+        """The counts that the decoders must show."""
         for name, (a, b, function, _) in DECODERS.items():
             self.chip.attach(name, a, b, alternate_function=function)
         self.chip.run(1000)
@@ -47,7 +47,7 @@ class Board:
         return [self.chip.word("errors", offset=4 * n, signed=True) for n in range(len(DECODERS))]
 
     def ask(self, request: int) -> list[int]:
-        """Has the firmware do something with each decoder; its errors."""
+        """Sends a request to the firmware, for each decoder; returns the decoders' errors."""
         self.chip.write_word("done", 0)
         self.chip.write_word("request", request)
         for _ in range(100):
@@ -91,7 +91,7 @@ def test_timers_are_set_up(board: Board) -> None:
 
 @pytest.mark.parametrize("name", DECODERS)
 def test_wraps_that_nobody_reads(board: Board, name: str) -> None:
-    """More than 100 ranges of 16 bits, or 5 of 32, both ways; the other decoders stand still."""
+    """More than 100 ranges of 16 bits, or 5 of 32, in both directions; the other decoders do not change."""
     turns = 5 << 32 if board.chip.timers[name].bits == 32 else 10_000_000
     for edges in (turns + 1, -3 * turns, turns - 7, 1, -1):
         board.move(name, edges)
@@ -110,7 +110,7 @@ def test_late_interrupts(board: Board, name: str, direction: int) -> None:
 
 
 def test_interrupts_that_are_too_late_lose_a_range(board: Board) -> None:
-    """Which shows that the tests can fail, and that the stated latency is the limit."""
+    """This proves that the tests can fail, and that the documented latency is the limit."""
     board.move("TIM3", 16384 + LATENCY + 2, latency=LATENCY + 2)
     assert board.read()["TIM3"] == board.true["TIM3"] + 65536
 
@@ -186,7 +186,7 @@ def test_suspended_decoders_do_not_count(board: Board) -> None:
 
 
 def test_a_register_that_is_reset_shows(board: Board) -> None:
-    """The model is no mock of the driver: without encoder mode, clock or pins nothing counts."""
+    """The model is not a mock of the driver: without encoder mode, clock or pins it does not count."""
     for name, spoil in (("TIM1", {0x08: 0}), ("TIM4", {0x18: 0}), ("TIM8", {0x00: 0})):
         board.chip.timers[name].registers.update(spoil)
         board.chip.move(name, 100)

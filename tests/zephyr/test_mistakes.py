@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the hardware cannot do is an error of the build, in words: `mistakes` has a decoder for each."""
+"""A decoder that the hardware cannot do is an error of the build with a clear message; `mistakes` has one of each."""
 
 from __future__ import annotations
 

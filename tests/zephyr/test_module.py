@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""EPG as a module of Zephyr: free of charge for applications that do not use it."""
+"""EPG as a module of Zephyr has no cost for applications that do not use it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def configuration(folder: Path) -> list[str]:
 
 
 def test_an_application_that_does_not_use_it_builds_as_without_it() -> None:
-    """The same binary, and the same .config but for the symbol that Zephyr itself gives each module."""
+    """The binary is the same, and so is .config, except for the symbol that Zephyr defines for each module."""
     skip_if_missing(partial(workspace, "rpi_pico"), arm_gcc)
     modules = workspace("rpi_pico").modules
     assert modules[-1] == ROOT
@@ -35,7 +35,7 @@ def test_an_application_that_does_not_use_it_builds_as_without_it() -> None:
 
 
 def test_python_packages_are_those_of_the_generator() -> None:
-    """`west packages pip` gets what the generator needs."""
+    """`west packages pip` installs the packages that the generator needs."""
     requirements = ROOT / "zephyr_module" / "requirements.txt"
     lines = requirements.read_text(encoding="utf-8").splitlines()
     (named,) = [line.removeprefix("-r ") for line in lines if not line.startswith("#")]

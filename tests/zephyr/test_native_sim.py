@@ -30,7 +30,7 @@ PATIENCE = 30.0
 SOURCE = ROOT / "tests" / "zephyr" / "native_sim"
 TRACKING = ROOT / "examples" / "jiwy" / "tracking.yaml"
 MEASURED = ("wall_time", "computation_min", "computation_mean", "computation_max")
-"""What a real clock measures."""
+"""Statistics that depend on a real clock."""
 
 EVENTS = """time,topic,value
 0,pan_subscriber,0
@@ -48,7 +48,7 @@ EVENTS = """time,topic,value
 
 @pytest.fixture(scope="module")
 def folder() -> Path:
-    """The build of tests/zephyr/native_sim."""
+    """The build folder of tests/zephyr/native_sim."""
     skip_if_missing(lambda: workspace(NATIVE), arm_gcc, libraries)
     return build(SOURCE, NATIVE)
 
@@ -59,7 +59,7 @@ def image(folder: Path) -> Path:
 
 
 def test_flash_comes_with_the_store_only(folder: Path) -> None:
-    """native_sim has a storage_partition, but keeps what is saved in a file."""
+    """native_sim has a storage_partition, but the target keeps saved values in a file."""
     configuration = (folder / "zephyr" / ".config").read_text(encoding="utf-8").splitlines()
     assert "# CONFIG_EPG_STORE is not set" in configuration
     assert [line for line in configuration if line.startswith("CONFIG_FLASH") and line.endswith("=y")] == []
@@ -92,13 +92,13 @@ def agent() -> Iterator[Agent]:
 
 
 def start(command: list[str]) -> subprocess.Popen[str]:
-    """As :func:`run`, to be gone on with while it runs."""
+    """Like :func:`run`, for a program with which the test communicates while it runs."""
     here = Path(command[0]).parent
     return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, cwd=here)
 
 
 def run(program: Path, *options: str, cwd: Path | None = None) -> tuple[int, str]:
-    """Exit status, and what it wrote to stderr.  Its simulated flash is a file in the folder it runs in."""
+    """Exit status and stderr.  The program's simulated flash is a file in the folder in which it runs."""
     here = cwd or program.parent
     done = subprocess.run([program, *options], capture_output=True, text=True, check=False, timeout=PATIENCE, cwd=here)
     return done.returncode, done.stderr
@@ -113,7 +113,7 @@ def statistics(path: Path) -> dict[str, Any]:
 
 
 def test_a_scenario_has_the_hosts_numbers(folder: Path, host: Path, tmp_path: Path) -> None:
-    """To the bit, over homing and the whole profile; by the target that epg_add_simulation() has made."""
+    """The same bits, over homing and the whole profile, with the target that epg_add_simulation() has made."""
     assert simulate(host, TRACKING, tmp_path).passed
     results = folder / "tracking"
     shutil.rmtree(results, ignore_errors=True)
@@ -162,7 +162,7 @@ def test_mistakes(image: Path, tmp_path: Path, options: list[str], status: int, 
 
 
 def test_a_node_over_udp(image: Path, agent: Agent) -> None:
-    """It follows what comes from the agent, also one that has been restarted, and says whether there is one."""
+    """The node follows setpoints of the agent, also after the agent's restart, and reports if there is an agent."""
     command = [str(image), "--realtime", f"--agent={agent.address}"]
     with start(command) as process:
         try:
@@ -250,7 +250,7 @@ def test_console_on_a_terminal_and_an_interrupt(image: Path, tmp_path: Path) -> 
 
 
 def test_the_simulators_own_end(image: Path, tmp_path: Path) -> None:
-    """native_sim has an option of its own for when to end; what was recorded up to there is in the file."""
+    """native_sim has its own option for the time of the end; the file contains the recording up to it."""
     trace = tmp_path / "trace.csv"
     assert run(image, "--no-rt", "-stop_at=2", "--duration=9", f"--trace={trace}")[0] == 0
     rows = trace.read_text().splitlines()

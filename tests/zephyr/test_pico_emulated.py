@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Zephyr's image for the Pico in the RP2040 emulator: the PIO decoders count every edge, whatever the reader does.
 
-`firmware` has five decoders: four on PIO 0 that share the program, one on PIO 1; two with B below A, two inverted.
+`firmware` has five decoders: four on PIO 0 that share the program, one on PIO 1; two have B on the lower pin, two
+are inverted.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from .workspace import build, workspace
 PINS = [(2, 3), (5, 4), (6, 7), (9, 8), (10, 11)]
 SIGNS = [1, 1, -1, -1, 1]
 LIMIT = 9
-"""Cycles between edges that the program counts exactly."""
+"""The smallest number of cycles between edges that the program counts exactly."""
 
 
 class Board:
@@ -35,7 +36,7 @@ class Board:
             self.pico.call("encoder", name=str(n), a=a, b=b)
 
     def ask(self, request: int) -> list[int]:
-        """Has the firmware do something with each decoder; its errors."""
+        """Sends a request to the firmware, for each decoder; returns the decoders' errors."""
         self.pico.write_word("done", 0)
         self.pico.write_word("request", request)
         for _ in range(100):
@@ -61,7 +62,7 @@ class Board:
         self.pico.run(cycles=400 + apart * len(directions))
 
     def watch(self, milliseconds: float) -> int:
-        """Has the firmware read again and again; how often."""
+        """Makes the firmware read repeatedly; returns the number of reads."""
         before = self.pico.word("rounds")
         self.pico.write_word("request", WATCH)
         self.pico.run(milliseconds=milliseconds)
@@ -74,7 +75,7 @@ class Board:
             self.pico.call("move", name=str(n), kind="rest")
 
     def true_counts(self) -> list[int]:
-        """Edges that the encoders have given, as the decoders are to count them."""
+        """The edges of the encoders, with the sign that the decoders must give them."""
         counts = [self.pico.call("encoder_count", name=str(n)) for n in range(len(PINS))]
         return [sign * count for sign, count in zip(SIGNS, counts, strict=True)]
 
@@ -95,7 +96,7 @@ def board(image: Path) -> Iterator[Board]:
 
 
 def test_the_kernel_sleeps_as_long_as_it_says(board: Board) -> None:
-    """Woken from WFI by SysTick: between two looks for a request is k_msleep(1), which is at most two ticks more."""
+    """SysTick ends WFI.  The firmware waits for k_msleep(1) between requests, which takes at most two ticks more."""
     board.pico.run(milliseconds=20)
     state = board.pico.run(milliseconds=20)
     assert state["cores"][0]["waiting"], "the idle thread is in WFI most of the time"
@@ -132,7 +133,7 @@ def test_every_edge_at_the_limit_rate(board: Board) -> None:
 
 
 def test_edges_beyond_the_limit_are_lost_and_noticed(board: Board) -> None:
-    """Which also shows that these tests can fail."""
+    """This also proves that these tests can fail."""
     board.move("random", shortest=4, longest=5, reversal=0.1)
     board.watch(2)
     board.rest()
@@ -150,7 +151,7 @@ def test_nothing_is_lost_when_nobody_reads(board: Board) -> None:
 
 
 def test_wraps_of_the_32_bit_count(board: Board) -> None:
-    """The register is set near its ends; the count, 64 bits wide, goes on."""
+    """The register is set near its limits; the count, 64 bits wide, continues."""
     expected = 0
     for register in (0x70000000, 0xE0000000, 0xFFFFFFF0, 0x7FFFFFF0, 0xFFFFFFE0):
         before = board.pico.call("pio", block=0, machine=0)["y"]
@@ -195,7 +196,7 @@ def test_suspended_decoders_do_not_count(board: Board) -> None:
 
 
 def test_a_halted_state_machine_is_an_error(board: Board) -> None:
-    """Somebody stops all state machines of PIO 0: an error, and no position that stands still."""
+    """A write stops all state machines of PIO 0: reads give an error instead of a constant position."""
     board.pico.write_word("poke_address", 0x50200000)  # PIO0's CTRL
     board.pico.write_word("poke_value", 0)
     board.ask(POKE)
@@ -203,7 +204,7 @@ def test_a_halted_state_machine_is_an_error(board: Board) -> None:
 
 
 def test_the_sample_says_count_and_angle(image: Path) -> None:
-    """With a console in memory, as the emulator has no serial port for UARTs."""
+    """The console is in memory, because the emulator has no serial port for UARTs."""
     console = {"CONFIG_RAM_CONSOLE": "y", "CONFIG_UART_CONSOLE": "n", "CONFIG_LOG": "n"}
     sample = build("zephyr_module/samples/qdec", "rpi_pico", settings=console) / "zephyr" / "zephyr.elf"
     with Emulator(sample) as pico:
@@ -220,4 +221,4 @@ def test_the_sample_says_count_and_angle(image: Path) -> None:
     assert turned < -3000
     degrees, thousandths = divmod(-turned * 180, 1000)
     assert said[-1] == f"count {turned}, angle -{degrees}.{thousandths:03}000 degrees"
-    assert len(said) == 7  # the kernel's first line, and one each 100 ms
+    assert len(said) == 7  # the kernel's first line, and one line every 100 ms

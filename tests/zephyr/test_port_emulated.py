@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Zephyr's port layer in the RP2040 emulator, with a target of one motor (`port`): ticks, safe outputs, resets, bytes.
 
-The motor's PWM is at GP2 and its direction at GP3; what comes over USB and over the UART goes back.
+The motor's PWM is at GP2 and its direction at GP3; bytes that arrive over USB and over the UART are echoed.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from .workspace import build, c_library, workspace
 
 STOP, START, PANIC, HANG, LOCK_INTERRUPTS, DISABLE_SPARE_IRQ, SUSPEND, RESUME = range(1, 9)
 NO_FAULT, WATCHDOG, PROCESSOR = 0, 11, 12
-"""Of epg/fault.h."""
+"""Values of epg/fault.h."""
 MOTOR, FORWARD = 2, 3
-"""Pins."""
+"""Numbers of pins."""
 MOTOR_SLICE = 1
 
 
 class Board:
-    """The image, and what its program says of the target."""
+    """The image, and its program's report about the target."""
 
     def __init__(self, image: Path) -> None:
         self.pico = Emulator(image)
@@ -37,7 +37,7 @@ class Board:
         self.pico.run(milliseconds=milliseconds)
 
     def status(self) -> dict[str, int]:
-        """Members of the control object (epg/status.h, epg/statistics.h), which come after a pointer."""
+        """Members of the control object (epg/status.h, epg/statistics.h), which follow a pointer."""
         words = [self.pico.word("control", offset=8 + 4 * n) for n in range(10)]
         names = ["cycles", "overruns", "missed", "lateness_max", "computation_min", "computation_max"]
         return {"enabled": words[0] & 0xFF, "fault": words[1] & 0xFF, **dict(zip(names, words[4:], strict=True))}
@@ -63,7 +63,7 @@ def board(image: Path) -> Iterator[Board]:
 
 
 def test_every_tick_runs_a_cycle_while_usb_is_flooded(board: Board) -> None:
-    """The stack's threads are cooperative, and the control thread goes before them."""
+    """The threads of the USB stack are cooperative, but the control thread has priority over them."""
     board.pico.call("usb_open")
     board.pico.call("usb_flood")
     before = board.status()["cycles"]
@@ -76,7 +76,7 @@ def test_every_tick_runs_a_cycle_while_usb_is_flooded(board: Board) -> None:
 
 
 def test_ticks_that_come_while_interrupts_are_locked_are_missed(board: Board) -> None:
-    """3.5 ms: four ticks, of which the last one's cycle runs, late."""
+    """For 3.5 ms: of four ticks, only the last one has a cycle, which is late."""
     board.ask(LOCK_INTERRUPTS)
     status = board.status()
     assert status["missed"] in (2, 3)
@@ -90,7 +90,7 @@ def test_an_interrupt_that_a_cycle_disables_stays_disabled(board: Board) -> None
 
 
 def test_interrupts_go_on_while_the_control_thread_does_not_run(board: Board) -> None:
-    """For less time than the watchdog allows."""
+    """This lasts less than the watchdog's time."""
     sent = random.Random(3).randbytes(200)
     board.ask(SUSPEND, milliseconds=5)
     stopped = board.status()["cycles"]
@@ -136,7 +136,7 @@ def test_encoder(board: Board) -> None:
 
 @pytest.mark.parametrize(("request_", "fault"), [(PANIC, PROCESSOR), (HANG, WATCHDOG)])
 def test_outputs_are_safe_and_the_board_starts_again_with_the_fault(board: Board, request_: int, fault: int) -> None:
-    """The watchdog: at once after a panic, after half a second without communication else."""
+    """The watchdog resets at once after a panic, else after half a second without communication."""
     board.pico.call("watch_pins", pins=[MOTOR])
     board.pico.run(milliseconds=5)
     assert len(board.pico.call("take", log="pins")) >= 198, "the motor's PWM"

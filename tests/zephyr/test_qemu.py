@@ -15,7 +15,7 @@ from .workspace import build, c_library, workspace
 
 BOARD = "mps2/an385"
 PATIENCE = 120.0
-"""Seconds for 3 simulated ones, on a machine that does other things too."""
+"""Limit in seconds for 3 simulated seconds, on a machine that also runs other programs."""
 
 END = re.compile(r"PROJECT EXECUTION (\w+)")
 
@@ -28,7 +28,7 @@ def qemu() -> str:
 
 
 def console_of(image: Path) -> str:
-    """What the image says up to the end of its tests.  Time is what instructions take, so that no load matters."""
+    """The image's output up to the end of its tests.  Instructions determine the time, so that load has no effect."""
     command = [qemu(), "-machine", "mps2-an385", "-nographic", "-vga", "none", "-nic", "none", "-kernel", str(image)]
     command += ["-icount", "shift=4,align=off,sleep=off", "-rtc", "clock=vm"]
     lines: list[str] = []
@@ -48,7 +48,7 @@ def console_of(image: Path) -> str:
 
 
 def test_jiwy_in_qemu() -> None:
-    """Cycles are counted and none overruns; the emulated encoder is read; outputs, faults, stop and start."""
+    """Cycles are counted and do not overrun; the emulated encoder is read; outputs, faults, stop and start work."""
     skip_if_missing(lambda: workspace(BOARD), arm_gcc, c_library, qemu)
     said = console_of(build("tests/zephyr/jiwy", BOARD, settings=c_library()) / "zephyr" / "zephyr.elf")
     end = END.search(said)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The snippet `epg-debug`: what it switches on, and that an application's own settings go before it."""
+"""The snippet `epg-debug`: the settings that it enables; an application's own settings have priority."""
 
 from __future__ import annotations
 

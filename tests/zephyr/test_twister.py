@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Drivers, sample and a whole target on native_sim, as Zephyr's own test runner sees them."""
+"""Drivers, sample and a whole target on native_sim, with Zephyr's own test runner."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .workspace import NATIVE, c_library, need_twister, workspace
 
 
 def test_native_sim(tmp_path: Path) -> None:
-    """The drivers' semantics, the sample, and JIWY's target, which is test_qemu.py's too."""
+    """The behaviour of the drivers, the sample, and JIWY's target, which test_qemu.py also uses."""
     skip_if_missing(arm_gcc, lambda: need_twister(workspace(NATIVE)), c_library)
     statuses = statuses_of(tmp_path / "twister", NATIVE)
     assert statuses == {

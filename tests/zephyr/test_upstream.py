@@ -16,7 +16,7 @@ MADE_FOR = "VERSION_MAJOR = 4\nVERSION_MINOR = 1\nPATCHLEVEL = 99\n"
 
 
 def zephyr() -> Path:
-    """The tree that the patch is made for."""
+    """The source tree for which the patch is made."""
     base = tool("zephyr")
     if not (base / "VERSION").read_text(encoding="utf-8").startswith(MADE_FOR):
         raise Missing("Zephyr is not 4.1.99, which the patch is made for")

@@ -30,7 +30,7 @@ MANIFEST = f"""manifest:
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A workspace of west with this EPG in it, and nothing else."""
+    """A workspace of west that contains only this EPG."""
     skip_if_missing(workspace)
     top = tmp_path_factory.mktemp("workspace")
     (top / "manifest").mkdir()
@@ -43,7 +43,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def west(folder: Path, *words: str, **variables: str) -> subprocess.CompletedProcess[str]:
     here = workspace()
     environment = {**here.environment(), **variables}
-    del environment["ZEPHYR_BASE"]  # where west looks for a workspace first
+    del environment["ZEPHYR_BASE"]  # west searches there first
     command = [str(here.python), "-m", "west", *words]
     return subprocess.run(command, capture_output=True, text=True, cwd=folder, env=environment, check=False)
 
@@ -76,7 +76,7 @@ components:
     ],
 )
 def test_it_says_what_epg_says(status: int, words: list[str], folder: Path) -> None:
-    """The same output, on the same stream, and the same exit status: options are EPG's, not west's."""
+    """The same output on the same stream, and the same exit status: the options are EPG's, not west's."""
     (folder / "wrong.tcf").write_text(TCF)
     said, expected = west(folder, "epg", *words), epg(folder, *words)
     assert expected.returncode == status, expected.stderr
@@ -84,7 +84,7 @@ def test_it_says_what_epg_says(status: int, words: list[str], folder: Path) -> N
 
 
 def test_it_writes_where_west_was_called(folder: Path) -> None:
-    """In a folder below the workspace, whose name has a blank."""
+    """In a folder below the workspace, with a space in its name."""
     below = folder / "my robots"
     below.mkdir()
     model = ROOT / "examples" / "jiwy" / "model"
@@ -100,7 +100,7 @@ def test_west_lists_it_and_hands_over_help(folder: Path) -> None:
 
 
 def test_packages_that_the_python_of_west_lacks_are_asked_for(folder: Path, tmp_path: Path) -> None:
-    """It runs in the Python of west: what that lacks is missing when nothing may be installed."""
+    """EPG runs in the Python of west: packages that are not there are reported if they may not be installed."""
     here = workspace()
     needs = [str(here.python), "-c", "import jinja2, jsonschema, yaml"]
     complete = subprocess.run(needs, capture_output=True, check=False, env=here.environment()).returncode == 0
@@ -110,7 +110,7 @@ def test_packages_that_the_python_of_west_lacks_are_asked_for(folder: Path, tmp_
 
 
 class Terminal:
-    """`west epg connect` as somebody sees it who types."""
+    """`west epg connect` in a terminal, as a user types it."""
 
     def __init__(self, folder: Path, *words: str) -> None:
         here = workspace()
@@ -134,11 +134,11 @@ class Terminal:
         os.write(self.screen, text.encode())
 
     def wait(self) -> int:
-        """The exit status; what is written until then is read."""
+        """The exit status; reads the output until the end."""
         try:
             while data := os.read(self.screen, 4096):
                 self.text += data.decode(errors="replace")
-        except OSError:  # Linux, when nobody has the terminal open any more
+        except OSError:  # on Linux, when no process has the terminal open any more
             pass
         os.close(self.screen)
         return os.waitstatus_to_exitcode(os.waitpid(self.process, 0)[1])
@@ -154,7 +154,7 @@ def application(folder: Path) -> Path:
 
 
 def test_connect_knows_the_application_it_is_called_in(application: Path) -> None:
-    """And Ctrl-C, which reaches west and EPG alike, ends both."""
+    """Ctrl-C reaches both west and EPG, and ends both."""
     terminal = Terminal(application)
     address = terminal.read_until(r"http://127\.0\.0\.1:\d+/#\S+\s")[0]
     project = Page(address.strip()).state()["project"]

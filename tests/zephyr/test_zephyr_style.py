@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The module's sources as Zephyr's maintainers check them."""
+"""The module's sources pass the checks of Zephyr's maintainers."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def test_checkpatch() -> None:
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(ROOT)))
 def test_licence(path: Path) -> None:
-    """As check_compliance.py asks for."""
+    """The licence lines that check_compliance.py requires."""
     text = path.read_text(encoding="utf-8")
     needs_none = path.suffix == ".conf" or path.name in ("testcase.yaml", "sample.yaml")
     assert needs_none or "SPDX-License-Identifier: Apache-2.0" in text

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Timers of an STM32H743 in encoder mode, as far as a decoder uses them (RM0433, chapters 38 and 39).
 
-A timer counts the edges at its inputs as its registers say: encoder mode 3 counts each, the inputs' polarities turn the
-direction, the prescaler in effect divides, and ARR is where it wraps.  Channels 3 and 4, as outputs, set their flag
-when the count matches.  A timer whose clock is off counts nothing, reads as 0 and ignores writes.
+A timer counts the edges at its inputs according to its registers: encoder mode 3 counts each edge, the inputs'
+polarities set the direction, the active prescaler divides, and the count wraps at ARR.  Channels 3 and 4, as outputs,
+set their flag when the count matches.  A timer without a clock does not count, reads as 0 and ignores writes.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class Timer:
         self.reset()
 
     def reset(self) -> None:
-        """As after a pulse of its reset line."""
+        """Resets the registers, like a pulse of the timer's reset line."""
         self.registers = {ARR: self.top}
         self.prescaler = self.edges = 0
 
@@ -42,12 +42,12 @@ class Timer:
 
     @property
     def filters(self) -> tuple[int, int]:
-        """IC1F and IC2F."""
+        """The fields IC1F and IC2F."""
         return self._get(CCMR1) >> 4 & 0xF, self._get(CCMR1) >> 12 & 0xF
 
     @property
     def interrupts(self) -> bool:
-        """Whether a flag is set that may interrupt."""
+        """True if a flag is set whose interrupt is enabled."""
         return self._get(SR) & self._get(DIER) & (UPDATE | MATCH3 | MATCH4) != 0
 
     def read(self, register: int) -> int:
@@ -57,7 +57,7 @@ class Timer:
         if not self.clocked:
             return
         if register == SR:
-            value &= self._get(SR)  # rc_w0
+            value &= self._get(SR)  # rc_w0: a write can only clear bits
         elif register == EGR:
             if value & UG:
                 self.prescaler, self.edges = self._get(PSC), 0
@@ -72,7 +72,7 @@ class Timer:
         return self.registers.get(register, 0)
 
     def _direction(self) -> int:
-        """1 if the count rises when A leads, -1 if it falls, 0 if it stands."""
+        """1 if the count rises when A leads, -1 if it falls, 0 if the timer does not count."""
         inputs = self._get(CCMR1) & 3 == 1 and self._get(CCMR1) >> 8 & 3 == 1
         if not (self.clocked and inputs and self._get(CR1) & CEN and self._get(SMCR) & 0x10007 == ENCODER_X4):
             return 0
@@ -85,7 +85,7 @@ class Timer:
         if direction == 0:
             return edges
         if self.prescaler:
-            # No driver of a decoder wants it: enough to see that it divides.
+            # Drivers of decoders do not use the prescaler: it is enough that its effect is visible.
             self.edges += edges
             counts, self.edges = divmod(self.edges, self.prescaler + 1)
             self.registers[CNT] = (self._get(CNT) + direction * counts) % (self._get(ARR) + 1)

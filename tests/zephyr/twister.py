@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Zephyr's own test runner over the module's drivers, tests and samples."""
+"""Zephyr's own test runner for the module's drivers, tests and samples."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ FOLDERS = ["tests/zephyr", "zephyr_module/samples"]
 
 
 def statuses_of(output: Path, *boards: str) -> dict[tuple[str, str], str]:
-    """Builds and runs what is for these boards; status by (test, board without qualifiers).
+    """Builds and runs the tests for these boards; returns the status by (test, board without qualifiers).
 
     Raises :class:`BuildError`.
     """

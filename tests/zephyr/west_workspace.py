@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Workspaces that west has made from a manifest, and builds in them, as somebody makes them for the first time.
+"""Workspaces that west has made from a manifest, and builds in them, as on a user's first day.
 
 >>> # place = fresh_workspace("examples/zephyr_jiwy", tmp_path / "ws")      # west init, west update
 >>> # west(place, "build", "-b", "rpi_pico", "jiwy/app")
@@ -20,7 +20,7 @@ assert set(BOARDS) <= set(HALS)
 
 
 def west(folder: Path, *words: str, check: bool = True) -> str:
-    """What west says in a folder.  It knows of no Zephyr but the workspace's.  Raises :class:`BuildError`."""
+    """The output of west in a folder.  It finds only the workspace's Zephyr.  Raises :class:`BuildError`."""
     here = workspace(*BOARDS)
     environment = {**here.environment(), **mirror(here).variables}
     del environment["ZEPHYR_BASE"]
@@ -34,7 +34,7 @@ def west(folder: Path, *words: str, check: bool = True) -> str:
 
 
 def fresh_workspace(repository: str, folder: Path) -> Path:
-    """A workspace by ``west init`` and ``west update``, whose manifest is that of a folder of this repository."""
+    """A workspace made by ``west init`` and ``west update``; its manifest is in a folder of this repository."""
     address = f"https://example.org/{Path(repository).name}"
     mirror(workspace(*BOARDS)).add(address, ROOT / repository)
     west(folder.parent, "init", "-m", address, str(folder))

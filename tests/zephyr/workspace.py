@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A Zephyr workspace on this computer, and builds in it, in folders of EPG's cache that are used again.
+"""A Zephyr workspace on this computer, and builds in it, in folders of EPG's cache that are kept for later builds.
 
 >>> # skip_if_missing(partial(workspace, "rpi_pico"), arm_gcc)
 >>> # build("tests/zephyr/firmware", "rpi_pico") / "zephyr" / "zephyr.elf"
@@ -20,40 +20,40 @@ from epg.bootstrap import cache_folder
 from tests.emulator.toolchain import ROOT, Missing, arm_gcc, locked, tool
 
 NATIVE = "native_sim/native/64"
-"""native_sim of 64 bits, which needs no 32-bit libraries on the host."""
+"""native_sim with 64 bits, which does not need 32-bit libraries on the host."""
 
 HALS = {"rpi_pico": "rpi_pico", "rpi_pico2/rp2350a/m33": "rpi_pico", "nucleo_h743zi": "stm32"}
-"""The vendor's module that a board needs; CMSIS comes with it."""
+"""The vendor's module that a board needs, besides CMSIS."""
 
 PYTHON_NEEDS = "elftools, packaging, pykwalify, west, yaml"
 """Modules that Zephyr's build imports (its scripts/requirements-base.txt)."""
 
 
 TWISTER_NEEDS = "colorama, jsonschema, junitparser, natsort, ply, psutil, pytest, tabulate"
-"""Modules that Zephyr's test runner imports besides (its scripts/requirements-build-test.txt and -run-test.txt)."""
+"""More modules, which Zephyr's test runner imports (its scripts/requirements-build-test.txt and -run-test.txt)."""
 
 
 class BuildError(Exception):
-    """CMake or a compiler has failed; the message is what they said."""
+    """CMake or a compiler failed; the message is their output."""
 
 
 @dataclass(frozen=True)
 class Workspace:
-    """Zephyr, the Python for its scripts, and the modules beside it, EPG's last."""
+    """Zephyr, the Python for its scripts, and the modules; EPG is the last module."""
 
     base: Path
     python: Path
     modules: tuple[Path, ...]
 
     def environment(self) -> dict[str, str]:
-        """For CMake and twister: Zephyr's Python first, and nothing of the tests' own."""
+        """The environment for CMake and twister: Zephyr's Python is first, variables of the tests are removed."""
         environment = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "PYTHONHOME")}
         environment["ZEPHYR_BASE"] = str(self.base)
         environment["PATH"] = os.pathsep.join([str(self.python.parent), environment.get("PATH", "")])
         if "ZEPHYR_TOOLCHAIN_VARIANT" not in environment:
             environment["ZEPHYR_TOOLCHAIN_VARIANT"] = "gnuarmemb"
             environment["GNUARMEMB_TOOLCHAIN_PATH"] = str(arm_gcc().parent.parent)
-            # Debian's picolibc keeps errno per thread
+            # Debian's picolibc has one errno per thread
             environment["ZEPHYR_TOOLCHAIN_SUPPORTS_THREAD_LOCAL_STORAGE"] = "y"
         return environment
 
@@ -61,8 +61,8 @@ class Workspace:
 def c_library() -> dict[str, str]:
     """CMake settings for a complete C library, which targets need.  Raises :class:`Missing`.
 
-    Toolchains that Zephyr knows have one: its own SDK picolibc, Arm's newlib.  Debian's newlib is built without the
-    locks that Zephyr's part of it is for; its picolibc, a package of its own, serves.
+    Toolchains that Zephyr knows have one: its own SDK has picolibc, Arm's toolchain newlib.  Debian's newlib lacks the
+    locks that Zephyr needs; Debian's picolibc, a separate package, works.
     """
     if os.environ.get("ZEPHYR_TOOLCHAIN_VARIANT", "gnuarmemb") != "gnuarmemb":
         return {}
@@ -78,7 +78,7 @@ def c_library() -> dict[str, str]:
 
 
 def need_twister(here: Workspace) -> None:
-    """Raises :class:`Missing` when Zephyr's test runner cannot run."""
+    """Raises :class:`Missing` if Zephyr's test runner cannot run."""
     command = [str(here.python), "-c", f"import {TWISTER_NEEDS}"]
     if subprocess.run(command, capture_output=True, check=False, env=here.environment()).returncode != 0:
         raise Missing(
@@ -88,7 +88,7 @@ def need_twister(here: Workspace) -> None:
 
 
 def workspace(*boards: str) -> Workspace:
-    """The workspace, with what ``boards`` need.  Raises :class:`Missing`."""
+    """The workspace, if it has the modules for ``boards``.  Raises :class:`Missing`."""
     base = tool("zephyr")
     modules = []
     for name in ("cmsis", "cmsis_6", *dict.fromkeys(HALS[board] for board in boards if board in HALS)):
@@ -103,11 +103,11 @@ def workspace(*boards: str) -> Workspace:
 
 
 def _python(base: Path) -> Path:
-    """A Python with what Zephyr's scripts import: this one, west's, or that of the workspace's environment."""
+    """A Python with the packages that Zephyr's scripts import: this one, west's, or the workspace's own."""
     candidates = [Path(sys.executable)]
     west = shutil.which("west")
     if west is not None:
-        candidates.append(Path(west).resolve().parent / "python")  # pipx makes a link
+        candidates.append(Path(west).resolve().parent / "python")  # pipx installs west as a link
     candidates.append(base.parent / ".venv" / "bin" / "python")
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     for python in candidates:
@@ -129,7 +129,7 @@ def build(
 ) -> Path:
     """Configures and builds an application (a path in the repository, or anywhere); returns the build folder.
 
-    ``modules`` instead of the workspace's own; ``only`` the object file of one source, by name.  Raises
+    ``modules`` replaces the workspace's modules; ``only`` builds just the object file of one source, by name.  Raises
     :class:`BuildError` and :class:`Missing`.
     """
     here = workspace(board)
@@ -150,13 +150,13 @@ def build(
 
 
 def _objects(folder: Path, source: str, here: Workspace) -> list[str]:
-    """Targets of the object files of a source."""
+    """The Ninja targets of a source's object files."""
     targets = run(["ninja", "-C", str(folder), "-t", "targets", "all"], here).splitlines()
     return [name for name in (line.split(": ")[0] for line in targets) if name.endswith(f"/{source}.obj")]
 
 
 def run(command: Sequence[str], here: Workspace) -> str:
-    """Runs a command in the workspace's environment; what it said.  Raises :class:`BuildError`."""
+    """Runs a command in the workspace's environment; returns its output.  Raises :class:`BuildError`."""
     done = subprocess.run(command, capture_output=True, text=True, check=False, env=here.environment())
     if done.returncode != 0:
         raise BuildError(f"{' '.join(command)}\n{done.stdout}\n{done.stderr}")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Overlay, Kconfig and needs that are generated for Zephyr, without Zephyr: as they were, and in dtc's grammar.
+"""Overlay, Kconfig and needs that EPG generates for Zephyr, tested without Zephyr: golden files, and dtc's grammar.
 
-``EPG_UPDATE_GOLDEN=1`` rewrites what is in ``golden``: read the difference.
+``EPG_UPDATE_GOLDEN=1`` rewrites the files in ``golden``: review the difference.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ CASES = {
     "nodes": ("nodes.tcf", ()),
     "pull_ups": ("pull_ups.tcf", ()),
 }
-"""Name in ``golden``: the configuration, and what is set on top of it."""
+"""Name in ``golden``: the configuration, and the settings that are added to it."""
 
 
 @cache
@@ -46,7 +46,7 @@ def generated(name: str) -> Mapping[str, str]:
 
 
 def generate(name: str) -> dict[str, str]:
-    """What a case generates for Zephyr, by file name."""
+    """The files that a case generates for Zephyr, by name."""
     tcf, settings = CASES[name]
     request = Request(
         name="jiwy",
@@ -83,7 +83,7 @@ def test_it_is_the_same_each_time_and_names_no_folder(name: str) -> None:
 
 @pytest.mark.parametrize("name", CASES)
 def test_dtc_reads_the_overlay(name: str, tmp_path: Path) -> None:
-    """Its grammar, with a number in place of each macro: what the macros are is Zephyr's."""
+    """dtc checks the grammar, with a number in place of each macro: the macros are defined by Zephyr."""
     if shutil.which("dtc") is None:
         pytest.skip("overlays are read by dtc: apt install device-tree-compiler")
     text = generated(name)["jiwy.overlay"]
@@ -98,7 +98,7 @@ def test_dtc_reads_the_overlay(name: str, tmp_path: Path) -> None:
 
 
 def test_nodes_of_the_board_give_way_to_components() -> None:
-    """JIWY's motors have the pins of a Pico's I2C, and of a Pico 2's second one; the console's UART keeps its node."""
+    """JIWY's motors use the pins of a Pico's I2C, and of a Pico 2's second I2C; the console's UART keeps its node."""
     assert re.findall(r'&(\w+) \{\n\tstatus = "disabled"', generated("rpi_pico")["jiwy.overlay"]) == ["i2c0"]
     assert re.findall(r'&(\w+) \{\n\tstatus = "disabled"', generated("rpi_pico2")["jiwy.overlay"]) == ["i2c0", "i2c1"]
     overlay = generated("pull_ups")["jiwy.overlay"]
@@ -107,7 +107,7 @@ def test_nodes_of_the_board_give_way_to_components() -> None:
 
 
 def test_slices_and_timers_are_those_that_were_assigned() -> None:
-    """A PWM specifier's channel is twice the slice, plus 1 for B; an STM32's counts from 1."""
+    """In a PWM specifier, the channel is twice the slice, plus 1 for B; on an STM32, channels begin with 1."""
     pico = generated("rpi_pico")["jiwy.overlay"]
     assert "pinmux = <PWM_1A_P2>, <PWM_2A_P4>;" in pico
     assert "pwms = <&pwm 2 50000 PWM_POLARITY_NORMAL>, <&pwm 4 50000 PWM_POLARITY_NORMAL>;" in pico

@@ -1,4 +1,4 @@
-# The target of both programs: a macro, since epg_add_target() sets variables of Zephyr's where it is called.
+# The target of both programs.  A macro, because epg_add_target() sets variables of Zephyr in the scope of its caller.
 macro(jiwy_target board)
   epg_add_target(jiwy TCF ${board}_jiwy.tcf
     MODEL "${epg}/examples/jiwy/model" BINDINGS "${epg}/examples/jiwy/jiwy.bindings.yaml"

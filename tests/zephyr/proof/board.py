@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The example's application on an emulated Pico, enabled at start: JIWY on its pins, an agent and a person on USB."""
+"""The example's application on an emulated Pico, enabled at start: JIWY on its pins, agent and console on USB."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def image() -> Path:
 
 
 class ZephyrJiwy(Jiwy):
-    """The board that has started, connected to its agent; one core has control, communication and USB."""
+    """The board after its start, connected to its agent; one core runs control, communication and USB."""
 
     core = 0
     spans = SPANS
@@ -49,19 +49,19 @@ class ZephyrJiwy(Jiwy):
         self.locked()
 
     def cycles(self) -> list[int]:
-        """When control cycles began in their thread, since the last call."""
+        """The times at which control cycles began in their thread, since the last call."""
         return [cycle for cycle, *_ in self.pico.call("span", name="cycle")["passages"]]
 
     def locked(self) -> list[int]:
-        """For how many cycles of the processor interrupts were locked for each write, since the last call."""
+        """Processor cycles for which each write locked interrupts, since the last call."""
         return [length for _, length, _ in self.pico.call("span", name="locked")["passages"]]
 
     def interrupts(self) -> list[int]:
-        """When the tick's interrupt was entered, since the last call."""
+        """The times at which the tick's interrupt was entered, since the last call."""
         return [cycle for cycle, _, _, entered in self.pico.call("take", log="exceptions") if entered]
 
 
 def deviations(instants: list[int], period: int) -> Counter[int]:
-    """Of instants from the earliest grid with that period: how late each was, in their unit."""
+    """Delays of instants from the earliest grid with that period, in their unit, and how often each occurs."""
     zero = min(instant - number * period for number, instant in enumerate(instants))
     return Counter(instant - zero - number * period for number, instant in enumerate(instants))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What must hold of Zephyr's control loop on a Pico, whatever its communication does."""
+"""The promises of Zephyr's control loop on a Pico, which must hold for any communication."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from tests.platforms.pico.xrce.checks import assert_nothing_counted
 from .board import ZephyrJiwy, deviations
 
 LATEST = 20 * CYCLES_PER_MILLISECOND // 1000
-"""Cycles by which the tick's interrupt, and the reading of the encoders in it, may begin later than the earliest do:
+"""Cycles by which the tick's interrupt, and its read of the encoders, may begin later than the earliest ones:
 20 us."""
 LATEST_CYCLE = 100 * CYCLES_PER_MILLISECOND // 1000
-"""The same of the control thread's cycle, which computes: other interrupts go before it."""
+"""The same for the control thread's cycle, which computes the model and which other interrupts delay."""
 LATEST_WRITE = 535 * CYCLES_PER_MILLISECOND // 1000
-"""Cycles from the tick's interrupt to the end of the last write to an output: they may begin at 500 us from the tick,
+"""Cycles from the tick's interrupt to the end of the last write to an output: writes may begin at 500 us after the tick,
 and the PWM wraps at 550 us."""
 LONGEST_LOCK = 20 * CYCLES_PER_MILLISECOND // 1000
-"""Cycles for which interrupts are locked while outputs are written: 20 us."""
+"""Cycles for which interrupts are locked during a write to outputs: 20 us."""
 
 
 def assert_undisturbed(jiwy: ZephyrJiwy) -> dict[str, str]:
-    """Since begin(): no cycle lost or late, all outputs act at the same PWM wrap; the console's statistics."""
+    """Since begin(): no lost or late cycle, all outputs act at the same PWM wrap; returns the console's statistics."""
     stats = assert_nothing_counted(jiwy)
     timing = jiwy.timing()
     assert timing.cycles > 300

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The example's application for a Nucleo-H743ZI on an emulated chip: what its port layer reads and writes.
+"""The example's application for a Nucleo-H743ZI on an emulated chip: the registers that its port layer uses.
 
-The emulated processor has no arithmetic of doubles and no change of threads: test_h743_cycle.py runs the controller.
+The emulated processor has no arithmetic of doubles and no switch of threads: test_h743_cycle.py runs the controller.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from tests.zephyr.workspace import build, c_library, workspace
 
 ENCODERS = {"encoder_pan": ("TIM4", ("D", 12), ("D", 13), 2), "encoder_tilt": ("TIM8", ("C", 6), ("C", 7), 3)}
 OUTPUTS = {"pwm_pan": 0x34, "pwm_tilt": 0x38}
-"""CCR1 and CCR2 of timer 1."""
+"""Registers CCR1 and CCR2 of timer 1."""
 ARR = 0x2C
 READ, WRITE = 400, 700
-"""Instructions that a read of a decoder and a write of a duty may take."""
+"""Largest number of instructions for a read of a decoder, and for a write of a duty."""
 
 
 @pytest.fixture(scope="module")
@@ -48,7 +48,7 @@ def count(chip: Stm32h743, encoder: str) -> int:
 
 @pytest.mark.parametrize("encoder", ENCODERS)
 def test_decoders_count_over_wraps(chip: Stm32h743, encoder: str) -> None:
-    """Both ways, many ranges of 16 bits that nobody reads; the other decoder stands still."""
+    """Both directions, over many ranges of 16 bits without a read; the other decoder does not change."""
     (other,) = ENCODERS.keys() - {encoder}
     begin, still = count(chip, encoder), count(chip, other)
     true = 0
@@ -62,7 +62,7 @@ def test_decoders_count_over_wraps(chip: Stm32h743, encoder: str) -> None:
 
 @pytest.mark.parametrize("output", OUTPUTS)
 def test_compare_registers_have_the_level(chip: Stm32h743, output: str) -> None:
-    """A level is out of top + 1, and 20 kHz is the period; the other output's register stays."""
+    """A level is a part of top + 1, and the period is that of 20 kHz; the other output's register does not change."""
     config = chip.symbols[f"jiwy_{output}_config"]
     (other,) = OUTPUTS.keys() - {output}
     chip.call("epg_port_pwm_start", config)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""JIWY's control cycle on the emulated Nucleo-H743ZI, counted in instructions.
+"""JIWY's control cycle on the emulated Nucleo-H743ZI, measured in instructions.
 
-The emulated processor has no arithmetic of doubles, so the example's application is built for one without an FPU: a
-board, whose FPU computes doubles in one instruction each, needs fewer.
+The emulated processor has no arithmetic of doubles.  The example's application is therefore built for a processor
+without an FPU.  A real board needs fewer instructions: its FPU computes with doubles in one instruction each.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from tests.zephyr.workspace import build, c_library, workspace
 
 CYCLES = 200
 STEPS = 12_000
-"""Of the PWM: 240 MHz by 20 kHz."""
+"""Period of the PWM in clock cycles: 240 MHz by 20 kHz."""
 HOMING = {"pwm_pan": 0.05, "pwm_tilt": 0.06}
-"""Duties by which the example's controller homes."""
+"""Duties that the example's controller uses for homing."""
 PARTS = {"sample": 44, "read": 48, "model_step": 60, "model_finite": 64, "prepare": 72, "write": 76}
-"""Members of epg_application_t (epg/control.h), and where they are."""
+"""Members of epg_application_t (epg/control.h), and their offsets."""
 LIMIT = 20_000
-"""Instructions of a cycle, its first with the model's initialisation: 42 us at 480 MHz and one clock each."""
+"""Instructions of a cycle, the first one with the model's initialisation: 42 us at 480 MHz and one clock each."""
 
 
 @pytest.fixture(scope="module")
@@ -39,7 +39,7 @@ def image() -> Path:
 
 
 def cycle(chip: Stm32h743) -> int:
-    """A cycle at its tick; the instructions it took."""
+    """Runs a cycle at its tick; returns the number of instructions."""
     now, _ = chip.call("epg_port_time_ns")
     _, instructions = chip.call("epg_control_cycle", chip.symbols["jiwy_control"], 0, now, 0, 0)
     return instructions

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Zephyr's image of JIWY on a Pico is a ROS 2 node that tracks, and its control cycles are on time."""
+"""Zephyr's image of JIWY on a Pico is a ROS 2 node that follows setpoints, and its control cycles are on time."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from .checks import assert_undisturbed
 """Seconds between two messages of a topic, as in jiwy.tcf."""
 RESTARTS = 5
 LATEST = 150
-"""ms from the start of an agent to the board's first message, at most."""
+"""Milliseconds from the start of an agent to the board's first message, at most."""
 SAFE = 100 * CYCLES_PER_MILLISECOND // 1000
-"""Cycles after a fault from which on no output is driven: 100 us."""
+"""Cycles after a fault until no output is driven: 100 us."""
 NOWHERE = 0x60000001
-"""An address that no code has."""
+"""An address without code."""
 
 
 @pytest.fixture(scope="module")
@@ -37,7 +37,7 @@ def jiwy() -> Iterator[ZephyrJiwy]:
 
 
 def test_it_tracks(jiwy: ZephyrJiwy) -> None:
-    """A sine of 0.4 rad in 2 s, a setpoint each 10 ms; positions come each 33 ms, both axes' from one cycle."""
+    """Follows a sine of 0.4 rad in 2 s, with a setpoint every 10 ms; both axes publish together, every 33 ms."""
     jiwy.begin()
     assert_it_tracks(jiwy, 1.2)
     stats = assert_undisturbed(jiwy)
@@ -69,7 +69,7 @@ def test_it_comes_back(jiwy: ZephyrJiwy, scenario: str) -> None:
 
 
 def assert_is_back(jiwy: ZephyrJiwy) -> None:
-    """Nothing has disturbed the loop; setpoints arrive, positions leave and say where the axes are."""
+    """The loop was undisturbed; setpoints arrive, and published positions are those of the axes."""
     assert_holds(jiwy)
     assert_undisturbed(jiwy)
     hold(jiwy, 0.3)
@@ -78,9 +78,9 @@ def assert_is_back(jiwy: ZephyrJiwy) -> None:
 
 
 def test_a_hard_fault_of_main(jiwy: ZephyrJiwy) -> None:
-    """Its return addresses are overwritten while both axes move: outputs are safe at once, and stay so.
+    """Overwrites its return addresses while both axes move: outputs become safe at once, and stay safe.
 
-    The last test of this board, which the watchdog then resets.
+    This must be the last test of this board, because the watchdog then resets it.
     """
     pins = [pin for axis in AXES for pin in axis.outputs]
     hold(jiwy)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Levels of the PWM act at the same wrap after each tick, in images whose code and clocks lie otherwise."""
+"""PWM levels act at the same wrap after each tick, also in images with other addresses of code and other clocks."""
 
 from __future__ import annotations
 

@@ -6,7 +6,7 @@
 
 /**
  * @file
- * @brief Decoders of an emulated chip, at the request of whoever runs the emulator
+ * @brief Decoders of an emulated chip, controlled by requests of a test
  *
  * The decoders are those of the property qdecs of the node zephyr,user.
  */
@@ -40,9 +40,9 @@ enum request {
 };
 
 volatile uint32_t request;
-/* The request that has been done last. */
+/* The request that was completed last. */
 volatile uint32_t done;
-/* Reads of all decoders while the request is WATCH, and how many of them failed. */
+/* Number of reads of all decoders during the request WATCH, and of reads that failed. */
 volatile uint32_t rounds;
 volatile uint32_t failures;
 
@@ -51,7 +51,7 @@ volatile int64_t positions[ARRAY_SIZE(decoders)];
 volatile int64_t presets[ARRAY_SIZE(decoders)];
 volatile int32_t angles[2 * ARRAY_SIZE(decoders)];
 volatile int32_t skipped[ARRAY_SIZE(decoders)];
-/* A write to a register behind the drivers' backs. */
+/* A write to a register that bypasses the drivers. */
 volatile uint32_t poke_address;
 volatile uint32_t poke_value;
 

@@ -4,7 +4,7 @@
  * SPDX-License-Identifier: Apache-2.0
  */
 
-/* A whole target in Zephyr: JIWY's controller, whose shafts the test turns where they are emulated. */
+/* A whole target in Zephyr: JIWY's controller.  On emulated encoders, the test turns the shafts. */
 
 #include <stdint.h>
 
@@ -26,7 +26,7 @@ static epg_status_t status_after(k_timeout_t time)
 	return status;
 }
 
-/* The period of JIWY is 1 ms: as many cycles as that makes, each at its tick. */
+/* The period of JIWY is 1 ms: there is one cycle per millisecond, each at its tick. */
 ZTEST(jiwy, test_cycles)
 {
 	const epg_status_t first = status_after(K_MSEC(10));
@@ -69,7 +69,7 @@ static uint32_t high_time(void)
 	return high;
 }
 
-/* Direction pins of the target that are high now. */
+/* The target's direction pins that are high now. */
 static unsigned int pins_high(void)
 {
 	static const struct gpio_dt_spec pins[] = {
@@ -95,7 +95,7 @@ ZTEST(jiwy, test_encoder)
 	zassert_true(fabs(jiwy_inputs.position_pan - before + 50 * RAD_PER_COUNT) < 1e-9);
 }
 
-/* Homing drives both axes; disabled, nothing does. */
+/* Homing drives both axes.  While the target is disabled, no output is driven. */
 ZTEST(jiwy, test_outputs)
 {
 	zassert_true(status_after(K_MSEC(3)).enabled);
@@ -110,7 +110,7 @@ ZTEST(jiwy, test_outputs)
 	zexpect_not_equal(high_time(), 0);
 }
 
-/* Stopped, outputs are safe and no cycle comes.  Each start is as the first, at whatever time it comes. */
+/* After a stop, outputs are safe and no cycle runs.  A later start is like the first start. */
 ZTEST(jiwy, test_stop_and_start)
 {
 	(void)status_after(K_MSEC(3));
@@ -144,7 +144,7 @@ static void stop_in_interrupt(struct k_timer *timer)
 	stopped_in_interrupt = jiwy_stop();
 }
 
-/* An interrupt cannot wait for the end of a thread: it is told so, and the target goes on. */
+/* An interrupt cannot wait for the end of a thread: the call fails, and the target continues. */
 ZTEST(jiwy, test_stop_in_an_interrupt_is_refused)
 {
 	static K_TIMER_DEFINE(timer, stop_in_interrupt, NULL);
@@ -159,7 +159,7 @@ ZTEST(jiwy, test_stop_in_an_interrupt_is_refused)
 	zassert_false(jiwy_start(), "it runs still");
 }
 
-/* A decoder that says that it has stopped disables the target, and latches. */
+/* A decoder that reports that it has stopped disables the target; the fault is latched. */
 ZTEST(jiwy, test_decoder_fails)
 {
 	epg_status_t status;
@@ -175,7 +175,7 @@ ZTEST(jiwy, test_decoder_fails)
 	zexpect_true(status_after(K_MSEC(3)).enabled);
 }
 
-/* A PWM that refuses a write disables the target for good: its pins are plain pins until a reset. */
+/* A PWM that refuses a write disables the target until a reset: its pins are then plain pins. */
 ZTEST(jiwy_refused, test_output_fails)
 {
 	static const struct gpio_dt_spec pan = GPIO_DT_SPEC_GET_BY_IDX(TARGET, gpios, 0);
@@ -211,7 +211,7 @@ ZTEST_SUITE(jiwy_refused, NULL, NULL, NULL, NULL, NULL);
 
 #endif
 
-/* Each test on a target that has just been started. */
+/* Each test begins with a target that was just started. */
 static void before(void *fixture)
 {
 	ARG_UNUSED(fixture);

@@ -6,9 +6,9 @@
 
 /**
  * @file
- * @brief A target of one motor, and a program that does to it what the test asks for
+ * @brief A target of one motor, and a program that disturbs it as the test requests
  *
- * What comes over USB and over the serial line goes back.
+ * It echoes the bytes that arrive over USB and over the serial line.
  */
 
 #include <zephyr/irq.h>
@@ -22,7 +22,7 @@
 
 #define NODE DT_NODELABEL(epg_port)
 
-/* A period of 1 ms of 125 MHz, and of 50 us for the motor. */
+/* A period of 1 ms at 125 MHz, and of 50 us for the motor. */
 #define CLOCK        125000000U
 #define PRESCALER    2U
 #define TOP          62499U
@@ -33,7 +33,7 @@
 #define HALF_LEVEL   3125U
 #define OVERRUN_LIMIT 5U
 
-/* Of SPI0, which this image does not use. */
+/* An interrupt of SPI0, which this image does not use. */
 #define SPARE_IRQ 18U
 
 enum request {
@@ -48,13 +48,13 @@ enum request {
 	REQUEST_RESUME,
 };
 
-/* The test's; it waits until the request is 0 again. */
+/* Written by the test, which then waits until the request is 0 again. */
 volatile uint32_t request;
 volatile uint32_t started;
 volatile uint32_t error;
 volatile uint32_t spare_enabled;
 
-/* The next control cycle disables SPARE_IRQ. */
+/* Makes the next control cycle disable SPARE_IRQ. */
 static volatile bool disable_spare;
 
 static const epg_zephyr_decoder_t decoders[] = {
@@ -253,7 +253,7 @@ static void handle(uint32_t wanted)
 		k_panic();
 		break;
 	case REQUEST_HANG:
-		k_sched_lock(); /* no preemptible thread runs any more */
+		k_sched_lock(); /* from here on no preemptible thread runs */
 		for (;;) {
 		}
 	case REQUEST_LOCK_INTERRUPTS:
@@ -281,7 +281,7 @@ static void handle(uint32_t wanted)
 int main(void)
 {
 	IRQ_CONNECT(SPARE_IRQ, 3, nobody, NULL, 0);
-	spare_enabled = 2; /* nobody has asked */
+	spare_enabled = 2; /* not read yet */
 	start();
 	for (;;) {
 		handle(request);

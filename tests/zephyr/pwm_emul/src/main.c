@@ -37,7 +37,7 @@ static void before(void *fixture)
 	epg_pwm_emul_set_error(narrow, 0);
 }
 
-/* Runs first, by its name. */
+/* The name makes this test run first. */
 ZTEST(pwm_emul, test_a_nothing_is_set_at_the_start)
 {
 	expect_output(narrow, 0, 0, 0);

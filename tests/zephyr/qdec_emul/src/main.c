@@ -99,7 +99,7 @@ ZTEST(qdec_angle, test_thirds_are_cut_towards_zero)
 
 ZTEST(qdec_angle, test_no_intermediate_overflow)
 {
-	/* 360 * 10^6 times the count would not fit into 64 bits. */
+	/* 360 * 10^6 times the count does not fit into 64 bits. */
 	preset(fine, INT64_C(0x7fffffff) * 1000 + 0x7ffffffe);
 	expect_angle(fine, 360359, 999999);
 	preset(fine, -(INT64_C(0x7fffffff) * 1000 + 0x7ffffffe));
@@ -175,7 +175,7 @@ ZTEST(qdec_count, test_every_wrap_is_counted_when_nobody_reads)
 	zexpect_equal(count_of(qdec16), 10000001);
 	epg_qdec_emul_move(qdec16, -30000003);
 	zexpect_equal(count_of(qdec16), -20000002);
-	/* A quarter of 65536 counts each. */
+	/* An interrupt after a quarter of 65536 counts each. */
 	zexpect_equal(epg_qdec_emul_interrupts(qdec16) - interrupts, 40000004 / 16384);
 }
 
@@ -206,7 +206,7 @@ ZTEST(qdec_count, test_random_walk)
 	int64_t truth = 0;
 
 	for (int i = 0; i < 100000; i++) {
-		/* Numerical Recipes' generator: the upper bits are good enough. */
+		/* The generator of Numerical Recipes; its upper bits are random enough. */
 		random = random * 1664525U + 1013904223U;
 		const int32_t step = (int32_t)random >> 14;
 

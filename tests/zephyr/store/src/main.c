@@ -6,7 +6,7 @@
 
 /**
  * @file
- * @brief The store: what is found is all new or all old, whenever the power fails
+ * @brief The store: after a power failure at any time, the data are all new or all old
  */
 
 #include <string.h>
@@ -17,7 +17,7 @@
 
 #include "epg/port.h"
 
-/* Of the store's pages, and what does not fit in one. */
+/* Numbers of the store's pages, and a size that does not fit in one page. */
 #define PAGE     4096U
 #define TOO_LONG PAGE
 
@@ -25,7 +25,7 @@ static bool refuse_hold;
 static unsigned int holds;
 static unsigned int releases;
 
-/* In place of the control thread, which does not run here. */
+/* Replaces the function of the control thread, which does not run here. */
 bool epg_zephyr_control_hold(void)
 {
 	holds++;
@@ -40,7 +40,7 @@ void epg_zephyr_control_release(void)
 static uint8_t data[TOO_LONG];
 static uint8_t found[TOO_LONG];
 
-/* Bytes that differ for each seed. */
+/* Fills with bytes that differ for each seed. */
 static void fill(uint32_t seed, size_t size)
 {
 	for (size_t i = 0; i < size; i++) {
@@ -84,7 +84,7 @@ static uint32_t *counter(const char *group, const char *name)
 	return (uint32_t *)wanted[1];
 }
 
-/* From now on, `writes` more writes reach the flash. */
+/* From now on, only `writes` more writes reach the flash. */
 static void let_power_fail_after(uint32_t writes)
 {
 	const uint32_t done = *counter("flash_sim_stats", "flash_write_calls");
@@ -153,7 +153,7 @@ ZTEST(epg_store, test_the_control_loop_is_held)
 	zassert_true(holds_what_was_stored(1, 100));
 }
 
-/* Each write of each record is the last one that the power lasts for, over several changes of pages. */
+/* The power fails after each write of each record, over several changes of pages. */
 ZTEST(epg_store, test_the_power_may_fail_at_any_write)
 {
 	const size_t size = 500;
