@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A program at the other end of a console."""
+"""A test's end of a console."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import subprocess
 import time
 from pathlib import Path
 
-PATIENCE = 20.0  # seconds for an answer, on a machine that does other things too
+PATIENCE = 20.0  # seconds to wait for an answer, on a machine that also runs other programs
 
 
 class Lines:
@@ -27,7 +27,7 @@ class Lines:
             data = data[os.write(self._write, data[:4096]) :]
 
     def receive(self, seconds: float) -> list[str]:
-        """Lines that come within that time; returns at the first."""
+        """The lines that arrive within that time; returns as soon as there are some."""
         end = time.monotonic() + seconds
         found: list[str] = []
         while not found and (left := end - time.monotonic()) > 0:
@@ -43,7 +43,7 @@ class Lines:
         return found
 
     def until(self, *beginnings: str) -> list[str]:
-        """Lines up to the first that begins with one of ``beginnings``, which is the last of them."""
+        """The lines up to and including the first that begins with one of ``beginnings``."""
         got: list[str] = []
         end = time.monotonic() + PATIENCE
         while time.monotonic() < end:
@@ -56,7 +56,7 @@ class Lines:
         raise AssertionError(f"no line begins with {beginnings}: {self.lines}")
 
     def ask(self, command: str) -> list[str]:
-        """The answer to a command whose first word names it; other lines are passed over."""
+        """The answer to a command, whose first word names the answer; other lines are skipped."""
         word = command.split()[0]
         self.send(command + "\n")
         word = "setpoint" if "=" in word else word
@@ -82,7 +82,7 @@ class Host(Lines):
         self.until("ready ")
 
     def close(self) -> tuple[int, str]:
-        """Ends its input; exit status and what it wrote to stderr."""
+        """Ends its input; returns the exit status and stderr."""
         assert self.process.stdin is not None and self.process.stderr is not None
         self.process.stdin.close()
         status = self.process.wait(PATIENCE)
@@ -98,12 +98,12 @@ class Host(Lines):
 
 
 def values(line: str) -> dict[str, float]:
-    """Numbers of ``watch 0.033 name=value ...`` by name."""
+    """The numbers in ``watch 0.033 name=value ...``, by name."""
     return {name: float(value) for name, value in (word.split("=") for word in line.split()[2:])}
 
 
 def stat(lines: list[str], name: str) -> str:
-    """A value of the answer to ``stats``."""
+    """One value of the answer to ``stats``."""
     found = [word for line in lines for word in line.split() if word.startswith(f"{name}=")]
     assert len(found) == 1, (name, lines)
     return found[0].partition("=")[2]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""JIWY on the host with its console, as a user builds it, under sanitizers."""
+"""Fixtures: JIWY on the host with its console, as a user builds it, with sanitizers."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ HERE = Path(__file__).resolve().parent
 
 
 def build_jiwy(build: Path, sanitizers: str) -> Path:
-    """The executable, made in the folder ``build``."""
+    """The executable, built in the folder ``build``."""
     for tool, package in (("cmake", "cmake"), ("ninja", "ninja-build")):
         if not shutil.which(tool):
             pytest.skip(f"{tool} is missing: apt install {package}")

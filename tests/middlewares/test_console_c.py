@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The console's protocol: each ``TEST(name)`` of ``c/console_tests.c``, under sanitizers."""
+"""The console's protocol: each ``TEST(name)`` of ``c/console_tests.c``, with sanitizers."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ TESTS = HERE / "console_tests.c"
 
 
 def _runtime_tests() -> ModuleType:
-    """How tests of the runtime are compiled: the same flags, the same fake port and application."""
+    """The module that compiles tests of the runtime: for the same flags, fake port and fake application."""
     path = ROOT / "tests" / "runtime" / "program.py"
     spec = importlib.util.spec_from_file_location("runtime_program", path)
     assert spec is not None and spec.loader is not None
@@ -49,7 +49,7 @@ def test_in_c(console_tests: Path, name: str) -> None:
 
 
 def test_it_needs_no_heap_and_no_printf(tmp_path: Path) -> None:
-    """What the console leaves for the linker besides EPG's runtime: copying and comparing bytes."""
+    """Besides EPG's runtime, the console needs only functions that copy and compare bytes."""
     undefined: set[str] = set()
     defined: set[str] = set()
     for source in [*CONSOLE.glob("*.c"), *program.runtime_sources()]:

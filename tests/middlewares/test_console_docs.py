@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``docs/console.md`` is true: its sessions are held with a real executable, and it names everything there is.
+"""``docs/console.md`` is true: its sessions work with a real executable, and it names every command and value.
 
-In a ``session`` block ``> command`` is typed; the lines below are what comes, in that order.  ``...`` in a line stands
-for any text, a line ``...`` for any lines.
+In a ``session`` block, ``> command`` is input; the lines below are the expected output, in that order.  ``...`` in a
+line matches any text, and a line ``...`` matches any lines.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ def pattern(line: str) -> str:
 
 
 def hold(console: Host, session: str) -> None:
-    """Says what the session says, and finds what it shows; notices of other things may come in between."""
+    """Sends the input of a session and finds its output; notices about other events may appear in between."""
     for exchange in re.split(r"^> ", session, flags=re.MULTILINE)[1:]:
         command, *lines = exchange.splitlines()
-        time.sleep(0.5)  # as people do, and until what moves stands
+        time.sleep(0.5)  # as a user does, and until the axes have stopped
         console.send(command + "\n")
         for line in lines:
             if line == "...":
@@ -43,7 +43,7 @@ def hold(console: Host, session: str) -> None:
 @pytest.mark.parametrize("number", range(len(SESSIONS)))
 def test_sessions(jiwy_host: Path, number: int) -> None:
     with Host(jiwy_host) as console:
-        console.ask("version")  # the loop runs from here on
+        console.ask("version")  # after the answer, the loop runs
         hold(console, SESSIONS[number])
 
 

@@ -18,7 +18,7 @@ import pytest
 from .client import Host, Lines, stat, values
 
 MODEL = 140
-"""Where a store names its model: targets/runtime/src/store.c."""
+"""Offset of the model's name in a store: targets/runtime/src/store.c."""
 
 
 def test_setpoints_reach_the_model(jiwy_host: Path) -> None:
@@ -64,7 +64,7 @@ def test_parameters_are_set_saved_and_back_after_a_restart(jiwy_host: Path, tmp_
         assert console.ask("get Pan\\PID\\kp") == ["parameter Pan\\PID\\kp=0.1 generated=2.6", "ok get"]
         assert "stored=loaded" in console.ask("version")[-1]
     data = bytearray(store.read_bytes())
-    data[MODEL] ^= 1  # as if another model had saved it
+    data[MODEL] ^= 1  # as if another model had saved these data
     store.write_bytes(data)
     with Host(jiwy_host, "--store", str(store)) as console:
         assert console.ask("get Pan\\PID\\kp") == ["parameter Pan\\PID\\kp=2.6", "ok get"]
@@ -75,7 +75,7 @@ def test_parameters_are_set_saved_and_back_after_a_restart(jiwy_host: Path, tmp_
 
 
 def test_a_parameter_takes_effect(jiwy_host: Path) -> None:
-    """Homing drives with this duty."""
+    """Homing uses this duty."""
     with Host(jiwy_host) as console:
         assert console.ask("set Pan\\Homing\\duty=0.125") == ["ok set"]
         console.ask("watch pwm_pan")
@@ -83,7 +83,7 @@ def test_a_parameter_takes_effect(jiwy_host: Path) -> None:
         seen = {values(line)["outputs.pwm_pan"] for _ in range(20) for line in console.receive(0.1) if "watch" in line}
         assert -0.125 in seen
         console.ask("disable")
-        assert console.ask("enable") == ["ok enable"]  # which initialises the model
+        assert console.ask("enable") == ["ok enable"]  # this initialises the model
         console.lines.clear()
         seen = {values(line)["outputs.pwm_pan"] for _ in range(20) for line in console.receive(0.1) if "watch" in line}
         assert -0.125 in seen and -0.05 not in seen
@@ -107,12 +107,12 @@ def test_a_capture_has_every_cycle_around_its_trigger(jiwy_host: Path) -> None:
         assert len(numbers) == 200
         assert [row[1] for row in numbers] == [0.0] * 50 + [0.75] * 150
         steps = [round((after[0] - before[0]) * 1000, 6) for before, after in itertools.pairwise(numbers)]
-        assert set(steps) <= {float(n) for n in range(1, 200)}  # whole periods; more than one where a tick was missed
+        assert set(steps) <= {float(n) for n in range(1, 200)}  # whole periods; more than one if a tick was missed
         assert steps.count(1.0) > 150
 
 
 def moved(answer: list[str]) -> dict[str, int]:
-    """Counts that a jog has told of, by encoder."""
+    """The counts that a jog has reported, by encoder."""
     found = [re.match(r"moved (\w+) count=([-+]?\d+) ", line) for line in answer]
     return {match[1]: int(match[2]) for match in found if match}
 
@@ -121,11 +121,11 @@ def test_jog_moves_one_axis_and_tells_count_and_sign(jiwy_host: Path) -> None:
     with Host(jiwy_host) as console:
         assert console.ask("jog pwm_pan 0.1 100")[-1] == "error jog the target is enabled: disable it"
         console.ask("disable")
-        time.sleep(0.7)  # until both axes, which had begun to home, stand
+        time.sleep(0.7)  # until both axes, which had begun to home, have stopped
         forwards = console.ask("jog pwm_pan 0.1 200")
         assert forwards[-1] == "ok jog"
         assert moved(forwards)["encoder_pan"] > 20
-        assert abs(moved(forwards)["encoder_tilt"]) <= 1  # it may stand between two counts
+        assert abs(moved(forwards)["encoder_tilt"]) <= 1  # its position may be between two counts
         assert re.match(r"moved encoder_pan count=\+\d+ position=\+0\.\d+ unit=rad$", forwards[0])
         time.sleep(0.3)
         assert moved(console.ask("jog pwm_pan -0.1 300"))["encoder_pan"] < -20
@@ -138,7 +138,7 @@ def test_jog_moves_one_axis_and_tells_count_and_sign(jiwy_host: Path) -> None:
 
 
 def test_random_bytes_do_no_harm(jiwy_host: Path) -> None:
-    """ASan and UBSan would end the program."""
+    """ASan and UBSan would end the program at an error."""
     chance = random.Random(5)
     words = [
         b"watch",
@@ -165,13 +165,13 @@ def test_random_bytes_do_no_harm(jiwy_host: Path) -> None:
 
 
 def cycles_of(console: Host) -> tuple[int, int]:
-    """Cycles run and ticks missed so far."""
+    """The number of cycles and of missed ticks so far."""
     answer = console.ask("stats")
     return int(stat(answer, "cycles")), int(stat(answer, "missed"))
 
 
 def test_the_loop_keeps_its_cycles_under_a_flood(jiwy_host: Path) -> None:
-    """100 kB/s of what a console can do worst: setpoints, questions, garbage."""
+    """100 kB/s of the worst input for a console: setpoints, questions, garbage."""
     with Host(jiwy_host) as console:
         quiet = cycles_of(console)
         time.sleep(1.0)
@@ -210,7 +210,7 @@ def terminal(jiwy_host: Path, tmp_path: Path) -> Path:
 
 
 def test_a_terminal_of_its_own(terminal: Path) -> None:
-    """As a board that is plugged in, looked at, left and looked at again."""
+    """Like a board that a user plugs in, reads, leaves and reads again."""
     for visit in range(3):
         file = os.open(terminal, os.O_RDWR | os.O_NOCTTY)
         console = Lines(file, file)
@@ -266,7 +266,7 @@ def test_the_input_of_a_script_is_carried_out_to_its_end(jiwy_host: Path) -> Non
 
 
 def test_both_sides_race_for_nothing(jiwy_host_for_races: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """All that control and communication side share, under ThreadSanitizer."""
+    """All data that control and communication side share, with ThreadSanitizer."""
     monkeypatch.setenv("TSAN_OPTIONS", "halt_on_error=1 exitcode=66")
     with Host(jiwy_host_for_races) as console:
         console.ask("watch")

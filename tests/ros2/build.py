@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Builds the robots of ``robots/CMakeLists.txt``, as a user would."""
+"""Builds the robots of ``robots/CMakeLists.txt`` as a user does."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Build = Callable[[str], Path]
 
 
 def build_robots(folder: Path, flags: str) -> Build:
-    """Configures once; targets are built when they are asked for.  Raises Missing."""
+    """Configures once; a target is built when it is first requested.  Raises Missing."""
     tool("cyclonedds")
     for program, package in (("cmake", "cmake"), ("ninja", "ninja-build")):
         if not shutil.which(program):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Robots on a DDS network of their own, as a user builds them."""
+"""Fixtures: robots as a user builds them, each test on its own DDS network."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def build(tmp_path_factory: pytest.TempPathFactory) -> Build:
 
 @pytest.fixture(scope="session")
 def build_checked(tmp_path_factory: pytest.TempPathFactory) -> Build:
-    """With AddressSanitizer and UndefinedBehaviorSanitizer, and all warnings as errors."""
+    """A build with AddressSanitizer and UndefinedBehaviorSanitizer, and all warnings as errors."""
     flags = "-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all"
     warnings = "-Wall -Wextra -Wconversion -Wdouble-promotion -Werror"
     return _build(tmp_path_factory, "robots_checked", f"{flags} {warnings}")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How much later one signal is than another, as the thesis computes it for its tables 5.5 and 5.6."""
+"""The delay of one signal behind another, computed as in the thesis for its tables 5.5 and 5.6."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from collections.abc import Sequence
 import numpy as np
 
 Log = Sequence[tuple[float, float]]
-"""Time in s and value, as a node logs them when they become available."""
+"""Pairs of time in s and value, as a node logs them when they become available."""
 
 
 def lag(reference: Log, target: Log) -> float:
-    """By how many seconds ``target`` is behind ``reference``, in multiples of the reference's interval.
+    """The time in seconds by which ``target`` is behind ``reference``, in multiples of the reference's interval.
 
-    The target is interpolated to the times of the reference, so that both have one time scale; then the shift with the
-    largest cross-correlation is taken.  The thesis does not say how it treats means and ends: here it is the
-    correlation coefficient of what overlaps.  (Sums of products, of which there are fewer the larger the shift is,
-    favour no shift.)
+    The target is interpolated to the times of the reference, so that both have the same time scale.  The result is the
+    shift with the largest cross-correlation.  The thesis does not define its treatment of means and ends.  Here it is
+    the correlation coefficient of the overlapping parts.  (A sum of products would favour no shift, because a larger
+    shift leaves fewer products.)
 
     >>> wave = [(0.033 * n, np.sin(0.05 * n)) for n in range(200)]
     >>> late = [(time + 0.066, value) for time, value in wave]
@@ -37,10 +37,10 @@ def lag(reference: Log, target: Log) -> float:
 
 
 def fine_lag(reference: Log, target: Log, largest: float = 0.3, step: float = 0.001) -> float:
-    """By how many seconds ``target`` is behind ``reference``: the shift that brings them nearest to each other.
+    """The time in seconds by which ``target`` is behind ``reference``: the shift with the smallest difference.
 
-    Least squares, in multiples of ``step``: what the interval of 33 ms hides, and without the bias towards zero that a
-    correlation has whose overlap shrinks.
+    Least squares, in multiples of ``step``.  This resolves delays below the interval of 33 ms, and lacks the bias towards
+    zero of a correlation whose overlap shrinks.
     """
     begin, end = reference[0][0], target[-1][0] - largest
     grid = np.arange(begin, end, step)
@@ -52,6 +52,6 @@ def fine_lag(reference: Log, target: Log, largest: float = 0.3, step: float = 0.
 
 
 def errors(log: Log, expected: Sequence[float]) -> tuple[float, float]:
-    """RMS and largest of the differences between a log's values and what was expected at those times."""
+    """RMS and largest difference between a log's values and the expected values at those times."""
     differences = np.array([value for _, value in log]) - np.array(expected)
     return float(np.sqrt(np.mean(differences**2))), float(np.max(np.abs(differences)))

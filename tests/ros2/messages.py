@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""ROS 2 messages as CycloneDDS's Python package knows types, and the hashes by which ROS 2 tells types apart.
+"""ROS 2 messages as types of CycloneDDS's Python package, and the hashes by which ROS 2 distinguishes types.
 
 The definitions are those of ROS 2 Jazzy's common_interfaces and rmw_dds_common.  Hashes are computed here from the
 definitions (REP 2016), independently of the constants in EPG's runtime.
 
-(No ``from __future__ import annotations`` here: the package wants annotations that are types.)
+(No ``from __future__ import annotations`` here: the package needs annotations that are types.)
 """
 
 import hashlib
@@ -136,7 +136,7 @@ class ParticipantEntitiesInfo_(IdlStruct, typename="rmw_dds_common::msg::dds_::P
 @dataclass
 @annotate.final
 class ShortFloat64_(IdlStruct, typename="std_msgs::msg::dds_::Float64_"):
-    """What a stranger might call so: too short,"""
+    """Another type with this name, which is too short."""
 
     data: uint8
 
@@ -144,7 +144,7 @@ class ShortFloat64_(IdlStruct, typename="std_msgs::msg::dds_::Float64_"):
 @dataclass
 @annotate.final
 class LongFloat64_(IdlStruct, typename="std_msgs::msg::dds_::Float64_"):
-    """too long, so that it comes in fragments,"""
+    """Another type with this name, so long that it arrives in fragments."""
 
     data: float64
     more: array[uint8, 20_000]
@@ -153,7 +153,7 @@ class LongFloat64_(IdlStruct, typename="std_msgs::msg::dds_::Float64_"):
 @dataclass
 @annotate.final
 class HugeFloat64_(IdlStruct, typename="std_msgs::msg::dds_::Float64_"):
-    """or much too long."""
+    """Another type with this name, which is much too long."""
 
     data: array[uint8, 200_000]
 
@@ -251,7 +251,7 @@ def type_hash(type_: str) -> str:
 
 
 def ros_type(dds_type: str) -> str:
-    """``std_msgs/msg/Float64`` of ``std_msgs::msg::dds_::Float64_``: what ``ros2 topic list -t`` shows."""
+    """``std_msgs/msg/Float64`` for ``std_msgs::msg::dds_::Float64_``, as in ``ros2 topic list -t``."""
     parts = dds_type.split("::")
     if len(parts) < 3 or parts[-2] != "dds_" or not parts[-1].endswith("_"):
         raise ValueError(f"'{dds_type}' is no type of ROS 2")
@@ -259,5 +259,5 @@ def ros_type(dds_type: str) -> str:
 
 
 def numbers(messages: Sequence[object]) -> list[float]:
-    """The ``data`` of messages that hold one number."""
+    """The ``data`` of messages that contain one number."""
     return [message.data for message in messages]  # type: ignore[attr-defined]

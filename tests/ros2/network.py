@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A network of its own for each test: loopback only, in a domain that no other test has at the moment."""
+"""A separate network for each test: loopback only, in a domain that no other test uses at the same time."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ LOOPBACK = (
     "{discovery}</Domain></CycloneDDS>"
 )
 TAG = "<Discovery><Tag>{tag}</Tag></Discovery>"
-"""Participants with different tags do not see each other, whatever their domain: other tests, and the user's robots."""
+"""A tag that separates participants in the same domain: from other tests, and from the user's robots."""
 
 
 @dataclass(frozen=True)
 class Network:
-    """``environment`` is for programs that are to be in it; this process is in it while the ``with`` block lasts."""
+    """``environment`` is for programs in the network; this process is in it during the ``with`` block."""
 
     domain: int
     environment: dict[str, str]
@@ -37,9 +37,9 @@ class Network:
 
 @contextmanager
 def network(domain: int = 17, tagged: bool = True) -> Iterator[Network]:
-    """CycloneDDS reads the environment when a process makes its first participant in a domain.
+    """A new network.  CycloneDDS reads the environment when a process makes its first participant in a domain.
 
-    Others than CycloneDDS know no tags: without them a domain must be nobody else's.
+    Other implementations do not support tags: without a tag, no other program may use the domain.
     """
     uri = LOOPBACK.format(discovery=TAG.format(tag=f"epg_{uuid.uuid4().hex}") if tagged else "")
     added = {"CYCLONEDDS_URI": uri, "ROS_DOMAIN_ID": str(domain)}
@@ -57,7 +57,7 @@ def network(domain: int = 17, tagged: bool = True) -> Iterator[Network]:
 
 @contextmanager
 def running(processes: Sequence[subprocess.Popen[str]]) -> Iterator[None]:
-    """Kills what is left of ``processes`` at the end."""
+    """Kills the remaining ``processes`` at the end."""
     try:
         yield
     finally:

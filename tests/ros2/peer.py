@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A peer on the DDS network that looks like a ROS 2 node with rmw_cyclonedds and the default QoS of rclpy.
+"""A peer on the DDS network that behaves like a ROS 2 node with rmw_cyclonedds and the default QoS of rclpy.
 
 >>> # with Peer(domain=7, node="monitor") as peer:
 >>> #     positions = peer.subscription("/pan_publisher", Float64_)
 >>> #     peer.spin(1.0)
 
-It sees the ROS graph as `ros2 node list` and `ros2 topic info --verbose` do: from `ros_discovery_info`, and from the
+It reads the ROS graph as `ros2 node list` and `ros2 topic info --verbose` do: from `ros_discovery_info`, and from the
 user data of participants, readers and writers.
 """
 
@@ -47,7 +47,7 @@ ANYTHING = SampleState.Any | ViewState.Any | InstanceState.Any
 
 
 def ros_qos(type_: type, *, reliable: bool = True, depth: int | None = 10, transient_local: bool = False) -> Qos:
-    """QoS as rmw_cyclonedds makes it, by default rclpy's: reliable, keep last 10, volatile; depth None keeps all."""
+    """The QoS of rmw_cyclonedds; by default rclpy's: reliable, keep last 10, volatile.  A depth of None keeps all."""
     policies = [
         Policy.Reliability.Reliable(FOREVER) if reliable else Policy.Reliability.BestEffort,
         Policy.History.KeepAll if depth is None else Policy.History.KeepLast(depth),
@@ -59,7 +59,7 @@ def ros_qos(type_: type, *, reliable: bool = True, depth: int | None = 10, trans
 
 
 def user_data(qos: Qos | None) -> dict[str, str]:
-    """``{"typehash": "RIHS01_..."}`` of ``typehash=RIHS01_...;``."""
+    """``{"typehash": "RIHS01_..."}`` for ``typehash=RIHS01_...;``."""
     policy = qos[Policy.Userdata] if qos is not None else None
     text = bytes(policy.data).decode() if policy is not None else ""
     return dict(pair.split("=", 1) for pair in text.split(";") if "=" in pair)
@@ -71,7 +71,7 @@ def _gid(entity: Entity) -> bytes:
 
 @dataclass(frozen=True)
 class Endpoint:
-    """A reader or writer as ``ros2 topic info --verbose`` shows it; ``node`` is None when no node calls it its own."""
+    """A reader or writer as in ``ros2 topic info --verbose``; ``node`` is None if no node announces it."""
 
     topic: str  # "/pan_publisher"
     type: str  # "std_msgs/msg/Float64"
@@ -82,7 +82,7 @@ class Endpoint:
 
 
 class Subscription:
-    """``received``: messages with the monotonic time at which they came."""
+    """``received``: messages with the monotonic time of their arrival."""
 
     def __init__(self, reader: DataReader, callback: Callable[[Any], None] | None) -> None:
         self.reader, self._callback = reader, callback
@@ -94,7 +94,7 @@ class Subscription:
 
     @property
     def refused_for(self) -> str | None:
-        """The policy for which a writer on this topic was found not to fit, as rclpy's warning names it."""
+        """The policy for which a writer on this topic did not match, with the name in rclpy's warning."""
         return self._read_status(self.reader.get_requested_incompatible_qos_status())
 
     @staticmethod
@@ -131,7 +131,7 @@ class Publisher:
 
 @dataclass
 class Graph:
-    """What has been heard of others, by GUID."""
+    """The known participants and endpoints of others, by GUID."""
 
     enclaves: dict[bytes, str] = field(default_factory=dict)
     nodes: dict[bytes, list[NodeEntitiesInfo_]] = field(default_factory=dict)  # by participant
@@ -139,7 +139,7 @@ class Graph:
     readers: dict[bytes, Any] = field(default_factory=dict)
 
     def node_names(self) -> list[str]:
-        """As ``ros2 node list``: nodes of participants that are there, and have an enclave, that is, are ROS 2's."""
+        """The result of ``ros2 node list``: nodes of present participants with an enclave, which are those of ROS 2."""
         return sorted(_full(node) for gid, nodes in self.nodes.items() if gid in self.enclaves for node in nodes)
 
     def _owner(self, gid: bytes, which: str) -> str | None:
@@ -179,7 +179,7 @@ def _full(node: NodeEntitiesInfo_) -> str:
 
 
 class Peer:
-    """A node.  What arrives is handled in :meth:`spin`, in the caller's thread."""
+    """A node.  It handles messages in :meth:`spin`, in the caller's thread."""
 
     def __init__(self, domain: int, node: str, namespace: str = "/") -> None:
         self.graph = Graph()
@@ -197,7 +197,7 @@ class Peer:
         topic = Topic(self._participant, "ros_discovery_info", ParticipantEntitiesInfo_)
         info = ParticipantEntitiesInfo_
         self._info_writer = DataWriter(self._participant, topic, qos=ros_qos(info, depth=1, transient_local=True))
-        # All participants write one topic without keys: a reader that kept the last only would miss some.
+        # All participants write one topic without keys: a reader that kept only the last sample would miss some.
         self._info_reader = DataReader(self._participant, topic, qos=ros_qos(info, depth=None, transient_local=True))
         for reader in (*self._builtin.values(), self._info_reader):
             self._attach(reader)
@@ -210,7 +210,7 @@ class Peer:
         self.close()
 
     def close(self) -> None:
-        """Deletes the participant: others see at once that it is gone."""
+        """Deletes the participant: others detect at once that it has left."""
         for condition in self._conditions:
             self._waitset.detach(condition)
         for entity in (*self._conditions, self._waitset):
@@ -224,7 +224,7 @@ class Peer:
         self._waitset.attach(condition)
 
     def _announce(self) -> None:
-        """Says which readers and writers are this node's, as rmw does whenever there is another."""
+        """Announces this node's readers and writers, as rmw does whenever one is added."""
         readers = [Gid_(_gid(subscription.reader)) for subscription in self._subscriptions]
         writers = [Gid_(_gid(publisher.writer)) for publisher in self._publishers]
         node = NodeEntitiesInfo_(self._namespace, self._node, readers, writers)
@@ -255,7 +255,7 @@ class Peer:
         return self._publishers[-1]
 
     def raw_publisher(self, topic: str, type_: type) -> Publisher:
-        """With a type of which no more is known than its name."""
+        """A publisher with a type of which only the name is known."""
         entity = Topic(self._participant, f"rt{topic}", type_)
         self._publishers.append(
             Publisher(DataWriter(self._participant, entity, qos=Qos(Policy.Reliability.Reliable(FOREVER))))
@@ -263,11 +263,11 @@ class Peer:
         return self._publishers[-1]
 
     def spin(self, seconds: float) -> None:
-        """Handles what arrives for that long."""
+        """Handles messages for this time."""
         self.spin_until(lambda: False, seconds)
 
     def spin_until(self, done: Callable[[], bool], timeout: float = 20.0) -> bool:
-        """Handles what arrives until ``done()``; false when that has not come true in time."""
+        """Handles messages until ``done()`` is true; False if that has not happened in time."""
         end = time.monotonic() + timeout
         while True:
             for subscription in self._subscriptions:
@@ -301,7 +301,7 @@ def _keep(known: dict[bytes, Any], sample: Any, value: Any) -> None:
 
 
 class Spinner:
-    """Spins a peer in a thread of its own until the end of the ``with`` block."""
+    """Spins a peer in its own thread until the end of the ``with`` block."""
 
     def __init__(self, peer: Peer) -> None:
         self._stop = threading.Event()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The thesis's five situations of robots on a network (sections 5.3 and 5.4), with robots simulated in real time.
 
-| situation | who follows whom |
+| situation | robots |
 |---|---|
 | 1 | four JIWYs follow one motion profile |
 | 2 | two of them follow another one |
@@ -9,8 +9,8 @@
 | 4 | three RELbots follow one motion profile |
 | 5 | teleoperation: two RELbots follow a third, whose motors are off and whose wheels are turned by hand |
 
-As there, a node Setpoints publishes the profiles every 33 ms, a node Monitoring hears the positions, everything is best
-effort, and both log with the time at which they send or hear something.
+As in the thesis, a node Setpoints publishes the profiles every 33 ms, a node Monitoring receives the positions, all
+topics are best effort, and both nodes log the time of each message that they send or receive.
 """
 
 from __future__ import annotations
@@ -82,7 +82,7 @@ class Logs:
     traces: dict[str, Path]
 
     def window(self, log: Sequence[tuple[float, float]], begin: float, end: float) -> list[tuple[float, float]]:
-        """The part of a log that lies between two times of the profiles."""
+        """The part of a log between two times of the profiles."""
         return [(at, value) for at, value in log if begin <= at - self.begin <= end]
 
 
@@ -94,9 +94,9 @@ def run(
     build: Build,
     folder: Path,
 ) -> Logs:
-    """Starts robots and nodes, waits until everybody knows everybody, and publishes ``profiles`` for ``duration`` s.
+    """Starts robots and nodes, waits until all have discovered each other, and publishes ``profiles`` for ``duration`` s.
 
-    ``profiles`` are by topic ("/profile/pan"): that axis' setpoint is published on "/profile/pan_subscriber".
+    ``profiles`` are by topic ("/profile/pan"): the setpoint of that axis is published on "/profile/pan_subscriber".
     """
     programs = {robot.image: build(robot.image) for robot in robots}
     statistics = {robot.namespace: folder / f"statistics_{robot.serial}.json" for robot in robots}
@@ -151,7 +151,7 @@ def _meet(monitoring: Peer, heard: object, publishers: Mapping[str, Publisher], 
 def _publish(
     publishers: Mapping[str, Publisher], profiles: Mapping[str, Profile], duration: float, monitoring: Peer
 ) -> float:
-    """At whole multiples of the period, whatever happens in between; returns time 0."""
+    """Publishes at integer multiples of the period, without drift; returns time 0."""
     begin = time.monotonic()
     number = 0
     while (due := number * PERIOD) < duration:

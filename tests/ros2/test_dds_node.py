@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A target with the middleware `dds`, as another ROS 2 node sees it: real executables, a peer, the loopback network."""
+"""A target with the middleware `dds`, seen by another ROS 2 node: real executables, a peer, the loopback network."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 @pytest.fixture(scope="session")
 def jiwy(build_checked: Build) -> Path:
-    """Pan is reliable, tilt best effort, in both directions."""
+    """JIWY whose pan is reliable and whose tilt is best effort, in both directions."""
     return build_checked("jiwy")
 
 
@@ -57,14 +57,14 @@ class Robot:
     trace: Path
 
     def end(self) -> str:
-        """Ends it as Ctrl-C does; what it wrote to stderr."""
+        """Ends the program as Ctrl-C does; returns stderr."""
         self.process.send_signal(signal.SIGINT)
         output, errors = self.process.communicate(timeout=30)
         assert self.process.returncode == 130, output + errors
         return errors
 
     def signal(self, name: str) -> list[float]:
-        """A signal of the trace, a value per control cycle."""
+        """A signal of the trace, with one value per control cycle."""
         with self.trace.open(newline="") as file:
             return [float(row[name]) for row in csv.DictReader(file)]
 
@@ -78,7 +78,7 @@ def robot(net: Network, program: Path, folder: Path, *options: str) -> Iterator[
 
 
 def meet(peer: Peer, node: str = NODE) -> None:
-    """Until the peer knows the node with all that is its own."""
+    """Waits until the peer knows the node and all its endpoints."""
 
     def known() -> bool:
         endpoints = [*peer.graph.publications(), *peer.graph.subscriptions()]
@@ -89,19 +89,19 @@ def meet(peer: Peer, node: str = NODE) -> None:
 
 
 def hear(peer: Peer, subscription: Subscription, count: int) -> bool:
-    """Whether more than ``count`` messages come."""
+    """True if more than ``count`` messages arrive."""
     return peer.spin_until(lambda: len(subscription.received) > count)
 
 
 def meet_and_wait(peer: Peer, met: Callable[[], bool]) -> bool:
-    """A peer finds the robot's reader before the robot has found the peer's writer: what is sent between is lost."""
+    """The peer finds the robot's reader before the robot finds the peer's writer: messages sent between are lost."""
     found = peer.spin_until(met)
     peer.spin(0.3)
     return found
 
 
 def test_the_ros_graph_shows_node_topics_types_and_qos(jiwy: Path, net: Network, tmp_path: Path) -> None:
-    """What `ros2 node list` and `ros2 topic info --verbose` read."""
+    """The data that `ros2 node list` and `ros2 topic info --verbose` read."""
     with robot(net, jiwy, tmp_path), Peer(net.domain, "monitor") as peer:
         meet(peer)
         assert peer.graph.node_names() == ["/monitor", NODE]
@@ -128,13 +128,13 @@ def test_values_come_at_the_communication_period(jiwy: Path, net: Network, tmp_p
         tilt = peer.subscription("/robot_7/tilt_publisher", Float64_, reliable=False)
         assert peer.spin_until(lambda: len(pan.received) > 60 and len(tilt.received) > 60)
         for subscription in (pan, tilt):
-            # the first ones may be those of before the control loop's start
+            # the first messages may be from before the control loop's start
             sent = [message.sample_info.source_timestamp for message in subscription.messages[2:]]
             intervals = [(after - before) / 1e6 for before, after in itertools.pairwise(sent)]
             assert statistics.median(intervals) == pytest.approx(33.0, abs=0.5)
             assert (sent[-1] - sent[0]) / 1e6 == pytest.approx(33.0 * (len(sent) - 1), abs=20.0)
         assert all(math.isfinite(value) for value in numbers(pan.messages))
-        # one control cycle's values: pan and tilt are sent together
+        # both values are from one control cycle: pan and tilt are sent together
         assert (
             abs(pan.messages[-1].sample_info.source_timestamp - tilt.messages[-1].sample_info.source_timestamp) < 40e6
         )
@@ -143,13 +143,13 @@ def test_values_come_at_the_communication_period(jiwy: Path, net: Network, tmp_p
 def test_a_setpoint_reaches_the_model(jiwy: Path, net: Network, tmp_path: Path) -> None:
     with robot(net, jiwy, tmp_path) as jiwy_robot, Peer(net.domain, "setpoints") as peer:
         pan = peer.publisher("/robot_7/pan_subscriber", Float64_)
-        tilt = peer.publisher("/robot_7/tilt_subscriber", Float64_)  # reliable: best effort asks for less
+        tilt = peer.publisher("/robot_7/tilt_subscriber", Float64_)  # reliable; a best-effort reader also matches
         assert peer.spin_until(lambda: pan.matched == 1 and tilt.matched == 1)
-        for _ in range(10):  # the robot may find its writers later than they find it
+        for _ in range(10):  # the robot may discover the writers later than they discover it
             pan.publish(Float64_(0.1))
             tilt.publish(Float64_(-2.5e-3))
             peer.spin(0.033)
-        pan.publish(Float64_(math.nan))  # dropped: the value before it stays
+        pan.publish(Float64_(math.nan))  # dropped: the previous value stays
         peer.spin(0.3)
         jiwy_robot.end()
         assert set(jiwy_robot.signal("inputs.setpoint_pan")) == {0.0, 0.1}
@@ -192,7 +192,7 @@ def test_a_reliable_subscription_gets_nothing_from_a_best_effort_writer_and_both
 
 
 def test_the_enable_topic_disables_and_enables(jiwy: Path, net: Network, tmp_path: Path) -> None:
-    """JIWY homes at start: its motors turn until it is disabled."""
+    """JIWY homes at its start: its motors turn until it is disabled."""
     with robot(net, jiwy, tmp_path) as jiwy_robot, Peer(net.domain, "operator") as peer:
         enable = peer.publisher("/robot_7/JIWY_node/enable", Bool_)
         pan = peer.subscription("/robot_7/pan_publisher", Float64_)
@@ -201,19 +201,19 @@ def test_the_enable_topic_disables_and_enables(jiwy: Path, net: Network, tmp_pat
         peer.spin(0.5)
         heard = len(pan.received)
         peer.spin(0.5)
-        assert len(pan.received) - heard > 8  # positions stay live
+        assert len(pan.received) - heard > 8  # positions are still published
         enable.publish(Bool_(True))
         peer.spin(0.3)
         jiwy_robot.end()
         phases = [
             on for on, _ in itertools.groupby(value != 0.0 for value in jiwy_robot.signal("plant.inputs.duty_pan"))
         ]
-        assert phases[-3:] in ([True, False, True], [False, True, False])  # the last cycle is safe again
+        assert phases[-3:] in ([True, False, True], [False, True, False])  # outputs are safe again in the last cycle
         assert phases.count(True) == 2
 
 
 def diagnostics_of(peer: Peer, subscription: Subscription, done: Callable[[dict[str, str]], bool]) -> Any:
-    """The first status that ``done`` accepts."""
+    """The first status for which ``done`` is true."""
 
     def accepted() -> bool:
         return bool(subscription.received) and done(_values(subscription.messages[-1].status[0]))
@@ -244,7 +244,7 @@ def test_diagnostics_tell_state_and_statistics(jiwy: Path, net: Network, tmp_pat
 
 
 def test_messages_that_are_none_are_counted_and_do_no_harm(jiwy: Path, net: Network, tmp_path: Path) -> None:
-    """Somebody calls something else Float64: one byte, or 200 kB (in fragments)."""
+    """Another program uses the name Float64 for another type: of one byte, or of 200 kB (in fragments)."""
     with (
         robot(net, jiwy, tmp_path) as jiwy_robot,
         Peer(net.domain, "stranger") as peer,
@@ -256,7 +256,7 @@ def test_messages_that_are_none_are_counted_and_do_no_harm(jiwy: Path, net: Netw
         assert peer.spin_until(lambda: short.matched == 1 and huge.matched == 1)
         for _ in range(20):
             short.writer.write(ShortFloat64_(1))
-            peer.spin(0.01)  # a burst would push out the oldest of ten
+            peer.spin(0.01)  # a burst would overwrite the oldest of ten
         huge.writer.write(HugeFloat64_(bytes(200_000)))
         diagnostics_of(peer, told, lambda values: int(values["malformed"]) >= 15)  # volatile: the first may be lost
         jiwy_robot.end()
@@ -265,7 +265,7 @@ def test_messages_that_are_none_are_counted_and_do_no_harm(jiwy: Path, net: Netw
 
 
 def test_a_message_in_fragments_is_put_together(jiwy: Path, net: Network, tmp_path: Path) -> None:
-    """What follows the number is ignored, as ROS 2 ignores it."""
+    """The bytes after the number are ignored, as in ROS 2."""
     with robot(net, jiwy, tmp_path) as jiwy_robot, Peer(net.domain, "stranger") as peer:
         long = peer.raw_publisher("/robot_7/pan_subscriber", LongFloat64_)
         assert peer.spin_until(lambda: long.matched == 1)
@@ -302,7 +302,7 @@ def test_a_peer_that_comes_and_goes_leaves_the_node_as_it_was(jiwy: Path, net: N
 
 
 def cycles_of(peer: Peer, told: Subscription) -> tuple[int, int]:
-    """Cycles run and ticks missed so far, as the next diagnostics tell."""
+    """The number of cycles and of missed ticks so far, from the next diagnostics."""
     count = len(told.received)
     assert hear(peer, told, count)
     values = _values(told.messages[-1].status[0])
@@ -310,7 +310,7 @@ def cycles_of(peer: Peer, told: Subscription) -> tuple[int, int]:
 
 
 def test_the_loop_keeps_its_cycles_under_a_flood(jiwy: Path, net: Network, tmp_path: Path) -> None:
-    """Setpoints as fast as Python sends them, on both topics."""
+    """Setpoints on both topics, as fast as Python sends them."""
     with robot(net, jiwy, tmp_path), Peer(net.domain, "flood") as peer:
         told = peer.subscription("/diagnostics", DiagnosticArray_)
         pan = peer.publisher("/robot_7/pan_subscriber", Float64_)
@@ -333,7 +333,7 @@ def test_the_loop_keeps_its_cycles_under_a_flood(jiwy: Path, net: Network, tmp_p
 
 
 def test_a_console_beside_it(jiwy: Path, net: Network) -> None:
-    """Both are served: a setpoint of the console acts, and the node is on the network."""
+    """Both work: a setpoint of the console acts, and the node is on the network."""
     command = [str(jiwy), "--realtime", "--console", "--serial", "7"]
     process = subprocess.Popen(
         command, env=net.environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
@@ -347,7 +347,7 @@ def test_a_console_beside_it(jiwy: Path, net: Network) -> None:
 
 
 def test_messages_of_several_values(build_checked: Build, net: Network, tmp_path: Path) -> None:
-    """CycloneDDS for Python reads and writes them by the definitions of ROS 2, not by EPG's code."""
+    """CycloneDDS for Python reads and writes the messages by ROS 2's definitions, not by EPG's code."""
     with robot(net, build_checked("joints"), tmp_path) as jiwy_robot, Peer(net.domain, "rviz") as peer:
         states = peer.subscription("/robot_7/joint_states", JointState_)
         setpoints = peer.publisher("/robot_7/setpoints", Float64MultiArray_)
@@ -355,7 +355,7 @@ def test_messages_of_several_values(build_checked: Build, net: Network, tmp_path
         dimension = MultiArrayDimension_("axis", 2, 2)
         setpoints.publish(Float64MultiArray_(MultiArrayLayout_([dimension], 0), [0.125, -0.5]))
         peer.spin(0.2)
-        setpoints.publish(Float64MultiArray_(MultiArrayLayout_([], 0), [1.0, 2.0, 3.0]))  # one too many
+        setpoints.publish(Float64MultiArray_(MultiArrayLayout_([], 0), [1.0, 2.0, 3.0]))  # one value too many
         peer.spin(0.2)
         own = [e for e in [*peer.graph.publications(), *peer.graph.subscriptions()] if e.node == NODE]
         assert {e.topic for e in own} >= {"/robot_7/joint_states", "/robot_7/setpoints", "/diagnostics"}
@@ -369,7 +369,8 @@ def test_messages_of_several_values(build_checked: Build, net: Network, tmp_path
     assert min(intervals) > 0.0, intervals
     assert abs(stamps[-1] - time.time()) < 60.0
     positions = set(zip(jiwy_robot.signal("outputs.pan_logging"), jiwy_robot.signal("outputs.tilt_logging")))
-    assert {tuple(message.position) for message in states.messages[2:]} <= positions  # each of one control cycle
+    # each message is from one control cycle
+    assert {tuple(message.position) for message in states.messages[2:]} <= positions
     assert set(jiwy_robot.signal("inputs.setpoint_pan")) == {0.0, 0.125}
     assert set(jiwy_robot.signal("inputs.setpoint_tilt")) == {0.0, -0.5}
 
@@ -387,7 +388,7 @@ with Peer(int(sys.argv[1]), "frozen") as peer:
 
 
 def test_a_frozen_reliable_subscriber_holds_nobody_up(jiwy: Path, net: Network, tmp_path: Path) -> None:
-    """It acknowledges nothing for seconds: reliable, but the publisher does not wait for it."""
+    """It does not acknowledge for seconds: the topic is reliable, but the publisher does not wait."""
     command = [sys.executable, "-c", FROZEN, str(net.domain)]
     with robot(net, jiwy, tmp_path), Peer(net.domain, "monitor") as peer:
         frozen = subprocess.Popen(command, cwd=ROOT, env=net.environment, stdout=subprocess.PIPE, text=True)
@@ -416,12 +417,12 @@ RANGE = (
     "<Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>"
     '<Peers><Peer address="localhost"/></Peers></Discovery></Domain></CycloneDDS>,'
 )
-"""What rmw_cyclonedds makes of ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST."""
+"""The setting that rmw_cyclonedds uses for ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST."""
 
 
 @pytest.mark.parametrize("variable", ["ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST", "ROS_LOCALHOST_ONLY=1"])
 def test_it_is_found_on_this_computer_alone(jiwy: Path, net: Network, tmp_path: Path, variable: str) -> None:
-    """As a node of ROS 2 with the same variable finds it: nobody multicasts."""
+    """A node of ROS 2 with the same variable discovers it, without multicast."""
     net.environment.update([variable.split("=")])
     os.environ["CYCLONEDDS_URI"] = RANGE + os.environ["CYCLONEDDS_URI"]
     with robot(net, jiwy, tmp_path), Peer(net.domain, "monitor") as peer:
@@ -430,7 +431,7 @@ def test_it_is_found_on_this_computer_alone(jiwy: Path, net: Network, tmp_path: 
 
 def test_it_is_not_found_when_discovery_is_off(jiwy: Path, net: Network, tmp_path: Path) -> None:
     net.environment["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "OFF"
-    del net.environment["CYCLONEDDS_URI"]  # its tag would be the test's
+    del net.environment["CYCLONEDDS_URI"]  # it contains the test's tag
     with robot(net, jiwy, tmp_path) as jiwy_robot, Peer(net.domain, "monitor") as peer:
         peer.spin(1.5)
         assert peer.graph.node_names() == ["/monitor"]
@@ -467,7 +468,7 @@ def test_a_wrong_environment_is_said_once_and_the_loop_runs(
 
 
 def test_without_a_network_it_is_tried_again_and_the_loop_runs(jiwy: Path, tmp_path: Path) -> None:
-    """The interface that CycloneDDS is told to use does not exist."""
+    """CycloneDDS must use an interface that does not exist."""
     with network() as net:
         net.environment["CYCLONEDDS_URI"] = net.environment["CYCLONEDDS_URI"].replace("127.0.0.1", "192.0.2.77")
         trace = tmp_path / "trace.csv"

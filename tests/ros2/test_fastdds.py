@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The middleware `dds` as Fast DDS sees it, which ROS 2 Jazzy speaks unless told otherwise."""
+"""The middleware `dds` as seen by Fast DDS, the default of ROS 2 Jazzy."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def test_fast_dds_hears_positions_sends_setpoints_and_sees_the_node(
     program, trace = build("jiwy"), tmp_path / "trace.csv"
     topics = ["reader", "rt/robot_7/pan_publisher", "best_effort_reader", "rt/robot_7/tilt_publisher"]
     topics += ["writer", "rt/robot_7/pan_subscriber", "best_effort_writer", "rt/robot_7/tilt_subscriber"]
-    topics += ["reader", "rt/robot_7/tilt_publisher"]  # which offers best effort only
+    topics += ["reader", "rt/robot_7/tilt_publisher"]  # this one offers best effort only
     with network(domain, tagged=False) as net:
         robot = net.run(program, "--quiet", "--serial", "7", "--duration", "60", "--trace", str(trace))
         with running([robot]):
@@ -74,4 +74,4 @@ def test_fast_dds_hears_positions_sends_setpoints_and_sees_the_node(
     assert f"discovered reader rt/robot_7/JIWY_node/enable {BOOL}" in lines
     info = bytes.fromhex(lines[-1].removeprefix("discovery_info "))
     assert b"/robot_7\0" in info and b"JIWY_node\0" in info
-    assert info.count(info[:12]) == 1 + 3 + 3  # the participant's own identifier begins those of its endpoints
+    assert info.count(info[:12]) == 1 + 3 + 3  # the identifiers of endpoints begin with the participant's

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The middleware `dds` and ROS 2 itself, where it is installed and sourced: the command line's tools and rclpy.
+"""The middleware `dds` and ROS 2 itself, if it is installed and sourced: the command line's tools and rclpy.
 
-None of this has run where there is no ROS 2: tests/ros2/test_dds_node.py does the same against a peer of our own.
+Without ROS 2, these tests do not run: tests/ros2/test_dds_node.py tests the same promises with EPG's own peer.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def ros(request: pytest.FixtureRequest, net: Network) -> dict[str, str]:
         package = f"ros-{os.environ.get('ROS_DISTRO', 'jazzy')}-{request.param.replace('_', '-')}"
         pytest.skip(f"ROS 2 is not sourced with {request.param}: apt install {package}")
     environment = {**net.environment, "RMW_IMPLEMENTATION": request.param}
-    if request.param != "rmw_cyclonedds_cpp":  # which alone understands the test network's tag
+    if request.param != "rmw_cyclonedds_cpp":  # only CycloneDDS supports the tag of the test network
         for mapping in (net.environment, environment):
             mapping.pop("CYCLONEDDS_URI", None)
             mapping["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
@@ -45,7 +45,7 @@ def ros(request: pytest.FixtureRequest, net: Network) -> dict[str, str]:
 
 @pytest.fixture
 def robot(ros: dict[str, str], net: Network, build: Build, tmp_path: Path) -> Iterator[Path]:
-    """Runs JIWY; gives the file of its trace, which is complete when it has ended."""
+    """Runs JIWY; yields the file of its trace, which is complete when JIWY has ended."""
     trace = tmp_path / "trace.csv"
     options = ("--quiet", "--serial", "7", "--duration", "40", "--trace", str(trace))
     with running([net.run(build("jiwy"), *options)]):
@@ -54,7 +54,7 @@ def robot(ros: dict[str, str], net: Network, build: Build, tmp_path: Path) -> It
 
 
 def ask(environment: dict[str, str], *arguments: str, seconds: float = 30.0) -> str:
-    """What `ros2` prints.  Without its daemon, which would keep what it has seen in other domains."""
+    """The output of `ros2`, without its daemon, which would remember nodes of other domains."""
     done = subprocess.run(
         ["ros2", *arguments], env=environment, capture_output=True, text=True, check=False, timeout=seconds
     )

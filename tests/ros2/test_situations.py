@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The thesis's network situations, short: tracking, teleoperation and their lags, in real time through DDS."""
+"""The thesis's network situations in short: tracking, teleoperation and their delays, in real time through DDS."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from tests.ros2.correlation import errors, fine_lag, lag
 from tests.ros2.network import Network
 from tests.ros2.situations import JIWY, PERIOD, RELBOT, SITUATIONS, Follower, Logs, run
 
-HOMED = 4.5  # s: until then JIWY's axes look for their end stops
+HOMED = 4.5  # s: until then JIWY's axes search their end stops
 JIWY_PROFILE = Profile(0.0, (Part("raised_cosine", HOMED, 3.0, 1.0),))
 OTHER_PROFILE = Profile(0.0, (Part("raised_cosine", HOMED + 0.4, 2.6, 0.7),))
 RELBOT_PROFILE = Profile(0.0, (Part("move", 0.5, 2.0, 3.0), Part("move", 2.6, 1.5, 0.0)))
 
 SHARE_OF_THE_NETWORK = 1.25
-"""By how much setpoints that a network delays may raise the errors of a robot alone."""
+"""Largest factor by which the network's delay of setpoints may increase the errors of a robot."""
 
 LIMITS = {
     axis: (rms * SHARE_OF_THE_NETWORK, largest * SHARE_OF_THE_NETWORK)
     for axis, rms, largest in (("pan", 0.03, 0.06), ("tilt", 0.05, 0.1), ("left", 0.1, 0.2), ("right", 0.1, 0.2))
 }
-"""RMS and largest error in rad: those of examples/jiwy/tracking.yaml and examples/relbot/tracking.yaml, raised."""
+"""RMS and largest error in rad: those of examples/jiwy/tracking.yaml and examples/relbot/tracking.yaml, increased."""
 
 
 def jiwy_profiles(other: bool = False) -> dict[str, Profile]:
@@ -42,7 +42,7 @@ def node_names(situation: int) -> list[str]:
 
 
 def check_tracking(logs: Logs, robot: Follower, profiles: dict[str, Profile], begin: float, end: float) -> None:
-    """Against the profile itself, at the moments the positions are heard."""
+    """Compares the positions with the profile itself, at the times at which the positions arrive."""
     for axis in robot.axes:
         profile = profiles[f"{robot.follows}/{axis}"]
         heard = logs.window(logs.positions[f"{robot.namespace}/{axis}"], begin, end)
@@ -50,19 +50,19 @@ def check_tracking(logs: Logs, robot: Follower, profiles: dict[str, Profile], be
         rms, largest = errors(heard, [profile.value(at - logs.begin) for at, _ in heard])
         assert (rms, largest) <= LIMITS[axis] and largest <= LIMITS[axis][1], (robot, axis, rms, largest)
         sent = logs.window(logs.setpoints[f"{robot.follows}/{axis}"], begin, end)
-        # 33 ms are the resolution; the thesis found 66 to 133 ms, of which the robot's own dynamics are the most
+        # The resolution is 33 ms.  The thesis measured 66 to 133 ms, mostly due to the robot's own dynamics.
         assert 0.0 <= lag(sent, heard) <= 3.5 * PERIOD, (robot, axis)
 
 
 def check_mirror(logs: Logs, follower: Follower, begin: float, end: float, limit: float) -> None:
-    """A robot that follows another one."""
+    """Compares a robot with the robot that it follows."""
     for axis in follower.axes:
         leader = logs.window(logs.positions[f"{follower.follows}/{axis}"], begin, end)
         own = logs.window(logs.positions[f"{follower.namespace}/{axis}"], begin, end)
         assert 0.0 <= lag(leader, own) <= 3.5 * PERIOD, (follower, axis)
         assert 0.0 < fine_lag(leader, own) <= 0.1, (follower, axis)
         assert max(value for _, value in own) == pytest.approx(max(value for _, value in leader), abs=limit)
-        assert max(value for _, value in leader) > 0.5  # it has moved
+        assert max(value for _, value in leader) > 0.5  # the leader has moved
 
 
 def test_four_jiwys_follow_one_profile(build: Build, net: Network, tmp_path: Path) -> None:
@@ -99,7 +99,7 @@ def test_three_relbots_follow_one_profile(build: Build, net: Network, tmp_path: 
 
 
 def test_relbots_follow_one_that_is_moved_by_hand(build: Build, net: Network, tmp_path: Path) -> None:
-    """Disabled: its PWM is off, its encoders and topics are live."""
+    """The moved robot is disabled: its PWM is off, but its encoders and topics are active."""
     logs = run(SITUATIONS[5], {}, 5.2, net, build, tmp_path)
     assert logs.nodes == node_names(5)
     for robot in SITUATIONS[5][1:]:

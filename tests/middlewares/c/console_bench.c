@@ -1,6 +1,6 @@
 /**
  * @file
- * A console on a bench.
+ * A console on a test bench.
  */
 #include "console_bench.h"
 

@@ -1,6 +1,6 @@
 /**
  * @file
- * A console on a bench: the fake application as its target, and a stream whose ends a test holds.
+ * A console on a test bench.  Its target is the fake application; the test is the other end of its stream.
  */
 #ifndef CONSOLE_BENCH_H
 #define CONSOLE_BENCH_H
@@ -24,31 +24,31 @@ typedef struct bench {
     epg_jog_t jog;
 
     bool connected;
-    size_t room;      /**< bytes that the stream takes until the test sets it again */
-    const char *in;   /**< what the stream still has to give */
-    size_t in_length; /**< bytes of it */
-    char out[65536];  /**< what it has taken, ended by a zero */
+    size_t room;      /**< bytes that the stream takes until the test sets a new number */
+    const char *in;   /**< bytes that the console has not read yet */
+    size_t in_length; /**< number of these bytes */
+    char out[65536];  /**< bytes that the console has written, ended by a zero */
     size_t out_length;
-    double model[BENCH_PARAMETERS]; /**< parameters as the model has them */
-    int64_t count;                  /**< of the encoder */
+    double model[BENCH_PARAMETERS]; /**< the model's parameters */
+    int64_t count;                  /**< count of the encoder */
     bool frozen;                    /**< no control cycles run */
 } bench_t;
 
 extern bench_t bench;
 
-/** A console that has just been connected to and has greeted; the target is disabled at first unless `enabled`. */
+/** Makes a console that was just connected and has sent its greeting; the target is disabled unless `enabled`. */
 void bench_start(bool enabled);
 
-/** One poll after half a millisecond of control and communication. */
+/** One poll, after half a millisecond of control and communication. */
 void bench_poll(void);
 
-/** `milliseconds` of polls, one per half a millisecond. */
+/** Polls for `milliseconds`, once every half a millisecond. */
 void bench_run(unsigned int milliseconds);
 
-/** Sends `text`, polls until all of it is taken and ten milliseconds more; returns what came out since. */
+/** Sends `text`, polls until all of it is read and ten milliseconds more; returns the output since then. */
 const char *bench_say(const char *text);
 
-/** As bench_say() with bytes. */
+/** bench_say() for bytes. */
 const char *bench_send(const void *bytes, size_t size);
 
 /** True if `text` has a line that begins with `begin`. */

@@ -9,7 +9,7 @@
 #include "fake_application.h"
 #include "fake_port.h"
 
-/** What `command` is answered with, exactly. */
+/** Checks that `command` has exactly the answer `expected`. */
 static void check_answer(const char *command, const char *expected)
 {
     const char *answer = bench_say(command);
@@ -92,7 +92,7 @@ TEST(a_loop_that_does_not_run_is_no_reason_to_hang)
     bench_run(1100);
     CHECK(has_line(bench.out, "error set the control loop does not run"));
     bench.frozen = false;
-    const char *answer = bench_say("set p2=2\n"); /* the first is applied before the second arrives */
+    const char *answer = bench_say("set p2=2\n"); /* the first value is applied before the second one arrives */
     bench_run(5);
     CHECK(has_line(answer, "ok set"));
     CHECK_EQUAL(bench.model[2], 2.0);
@@ -158,7 +158,7 @@ TEST(names_are_read_and_set_and_kept)
     epg_store_load(&bench.store); /* the next start */
     check_answer("get node\n", "ok get node=robot_$serial name=robot_E6616407E3A51B2C\r\n");
     check_answer("set node=bench_node\n", "ok set acts=at_next_start_if_saved\r\n");
-    CHECK(bench.store.node[0] == '\0'); /* as generated: whatever that will be */
+    CHECK(bench.store.node[0] == '\0'); /* empty: the generated name applies */
 }
 
 TEST(names_cannot_be_set_without_a_store)
@@ -221,7 +221,7 @@ TEST(watch_shows_values_of_one_cycle_at_the_communication_period)
         CHECK(sscanf(line, "watch %lf /angle=%lf outputs.duty=%lf inputs.position=%lf", &time, &angle, &duty, &input) ==
               4);
         CHECK_EQUAL(angle, duty);
-        /* The state is the number of steps, the first of which was at time 0. */
+        /* The model's state is the number of steps; the first step was at time 0. */
         CHECK(fabs(duty - (time * 1000.0 + 1.0)) < 1e-9);
         CHECK(lines == 0 || fabs(time - before - 0.010) < 1e-9);
         before = time;
@@ -240,7 +240,7 @@ TEST(watch_without_ports_shows_what_is_published)
     CHECK(strstr(answer, " /angle=") != NULL);
     CHECK(strstr(answer, "duty") == NULL);
     CHECK(has_line(bench_say("watch nothing\n"), "error watch there is no port 'nothing'"));
-    CHECK(has_line(bench_say("watch same\n"), "error watch there is no port 'same'")); /* input or output? */
+    CHECK(has_line(bench_say("watch same\n"), "error watch there is no port 'same'")); /* ambiguous: input or output */
     CHECK(has_line(bench_say("watch inputs.same\n"), "ok watch"));
 }
 
@@ -354,7 +354,7 @@ TEST(who_goes_away_leaves_nothing_moving)
     bench.connected = false;
     bench_run(2);
     CHECK_EQUAL(fake.actuator, 0.0);
-    bench_say("enable\n"); /* nobody has said this */
+    bench_say("enable\n"); /* never sent: the stream is closed */
     bench.out_length = 0;
     bench.connected = true;
     bench_run(50);
@@ -418,7 +418,7 @@ TEST(answers_of_several_lines_come_whole_through_a_narrow_stream)
     CHECK_EQUAL(rows, 101);
     const char *end = strstr(begin, "ok capture\r\n");
     CHECK(end != NULL);
-    CHECK(has_line(end, "ok version")); /* in its turn */
+    CHECK(has_line(end, "ok version")); /* in its order */
 }
 
 TEST(what_must_act_at_once_does_not_wait_for_an_answer)
@@ -455,7 +455,7 @@ TEST(commands_act_though_nobody_reads)
     const char *dropped = strstr(stats, "stat lines_dropped=");
     CHECK(dropped != NULL);
     CHECK(atoi(dropped + 19) > 10);
-    /* What did come out is whole lines. */
+    /* The output is whole lines. */
     CHECK(strncmp(stats, "stat enabled=0 ", 15) == 0);
 }
 
@@ -509,7 +509,7 @@ TEST(a_target_without_any_of_it)
     check_answer("version\n", "ok version name=fake node=bench_node epg=1.2.3 hash=0123456789abcdef\r\n");
 }
 
-/** Bytes, words and halves of commands in any order, while the reader comes, goes and reads as it likes. */
+/** Bytes, words and parts of commands in any order, while the reader connects, disconnects and reads at random. */
 TEST(any_bytes_at_all)
 {
     static const char *const words[] = {

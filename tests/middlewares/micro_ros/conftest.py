@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Host executables with the middleware ``micro_ros``, as a user builds them, against a libmicroros of the user's."""
+"""Host executables with the middleware ``micro_ros``, as a user builds them, with the user's libmicroros."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ WARNINGS = "-Wall -Wextra -Wconversion -Wdouble-promotion -Werror"
 
 
 class Board(XrceBoard):
-    """micro-ROS calls a node's participant by namespace and name."""
+    """A board of micro-ROS, which names a node's participant by namespace and name."""
 
     def __init__(self, program: Path, agent: Agent, *options: str, serial: str = "1") -> None:
         super().__init__(program, agent, *options, serial=serial)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The middleware compiles with other releases of libmicroros: their headers are enough for that."""
+"""The middleware compiles with other releases of libmicroros; for this test, their headers are enough."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import pytest
 from .conftest import build, configure
 
 VARIABLE = "EPG_TEST_MICRO_ROS_HEADERS"
-"""Names folders of other libmicroros, each with include/, separated as in PATH."""
+"""Variable that names folders of other libmicroros, each with include/, separated as in PATH."""
 LIBRARY = "libmicroros.a"
 
 
@@ -24,7 +24,7 @@ def test_it_compiles(tmp_path: Path) -> None:
     for number, folder in enumerate(given.split(os.pathsep)):
         library = tmp_path / f"library_{number}"
         shutil.copytree(Path(folder) / "include", library / "include")
-        subprocess.run(["ar", "rcs", LIBRARY], cwd=library, check=True)  # nothing is linked
+        subprocess.run(["ar", "rcs", LIBRARY], cwd=library, check=True)  # empty, because the test does not link
         build_folder = tmp_path / f"build_{number}"
         for done in (
             configure(build_folder, f"-DMICRO_ROS_PATH={library}"),

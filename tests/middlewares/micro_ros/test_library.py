@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A libmicroros that does not fit, or is not there: said before a target runs."""
+"""A libmicroros that does not fit or is missing is reported before a target runs."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .conftest import build, configure
 
 
 def changed_library(folder: Path, name: str, value: str) -> Path:
-    """The user's libmicroros, as if it had been built with another ``name``."""
+    """A copy of the user's libmicroros with another value of ``name``, as if it had been built so."""
     given = Path(os.environ["MICRO_ROS_PATH"])
     shutil.copytree(given / "include", folder / "include")
     (folder / "libmicroros.a").symlink_to(given / "libmicroros.a")
@@ -36,7 +36,7 @@ def changed_library(folder: Path, name: str, value: str) -> Path:
         ("RMW_UXRCE_MAX_SUBSCRIPTIONS", "4", "rebuild it with -DRMW_UXRCE_MAX_SUBSCRIPTIONS=5"),
         ("RMW_UXRCE_MAX_TOPICS", "11", "components and communication make 12 topics"),
         ("RMW_UXRCE_MAX_HISTORY", "4", "rebuild libmicroros with -DRMW_UXRCE_MAX_HISTORY=5"),
-        # /lab/robot_$serial and /lab/robot_$serial/enable, with rt and a terminating zero
+        # For /lab/robot_$serial and /lab/robot_$serial/enable, with rt and a terminating zero
         ("RMW_UXRCE_NODE_NAME_MAX_LENGTH", "27", "rebuild it with -DRMW_UXRCE_NODE_NAME_MAX_LENGTH=28"),
         ("RMW_UXRCE_TOPIC_NAME_MAX_LENGTH", "36", "rebuild it with -DRMW_UXRCE_TOPIC_NAME_MAX_LENGTH=37"),
         ("UXR_CONFIG_CUSTOM_TRANSPORT_MTU", "512", "-DUCLIENT_CUSTOM_TRANSPORT_MTU=1536"),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The middleware ``micro_ros``: topics both ways, quality of service, an agent that comes and goes, a serial line."""
+"""The middleware ``micro_ros``: topics in both directions, QoS, an agent that restarts, a serial line."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ FLOAT64 = "std_msgs::msg::dds_::Float64_"
 
 
 def check_alive(board: Board, value: float) -> None:
-    """Both directions work: a setpoint reaches the model, and its answer comes back."""
+    """Both directions work: a setpoint reaches the model, and the model's answer comes back."""
     board.agent.wait_until(lambda: board.set("reliable", value) >= 1 and board.values("got_reliable")[-1:] == [value])
 
 
@@ -45,7 +45,7 @@ def test_node_and_topics_are_those_of_xrce(robot: Path, agent: Agent) -> None:
         }
         check_alive(board, 0.5)
         assert board.stop() == ""
-        agent.wait_until(lambda: agent.clients == {})  # it has taken leave
+        agent.wait_until(lambda: agent.clients == {})  # the board has closed its session
         assert agent.malformed == 0
 
 
@@ -112,7 +112,8 @@ def test_stamps_are_of_the_agents_clock(robot: Path, agent: Agent) -> None:
 
         agent.wait_until(lambda: abs(error()) < 1.0)
         errors = [error() for _ in range(5)]
-        assert all(-0.2 < each <= 0.02 for each in errors), errors  # of the control cycle, so a little before
+        # stamps are of the control cycle, so a little earlier
+        assert all(-0.2 < each <= 0.02 for each in errors), errors
         assert board.stop() == ""
 
 
@@ -123,14 +124,14 @@ def test_the_board_is_there_first(robot: Path, agent: Agent) -> None:
         agent.start()
         assert board.running() < 5.0
         check_alive(board, 0.5)
-        assert board.next("cycles") > 1000  # it has run meanwhile
+        assert board.next("cycles") > 1000  # the model has run meanwhile
         assert board.statistic("reconnects") == 0
         assert board.stop() == ""
 
 
 @pytest.mark.parametrize("pause", [0.0, 2.0])
 def test_the_agent_is_restarted(robot: Path, agent: Agent, pause: float) -> None:
-    """Also so fast that only its loss of memory shows.  The control loop does not notice, nor does memory grow."""
+    """Even a restart too fast for a timeout is detected.  The control loop is undisturbed, and memory does not grow."""
     with Board(robot, agent) as board:
         board.running()
         check_alive(board, 0.5)
@@ -140,14 +141,14 @@ def test_the_agent_is_restarted(robot: Path, agent: Agent, pause: float) -> None
             assert board.running() < 6.0
             after_time, after = board.timed("cycles_too")[-1]
             assert after - before == pytest.approx((after_time - before_time) * 1000, abs=60)
-            assert board.next("got_reliable") == 0.5  # it has kept its setpoint
+            assert board.next("got_reliable") == 0.5  # the board has kept its setpoint
             assert board.statistic("reconnects") == number
         check_alive(board, 0.75)
-        assert board.stop() == ""  # the address sanitizer looks for leaks
+        assert board.stop() == ""  # AddressSanitizer has found no leak
 
 
 def test_frames_that_are_lost_come_again(robot: Path, agent: Agent) -> None:
-    """Nothing arrives for half a second: reliable messages fill their stream, then it goes on in the same session."""
+    """No frame arrives for half a second: reliable messages fill their stream, then the same session continues."""
     with Board(robot, agent) as board:
         board.running()
         agent.from_board.loss = 1.0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A board for tests: a host executable with the middleware ``xrce``, and what can be seen of it through an agent."""
+"""A board for tests: a host executable with the middleware ``xrce``, observed through an agent."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from pathlib import Path
 from tests.xrce_agent import Agent, Diagnostics, UdpLink, float64, read_diagnostics, read_float64
 
 PATIENCE = 20.0
-"""Seconds for what has to come at some time, on a machine that does other things too."""
+"""Longest time to wait, in seconds, on a machine that also runs other programs."""
 
 
 class Board:
-    """``program`` in real time, connected to ``agent``; killed at the end of the ``with`` block."""
+    """Runs ``program`` in real time, connected to ``agent``; killed at the end of the ``with`` block."""
 
     def __init__(self, program: Path, agent: Agent, *options: str, serial: str = "1") -> None:
         way = "--agent" if isinstance(agent.link, UdpLink) else "--serial-device"
@@ -33,7 +33,7 @@ class Board:
         self.process.communicate()
 
     def stop(self) -> str:
-        """Ends it politely; what it has said, which is nothing unless a sanitizer has found something."""
+        """Ends the program in the normal way; returns its output, which is empty unless a sanitizer reports an error."""
         self.process.terminate()
         output, errors = self.process.communicate(timeout=PATIENCE)
         assert self.process.returncode == 130, errors
@@ -49,7 +49,7 @@ class Board:
         return [value for _, value in self.timed(topic, since)]
 
     def timed(self, topic: str, since: float = 0.0) -> list[tuple[float, float]]:
-        """Times at the agent, and values."""
+        """The samples as pairs of time at the agent and value."""
         samples = self.topics.samples(f"rt/lab/{topic}", since, self.node)
         return [(sample.time, read_float64(sample.data)) for sample in samples]
 
@@ -57,26 +57,26 @@ class Board:
         return read_float64(self.topics.wait_for_sample(f"rt/lab/{topic}", seconds, self.node).data)
 
     def wait_for(self, topic: str, value: float, seconds: float = PATIENCE) -> float:
-        """Until ``topic`` has this value from now on; returns how long that took."""
+        """Waits until ``topic`` has this value from now on; returns how long that took."""
         began = time.monotonic()
         self.agent.wait_until(lambda: value in self.values(topic, began), seconds)
         return time.monotonic() - began
 
     def set(self, topic: str, value: float, reliable: bool = True) -> int:
-        """Publishes a setpoint to all boards; how many readers match."""
+        """Publishes a setpoint to all boards; returns the number of readers that match."""
         return self.topics.publish(f"rt/lab/{topic}", float64(value), reliable)
 
     def enable(self, on: bool) -> None:
         self.topics.publish(f"rt/lab/{self.node}/enable", bytes([on]))
 
     def running(self, seconds: float = PATIENCE) -> float:
-        """Until it publishes from now on; returns how long that took."""
+        """Waits until the board publishes from now on; returns how long that took."""
         began = time.monotonic()
         self.topics.wait_for_sample("rt/lab/cycles_too", seconds, self.node)
         return time.monotonic() - began
 
     def diagnostics(self, seconds: float = PATIENCE) -> Diagnostics:
-        """The next."""
+        """The next diagnostics."""
         return read_diagnostics(self.topics.wait_for_sample("rt/diagnostics", seconds, self.node).data)
 
     def statistic(self, name: str) -> int:
@@ -85,7 +85,7 @@ class Board:
     # The process -----------------------------------------------------------------------------------------------------
 
     def memory(self) -> int:
-        """Resident bytes."""
+        """Resident memory in bytes."""
         pages = int(Path(f"/proc/{self.process.pid}/statm").read_text().split()[1])
         return pages * os.sysconf("SC_PAGE_SIZE")
 

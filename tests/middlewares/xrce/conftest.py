@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Host executables with the middleware xrce, as a user builds them."""
+"""Fixtures: host executables with the middleware xrce, as a user builds them."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ SANITIZERS = "-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all"
 
 
 def build(project: str, folder: Path, flags: str, *settings: str) -> Path:
-    """The folder with the executables."""
+    """Builds a project; returns the folder with the executables."""
     try:
         libraries()
     except Missing as missing:

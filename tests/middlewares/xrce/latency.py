@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Steps of a setpoint to a program on this computer, by UDP and in real time."""
+"""Steps of a setpoint that is sent to a program on this computer, by UDP and in real time."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.xrce_agent.latency import TOPIC, Step, duty, parse
 
 
 def measure(program: Path, count: int, folder: Path, seed: int = 1) -> list[Step]:
-    """``count`` steps, 3 to 7 ms apart, at any phase of the control cycle; those that were heard."""
+    """Sends ``count`` steps, 3 to 7 ms apart, at any phase of the control cycle; returns those that arrived."""
     file, draw = folder / f"{program.name}.txt", random.Random(seed)
     with Agent(UdpLink()) as agent:
         command = [str(program), "--realtime", "--quiet", "--agent", agent.address]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A board that has to connect again and again: what that costs it."""
+"""A board that must connect many times, and its use of memory, descriptors and time."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .board import PATIENCE, Board
 
 @dataclass
 class Account:
-    """Of each turn: resident bytes, open descriptors, and seconds from the agent's start to the first sample."""
+    """For each turn: resident bytes, open descriptors, and seconds from the agent's start to the first sample."""
 
     memory: list[int] = field(default_factory=list)
     descriptors: list[int] = field(default_factory=list)
@@ -23,7 +23,7 @@ class Account:
 
 
 def reconnect(robot: Path, agent: Agent, count: int) -> Account:
-    """Restarts the agent ``count`` times; asserts that all was counted, and that the loop has gone on."""
+    """Restarts the agent ``count`` times; asserts that each restart was counted and that the loop has continued."""
     account = Account()
     with Board(robot, agent) as board:
         board.running()
@@ -50,7 +50,7 @@ def reconnect(robot: Path, agent: Agent, count: int) -> Account:
 
 
 def check(account: Account, warm: int) -> None:
-    """Nothing grows after the first ``warm`` turns."""
+    """Asserts that memory and descriptors do not grow after the first ``warm`` turns."""
     assert max(account.memory[warm:]) - account.memory[warm] <= 256 * 1024
     assert set(account.descriptors[warm:]) == {account.descriptors[warm]}
     half = (len(account.latency) + warm) // 2

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Connecting, losing and finding again: whatever the agent, the line and the board do."""
+"""A board connects, detects a lost agent and connects again, for any fault of agent, line and board."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ FLOAT64 = "std_msgs::msg::dds_::Float64_"
 
 
 def check_alive(board: Board, value: float) -> None:
-    """Both directions work: a setpoint reaches the model, and its answer comes back."""
+    """Both directions work: a setpoint reaches the model, and the model's answer comes back."""
     board.agent.wait_until(lambda: board.set("reliable", value) >= 1 and board.values("got_reliable")[-1:] == [value])
 
 
@@ -47,7 +47,7 @@ def test_the_agent_is_there_first(robot: Path, agent: Agent) -> None:
         }
         check_alive(board, 0.5)
         assert board.stop() == ""
-        agent.wait_until(lambda: agent.clients == {})  # it has taken leave
+        agent.wait_until(lambda: agent.clients == {})  # the board has closed its session
         assert agent.malformed == 0
 
 
@@ -58,14 +58,14 @@ def test_the_board_is_there_first(robot: Path, agent: Agent) -> None:
         agent.start()
         assert board.running() < 3.0
         check_alive(board, 0.5)
-        assert board.next("cycles") > 1000  # it has run meanwhile
+        assert board.next("cycles") > 1000  # the model has run meanwhile
         assert board.statistic("reconnects") == 0
         assert board.stop() == ""
 
 
 @pytest.mark.parametrize("pause", [0.0, 0.3, 2.0])
 def test_the_agent_is_restarted(robot: Path, agent: Agent, pause: float) -> None:
-    """Also so fast that only its loss of memory shows.  The control loop does not notice."""
+    """Even a restart too fast for a timeout is detected.  The control loop is undisturbed."""
     with Board(robot, agent) as board:
         board.running()
         check_alive(board, 0.5)
@@ -74,7 +74,7 @@ def test_the_agent_is_restarted(robot: Path, agent: Agent, pause: float) -> None
         assert board.running() < 3.0
         after_time, after = board.timed("cycles_too")[-1]
         assert after - before == pytest.approx((after_time - before_time) * 1000, abs=60)
-        assert board.next("got_reliable") == 0.5  # it has kept its setpoint
+        assert board.next("got_reliable") == 0.5  # the board has kept its setpoint
         check_alive(board, 0.75)
         diagnostics = board.diagnostics()
         assert diagnostics.values["reconnects"] == "1"
@@ -83,14 +83,14 @@ def test_the_agent_is_restarted(robot: Path, agent: Agent, pause: float) -> None
 
 
 def test_the_first_samples_after_a_reconnection_are_new(robot: Path, agent: Agent) -> None:
-    """Nothing that has been waiting: neither the board's values nor setpoints."""
+    """After a reconnection, no old value is sent: neither values of the board nor setpoints."""
     with Board(robot, agent) as board:
         board.running()
         for _ in range(5):
             time_before, cycles_before = board.timed("cycles_too")[-1]
             agent.kill()
             time.sleep(0.5)
-            agent.topics.publish("rt/lab/reliable", bytes(8))  # nobody is there to keep it
+            agent.topics.publish("rt/lab/reliable", bytes(8))  # no agent is there that could keep it
             restarted = time.monotonic()
             agent.start()
             board.running()
@@ -146,11 +146,11 @@ def test_a_cable_is_pulled(robot: Path, tmp_path: Path) -> None:
 
 
 def test_a_line_without_an_agent_on_it(robot: Path, tmp_path: Path) -> None:
-    """The terminal is there, and stays; only nobody answers."""
+    """The terminal exists and stays open, but no agent answers."""
     with Agent(PtyLink(tmp_path / "line")) as agent, Board(robot, agent) as board:
         board.running()
         agent.freeze()
-        time.sleep(2.0)  # the terminal's buffer has filled
+        time.sleep(2.0)  # time in which the terminal's buffer fills
         agent.thaw()
         agent.wait_until(lambda: len(agent.created) >= 2)
         check_alive(board, 0.5)
@@ -159,7 +159,7 @@ def test_a_line_without_an_agent_on_it(robot: Path, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("way", ["killed", "stopped"])
 def test_the_board_is_restarted(robot: Path, agent: Agent, way: str) -> None:
-    """While somebody floods its old readers: their samples come while the new ones are made."""
+    """Its old readers are flooded: their samples arrive while the new readers are made."""
     with Board(robot, agent) as board:
         board.running()
         board.kill() if way == "killed" else board.stop()
@@ -179,7 +179,7 @@ def test_the_board_is_restarted(robot: Path, agent: Agent, way: str) -> None:
 
 
 def test_loss_both_ways(robot: Path, agent: Agent) -> None:
-    """A tenth of all frames: it stays connected, and what is reliable arrives, in order and not twice."""
+    """A tenth of all frames is lost: the board stays connected; reliable messages arrive in order and only once."""
     with Board(robot, agent) as board:
         board.running()
         heard = agent.topics.subscribe("rt/lab/cycles", reliable=True)
@@ -217,7 +217,7 @@ def test_duplicates_and_another_order(robot: Path, agent: Agent) -> None:
         for number in range(100):
             board.set("reliable", 1.0 + number / 64)
             time.sleep(0.01)
-        board.wait_for("got_reliable", 1.0 + 99 / 64)  # the newest, not one that came late
+        board.wait_for("got_reliable", 1.0 + 99 / 64)  # the newest value, not a late one
         for topic in ("got_reliable", "cycles", "cycles_too"):
             values = board.values(topic, began)
             assert len(values) > 20
@@ -230,7 +230,7 @@ def test_duplicates_and_another_order(robot: Path, agent: Agent) -> None:
 
 @pytest.mark.parametrize(("delay", "sessions"), [(0.06, 1), (0.15, 5)])
 def test_a_slow_line(robot: Path, agent: Agent, delay: float, sessions: int) -> None:
-    """Seconds to the agent, and the same back; where an answer takes longer than a board waits, it asks again."""
+    """``delay`` is in seconds per direction.  If an answer takes longer than a board waits, the board asks again."""
     agent.to_board.delay = agent.from_board.delay = (delay, delay)
     with Board(robot, agent) as board:
         board.running()
@@ -243,7 +243,7 @@ def test_a_slow_line(robot: Path, agent: Agent, delay: float, sessions: int) -> 
 
 
 class SlowAgent(Agent):
-    """Takes its time for a session, in which all else waits: as one does that deletes the entities of the last."""
+    """Needs time to make a session, and handles nothing else meanwhile, like an agent that deletes the old entities."""
 
     seconds = 1.2
 
@@ -253,7 +253,7 @@ class SlowAgent(Agent):
 
 
 def test_an_agent_that_is_slow_to_make_a_session(robot: Path) -> None:
-    """Requests that are sent meanwhile would each end the session before: a board learns to send fewer."""
+    """Each further request would end the session that is being made: a board must learn to send fewer requests."""
     with SlowAgent(UdpLink()) as agent, Board(robot, agent) as board:
         board.running()
         check_alive(board, 0.5)
@@ -266,13 +266,13 @@ def test_an_agent_that_is_slow_to_make_a_session(robot: Path) -> None:
 
 @pytest.mark.parametrize("line", ["udp", "serial"])
 def test_garbage_and_damaged_frames(robot: Path, tmp_path: Path, line: str) -> None:
-    """Nothing but sanitizers would tell; and when it is over, all is as before."""
+    """Sanitizers would detect errors; after the garbage, everything works as before."""
     chance = random.Random(7)
     link: Link = PtyLink(tmp_path / "line") if line == "serial" else UdpLink()
     with Agent(link) as agent, Board(robot, agent) as board:
         board.running()
         agent.to_board.truncate = agent.from_board.truncate = 0.1
-        if line == "serial":  # of datagrams, the system's checksums would show it
+        if line == "serial":  # for datagrams, the system's checksums would detect it
             agent.to_board.corrupt = agent.from_board.corrupt = 0.1
         end = time.monotonic() + 3.0
         while time.monotonic() < end:
@@ -291,7 +291,7 @@ def test_garbage_and_damaged_frames(robot: Path, tmp_path: Path, line: str) -> N
 
 
 def test_two_boards(robot: Path, agent: Agent) -> None:
-    """One image: names and keys differ by the serial number; what happens to one is nothing to the other."""
+    """One image for both: names and keys differ by the serial number; a fault of one does not affect the other."""
     with Board(robot, agent, serial="A") as one, Board(robot, agent, serial="B") as other:
         one.running()
         other.running()
@@ -318,7 +318,7 @@ def test_what_is_refused_is_asked_for_again(robot: Path, agent: Agent, kind: Kin
 
 
 def test_an_agent_that_answers_pings_only(robot: Path, agent: Agent) -> None:
-    """Half a restart: requests vanish."""
+    """Like half a restart: the agent drops all requests."""
     agent.mute = {Id.CREATE}
     with Board(robot, agent) as board:
         time.sleep(2.5)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where the agent is, on the command line of a host executable, and what it tells people."""
+"""The address of the agent on the command line of a host executable, and the messages about it."""
 
 from __future__ import annotations
 

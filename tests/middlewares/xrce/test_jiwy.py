@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""JIWY follows setpoints from the agent's side, in real time, and is indifferent to the agent's fate."""
+"""JIWY follows setpoints from the agent in real time, and a fault of the agent does not affect its control loop."""
 
 from __future__ import annotations
 

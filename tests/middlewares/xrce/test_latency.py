@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A setpoint acts in the next control cycle after it has come, and not before the output delay."""
+"""A setpoint acts in the next control cycle after its arrival, and not before the output delay."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""All that the control loop and the middleware share, under ThreadSanitizer."""
+"""All data that the control loop and the middleware share, with ThreadSanitizer."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A program with its own main(): the target is a node from its start to its stop, and so again."""
+"""A program with its own main(): the target is a node from its start to its stop, also the second time."""
 
 from __future__ import annotations
 
@@ -35,6 +35,6 @@ def test_it_is_a_node_while_it_runs(program: Path, agent: Agent) -> None:
             agent.topics.wait_for_sample("rt/lab/cycles_too", PATIENCE, "robot_host")
             process.stdin.write("stop\n")
             assert process.stdout.readline() == "stopped\n"
-            agent.wait_until(lambda: not agent.clients, PATIENCE)  # it has taken leave
+            agent.wait_until(lambda: not agent.clients, PATIENCE)  # the board has closed its session
             process.stdin.write("on\n")
         assert process.wait(PATIENCE) == 0

@@ -46,13 +46,13 @@ def board(robot: Path, *way: str) -> Iterator[subprocess.Popen[str]]:
 
 
 def stop(process: subprocess.Popen[str]) -> str:
-    """What it has said: nothing, unless a sanitizer has found something."""
+    """Ends the process; returns its output, which is empty unless a sanitizer reports an error."""
     process.terminate()
     return process.communicate(timeout=20)[0]
 
 
 def check_alive(peer: Peer, commands: Publisher, answers: Subscription, value: float, seconds: float = 20.0) -> float:
-    """A setpoint goes to the board and its answer comes back; returns how long that took."""
+    """A setpoint reaches the board, and the answer comes back; returns how long that took."""
     began = time.monotonic()
     seen = len(answers.messages)
 
@@ -96,7 +96,7 @@ def test_a_peer_sees_a_node_with_its_topics(robot: Path, tmp_path: Path) -> None
             enable.publish(Bool_(False))
             assert peer.spin_until(lambda: diagnostics.messages[-1].status[0].level == 1)
             assert stop(process) == ""
-        assert peer.spin_until(lambda: reliable.matched == 0)  # the board has taken leave
+        assert peer.spin_until(lambda: reliable.matched == 0)  # the board has closed its session
 
 
 def test_the_period_is_kept(robot: Path, tmp_path: Path) -> None:
@@ -148,7 +148,7 @@ def test_it_is_stopped_for_a_while(robot: Path, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("way", ["killed", "stopped"])
 def test_the_board_is_restarted(robot: Path, tmp_path: Path, way: str) -> None:
-    """Under setpoints all the time."""
+    """Setpoints arrive all the time."""
     with on_loopback(), RealAgent.udp(tmp_path) as agent, Peer(agent.domain, "peer") as peer:
         commands, answers = peer.publisher("/lab/reliable", Float64_), peer.subscription("/lab/got_reliable", Float64_)
         for turn in range(5):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What goes over topics: periods, newest values, timeouts of setpoints, enabling, diagnostics, stamps."""
+"""The use of topics: periods, newest values, timeouts of setpoints, enabling, diagnostics, stamps."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def test_the_newest_setpoint_counts(robot: Path, agent: Agent) -> None:
 
 
 def test_qos_of_peers(robot: Path, agent: Agent) -> None:
-    """As in ROS 2: a best-effort publisher gives nothing to a reliable subscriber; a reliable one serves all."""
+    """As in ROS 2, a best-effort publisher does not match a reliable subscriber; a reliable one matches all."""
     with Board(robot, agent) as board:
         board.running()
         assert board.set("reliable", 0.5, reliable=False) == 0
@@ -77,7 +77,7 @@ def test_what_is_no_number_is_dropped_and_counted(robot: Path, agent: Agent) -> 
 
 
 def test_a_timeout_acts_as_declared_and_nothing_else_does(robot: Path, agent: Agent) -> None:
-    """The agent is gone for a second: values without a timeout stay, and so does everything else."""
+    """The agent is absent for a second: values without a timeout stay, and so does everything else."""
     with Board(robot, agent) as board:
         board.running()
         for topic in ("reliable", "quick", "held", "zeroed"):
@@ -101,7 +101,7 @@ def test_a_timeout_acts_as_declared_and_nothing_else_does(robot: Path, agent: Ag
 
 
 def test_a_timeout_that_disables_stays_until_somebody_enables(disabling_robot: Path, agent: Agent) -> None:
-    """Reconnecting clears nothing."""
+    """A reconnection does not clear the fault."""
     with Board(disabling_robot, agent) as board:
         board.running()
         board.set("zeroed", 0.5)
@@ -161,12 +161,13 @@ def test_stamps_are_of_the_agents_clock(robot: Path, agent: Agent) -> None:
 
         agent.wait_until(lambda: abs(error()) < 1.0)
         errors = [error() for _ in range(5)]
-        assert all(-0.1 < each <= 0.01 for each in errors), errors  # of the control cycle, so a little before
+        # stamps are of the control cycle, so a little earlier
+        assert all(-0.1 < each <= 0.01 for each in errors), errors
         assert board.stop() == ""
 
 
 def test_a_line_that_is_too_slow_drops_old_values(robot: Path, agent: Agent) -> None:
-    """Nothing is acknowledged for half a second: what is published then is new, the loop has gone on."""
+    """No frame is acknowledged for half a second: later messages have new values, and the loop has continued."""
     with Board(robot, agent) as board:
         board.running()
         agent.from_board.loss = 1.0

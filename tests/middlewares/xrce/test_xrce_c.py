@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Framing, and the middleware with eProsima's client in the clock of a test: each ``TEST(name)`` below ``c/``.
+"""Framing, and the middleware with eProsima's client in the clock of a test: each ``TEST(name)`` in ``c/``.
 
-Everything is compiled under sanitizers, the client library as well.
+Everything, also the client library, is compiled with sanitizers.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ HERE = Path(__file__).resolve().parent / "c"
 
 @pytest.fixture(scope="session")
 def client(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[str]]:
-    """The client library as EPG compiles it, under sanitizers: the archive, and options for its headers."""
+    """The client library as EPG compiles it, with sanitizers: the archive, and options for its headers."""
     try:
         libraries()
     except Missing as missing:
@@ -101,7 +101,7 @@ def test_session(session_tests: Path, name: str) -> None:
 
 
 def test_it_needs_no_heap(client: tuple[Path, list[str]], tmp_path: Path) -> None:
-    """What middleware and client library leave for the linker besides EPG's runtime: copying and comparing bytes."""
+    """Besides EPG's runtime, middleware and client library need only functions that copy and compare bytes."""
     archive, options = client
     undefined: set[str] = set()
     defined: set[str] = set()

@@ -3,13 +3,13 @@
  *
  *   fastdds_peer DOMAIN SECONDS reader|writer|best_effort_reader|best_effort_writer TOPIC ...
  *
- * Readers tell what they hear, writers write 0.25 every 33 ms, as std_msgs/msg/Float64 with QoS as rmw_fastrtps has it.
- * Prints, at the end and one per line:
+ * Readers report the messages they receive, writers write 0.25 every 33 ms, as std_msgs/msg/Float64 with the QoS of
+ * rmw_fastrtps.  Prints at the end, one per line:
  *
- *   heard rt/pan_publisher 59 0.001        messages and the last one
- *   matched rt/pan_subscriber 1            readers of a writer, writers of a reader, at most at any time
+ *   heard rt/pan_publisher 59 0.001        number of messages, and the last value
+ *   matched rt/pan_subscriber 1            largest number of readers of a writer, or of writers of a reader
  *   discovered writer rt/pan_publisher std_msgs::msg::dds_::Float64_ typehash=RIHS01_...;
- *   discovery_info ...                     the newest of topic ros_discovery_info, in hexadecimal digits
+ *   discovery_info ...                     the newest message of topic ros_discovery_info, in hexadecimal digits
  */
 #include <chrono>
 #include <cstdio>
@@ -39,7 +39,7 @@ using eprosima::fastrtps::rtps::SerializedPayload_t;
 
 using Bytes = std::vector<unsigned char>;
 
-/** Messages of any type: bytes behind the encapsulation header. */
+/** Messages of any type: the bytes after the encapsulation header. */
 class BytesType : public TopicDataType
 {
 public:
@@ -123,7 +123,7 @@ struct End {
     double last = 0.0;
 };
 
-/** Loopback only, no shared memory: as the robots of the tests. */
+/** Loopback only, no shared memory, like the robots of the tests. */
 static DomainParticipantQos participant_qos()
 {
     DomainParticipantQos qos;
@@ -223,7 +223,7 @@ int main(int argc, char **argv)
             std::printf("heard %s %d %.17g\n", end.topic.c_str(), end.heard, end.last);
         }
     }
-    participant->set_listener(nullptr); /* nothing is heard of from here on */
+    participant->set_listener(nullptr); /* from here on, events are not reported */
     for (const std::string &line : discovery.lines) {
         std::printf("%s\n", line.c_str());
     }

@@ -15,7 +15,7 @@ LATEST = 20 * CYCLES_PER_MILLISECOND // 1000
 LATEST_CYCLE = 100 * CYCLES_PER_MILLISECOND // 1000
 """The same for the control thread's cycle, which computes the model and which other interrupts delay."""
 LATEST_WRITE = 535 * CYCLES_PER_MILLISECOND // 1000
-"""Cycles from the tick's interrupt to the end of the last write to an output: writes may begin at 500 us after the tick,
+"""Cycles from the tick's interrupt to the end of the last write to an output.  Writes may begin 500 us after the tick,
 and the PWM wraps at 550 us."""
 LONGEST_LOCK = 20 * CYCLES_PER_MILLISECOND // 1000
 """Cycles for which interrupts are locked during a write to outputs: 20 us."""

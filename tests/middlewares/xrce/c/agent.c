@@ -1,6 +1,6 @@
 /**
  * @file
- * The least of an agent.
+ * A minimal agent.
  */
 #include "agent.h"
 
@@ -81,7 +81,7 @@ static void acknowledge(void)
     agent_say(false, ACKNACK, payload, sizeof payload);
 }
 
-/** The board asks what has arrived: what it has sent up to `last` and is not here is missed. */
+/** Answers the board's heartbeat.  A frame up to `last` that has not arrived is reported as missing. */
 static void answer_heartbeat(uint16_t last)
 {
     const int missing = (int16_t)(uint16_t)(last + 1U - agent.expected);
@@ -112,7 +112,7 @@ static void ping(const unsigned char *payload)
     agent_say(false, INFO, info, sizeof info);
 }
 
-/** Its clock is an hour ahead of the board's. */
+/** The agent's clock is an hour ahead of the board's. */
 static void tell_time(const unsigned char *payload)
 {
     unsigned char reply[24];
@@ -186,7 +186,7 @@ static void take_reliable(const unsigned char *data, size_t size)
 
 static void take_frame(const unsigned char *data, size_t size)
 {
-    if (data[0] < 0x80) { /* with the client's key: it takes leave */
+    if (data[0] < 0x80) { /* with the client's key: the board closes the session */
         CHECK(data[HEADER + KEY] == DELETE);
         agent.goodbyes++;
         agent.known = false;

@@ -1,8 +1,8 @@
 /**
  * @file
- * The least of an agent, in the clock of a test: it answers as it must, and does what the test tells it to.
+ * A minimal agent in the clock of a test: it answers as the protocol requires, and has the faults that the test sets.
  *
- * It is at the other end of a stream of datagrams whose every frame the test can see.
+ * It is the other end of a stream of datagrams.  The test can see every frame.
  */
 #ifndef XRCE_TEST_AGENT_H
 #define XRCE_TEST_AGENT_H
@@ -23,61 +23,61 @@ typedef struct agent_frame {
 
 typedef struct agent {
     /* set by the test */
-    bool absent;         /**< nothing is answered */
-    bool unplugged;      /**< the stream says that nobody is there */
-    bool acknowledges;   /**< frames of the reliable stream, at once */
-    uint8_t status;      /**< of whatever is to be created */
+    bool absent;         /**< the agent does not answer */
+    bool unplugged;      /**< the stream reports that no agent is connected */
+    bool acknowledges;   /**< acknowledges frames of the reliable stream at once */
+    uint8_t status;      /**< status of every request to create */
     size_t room;         /**< bytes that the stream takes */
-    unsigned int losing; /**< so many reliable frames are lost on their way to the agent */
-    bool loses_every;    /**< all of them */
+    unsigned int losing; /**< number of reliable frames that are lost on their way to the agent */
+    bool loses_every;    /**< all reliable frames are lost */
 
     /* seen by the test */
-    agent_frame_t sent[AGENT_FRAMES]; /**< by the board */
+    agent_frame_t sent[AGENT_FRAMES]; /**< frames of the board */
     size_t sent_count;
     size_t read_count; /**< frames that the board has read */
     bool known;        /**< the board has a session */
     unsigned int sessions;
     unsigned int goodbyes;
     unsigned int created;
-    unsigned int readers; /**< whose samples are wanted */
+    unsigned int readers; /**< readers whose samples the board has requested */
     unsigned int pings;
     unsigned int heartbeats;
     unsigned int samples;
-    double values[AGENT_FRAMES]; /**< of the samples */
+    double values[AGENT_FRAMES]; /**< values of the samples */
     uint32_t key;
     uint16_t mtu;
 
-    /* the agent's */
+    /* internal to the agent */
     uint16_t expected; /**< the next frame of the board's reliable stream */
-    uint16_t next;     /**< of its own */
+    uint16_t next;     /**< the next frame of the agent's reliable stream */
     agent_frame_t waiting[64];
     size_t waiting_first;
     size_t waiting_count;
-    uint8_t request[2]; /**< of the reader asked for last, and its number */
+    uint8_t request[2]; /**< id of the last request to read, and the number of its reader */
     uint8_t reader[2];
 } agent_t;
 
 extern agent_t agent;
 
-/** Everything to its start: an agent that is there. */
+/** Resets everything: the agent is present and has no faults. */
 void agent_reset(void);
 
-/** As a process that is started anew: it knows nobody. */
+/** Like a new process: the agent does not know any client. */
 void agent_restart(void);
 
-/** The stream to it. */
+/** The stream to the agent. */
 extern const epg_stream_t agent_stream;
 
-/** A frame for the board: header and one submessage; `reliable` frames get the next number. */
+/** Sends the board a frame with one submessage; `reliable` frames get the next number. */
 void agent_say(bool reliable, uint8_t id, const void *payload, size_t size);
 
-/** A frame for the board as it is. */
+/** Sends the board these bytes as a frame. */
 void agent_say_raw(const void *data, size_t size);
 
-/** A sample for the reader asked for last. */
+/** Sends a sample to the reader of the last request to read. */
 void agent_publish(double value);
 
-/** How many frames the board has sent that have submessage `id` first. */
+/** The number of frames from the board whose first submessage is `id`. */
 unsigned int agent_count(uint8_t id);
 
 #endif

@@ -11,7 +11,7 @@ static struct {
     unsigned char in[LINE];
     size_t in_length;
     size_t in_position;
-    size_t at_once; /**< bytes that one read gives at most */
+    size_t at_once; /**< largest number of bytes per read */
     unsigned char out[LINE];
     size_t out_length;
     size_t room;
@@ -71,7 +71,7 @@ static void arrive(const void *data, size_t size)
     line.in_length += size;
 }
 
-/** What has been sent comes back as if the agent had sent it: to the client, from the agent. */
+/** Returns the sent frames as if the agent had sent them: to the client, from the agent. */
 static void turn_round(void)
 {
     unsigned char data[LINE];
@@ -217,7 +217,7 @@ TEST(frames_for_others_are_passed_over)
     static const unsigned char message[] = {0x81, 0, 0, 0, 1, 2, 3, 4};
     start();
     CHECK(epg_xrce_link_send(&link, message, sizeof message));
-    arrive(line.out, line.out_length); /* as it went out: to the agent */
+    arrive(line.out, line.out_length); /* unchanged: addressed to the agent */
     CHECK_EQUAL(epg_xrce_link_receive(&link), 0);
     CHECK_EQUAL(link.broken, 0);
 }

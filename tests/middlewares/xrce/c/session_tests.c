@@ -1,6 +1,6 @@
 /**
  * @file
- * The middleware and eProsima's client against the least of an agent, in the clock of the test.
+ * The middleware and eProsima's client against a minimal agent, in the clock of the test.
  */
 #include "agent.h"
 #include "check.h"
@@ -12,7 +12,7 @@
 enum { HISTORY = 4, MTU = 384, PERIOD_MS = 33, MS = 1000000 };
 enum { DELETE = 0x03, ACKNACK = 0x0A, HEARTBEAT = 0x0B };
 
-/** One value out, one in, and the topic that enables. */
+/** One published value, one setpoint, and the topic that enables. */
 static const epg_topic_t publications[] = {
     {.name = "kept", .message = &epg_message_float64, .size = 8, .depth = 10, .count = 1, .period_ns = PERIOD_MS * MS},
 };
@@ -70,7 +70,7 @@ static uint64_t now_ms(void)
     return fake_port.now_ns / MS;
 }
 
-/** A control cycle and a poll in each of `milliseconds`. */
+/** Runs a control cycle and a poll in each of `milliseconds`. */
 static void run(unsigned int milliseconds)
 {
     for (unsigned int i = 0; i < milliseconds; i++) {
@@ -84,7 +84,7 @@ static epg_xrce_state_t state(void)
     return epg_xrce_status().state;
 }
 
-/** Until it is running, or 5 s; returns the milliseconds. */
+/** Runs until the middleware is serving, at most 5 s; returns the milliseconds. */
 static uint64_t connect(void)
 {
     const uint64_t began = now_ms();
@@ -140,7 +140,7 @@ TEST(without_an_agent_it_asks_less_and_less_often)
         }
     }
     CHECK_EQUAL(found, sizeof expected / sizeof expected[0]);
-    CHECK_EQUAL(agent_count(DELETE), found); /* takes leave of an older session before each */
+    CHECK_EQUAL(agent_count(DELETE), found); /* each one first closes the older session */
     agent.absent = false;
     CHECK(connect() <= 520);
     CHECK_EQUAL(fake.control.reconnects, 0);
@@ -199,14 +199,14 @@ TEST(what_is_lost_is_asked_for_and_sent_again)
     const unsigned int samples = agent.samples;
     const unsigned int heartbeats = agent.heartbeats;
     agent.losing = 1;
-    run(PERIOD_MS + 2); /* that one is lost, and the next arrives too early */
+    run(PERIOD_MS + 2); /* that frame is lost, and the next arrives too early */
     CHECK(agent.losing == 0);
     run(60);
     CHECK(agent.heartbeats > heartbeats);
     run(5 * PERIOD_MS);
     CHECK(agent.samples >= samples + 6);
     for (unsigned int i = 1; i < agent.samples; i++) {
-        CHECK(agent.values[i] > agent.values[i - 1]); /* each once, in order */
+        CHECK(agent.values[i] > agent.values[i - 1]); /* each sample once, in order */
     }
 }
 
@@ -217,9 +217,9 @@ TEST(a_full_history_blocks_nothing_and_then_gives_the_newest_value)
     run(100);
     agent.loses_every = true;
     const size_t before = agent.sent_count;
-    run(25 * PERIOD_MS); /* pings are answered: it is connected all the while */
+    run(25 * PERIOD_MS); /* pings are answered: the board stays connected */
     CHECK(state() == EPG_XRCE_RUNNING);
-    for (size_t i = before; i < agent.sent_count; i++) { /* however often each is sent */
+    for (size_t i = before; i < agent.sent_count; i++) { /* however often each frame is sent */
         const unsigned char *data = agent.sent[i].data;
         CHECK(data[1] != 0x80 || (uint16_t)((data[2] | data[3] << 8) - agent.expected) < HISTORY);
     }
@@ -273,7 +273,7 @@ TEST(numbers_that_no_agent_has_do_no_harm)
         run(1);
     }
     if (state() != EPG_XRCE_RUNNING) {
-        (void)connect(); /* it may begin anew, and does */
+        (void)connect(); /* it may connect again, and does */
     }
     const unsigned int samples = agent.samples;
     run(20 * PERIOD_MS);

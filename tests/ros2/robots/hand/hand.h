@@ -13,7 +13,7 @@ typedef struct {
 typedef struct {
     double angle_left;  /**< rad */
     double angle_right; /**< rad */
-    double duty_seen;   /**< largest there has been: 0 says that the motors have been off all the time */
+    double duty_seen;   /**< largest duty so far; 0 if the motors were never on */
 } hand_outputs_t;
 
 void hand_init(const hand_inputs_t *inputs, hand_outputs_t *outputs);

@@ -1,4 +1,4 @@
-/** What a model sees, given back; and how often it has run since it was initialised. */
+/** A model whose outputs are its inputs, and the number of steps since it was initialised. */
 typedef struct {
     double reliable, quick, held, zeroed;
 } robot_inputs_t;
