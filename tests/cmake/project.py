@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Small CMake projects for tests: configure, build, and see what was done."""
+"""Small CMake projects for tests: configure, build, and see the effects."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ NINJA = shutil.which("ninja")
 
 @dataclass
 class Project:
-    """A copy of ``projects/<name>`` with its neighbours, and a build folder beside it."""
+    """A copy of ``projects/<name>`` with the folders beside it, and a build folder next to it."""
 
     folder: Path
     name: str
@@ -39,7 +39,7 @@ class Project:
         return self.folder / "build"
 
     def configure(self, *arguments: str, generator: str = "", epg_dir: bool = True, check: bool = True) -> str:
-        """Configures; returns all that was printed.  Without ``generator``: Ninja where it is installed, else Make."""
+        """Configures; returns the whole output.  Without ``generator``: Ninja if it is installed, else Make."""
         generator = generator or ("Ninja" if NINJA else "Unix Makefiles")
         if generator.startswith("Ninja") and not NINJA:
             pytest.skip("Ninja is not installed: apt install ninja-build")
@@ -49,11 +49,11 @@ class Project:
         return self._run(command, check)
 
     def build(self, *arguments: str, check: bool = True) -> str:
-        """Builds; returns all that was printed."""
+        """Builds; returns the whole output."""
         return self._run(["cmake", "--build", str(self.build_folder), "--verbose", *arguments], check)
 
     def fails_to_configure(self, *arguments: str, **options: object) -> str:
-        """Configures, expects it to fail, and returns what was printed."""
+        """Configures, expects an error, and returns the output."""
         output = self.configure(*arguments, check=False, **options)  # type: ignore[arg-type]
         assert "CMake Error" in output, output
         return output
@@ -64,7 +64,7 @@ class Project:
         text = path.read_text(encoding="utf-8")
         assert old in text
         path.write_text(text.replace(old, new), encoding="utf-8")
-        # file systems and make compare whole seconds at worst
+        # some file systems, and make, compare only whole seconds
         later = path.stat().st_mtime + 2
         os.utime(path, (later, later))
 
@@ -78,7 +78,7 @@ class Project:
 
 
 def compiled(output: str) -> set[str]:
-    """Names of the sources that a build has compiled."""
+    """The names of the sources that a build has compiled."""
     return {Path(found).name for found in re.findall(r" -c (?:\S*/)?(\S+\.(?:c|cpp))\b", output)}
 
 

@@ -24,7 +24,7 @@ SETPOINTS = """time,topic,value
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> tuple[list[dict[str, float]], dict[str, object], str]:
-    """Trace by millisecond, statistics and published values of one run."""
+    """The trace by millisecond, statistics and published values of one run."""
     project = Project(tmp_path_factory.mktemp("all_kinds"), "all_kinds")
     project.configure()
     project.build()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Small libraries that the build compiles are fetched by CMake when they are nowhere: pinned, whole or not at all."""
+"""CMake fetches small libraries that the build needs and that are missing: a fixed version, completely or not at all."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def git(folder: Path, *arguments: str) -> str:
 
 
 class World:
-    """A repository with a library, EPG's data with a tool that is it, and an empty cache."""
+    """A repository with a library, EPG's data with a tool for that library, and an empty cache."""
 
     def __init__(self, folder: Path) -> None:
         self.repository = folder / "repository"
@@ -127,7 +127,7 @@ def test_it_can_be_forbidden(world: World) -> None:
 
 @pytest.mark.skipif(os.name == "nt", reason="EPG: the user's folders are private on Windows")
 def test_a_cache_that_others_may_write_is_not_used(world: World) -> None:
-    """What is in it is included by the configure step."""
+    """The configure step includes files of the cache."""
     world.find()
     world.cache.chmod(0o757)
     done = subprocess.run(

@@ -42,7 +42,7 @@ def test_side_by_side(built: Project) -> None:
 
 
 def test_in_a_target(built: Project) -> None:
-    """Its period is the FMU's step."""
+    """The period is the step of the FMU."""
     command = [built.build_folder / "servo_host", "--duration", "0.2"]
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
@@ -50,14 +50,14 @@ def test_in_a_target(built: Project) -> None:
 
 
 def test_the_console_offers_what_can_be_changed(built: Project) -> None:
-    """A fixed parameter has its value from the start on."""
+    """A fixed parameter cannot be changed after the start."""
     table = (built.build_folder / "epg/servo/servo_app.c").read_text().partition("parameter_table[] = {")[2]
     names = re.findall(r'\.name = "([^"]+)"', table.partition("};")[0])
     assert names == ["PI.kp", "PI.ki"]
 
 
 def test_a_changed_archive_is_unpacked_and_compiled_again(built: Project, tmp_path: Path) -> None:
-    """Only what is another file in it, and nothing without a change."""
+    """Only files that have changed in the archive are compiled; without a change, none is."""
     assert compiled(built.build()) == set()
     fmu = changed(FMU2, tmp_path / "fmu", "sources/law.c", ("limit(duty);", "limit(0.5 * duty);"))
     path = pack(fmu, built.source / ARCHIVE)

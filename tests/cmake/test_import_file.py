@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The copied ``epg_import.cmake``: where it looks, in which order, and what it says."""
+"""The copied ``epg_import.cmake``: the places that it searches, their order, and its messages."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ BUILD_PROGRAM = "ninja" if shutil.which("ninja") else "make"
 
 
 class User:
-    """Somebody with a project that has copied the file, checkouts (stand-ins), and programs on the PATH."""
+    """A user with a project that has copied the file, replacements of checkouts, and programs on the PATH."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -37,19 +37,19 @@ class User:
         shutil.copy(CMAKE_DIR / "epg_import.cmake", self.source)
         self.programs = folder / "programs"
         self.programs.mkdir()
-        # nothing but CMake and what is put beside it, so that this computer's own EPG is out of reach
+        # only CMake and the programs of the test, so that this computer's own EPG cannot be found
         for name in ("cmake", BUILD_PROGRAM, "sh"):
             (self.programs / name).symlink_to(shutil.which(name) or name)
 
     def checkout(self, name: str) -> Path:
-        """A stand-in for EPG's repository."""
+        """A replacement of EPG's repository."""
         cmake = self.folder / name / "cmake"
         cmake.mkdir(parents=True)
         (cmake / "EPGConfig.cmake").write_text(STAND_IN)
         return cmake.parent
 
     def program(self, name: str, leads_to: Path, arguments: str) -> None:
-        """A program that answers ``<name> <arguments>`` with the folder of a checkout, and notes that it was asked."""
+        """A program that answers ``<name> <arguments>`` with the folder of a checkout, and records each call."""
         file = self.programs / name
         file.write_text(
             f'#!/bin/sh\necho {name} >>"{self.folder}/asked"\n'
@@ -177,7 +177,7 @@ def test_a_wrong_dir_is_named(user: User) -> None:
 
 
 def test_west_is_asked_for_the_workspaces_epg(user: User) -> None:
-    """When west configures; what it said is kept, and `pip`'s goes after it. The real west: tests/zephyr."""
+    """If west configures, its answer is kept and has priority over `pip`'s.  The real west: tests/zephyr."""
     workspace, installed = user.checkout("workspace/epg"), user.checkout("installed")
     user.program("python3", installed, "-m epg --cmake-dir")
     west = user.programs / "west_python"
@@ -201,7 +201,7 @@ def test_a_workspace_without_epg(user: User) -> None:
 
 
 def test_an_image_of_sysbuild(user: User) -> None:
-    """What was given to sysbuild is in a file; an image is told where that is."""
+    """A file contains the variables that were given to sysbuild; an image gets the path of that file."""
     checkout = user.checkout("some where")
     cache = user.folder / "sysbuild_cache.txt"
     cache.write_text(f"BOARD:STRING=rpi_pico\nEPG_PATH:UNINITIALIZED={checkout}\nOTHER_EPG_PATH:PATH=/nowhere\n")

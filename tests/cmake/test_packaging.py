@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Wheels and editable installs carry the same files as the checkout, and CMake finds them."""
+"""Wheels and editable installations have the same files as the checkout, and CMake finds them."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ TREES = (
 
 @pytest.fixture(scope="module")
 def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """EPG's wheel, made of the checkout."""
+    """EPG's wheel, made from the checkout."""
     folder = tmp_path_factory.mktemp("wheel")
     code = (
         "import sys; from hatchling.builders.wheel import WheelBuilder;"
@@ -41,7 +41,7 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def prefix(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """An installation of the wheel, laid out as pip lays it out."""
+    """An installation of the wheel, in the folders that pip uses."""
     folder = tmp_path_factory.mktemp("prefix")
     site = folder / f"lib/python{sys.version_info[0]}.{sys.version_info[1]}/site-packages"
     with zipfile.ZipFile(wheel) as archive:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Projects that use EPG as a user would."""
+"""Projects that use EPG as a user does."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def test_a_comment_in_the_tcf_compiles_nothing(robot: Project) -> None:
 
 
 def test_a_changed_value_is_noticed_and_compiles_the_tables_only(robot: Project) -> None:
-    robot.configure(generator="Ninja")  # Make says less of what it compiles
+    robot.configure(generator="Ninja")  # Make prints less about compiled files
     robot.build()
     robot.edit("robot.tcf", "counts_per_revolution: 4096", "counts_per_revolution: 2048")
     assert "robot_app.c" in compiled(robot.build())
@@ -55,7 +55,7 @@ def test_a_changed_value_is_noticed_and_compiles_the_tables_only(robot: Project)
 
 
 def test_a_changed_model_is_noticed(robot: Project) -> None:
-    robot.configure(generator="Ninja")  # Make says less of what it compiles
+    robot.configure(generator="Ninja")  # Make prints less about compiled files
     robot.build()
     robot.edit("model/controller.c", "outputs->reset = 0.0", "outputs->reset = 1.0")
     assert "controller.c" in compiled(robot.build())
@@ -87,7 +87,7 @@ def test_a_mistake_in_the_first_configuration_leaves_nothing_half_written(robot:
 def test_the_browser_is_not_offered_where_epg_itself_does_not_run(robot: Project) -> None:
     cache = robot.folder / "cache"
     cache.mkdir()
-    cache.chmod(0o777)  # EPG runs nothing in a cache that others may change
+    cache.chmod(0o777)  # EPG runs no program from a cache that others may change
     robot.environment["EPG_CACHE"] = str(cache)
     output = robot.fails_to_configure()
     assert "EPG does not use its cache" in output
@@ -236,7 +236,7 @@ def test_paths_that_cmake_or_make_would_read_otherwise(robot: Project, name: str
 
 
 def test_a_target_before_project(robot: Project) -> None:
-    """As in an application of Zephyr, where targets for Zephyr stand before find_package(Zephyr)."""
+    """As in an application of Zephyr, in which targets for Zephyr come before find_package(Zephyr)."""
     robot.edit("CMakeLists.txt", "project(robot LANGUAGES C)", "")
     robot.edit("CMakeLists.txt", "epg_add_executable", "project(robot LANGUAGES C)\nepg_add_executable")
     output = robot.fails_to_configure()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""When a configure run starts Python, and what it touches: nothing, unless something changed that matters."""
+"""A configure run starts Python and changes files only if one of its inputs has changed."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ api: 1
 
 
 class Watched:
-    """A project whose every start of a Python is counted."""
+    """A project in which every start of Python is counted."""
 
     def __init__(self, folder: Path, name: str = "robot") -> None:
         hook = folder / "hook"
@@ -40,8 +40,8 @@ class Watched:
         self.outputs = self.project.build_folder / "epg"
 
     def configure(self, *arguments: str, **options: object) -> int:
-        """Configures; returns how many Pythons were started."""
-        time.sleep(0.02)  # what was edited before is older than what comes now
+        """Configures; returns the number of starts of Python."""
+        time.sleep(0.02)  # earlier edits must be older than the files that follow
         self.log.unlink(missing_ok=True)
         self.output = self.project.configure(*arguments, **options)  # type: ignore[arg-type]
         return len(self.log.read_text().splitlines()) if self.log.exists() else 0
@@ -147,7 +147,7 @@ def test_files_beside_a_models_folder_are_noticed(robot: Watched) -> None:
     robot.replace("common/xxtypes.h", "double", "long double")
     assert robot.configure() > 0
     assert robot.configure() == 0
-    robot.write(source / "include" / "xxtypes.h", (source / "common" / "xxtypes.h").read_text())  # says the same
+    robot.write(source / "include" / "xxtypes.h", (source / "common" / "xxtypes.h").read_text())  # the same contents
     assert robot.configure() > 0
     assert robot.configure() == 0
     robot.replace("include/xxtypes.h", "long double", "float")
@@ -272,7 +272,7 @@ def test_warnings_are_said_again(robot: Watched) -> None:
 
 
 def test_a_file_edited_while_the_generator_runs_is_read_again(robot: Watched) -> None:
-    """A time in the future stands for one later than the start of the run."""
+    """A time in the future is used for an edit after the start of the run."""
     robot.replace("robot.tcf", "4096", "2048")
     later = time.time() + 3600
     os.utime(robot.project.source / "robot.tcf", (later, later))
@@ -288,14 +288,14 @@ def test_the_build_itself_notices_a_new_file_in_the_models_folder(tmp_path: Path
     watched = Watched(tmp_path)
     watched.configure(generator=generator)
     watched.project.build()
-    time.sleep(1.1)  # make compares what its file system keeps
+    time.sleep(1.1)  # make compares the times that its file system stores
     watched.write(watched.project.source / "model/notes.txt", "")
     assert "Configuring done" in watched.project.build()
     assert "Configuring done" not in watched.project.build()
 
 
 def test_a_model_around_the_build_folder_does_not_configure_without_end(tmp_path: Path) -> None:
-    """An in-source build: CMake writes its files among the model's."""
+    """An in-source build: CMake writes its files into the model's folder."""
     watched = Watched(tmp_path)
     source = watched.project.source
     for path in list((source / "model").iterdir()):

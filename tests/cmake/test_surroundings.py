@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What EPG generates depends on the files it reads, and on nothing around them."""
+"""EPG's output depends only on the files that it reads, and not on the environment."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ import pytest
 
 from tests.cmake.project import ROOT
 
-#: beginnings of variables that could change what is generated: no surroundings have them unless they say so
+#: Beginnings of variables that could change the output: no case has them unless it sets them.
 SET_BY_CASES = ("LC_", "LANG", "TZ", "PYTHONHASHSEED", "PYTHONUTF8", "PYTHONIOENCODING", "EPG_", "COLUMNS", "NO_COLOR")
 
 
@@ -26,7 +26,7 @@ class Surroundings:
     folder: str = "project"
     epg: str = "epg"
     umask: int = 0o022
-    locale: str = ""  #: must be installed for this case to mean something
+    locale: str = ""  #: must be installed for this case
     arguments: tuple[str, ...] = ()
 
 
@@ -58,7 +58,7 @@ epg_add_model(tokens_only MODEL tokens)
 
 
 def generated(around: Surroundings, folder: Path) -> dict[str, bytes]:
-    """Every file that the configuration of a project with two targets and two models leaves in ``<build>/epg``."""
+    """Every file in ``<build>/epg`` after configuring a project with two targets and two models."""
     epg, project = folder / around.epg, folder / around.folder
     for tree in ("cmake", "epg", "schemas", "targets", "docs"):
         shutil.copytree(ROOT / tree, epg / tree, ignore=shutil.ignore_patterns("__pycache__"))

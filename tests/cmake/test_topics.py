@@ -62,7 +62,7 @@ def test_initial_values_are_those_of_the_component(published: dict[tuple[str, fl
 
 
 def test_velocities_time_out_and_positions_do_not(folder: Path) -> None:
-    """Twist has velocities, of 0.5 s unless the .tcf says otherwise; a JointState's positions stay."""
+    """Twist has velocities, with a timeout of 0.5 s unless the .tcf sets another; a JointState's positions stay."""
     text = (folder / "epg" / "by_files" / "by_files_app.c").read_text()
     setpoints = text[text.index("static const epg_setpoint_t setpoints") : text.index("static epg_setpoint_sample_t")]
     timeouts = [line.split("=")[1].strip(" ,") for line in setpoints.splitlines() if ".timeout_ns" in line]
@@ -79,7 +79,7 @@ def test_unknown_values_are_told_with_those_there_are(folder: Path) -> None:
 
 
 def test_console(folder: Path) -> None:
-    """The console has the same names; a console beside a console is that console."""
+    """The console uses the same names; if it is already the middleware, an additional console is the same one."""
     command = [folder / "by_console_host", "--realtime", "--console", "--serial", "A1", "--duration", "0.5"]
     lines = "cmd_vel/linear_x=2 cmd_vel/angular_z=0.5\nget node\nget namespace\nports\n"
     done = subprocess.run(command, input=lines, capture_output=True, text=True, check=False, cwd=folder)
@@ -108,7 +108,7 @@ def test_description(folder: Path) -> None:
 
 
 def test_a_ros_2_node_has_more_topics(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Generated only: what it takes to compile the middleware is not everywhere."""
+    """Only generated, because not every computer can compile this middleware."""
     monkeypatch.chdir(PROJECTS / "topics")
     command = ["generate", "robot", "--tcf", "robot.tcf", "--model", "model", "--bindings", "bindings.yaml"]
     assert main([*command, "--output", str(tmp_path), "--set", "communication.middleware=xrce"]) == 0

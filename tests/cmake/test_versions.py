@@ -17,7 +17,7 @@ NEXT = "98.1"
 
 @pytest.fixture(scope="module", params=["checkout", "wheel"])
 def folder(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with EPGConfig.cmake and the answers about its version."""
+    """A folder with EPGConfig.cmake and the file that answers questions about its version."""
     if request.param == "checkout":
         return CMAKE_DIR
     installed = tmp_path_factory.mktemp("share")

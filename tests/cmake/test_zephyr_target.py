@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""epg_add_target() before find_package(Zephyr): what Zephyr is given, in every way that users set its variables.
+"""epg_add_target() before find_package(Zephyr): the variables that Zephyr gets, for every way in which users set them.
 
-Zephyr's package is a stand-in with its rules for variables; tests/zephyr builds with the real one.
+A replacement of Zephyr's package has the same rules for variables; tests/zephyr builds with the real one.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from tests.cmake.project import ROOT, Project, snapshot
 
 CONFIG = "EPG=y;GPIO=y;PWM=y;SENSOR=y;NUM_METAIRQ_PRIORITIES=1"
 FINE = (f"-DCONFIG={CONFIG}", "-DNODES=epg_robot;pwm", "-DFAKE_/pwm_divider-int-1=1")
-"""What Zephyr makes of EPG's shield when nobody says otherwise."""
+"""Zephyr's default result for EPG's shield."""
 
 
 @pytest.fixture
@@ -28,13 +28,13 @@ def project(tmp_path: Path) -> Project:
 
 
 def seen(output: str, what: str) -> str:
-    """What the stand-in has got."""
+    """The value that the replacement of Zephyr's package has got."""
     (found,) = re.findall(rf"^-- {what}: ?(.*)$", output, re.MULTILINE)
     return str(found)
 
 
 def joined(output: str) -> str:
-    """What CMake prints, without its line breaks."""
+    """CMake's output without its line breaks."""
     return " ".join(output.split())
 
 
@@ -49,7 +49,7 @@ def test_board_shield_and_module_are_given_to_zephyr(project: Project) -> None:
 
 
 def test_a_second_run_changes_nothing_and_starts_no_python(project: Project, tmp_path: Path) -> None:
-    """Zephyr's own scripts are Python; EPG's interpreter is one that leaves a trace of every start."""
+    """Zephyr's own scripts are Python; the interpreter for EPG is one that records every start."""
     python = tmp_path / "python"
     log = tmp_path / "starts"
     python.write_text(f'#!/bin/sh\necho start >> "{log}"\nexec "{sys.executable}" "$@"\n')
@@ -114,7 +114,7 @@ def test_an_application_that_was_built_before_gains_the_target(project: Project)
         *itertools.product(
             ("command line", "environment", "project"), ("EXTRA_ZEPHYR_MODULES", "ZEPHYR_EXTRA_MODULES")
         ),
-        ("project afterwards", "EXTRA_ZEPHYR_MODULES"),  # Zephyr reads one of the two, which is EPG's by then
+        ("project afterwards", "EXTRA_ZEPHYR_MODULES"),  # Zephyr reads one of the two, which EPG has set by then
     ],
 )
 def test_a_users_modules_stay(project: Project, variable: str, way: str, tmp_path: Path) -> None:
@@ -227,7 +227,7 @@ def test_every_difference_is_reported_at_once(project: Project) -> None:
 def test_the_target_that_connects_says_how_zephyr_is_built(
     project: Project, given: tuple[str, ...], built_by: str, above: str
 ) -> None:
-    """By west if west configures; an image of sysbuild in the folder around its own."""
+    """By west if west configures; an image of sysbuild is built in the folder around its own."""
     project.configure(*FINE, *(f"-D{name}={sys.executable}" for name in given), *(["-DSYSBUILD=ON"] if above else []))
     rules = (project.build_folder / "build.ninja").read_text()
     (said,) = re.findall(r"__main__\.py connect --name robot .*--build-dir (\S+) --built-by (\w+)", rules)

@@ -17,7 +17,7 @@ def job_of(folder: Path) -> Job:
 
 
 def run(job: Job) -> Build:
-    """A build, after its end."""
+    """Runs a build to its end."""
     build = Build(job, lambda: None)
     build.start()
     assert build.wait(600), build.lines(0)
@@ -25,7 +25,7 @@ def run(job: Job) -> Build:
 
 
 def processes(folder: Path) -> list[str]:
-    """Command lines of all that runs in or for a folder."""
+    """The command lines of all processes that run in a folder or name it."""
     found = []
     for entry in Path("/proc").glob("[0-9]*"):
         try:

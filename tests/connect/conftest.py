@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Projects to connect, each test with a copy of its own."""
+"""Fixtures: projects to connect; each test has its own copy."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 
 @pytest.fixture(scope="session")
 def new_project(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """What ``epg new`` writes for JIWY on a Raspberry Pi Pico."""
+    """The project that ``epg new`` writes for JIWY on a Raspberry Pi Pico."""
     folder = tmp_path_factory.mktemp("new") / "robot"
     request = ProjectRequest("robot", folder, "rpi_pico_bare_metal_jiwy", ROOT / "examples/jiwy/model")
     write_project(request, Diagnostics())

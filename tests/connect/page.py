@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the page of ``epg connect`` does, without a browser: requests to a server that runs."""
+"""The page of ``epg connect`` without a browser: its requests to a running server."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Denied(Exception):
 
 
 class Page:
-    """One page, opened by an address that nobody has used before."""
+    """One page, opened by an unused address."""
 
     def __init__(self, address: str) -> None:
         self.site, token = urldefrag(address)
@@ -59,7 +59,7 @@ class Page:
         return self.json(f"api/state?after={after}")
 
     def until(self, wanted: Any, seconds: float = 15) -> dict[str, Any]:
-        """The first state of which ``wanted`` is true; as the page does it, by asking for the next one."""
+        """The first state for which ``wanted`` is true; like the page, it asks for the next state each time."""
         state = self.state()
         end = time.monotonic() + seconds
         while not wanted(state):
@@ -71,7 +71,7 @@ class Page:
         return json.loads(self._open(f"api/{action}", json.dumps(body).encode(), JSON)[0])
 
     def generate(self) -> dict[str, Any]:
-        """Generates, and agrees to what that runs."""
+        """Generates, and agrees to run the listed commands."""
         state = self.post("generate")
         ask = state["build"]["ask"]
         return self.post("generate", run=ask["key"]) if ask is not None else state
@@ -82,7 +82,7 @@ class Page:
 
 @contextmanager
 def serving(session: Session) -> Iterator[Page]:
-    """A page of ``session``, on a server of its own."""
+    """A page of ``session`` on its own server."""
     with serving_pages(session) as open_page:
         yield open_page()
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`epg connect` as a program of its own: whatever starts it, until it says its address."""
+"""`epg connect` as a separate program, started by any command, until it prints its address."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tests.connect.page import Page
 
 @contextmanager
 def started(command: Sequence[str], folder: Path | None = None) -> Iterator[tuple[Page, subprocess.Popen[str]]]:
-    """Runs ``command`` in a process group of its own, as a shell does, where there is no browser."""
+    """Runs ``command`` in its own process group, as a shell does, without a browser."""
     hidden = ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
     environment = {name: value for name, value in os.environ.items() if name not in hidden}
     process = subprocess.Popen(
@@ -45,7 +45,7 @@ def started(command: Sequence[str], folder: Path | None = None) -> Iterator[tupl
 
 
 def generate(page: Page, seconds: float = 120) -> dict[str, object]:
-    """Builds, and waits for the end; what the build says of itself."""
+    """Builds and waits for the end; returns the build's report."""
     page.generate()
     state = page.until(lambda state: state["build"]["state"] not in ("idle", "running"), seconds)
     return dict(state["build"])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whatever stands in the files, and whatever is done to them: no exception but refusals, and files that agree."""
+"""Any contents of files and any edits: EPG refuses an edit or makes it, without an exception, and files stay consistent."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def any_edit(editor: Editor, chance: random.Random) -> None:
 
 
 def shown(editor: Editor) -> dict[str, Any]:
-    """What is shown, which must be JSON, with every picture that is offered."""
+    """The shown data, which must be JSON, with every offered picture."""
     state = editor.show()
     for name, offered in state["pictures"].items():
         assert (draw(editor.loaded, name, "robot") is not None) == offered
@@ -69,7 +69,7 @@ def shown(editor: Editor) -> dict[str, Any]:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_saved_files_say_what_was_shown(seed: int, project: Path, bindings: Path) -> None:
-    """Any edits, undone and done again at times: who opens the saved files sees the same."""
+    """Any edits, some undone and done again: a session that opens the saved files shows the same data."""
     chance = random.Random(seed)
     job = job_of(project)
     editor = Editor(job)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Builds that `epg connect` runs: real ones, with real tools, of copies of an example."""
+"""Builds that `epg connect` runs: real builds with real tools, on copies of an example."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ COMPONENT = "position_pan: encoder_pan"
 
 @pytest.fixture(scope="module")
 def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """JIWY on the host, built once; the folder's name has a blank."""
+    """JIWY on the host, built once; the folder's name contains a space."""
     folder = tmp_path_factory.mktemp("jiwy") / "a robot"
     shutil.copytree(ROOT / "examples/jiwy", folder)
     edit(folder / "CMakeLists.txt", "${CMAKE_CURRENT_SOURCE_DIR}/../..", ROOT.as_posix())
@@ -44,7 +44,7 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def robot(built: Path) -> Iterator[Path]:
-    """The project that is built; its files are afterwards what they were."""
+    """The project with a build; afterwards its files are restored."""
     before = {path: path.read_text() for path in built.iterdir() if path.is_file()}
     yield built
     for path in built.iterdir():
@@ -64,7 +64,7 @@ def messages(build: Build) -> list[tuple[str, str, int]]:
     return [(found["message"], Path(found["file"]).name, found["line"]) for found in build.state()["messages"]]
 
 
-# what is built --------------------------------------------------------------------------------------------------------
+# targets and products -----------------------------------------------------------------------------------------------
 
 
 def test_a_project_is_configured_and_built_and_its_program_runs(robot: Path) -> None:
@@ -111,7 +111,7 @@ def test_an_executable_of_ones_own_is_a_product_and_others_are_not(robot: Path) 
     assert (robot / "build/other").is_file(), "all targets are built, as by cmake --build"
 
 
-# what goes wrong ------------------------------------------------------------------------------------------------------
+# errors ------------------------------------------------------------------------------------------------------
 
 
 def test_a_mistake_in_the_bindings_is_said_once_in_epgs_words(robot: Path) -> None:
@@ -201,7 +201,7 @@ def test_an_sdk_that_is_missing_comes_with_the_command_that_gets_it(
 def test_a_compiler_that_is_missing_is_named_as_doctor_does(
     pico: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Whatever CMake says of it first."""
+    """EPG names it even if CMake reports it first."""
     (tmp_path / "bin").mkdir()
     for program in ("cmake", "ninja", "python3"):
         found = shutil.which(program)
@@ -266,7 +266,7 @@ def test_cancelling_before_the_start_and_twice(robot: Path) -> None:
     assert build.wait(20) and build.state()["state"] == "cancelled"
 
 
-# how it is run --------------------------------------------------------------------------------------------------------
+# the run itself -----------------------------------------------------------------------------------------------------
 
 
 def plan_of(job: Job) -> tuple[list[tuple[str, ...]], dict[str, str]]:
@@ -330,7 +330,7 @@ def test_nothing_of_this_process_reaches_the_build(
 
 
 def test_a_build_inside_a_build_is_no_part_of_it(robot: Path, tmp_path: Path) -> None:
-    """As the target <name>_connect is started by Make, with the colours somebody wants."""
+    """Started as Make starts the target <name>_connect, with colours that a user has enabled."""
     script = tmp_path / "inside.py"
     script.write_text(
         f"import sys\nfrom pathlib import Path\nsys.path.insert(0, {str(ROOT)!r})\n"

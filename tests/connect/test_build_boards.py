@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Builds that `epg connect` runs for boards: what they make for people, and how west is started."""
+"""Builds that `epg connect` runs for boards: the products that they list, and the start of west."""
 
 from __future__ import annotations
 
@@ -80,6 +80,6 @@ def load_target(job: Job) -> Target:
 
 
 def west() -> None:
-    """Raises Missing where Zephyr's Python has no west beside it."""
+    """Raises Missing if Zephyr's Python does not have west."""
     if not (workspace().python.parent / "west").exists():
         raise Missing(f"west is not installed: {workspace().python} -m pip install west")

@@ -31,7 +31,7 @@ def robot(request: pytest.FixtureRequest, tmp_path: Path) -> Project:
 
 
 def test_a_build_within_the_build(robot: Project) -> None:
-    """Twice with a change between, which configures again; afterwards everything is up to date, and nothing is lost."""
+    """Two builds with a change between that configures again; afterwards everything is up to date and complete."""
     with started(build_command(robot, "-j2")) as (page, process):
         state = page.state()
         assert state["project"]["name"] == "robot" and state["phase"] == "connect"
@@ -82,7 +82,10 @@ def test_ctrl_c_ends_it(robot: Project) -> None:
 
 
 def test_where_configuring_fails_a_script_does_the_same(robot: Project) -> None:
-    """CMake writes no build files then: the message names a script, and what is generated in the page is the mend."""
+    """CMake writes no build files then.
+
+    The message names a script, and generating on the page corrects the mistake.
+    """
     script = robot.build_folder / "epg" / "robot_connect.cmake"
     assert not script.exists()
     robot.edit("bindings.yaml", "go: button, ", "")
@@ -102,7 +105,7 @@ def test_where_configuring_fails_a_script_does_the_same(robot: Project) -> None:
 
 
 def test_what_is_not_understood_is_said_at_once(tmp_path: Path) -> None:
-    """Before the page opens: it is about another target than the one that is shown."""
+    """The message comes before the page opens, because it is not about the target that the page shows."""
     app = shutil.copytree(ROOT / "examples" / "jiwy", tmp_path / "app", ignore=shutil.ignore_patterns("build*"))
     with (app / "CMakeLists.txt").open("a", encoding="utf-8") as file:
         file.write("epg_add_target(${other} TCF other.tcf MODEL model BINDINGS other.bindings.yaml)\n")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files of a session: saved at once and whole, as they were otherwise; edits by others are noticed."""
+"""Files of a session: saved at once and completely, otherwise unchanged; edits by other programs are detected."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ while True:
 
 
 def test_a_file_is_never_half_written(tmp_path: Path) -> None:
-    """A process that saves without a pause is killed in the middle, many times; readers look on meanwhile."""
+    """A process that saves without a pause is killed many times while others read: readers see only whole files."""
     path = tmp_path / "robot.bindings.yaml"
     whole = {b"a" * 200_000 + b"\n", b"b" * 200_000 + b"\n"}
     path.write_bytes(b"a" * 200_000 + b"\n")
@@ -124,7 +124,7 @@ def test_a_link_out_of_the_project_is_not_followed(project: Path, bindings: Path
 
 
 def test_links_above_the_project_are_none_of_its_own(project: Path, tmp_path: Path) -> None:
-    """A project that is reached through a link, and a folder in it that is a link to elsewhere."""
+    """A project that is reached through a link, and a folder in it that is a link to another place."""
     (tmp_path / "link").symlink_to(project)
     with serving(session_of(tmp_path / "link")) as page:
         page.connect("setpoint_pan", "tilt_subscriber")
@@ -139,7 +139,7 @@ def test_links_above_the_project_are_none_of_its_own(project: Path, tmp_path: Pa
         save(before, before.with_text("two\n"), project=project)
     assert (outside / "a.yaml").read_text() == "one\n"
     named = read_snapshot(outside / "a.yaml")
-    save(named, named.with_text("two\n"), project=project)  # whoever names a file elsewhere means it
+    save(named, named.with_text("two\n"), project=project)  # a file that the user has named may be elsewhere
     assert (outside / "a.yaml").read_text() == "two\n"
 
 
@@ -226,7 +226,7 @@ def test_what_was_read_counts_not_what_is_there(tmp_path: Path) -> None:
 
 
 def test_a_session_that_is_killed_leaves_files_whole(project: Path, bindings: Path) -> None:
-    """The whole program, killed while a page saves again and again."""
+    """The whole program is killed while a page saves repeatedly."""
     texts = {bindings.read_text()}
     for number in range(3):
         command = [sys.executable, str(ROOT / "epg"), "connect", str(project), "--no-browser"]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""From the page to a program: a project for this computer is created, generated, broken and mended."""
+"""From the page to a program: a project for this computer is created, generated, broken and corrected."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def test_what_is_run_is_said_once_for_a_folder(
 def test_a_program_of_the_build_folder_is_not_started_before_it_is_named(
     host_page: Page, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A folder from elsewhere may bring its own build folder, in whose cache any program can stand."""
+    """A folder from another person may contain a build folder, whose cache can name any program."""
     monkeypatch.setenv("EPG_CACHE", str(tmp_path / "cache"))
     folder, started = tmp_path / "a robot", tmp_path / "started"
     program = tmp_path / "evil"
@@ -96,7 +96,7 @@ def test_mistakes_are_not_built(host_page: Page) -> None:
 
 
 def test_a_message_of_the_build_finds_its_port(host_page: Page, tmp_path: Path) -> None:
-    """An editor puts a mistake into the bindings after the build has begun."""
+    """An editor makes a mistake in the bindings after the build has begun."""
     page = host_page
     bindings = tmp_path / "a robot/robot.bindings.yaml"
     page.generate()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is read out of the output of CMake, compilers, linkers and EPG: of tools that are run here, else as captured."""
+"""The messages in the output of CMake, compilers, linkers and EPG; recorded output for tools that do not run here."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def read(text: str, *folders: Path, failed: bool = True) -> list[Message]:
 
 
 def said(folder: Path, *command: str) -> str:
-    """What a program prints, both of its outputs together."""
+    """The output of a program, stdout and stderr together."""
     if shutil.which(command[0]) is None:
         pytest.skip(f"{command[0]} is not installed: apt install {PACKAGES.get(command[0], command[0])}")
     environment = {"PATH": "/usr/local/bin:/usr/bin:/bin", "LC_ALL": "C.UTF-8"}
@@ -109,7 +109,7 @@ def test_compilers(compiler: str, tmp_path: Path) -> None:
     assert {each.file for each in found} == {str(tmp_path / "main.c")}, "a relative name, found in the second folder"
     (header,) = [each for each in found if each.line == 7]
     assert header.severity == "error" and "missing.h" in header.message and header.column == 10
-    if compiler != "clang":  # which goes on without the header
+    if compiler != "clang":  # clang continues without the header
         return
     assert any(each.line == 4 and "missing_type" in each.message for each in found)
 
@@ -128,7 +128,7 @@ def test_linkers(linker: str, tmp_path: Path) -> None:
         ]
 
 
-# `gcc -g -nostartfiles a.c b.c c.c`, and without -g, as the linkers of Debian 12 and 13 print it
+# Output of `gcc -g -nostartfiles a.c b.c c.c`, and without -g, with the linkers of Debian 12 and 13
 BINUTILS_2_40 = """\
 /usr/bin/ld: /tmp/ccVa.o:/project/c.c:1: multiple definition of `other'; /tmp/ccgW.o:/project/b.c:1: first defined here
 /usr/bin/ld: /tmp/ccmy7B0y.o: in function `main':
@@ -205,7 +205,7 @@ def test_make_itself(tmp_path: Path) -> None:
 
 
 def test_microsofts_compiler() -> None:
-    """As Visual Studio's compiler prints it."""
+    """The output of Visual Studio's compiler."""
     (found,) = read("C:\\robot\\main.c(4,5): error C2065: 'x': undeclared identifier [C:\\robot\\b\\r.vcxproj]")
     assert (found.file, found.line, found.column, found.id) == ("C:\\robot\\main.c", 4, 5, "C2065")
 
@@ -214,7 +214,7 @@ def test_microsofts_compiler() -> None:
 
 
 def test_epgs_messages_are_whole_and_cmake_adds_nothing(tmp_path: Path) -> None:
-    """As the command line prints them, and CMake after it."""
+    """The messages as on the command line, and then the output of CMake."""
     bindings = tmp_path / "jiwy.bindings.yaml"
     text = (ROOT / "examples/jiwy/jiwy.bindings.yaml").read_text()
     bindings.write_text(
@@ -238,7 +238,7 @@ def test_epgs_messages_are_whole_and_cmake_adds_nothing(tmp_path: Path) -> None:
     )
 
 
-# Zephyr, as its scripts have printed it -------------------------------------------------------------------------------
+# Zephyr, recorded output of its scripts -------------------------------------------------------------------------------
 
 STACK = """\
 Call Stack (most recent call first):

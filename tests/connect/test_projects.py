@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The targets that `epg connect` finds in a project, without CMake being run."""
+"""The targets that `epg connect` finds in a project without running CMake."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ def project(folder: Path, text: str) -> Path:
 
 
 def found(folder: Path) -> tuple[list[Job], list[str]]:
-    """The jobs, and the places of what is not understood."""
+    """The jobs, and the positions of calls that could not be read."""
     diagnostics = Diagnostics()
     jobs = find_jobs(folder, diagnostics)
     return jobs, [f"{d.severity} {d.span.line}:{d.span.column} {d.id}" for d in diagnostics]
 
 
 def configured(folder: Path, source: Path, record: str = "", **variables: str) -> Path:
-    """A build folder as CMake leaves it, with ``record`` as the calls that it has made."""
+    """A build folder as after CMake, with ``record`` as the list of calls."""
     (folder / "CMakeFiles" / "epg").mkdir(parents=True)
     (folder / "CMakeFiles" / "epg" / "calls.txt").write_text(record)
     lines = [f"CMAKE_HOME_DIRECTORY:INTERNAL={source}", *(f"{name}:STRING={v}" for name, v in variables.items())]
@@ -45,7 +45,7 @@ def configured(folder: Path, source: Path, record: str = "", **variables: str) -
 
 
 def recorded(source: Path, name: str, **options: str) -> str:
-    """What CMake writes down for an epg_add_target() in the folder ``source``."""
+    """CMake's record of an epg_add_target() in the folder ``source``."""
     options = {"tcf": "servo.tcf", "model": str(source / "model"), "bindings": str(source / "b.yaml"), **options}
     options |= {"beside": str(source), "caller": str(source / "CMakeLists.txt")}
     words = [name, *(word for key, value in options.items() for word in (f"--{key.replace('_', '-')}", value))]
@@ -57,7 +57,7 @@ NEEDS_CMAKE = {
     "ping_pong": ["51:5"],
     "zephyr_jiwy/app": ["9:54", "12:27"],
 }
-"""Examples whose calls are not literal, with the places."""
+"""Examples whose calls are not literal, with their positions."""
 EXPECTED = {
     "existing_firmware": (["turntable"], "cmake", "build/host"),
     "existing_firmware/station": (["turntable"], "cmake", "../build/host"),
@@ -71,7 +71,7 @@ EXPECTED = {
 
 @pytest.fixture(scope="module")
 def examples(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A copy, in which nobody has built anything."""
+    """A copy without any build folder."""
     folder = tmp_path_factory.mktemp("repository") / "examples"
     shutil.copytree(EXAMPLES, folder, ignore=shutil.ignore_patterns("build*"))
     return folder
@@ -116,7 +116,7 @@ def test_a_build_folder_says_what_cmake_has_made(examples: Path, tmp_path: Path)
 
 
 def test_what_cmake_configures_is_found(tmp_path: Path) -> None:
-    """Loops, functions and included files: `epg connect` knows the targets once CMake has run."""
+    """Loops, functions and included files: `epg connect` knows these targets after CMake has run."""
     shutil.copytree(EXAMPLES / "jiwy", tmp_path / "jiwy", ignore=shutil.ignore_patterns("build*"))
     top = tmp_path / "jiwy"
     (top / "robots.cmake").write_text("set(robots one two)\n")
@@ -159,7 +159,7 @@ def test_the_build_folder_that_has_the_target_is_taken(tmp_path: Path) -> None:
 
 
 def test_calls_that_are_written_now_count(tmp_path: Path) -> None:
-    """Whatever an older configure run has written down."""
+    """The present text has priority over the record of an older configure run."""
     top = project(tmp_path, f"project(p C)\n{CALL}")
     build = configured(top / "other", top, recorded(top, "servo", tcf="old.tcf") + recorded(top, "removed"))
     ((job,), _) = found(top)
@@ -185,7 +185,7 @@ def test_presets(tmp_path: Path) -> None:
     "name", ["a" * 5000, "a/" * 3000, "\0", "${sourceDir}/" + "b" * 300], ids=["long", "deep", "nul", "b"]
 )
 def test_a_build_folder_that_no_system_can_have(name: str, tmp_path: Path) -> None:
-    """CMake says what is wrong with it, when it is asked to configure."""
+    """CMake reports the error when it configures."""
     top = project(tmp_path, "project(p C)\nepg_add_target(servo TCF t.tcf MODEL m BINDINGS b.yaml)\n")
     presets = [{"name": "x", "binaryDir": name}]
     (top / "CMakePresets.json").write_text(json.dumps({"version": 3, "configurePresets": presets}))
@@ -271,7 +271,7 @@ def test_the_project_that_has_a_model(examples: Path, tmp_path: Path) -> None:
 
 
 def test_the_same_text_as_cmake_reads(tmp_path: Path) -> None:
-    """EPG's files and all modules of CMake are CMake to this reader."""
+    """EPG's files and all modules of CMake belong to CMake for this reader."""
     script = tmp_path / "root.cmake"
     script.write_text('file(WRITE "${CMAKE_CURRENT_LIST_DIR}/root" "${CMAKE_ROOT}")\n')
     subprocess.run(["cmake", "-P", str(script)], check=True)

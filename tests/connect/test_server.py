@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The server of the page: who gets in, what is answered, and how it ends."""
+"""The server of the page: access, answers, and its end."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ CTRL_C = signal.CTRL_C_EVENT if sys.platform == "win32" else signal.SIGINT
 def ask(
     page: Page, method: str, path: str, body: bytes = b"", skip: tuple[str, ...] = (), **headers: str
 ) -> tuple[int, dict[str, str], bytes]:
-    """A request as no browser would make it: nothing about ``path`` is tidied up, headers in ``skip`` are missing."""
+    """A request that no browser would send: ``path`` is not normalised, and headers in ``skip`` are missing."""
     port = urlsplit(page.site).port
     connection = http.client.HTTPConnection("127.0.0.1", port, timeout=30)
     connection.putrequest(method, path, skip_host=True, skip_accept_encoding=True)
@@ -107,7 +107,7 @@ def test_of_two_at_once_one_gets_in() -> None:
 
 
 def test_only_this_computers_names_are_answered(page: Page) -> None:
-    """A page elsewhere can have its own name lead to 127.0.0.1 (DNS rebinding)."""
+    """A foreign page can make its own name resolve to 127.0.0.1 (DNS rebinding)."""
     port = urlsplit(page.site).port
     for host in (
         "example.org",
@@ -121,13 +121,13 @@ def test_only_this_computers_names_are_answered(page: Page) -> None:
         for path in ("/", "/main.js", "/api/state"):
             assert ask(page, "GET", path, Host=host)[0] == 403, host
     assert ask(page, "GET", "/api/state", skip=("Host",))[0] == 403
-    # As through a tunnel that begins at another port.
+    # As through a tunnel with another port at its begin.
     for host in ("127.0.0.1:9999", f"localhost:{port}", "localhost"):
         assert ask(page, "GET", "/api/state", Host=host, Origin=f"http://{host}")[0] == 200, host
 
 
 def test_requests_of_other_pages_are_refused(page: Page) -> None:
-    """Also of those on another port of this computer."""
+    """Also of pages on another port of this computer."""
     port = urlsplit(page.site).port
     for origin in (
         "http://127.0.0.1",
@@ -150,7 +150,7 @@ def test_requests_of_other_pages_are_refused(page: Page) -> None:
     not sys.platform.startswith("linux") or os.geteuid() != 0, reason="EPG: being another user needs Linux and root"
 )
 def test_other_users_are_refused_whatever_they_know(page: Page) -> None:
-    """They may be first with an address that they have read on a browser's command line."""
+    """They may have read the address on a browser's command line and use it first."""
     script = (
         "import os, socket, sys\n"
         "os.setgid(4321); os.setuid(int(sys.argv[3]))\n"
@@ -228,7 +228,7 @@ def test_every_file_of_the_page_is_there(page: Page) -> None:
 
 
 def test_requests_must_be_json_of_the_page_itself(page: Page) -> None:
-    """What forms of other pages can send is refused: they cannot say that it is JSON without asking first."""
+    """Forms of other pages are refused: such a form cannot declare JSON without asking the server first."""
     body = json.dumps({"port": "position_pan"}).encode()
     path = "/api/disconnect"
     for kind in ("text/plain", "application/x-www-form-urlencoded", "multipart/form-data; boundary=x", ""):
@@ -294,7 +294,7 @@ def test_a_page_waits_for_the_next_state(page: Page) -> None:
 
 
 class Broken(Session):
-    """A session with a mistake in EPG: what the server does then."""
+    """A session with a bug in EPG, to test the server's reaction."""
 
     def log(self, start: int) -> dict[str, object]:
         raise ZeroDivisionError("a mistake")
@@ -355,7 +355,7 @@ def test_a_signal_ends_the_program(name: str, project: Path) -> None:
 
 
 def test_files_of_one_target_can_be_named(project: Path) -> None:
-    """As CMake and 20-sim start it: from elsewhere, with relative names."""
+    """CMake and 20-sim start it so: from another folder, with relative names."""
     names = ["--tcf", "robot.tcf", "--model", "model", "--bindings", "robot.bindings.yaml", "--name", "other"]
     with program(*names, "--source-dir", ".", folder=project) as (_, page):
         state = page.state()
@@ -424,7 +424,7 @@ def test_it_ends_when_no_page_is_open_any_more(project: Path) -> None:
 
 def test_it_ends_when_no_page_was_ever_opened(project: Path) -> None:
     server = Server(session_of(project), closed=3600, opened=0.5)
-    server.run(until_closed=True)  # returns: with another limit than `opened`, only after an hour
+    server.run(until_closed=True)  # this returns; with another limit than `opened`, only after an hour
 
 
 @pytest.mark.skipif(
@@ -451,7 +451,7 @@ def test_a_browser_is_opened_where_there_is_one(project: Path, tmp_path: Path) -
 
 
 def test_other_commands_load_nothing_of_it() -> None:
-    """CMake starts ``epg generate`` again and again: it must not pay for a page."""
+    """CMake starts ``epg generate`` often: it must not load the modules of the page."""
     jiwy = ROOT / "examples/jiwy"
     arguments = ["check", "--tcf", "host_jiwy.tcf", "--model", str(jiwy / "model")]
     arguments += ["--bindings", str(jiwy / "jiwy.bindings.yaml")]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Connecting ports as the page does it: every action, through HTTP, on files of a real project."""
+"""Connecting ports as the page does: every action, through HTTP, on the files of a real project."""
 
 from __future__ import annotations
 
@@ -145,7 +145,7 @@ def test_two_pages_see_the_same(pages: Callable[[], Page]) -> None:
 
 
 def test_two_pages_at_once_lose_nothing(pages: Callable[[], Page]) -> None:
-    """Each changes ports of its own, both at the same time."""
+    """Each page changes its own ports, both at the same time."""
     problems: list[BaseException] = []
 
     def change(port: str, count: int) -> None:
@@ -205,7 +205,8 @@ def test_a_conflict_is_the_users_to_solve(page: Page, bindings: Path) -> None:
             page.post(action, port="pwm_pan")
         assert refusal.value.status == 409 and refusal.value.message == conflict["message"]
     assert bindings.read_text() == broken
-    version = page.until(lambda state: state["configurations"])["version"]  # they come later, which is a version too
+    # configurations arrive later, in a new version
+    version = page.until(lambda state: state["configurations"])["version"]
     time.sleep(1.2)
     assert page.json(f"api/state?after={version - 1}")["version"] == version, "a conflict is told once"
     state = page.post("save", anyway=True)
@@ -214,7 +215,7 @@ def test_a_conflict_is_the_users_to_solve(page: Page, bindings: Path) -> None:
 
 
 def test_what_was_saved_and_undone_is_not_lost(page: Page, bindings: Path) -> None:
-    """Changes that take something back which the file holds cannot be applied to another text: the user decides."""
+    """An undo of a saved change cannot be applied to a text from outside: the user decides."""
     page.connect("pan_logging", "pan_publisher", scale=2)
     page.post("save")
     page.post("undo")
@@ -251,7 +252,7 @@ def test_a_conflict_ends_by_reloading(page: Page, bindings: Path) -> None:
 
 
 def test_nothing_is_saved_over_what_nobody_has_seen(page: Page, bindings: Path) -> None:
-    """An edit between the last look at the files and saving is applied first, not lost."""
+    """An edit from outside between the last read and the save is applied first and not lost."""
     page.connect("setpoint_pan", "tilt_subscriber")
     bindings.write_text(bindings.read_text() + "# the last moment\n")
     page.post("save")
@@ -340,7 +341,7 @@ def test_another_configuration_is_chosen(page: Page, project: Path) -> None:
 
 
 def test_configurations_of_the_user_are_listed(project: Path, tmp_path: Path) -> None:
-    """Right ones can be chosen, wrong ones say why not, and parts that others extend are no choice."""
+    """Valid ones can be chosen, invalid ones show the reason, and parts that others extend are not offered."""
     robots = tmp_path / "targets/robots/mine"
     robots.mkdir(parents=True)
     (robots / "mine.tcf").write_text("version: 1\nextends: rpi_pico_bare_metal_jiwy.tcf\nnode: mine\n")
@@ -408,7 +409,7 @@ def test_a_project_is_created_for_a_model(tmp_path: Path) -> None:
 
 
 def test_a_project_of_topics_is_created_for_a_target(tmp_path: Path) -> None:
-    """A target by itself: every port is a topic, until somebody writes down what is wired to the board."""
+    """Without a robot, every port is a topic, until the user describes the parts that are wired to the board."""
     with serving(Session([], model=ROOT / "examples/jiwy/model")) as page:
         body = {"configuration": "rpi_pico_bare_metal", "folder": str(tmp_path / "pico"), "middleware": "console"}
         state = page.post("create", name="robot", **body)
@@ -488,7 +489,7 @@ def test_what_makes_no_sense_changes_nothing(page: Page, body: dict[str, object]
 
 
 def test_an_answer_comes_at_once(tmp_path: Path) -> None:
-    """A person who drags a wire waits for nothing: the whole target is checked in between."""
+    """Each step checks the whole target, but so fast that a user who drags a wire does not wait."""
     folder = Path(shutil.copytree(ROOT / "examples/jiwy", tmp_path / "jiwy"))
     text = (folder / "CMakeLists.txt").read_text()
     (folder / "CMakeLists.txt").write_text(text.replace('"${CMAKE_CURRENT_SOURCE_DIR}/../.."', f'"{ROOT.as_posix()}"'))

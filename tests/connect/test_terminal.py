@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`epg connect --terminal`: the same questions, through a pipe and in a terminal, with the same files at the end."""
+"""`epg connect --terminal` asks the same questions in a pipe and in a terminal, and writes the same files."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ Answer = str | Callable[[], object]
 
 
 class Answers(io.StringIO):
-    """Lines of a person; what can be called is, before the next line is read."""
+    """The user's lines; a function among them is called before the next line is read."""
 
     def __init__(self, *answers: Answer) -> None:
         super().__init__()
@@ -46,7 +46,7 @@ class Answers(io.StringIO):
 
 
 def talk(session: Session, *answers: Answer) -> tuple[int, str]:
-    """The exit status, and all that was printed."""
+    """The exit status, and the whole output."""
     output = io.StringIO()
     given = Answers(*answers)
     status = run(session, given, output)
@@ -55,7 +55,7 @@ def talk(session: Session, *answers: Answer) -> tuple[int, str]:
 
 
 def open_ports(bindings: Path, *names: str) -> str:
-    """Takes ports out of a file; its text then."""
+    """Removes ports from a file; returns its new text."""
     lines = bindings.read_text().splitlines(keepends=True)
     text = "".join(line for line in lines if line.strip().partition(":")[0] not in names)
     bindings.write_text(text)
@@ -275,7 +275,7 @@ def test_edits_outside_are_noticed_and_never_overwritten_unasked(project: Path, 
 
     def edit() -> None:
         bindings.write_text("# mine\n" + bindings.read_text())
-        time.sleep(1)  # files are looked at twice a second
+        time.sleep(1)  # files are checked twice a second
 
     _, said = talk(session_of(project), "", edit, "", "", "y", "n")
     assert "was edited outside: your change was applied to the new text" in " ".join(said.split())
@@ -285,11 +285,11 @@ def test_edits_outside_are_noticed_and_never_overwritten_unasked(project: Path, 
 
 def test_a_conflict_with_edits_outside_is_asked_about(project: Path, bindings: Path) -> None:
     text = open_ports(bindings, "pwm_pan", "pwm_tilt")
-    theirs = "inputs: ["  # nothing can be applied to this
+    theirs = "inputs: ["  # no change can be applied to this text
 
     def edit() -> None:
         bindings.write_text(theirs)
-        time.sleep(1)  # files are looked at twice a second
+        time.sleep(1)  # files are checked twice a second
 
     status, said = talk(session_of(project), "", "", edit, "", "y", "")
     assert status == 1 and "save anyway, over what others have written? (y/n) [n]" in said

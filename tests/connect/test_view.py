@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is shown is what the command line says, of the same files."""
+"""The page shows the same facts about the same files as the command line."""
 
 from __future__ import annotations
 
@@ -147,7 +147,7 @@ def test_conversions_say_where_they_come_from(files: Path) -> None:
 
 
 def test_units_that_convert_are_those_of_the_application(files: Path) -> None:
-    """The page says that units are converted where, and only where, the generated code does it."""
+    """The page shows a conversion of units exactly where the generated code has one."""
     edit(
         files / "b.yaml",
         ("position_tilt: encoder_tilt", "position_tilt: {from: encoder_tilt, unit: deg}"),

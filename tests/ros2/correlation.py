@@ -39,7 +39,7 @@ def lag(reference: Log, target: Log) -> float:
 def fine_lag(reference: Log, target: Log, largest: float = 0.3, step: float = 0.001) -> float:
     """The time in seconds by which ``target`` is behind ``reference``: the shift with the smallest difference.
 
-    Least squares, in multiples of ``step``.  This resolves delays below the interval of 33 ms, and lacks the bias towards
+    Least squares, in multiples of ``step``.  This resolves delays below the interval of 33 ms, without the bias towards
     zero of a correlation whose overlap shrinks.
     """
     begin, end = reference[0][0], target[-1][0] - largest

@@ -94,7 +94,7 @@ def run(
     build: Build,
     folder: Path,
 ) -> Logs:
-    """Starts robots and nodes, waits until all have discovered each other, and publishes ``profiles`` for ``duration`` s.
+    """Starts robots and nodes, waits until all have found each other, and publishes ``profiles`` for ``duration`` s.
 
     ``profiles`` are by topic ("/profile/pan"): the setpoint of that axis is published on "/profile/pan_subscriber".
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One cell of the matrix: a project that finds EPG in one way, under one toolchain, CMake and generator."""
+"""One cell of the matrix: a project that finds EPG in one way, with one toolchain, CMake and generator."""
 
 from __future__ import annotations
 
@@ -19,22 +19,22 @@ from tests.cmake.project import ROOT
 HERE = Path(__file__).resolve().parent
 MODEL = HERE.parent.parent / "models" / "pid_c"
 
-#: prefix of the cross compiler; the host's own stands in where there is none
+#: Prefix of the cross compiler; without a cross compiler, the host's own is used.
 CROSS = "arm-none-eabi-" if shutil.which("arm-none-eabi-gcc") else ""
 
 CMAKES = ("oldest", "newest")
 
 GENERATORS = ("Ninja", "Unix Makefiles", "Ninja Multi-Config")
 
-#: at the end of ``find_epg.cmake``: which EPG was found
+#: The last lines of ``find_epg.cmake``: they print which EPG was found.
 SAY_WHICH = '_epg_data_folder(_epg_data)\nmessage(STATUS "EPG of ${_epg_data}")\n'
 
 
 @dataclass(frozen=True)
 class Convention:
-    """How projects of one kind select their compiler."""
+    """The way in which projects of one kind select their compiler."""
 
-    arguments: Callable[[Path], tuple[str, ...]]  #: of the project's folder
+    arguments: Callable[[Path], tuple[str, ...]]  #: function of the project's folder
     confined: bool = False  #: packages are searched in a sysroot only
     processor: str = ""  #: lines that readelf prints for objects of a cross compiler
     floats: str = ""
@@ -84,11 +84,11 @@ PAIRWISE = [
     for row, way in enumerate(WAYS)
     for column, convention in enumerate(CONVENTIONS)
 ]
-"""Cells in which every two values of different columns (way, convention, CMake, generator) meet at least once."""
+"""Cells in which every pair of values of two columns (way, convention, CMake, generator) occurs at least once."""
 
 
 def check(cell: Cell, have: Installations, folder: Path) -> None:
-    """Configures, builds and runs the cell's project in ``folder`` as its user would; asserts what he may expect."""
+    """Configures, builds and runs the cell's project in ``folder`` like its user; asserts all results."""
     convention = CONVENTIONS[cell.convention]
     project, build = folder / "project", folder / "build"
     found = WAYS[cell.way](have, Conditions(convention.confined, cell.cmake == "oldest"))
@@ -101,7 +101,7 @@ def check(cell: Cell, have: Installations, folder: Path) -> None:
     ignored = ("EPG_", "CMAKE_", "PICO_", "ZEPHYR_", "Python3_", "VIRTUAL_ENV")
     environment = {key: value for key, value in os.environ.items() if not key.startswith(ignored)}
     environment |= {"ZEPHYR_BASE": str(project / "base"), **found.environment}
-    # ctest's PYTHONPATH holds the packages that tests need, and EPG itself
+    # ctest's PYTHONPATH has the packages that tests need, and EPG itself
     paths = [path for path in environment.pop("PYTHONPATH", "").split(os.pathsep) if path and Path(path) != ROOT]
     environment |= {"PYTHONPATH": os.pathsep.join(paths)} if paths else {}
     if "EPG_CACHE" in os.environ:
@@ -137,7 +137,7 @@ def check(cell: Cell, have: Installations, folder: Path) -> None:
 
 
 def _compile_from_database(source: Path, build: Path) -> None:
-    """An editor that has read compile_commands.json finds every header before anything was built."""
+    """An editor that has read compile_commands.json finds every header, even before the first build."""
     commands = json.loads((build / "compile_commands.json").read_text())
     command = next(entry for entry in commands if Path(entry["file"]) == source)
     words = command["command"].replace(" -o ", " -fsyntax-only -o ", 1)
@@ -146,7 +146,7 @@ def _compile_from_database(source: Path, build: Path) -> None:
 
 
 def _check_objects(file: Path, convention: Convention) -> None:
-    """All objects of a library, or a program, are for the processor, with its way of passing floating point numbers."""
+    """All objects of a library or program are for the processor and its convention for floating-point arguments."""
     text = subprocess.run([f"{CROSS}readelf", "-hA", str(file)], capture_output=True, text=True, check=True).stdout
     objects = text.count("ELF Header:")
     assert objects

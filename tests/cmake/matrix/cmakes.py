@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The oldest CMake that EPG supports and the newest there is, from PyPI, in EPG's cache."""
+"""The oldest CMake that EPG supports and the newest that exists, from PyPI, in EPG's cache."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from epg.bootstrap import cache_folder
 
 OLDEST = "3.22.6"
 
-#: after this many seconds PyPI is asked again for a newer one
+#: PyPI is asked for a newer version after this many seconds.
 RENEW = 7 * 24 * 3600
 
 
 @cache
 def cmake(which: str) -> Path:
-    """The program ``cmake``: ``"oldest"`` or ``"newest"``.  Skips the test when it is neither cached nor to be had."""
+    """The program ``cmake``: ``"oldest"`` or ``"newest"``.  Skips the test if it is neither cached nor available."""
     if which == "oldest":
         folder = cache_folder() / f"test-cmake-{OLDEST}"
         if not folder.is_dir():
@@ -39,7 +39,7 @@ def cmake(which: str) -> Path:
     except pytest.skip.Exception:
         if not note.is_file():
             raise
-        version = note.read_text()  # the newest of some time ago: the index cannot be reached now
+        version = note.read_text()  # a previous newest version, because PyPI is not available now
     _write(note, version)
     return _program(cache_folder() / f"test-cmake-{version}")
 
@@ -49,7 +49,7 @@ def _program(folder: Path) -> Path:
 
 
 def _install(requirement: str) -> str:
-    """Installs a CMake into the cache, whole or not at all; returns its version."""
+    """Installs a CMake into the cache, completely or not at all; returns its version."""
     cache_folder().mkdir(parents=True, exist_ok=True)
     temporary = Path(tempfile.mkdtemp(dir=cache_folder(), prefix=".test-cmake."))
     command = [sys.executable, "-m", "pip", "--disable-pip-version-check", "install", "--quiet", "--no-input"]
@@ -65,7 +65,7 @@ def _install(requirement: str) -> str:
         try:
             os.rename(temporary, folder)
         except OSError:
-            if not folder.is_dir():  # somebody else may have been faster
+            if not folder.is_dir():  # another test process may have been faster
                 raise
     finally:
         shutil.rmtree(temporary, ignore_errors=True)

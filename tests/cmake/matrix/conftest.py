@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""EPG in all the forms in which somebody may have it."""
+"""Fixtures: EPG in every form in which a user may have it."""
 
 from __future__ import annotations
 

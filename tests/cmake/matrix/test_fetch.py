@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""FetchContent beyond the matrix: another archive, two askers, no network."""
+"""FetchContent beyond the matrix: another archive, two users in one project, no network."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ FetchContent_MakeAvailable(EPG)
 which_epg()
 """
 
-#: another part of the project does not know of the first
+#: Another part of the project does not know the first one.
 ASKS_AGAIN = "find_package(EPG REQUIRED)\nwhich_epg()\n"
 
 
 def archive(folder: Path, name: str, text: str) -> tuple[str, str]:
-    """An archive with EPG's own CMakeLists.txt and a stand-in for its functions; its address and hash."""
+    """An archive with EPG's own CMakeLists.txt and a replacement of its functions; its address and hash."""
     root = Path(__file__).resolve().parents[3]
     config = folder / "EPGConfig.cmake"
     config.write_text(f'function(which_epg)\n  message(STATUS "EPG is {text}")\nendfunction()\n')

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""epg_add_target with the oldest CMake and the newest, with every generator: editors, build, run."""
+"""epg_add_target with the oldest and the newest CMake, and with every generator: editors, build, run."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def test_target(version: str, generator: str, tmp_path: Path) -> None:
     output = run(program, "-S", PROJECTS / "robot", "-B", build, "-G", generator, *arguments)
     assert "warning" not in output.lower(), output
 
-    # an editor reads compile_commands.json before anything was built
+    # An editor reads compile_commands.json before the first build.
     entries = {entry["file"]: entry for entry in json.loads((build / "compile_commands.json").read_text())}
     assert {"robot_app.c", "controller.c", "main.c"} <= {Path(file).name for file in entries}
     for entry in entries.values():

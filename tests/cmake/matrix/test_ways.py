@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every way of finding EPG, toolchain convention, CMake and generator, each together with each other's."""
+"""Every way of finding EPG, toolchain convention, CMake and generator; each pair of them occurs together."""
 
 from __future__ import annotations
 

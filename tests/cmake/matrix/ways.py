@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The ways in which a project finds EPG: what it writes, and what its user passes and sets."""
+"""The ways in which a project finds EPG: the project's text, and the arguments and variables of its user."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pathlib import Path
 
 @dataclass(frozen=True)
 class Installations:
-    """EPG as somebody has it: where each way of finding it leads."""
+    """EPG in all its forms: the places to which the ways of finding it lead."""
 
     checkout: Path  #: a clone
     archive: Path  #: the clone's files as .tar.gz, as a forge offers them
@@ -23,9 +23,9 @@ class Installations:
 
 @dataclass(frozen=True)
 class Found:
-    """How one way reaches EPG."""
+    """The means by which one way finds EPG."""
 
-    text: str  #: lines of the project, where it asks for EPG
+    text: str  #: lines of the project that find EPG
     leads_to: Path  #: the folder above EPG's ``cmake``; relative to the build folder
     arguments: tuple[str, ...] = ()
     environment: Mapping[str, str] = field(default_factory=dict)
@@ -34,9 +34,9 @@ class Found:
 
 @dataclass(frozen=True)
 class Conditions:
-    """What a way depends on."""
+    """The conditions on which a way depends."""
 
-    confined: bool  #: the toolchain file lets packages be found in its sysroot only
+    confined: bool  #: the toolchain file restricts the search for packages to its sysroot
     oldest: bool  #: the oldest CMake
 
 
@@ -62,7 +62,7 @@ def _in_wheel(have: Installations) -> Path:
 
 
 def _in_venv(venv: Path, root: Path, when: Conditions) -> Found:
-    # docs/cmake.md: where packages are confined, EPG_DIR is what `python -m epg --cmake-dir` prints
+    # docs/cmake.md: where packages are confined, EPG_DIR is the output of `python -m epg --cmake-dir`
     return Found(FIND, root, (f"-DEPG_DIR={root / 'cmake'}",) if when.confined else (), activated(venv))
 
 
@@ -79,7 +79,7 @@ def checkout(have: Installations, when: Conditions) -> Found:
 
 
 def checkout_prefix(have: Installations, when: Conditions) -> Found:
-    # a find root that holds the checkout is what a confined search needs
+    # a confined search needs a find root that contains the checkout
     where = "CMAKE_FIND_ROOT_PATH" if when.confined else "CMAKE_PREFIX_PATH"
     text = f'list(APPEND {where} "{have.checkout.as_posix()}")\n' + FIND
     return Found(text, have.checkout, (_python(have),))
@@ -114,7 +114,7 @@ def fetch_archive(have: Installations, when: Conditions) -> Found:
 
 
 def fetch_unless_installed(have: Installations, when: Conditions) -> Found:
-    # a second part of the project asks again, as it would if it did not know of the first
+    # a second part of the project searches EPG again, because it does not know the first one
     text = _fetch(_archive(have) + " ${find_first}") + FIND
     root = FETCHED if when.confined or when.oldest else _in_wheel(have)
     return Found(text, root, (), activated(have.wheel_venv))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What people do on the page, and how tests wait for what comes of it."""
+"""Actions of a user on the page, and functions that wait for their effect."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 
 
 def handle(page: Any, side: str, name: str) -> Any:
-    """The end of a wire that can be dragged."""
+    """The handle at the end of a wire, which the user can drag."""
     return page.locator(f'[data-handle][data-side="{side}"][data-name="{name}"]')
 
 
@@ -19,7 +19,7 @@ def port(page: Any, name: str) -> Any:
 
 
 def field(page: Any, name: str) -> Any:
-    """The list of what a port can be connected with."""
+    """The list of everything that a port can be connected with."""
     return port(page, name).locator("select").first
 
 
@@ -41,7 +41,7 @@ def save(page: Any) -> None:
 
 
 def until(page: Any, expression: str, seconds: float = 5) -> None:
-    """Waits for a JavaScript expression to hold.  Playwright's own waiting needs eval(), which the page forbids."""
+    """Waits until a JavaScript expression is true.  Playwright's own function needs eval(), which the page forbids."""
     end = time.monotonic() + seconds
     while not page.evaluate(expression):
         assert time.monotonic() < end, expression

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""axe-core, the usual checker of web pages' accessibility: installed once into EPG's cache, as rp2040js is."""
+"""axe-core, a checker of the accessibility of web pages.  It is installed once into EPG's cache, like rp2040js."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ HERE = Path(__file__).resolve().parent
 
 
 def axe_core() -> Path:
-    """Its one file.  Raises Missing."""
+    """The single file of axe-core.  Raises Missing."""
     return npm_package(HERE, "axe-core") / "axe.min.js"
 
 
 def violations(page: Any) -> list[str]:
-    """What axe-core finds wrong with a page as it is now, in light and in dark, a line per place.
+    """The violations that axe-core finds in the present state of a page, light and dark, one line per place.
 
-    The script is run by the debugger's protocol: the page's policy would refuse a <script>.
+    The script runs over the debugger's protocol, because the page's policy would refuse a <script>.
     """
     if not page.evaluate("'axe' in window"):
         page.evaluate(axe_core().read_text(encoding="utf-8"))
     found = []
     for scheme in ("light", "dark"):
         page.emulate_media(color_scheme=scheme)
-        # Colours are all that differs in the dark.
+        # Dark mode changes only colours.
         rules = "" if scheme == "light" else ", runOnly: {type: 'rule', values: ['color-contrast']}"
         result = page.evaluate(f"axe.run(document, {{resultTypes: ['violations']{rules}}})")
         found += [

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A browser without a window, projects to open in it, and what holds for every page: nothing leaves this computer,
-and nothing goes wrong unseen."""
+"""Fixtures: a headless browser and projects to open in it.  For every page they check that no request leaves this
+computer and that no error goes unnoticed."""
 
 from __future__ import annotations
 
@@ -39,12 +39,12 @@ def browser() -> Iterator[Any]:
 
 @pytest.fixture
 def open_page(browser: Any) -> Iterator[Callable[..., Any]]:
-    """Opens an address in a window of its own; arguments are Playwright's for a context."""
+    """Opens an address in its own browser context; the arguments are Playwright's for a context."""
     contexts: list[Any] = []
     wrong: list[str] = []
 
     def hear(message: Any) -> None:
-        # A refused action is an answer like any other; what is missing of the page itself shows as a response.
+        # A refused action is a normal answer; if a file of the page is missing, the check of responses finds it.
         if message.type in ("error", "warning") and not message.text.startswith("Failed to load resource"):
             wrong.append(message.text)
 
@@ -77,7 +77,7 @@ def open_page(browser: Any) -> Iterator[Callable[..., Any]]:
 
 
 class Project:
-    """A copy of examples/jiwy that is served: for the host, with everything connected."""
+    """A served copy of examples/jiwy, for the host, with every port connected."""
 
     def __init__(self, folder: Path) -> None:
         copy_jiwy(folder)
@@ -96,7 +96,7 @@ class Project:
         return self.file.read_text(encoding="utf-8")
 
     def write(self, *replacements: tuple[str, str]) -> str:
-        """The bindings of the example with something else in them, as the state from which a test goes on."""
+        """Writes the example's bindings with these replacements, as the initial state of a test."""
         text = (ROOT / "examples/jiwy/jiwy.bindings.yaml").read_text(encoding="utf-8")
         for old, new in replacements:
             assert old in text, old
@@ -117,7 +117,7 @@ def copy_jiwy(folder: Path) -> None:
 
 @pytest.fixture(scope="session")
 def served_jiwy(browser: Any, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Project]:
-    # A folder that nobody has agreed to build before, also where names of folders for tests come again.
+    # A new folder each time, in which the user has not yet agreed to build, even if the names of folders repeat.
     project = Project(tmp_path_factory.mktemp(f"connect-{secrets.token_hex(4)}") / "jiwy")
     yield project
     project.epg.end()
@@ -125,14 +125,14 @@ def served_jiwy(browser: Any, tmp_path_factory: pytest.TempPathFactory) -> Itera
 
 @pytest.fixture
 def jiwy(served_jiwy: Project) -> Project:
-    """The project with the example's own bindings and nothing unsaved."""
+    """The project with the example's own bindings and no unsaved change."""
     served_jiwy.write()
     return served_jiwy
 
 
 @pytest.fixture
 def model(tmp_path: Path) -> Path:
-    """A model that has no project: what 20-sim leaves."""
+    """A model without a project, as 20-sim writes it."""
     return Path(shutil.copytree(ROOT / "examples/jiwy/model", tmp_path / f"exports-{secrets.token_hex(4)}" / "camera"))
 
 

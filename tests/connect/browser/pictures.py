@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Takes the pictures of the page in docs/pictures anew; they are of the real page, on a real build.
+"""Takes the pictures of the page in docs/pictures again; they show the real page, with a real build.
 
     python -m tests.connect.browser.pictures
 
-needs what the tests here need, and the Pico SDK.
+This needs the same tools as the tests in this folder, and the Pico SDK.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def take_pictures(folder: Path = PICTURES) -> None:
 
     pico_sdk()
     arm_gcc()
-    # Names that can be seen in the pictures: the same each time.
+    # The names in the pictures must be the same each time.
     place = Path(tempfile.gettempdir()) / "robots"
     shutil.rmtree(place, ignore_errors=True)
     model = Path(shutil.copytree(ROOT / "examples/jiwy/model", place / "camera_export"))
@@ -51,7 +51,7 @@ def take_pictures(folder: Path = PICTURES) -> None:
 def _start(page: Any, folder: Path) -> None:
     page.get_by_role("radio", name="rpi_pico2_bare_metal_jiwy").check()
     until(page, "document.querySelector('.picked-picture')?.naturalWidth > 0")
-    page.wait_for_timeout(1000)  # the small pictures of the cards in sight
+    page.wait_for_timeout(1000)  # the visible cards load their small pictures
     _take(page, folder, "start")
     page.get_by_role("button", name="Create project").click()
     page.locator(".diagram").wait_for()
@@ -92,8 +92,8 @@ def _end(epg: Served, port: str, **end: Any) -> None:
 
 
 def _take(page: Any, folder: Path, name: str) -> None:
-    """With few colours, so that the repository stays small."""
-    ensure("plot")  # brings Pillow
+    """Saves a picture with few colours, so that the repository stays small."""
+    ensure("plot")  # this also installs Pillow
     from PIL import Image
 
     page.wait_for_timeout(300)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg connect`` as a user starts it, and what it says over HTTP.
+"""``epg connect`` as a user starts it, and its answers over HTTP.
 
 >>> # with Served(folder) as epg: epg.address, epg.state(), epg.post("undo")
 """
@@ -18,7 +18,7 @@ ROOT = Path(__file__).resolve().parents[3]
 
 
 class Served(Page):
-    """A process that serves the page: for a folder with a project or a bare model, or for what options name."""
+    """A process that serves the page: for a folder with a project, a bare model, or whatever the options name."""
 
     def __init__(self, *arguments: Path | str) -> None:
         command = [sys.executable, "-m", "epg", "connect", *map(str, arguments), "--no-browser"]
@@ -31,7 +31,7 @@ class Served(Page):
 
     @property
     def address(self) -> str:
-        """An address that nobody has used; the next one is printed when this one has been used."""
+        """An unused address.  After its use, the program prints the next one."""
         assert self._process.stdout is not None
         before = ("epg connect: ", "Press ", "epg connect: for another page: ")
         while True:
@@ -50,12 +50,12 @@ class Served(Page):
         self.end()
 
     def end(self) -> None:
-        """As Ctrl-C does."""
+        """Ends the process as Ctrl-C does."""
         self._process.terminate()
         self._process.wait(timeout=10)
         assert self._process.stdout is not None
         self._process.stdout.close()
 
     def wait(self) -> int:
-        """The exit code of a process that ends by itself."""
+        """Waits until the process ends by itself; returns its exit code."""
         return self._process.wait(timeout=10)

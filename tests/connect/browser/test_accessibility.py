@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What axe-core finds, in light and dark, in every state of the page; and that it fits narrow and enlarged windows."""
+"""axe-core finds no violation in any state of the page, light and dark; the page fits narrow and enlarged windows."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def test_diagram_and_details(jiwy: Project, open_page: Open) -> None:
     ("width", "height"), [(1280, 720), (800, 900), (640, 400), (320, 640)], ids=["720p", "narrow", "200 %", "phone"]
 )
 def test_fits_the_window(jiwy: Project, open_page: Open, width: int, height: int) -> None:
-    """Nothing is cut off at the side; 640x400 is what 200 % leave of 1280x800."""
+    """Nothing is cut off at the side.  640x400 is 1280x800 enlarged to 200 %."""
     page = open_page(jiwy.address, viewport={"width": width, "height": height})
     assert page.evaluate("document.documentElement.scrollWidth") <= width
     assert page.evaluate("document.getElementById('main').scrollWidth") <= width

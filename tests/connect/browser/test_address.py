@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The address opens one page, and holds nothing that others can use afterwards."""
+"""An address opens one page, and is of no use to others afterwards."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def test_an_address_that_was_used_says_so(jiwy: Project, browser: Any, open_page
         locked(page, reason).wait_for()
         assert page.locator(".diagram").count() == 0 and page.url == site
 
-    # The next address, in the same tab: the browser loads nothing anew.
+    # The next address in the same tab: the browser does not reload the page.
     page.goto(jiwy.address)
     field(page, "position_tilt").wait_for()
     assert page.url == site and page.get_by_role("alert").count() == 0

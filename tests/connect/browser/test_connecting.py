@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Wires by pointer, by list and by keyboard; after Save, the bindings file says what the page shows."""
+"""Wires by pointer, by list and by keyboard; after Save, the bindings file has the wires that the page shows."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ FREE = ("  pwm_tilt: pwm_tilt\n", "")
 
 
 def check_says(tcf: Path | str, folder: Path, bindings: Path) -> list[dict[str, Any]]:
-    """What ``epg check`` says of the files on the disk."""
+    """The diagnostics of ``epg check`` for the saved files."""
     command = [
         sys.executable, "-m", "epg", "check", "--json", "--tcf", str(tcf),
         "--model", str(folder / "model"), "--bindings", str(bindings),
@@ -51,7 +51,7 @@ def test_shows_what_the_files_say(jiwy: Project, open_page: Open) -> None:
 
 @pytest.mark.parametrize("backwards", [False, True])
 def test_connects_by_drag(jiwy: Project, open_page: Open, backwards: bool) -> None:
-    """From the component to the model and the other way, with what fits marked meanwhile."""
+    """From the component to the model and back; during the drag, the page marks the ports that fit."""
     before = jiwy.write(UNBOUND)
     page = open_page(jiwy.address)
     ends = [handle(page, "sources", "encoder_tilt"), handle(page, "inputs", "position_tilt")]
@@ -120,7 +120,7 @@ def test_connects_by_list(jiwy: Project, open_page: Open) -> None:
 
 
 def test_connects_by_keyboard(jiwy: Project, open_page: Open) -> None:
-    """Picked up with Enter, moved with arrows, dropped with Enter; each step is said aloud."""
+    """Picked up with Enter, moved with arrows, dropped with Enter; a screen reader announces each step."""
     jiwy.write(FREE)
     page = open_page(jiwy.address)
     start = handle(page, "outputs", "pan_logging")
@@ -152,7 +152,7 @@ def test_connects_by_keyboard(jiwy: Project, open_page: Open) -> None:
 
 
 def test_connects_by_two_clicks(jiwy: Project, open_page: Open) -> None:
-    """For whoever cannot drag, and for screen readers, whose activation is a click."""
+    """For users who cannot drag, and for screen readers, whose activation is a click."""
     jiwy.write(FREE)
     page = open_page(jiwy.address)
     handle(page, "sinks", "pwm_tilt").click()
@@ -191,7 +191,7 @@ def test_takes_proposals(jiwy: Project, open_page: Open) -> None:
 def test_conflicts_have_the_words_of_the_command_line(
     jiwy: Project, open_page: Open, side: str, name: str, other: str, message: str
 ) -> None:
-    """At the port, in the list and in the header; the list's entry leads back to the port."""
+    """Shown at the port, in the list and in the header; the list's entry leads back to the port."""
     if message == "direction":
         jiwy.write(("  position_tilt: encoder_tilt", f"  position_tilt: {other}"))
         page = open_page(jiwy.address)
@@ -221,7 +221,7 @@ def test_conflicts_have_the_words_of_the_command_line(
 
 
 def test_what_does_not_fit_can_be_dropped(browser: Any, open_page: Open, tmp_path: Path) -> None:
-    """A type and a unit that no list offers: marked as such while dragging, and judged by the command line's words."""
+    """A type and a unit that no list offers: marked during the drag, and judged with the command line's message."""
     (tmp_path / "model").mkdir()
     (tmp_path / "model/lamp.h").write_text(
         "#include <stdbool.h>\ntypedef struct { bool on; double volts; } in_t;\n"
@@ -299,7 +299,7 @@ def test_conversion(jiwy: Project, open_page: Open) -> None:
 
 
 def test_conversions_of_the_tcf_and_of_units(jiwy: Project, open_page: Open, tmp_path: Path) -> None:
-    """Those of the .tcf stand at its component, those of the wire on the wire, with the units between them."""
+    """Conversions of the .tcf are shown at the component, those of the wire on the wire, with the units between."""
     tcf = tmp_path / "deg.tcf"
     tcf.write_text(
         "version: 1\nextends: host_jiwy.tcf\ncomponents:\n  encoder_pan: {unit: deg}\n  pwm_pan: {scale: 0.5}\n",
@@ -346,7 +346,7 @@ def test_edits_outside_are_noticed(jiwy: Project, open_page: Open) -> None:
     notice.get_by_role("button", name="Dismiss").click()
     page.locator(".bar").wait_for(state="detached")
 
-    # With something unsaved: it is kept, on top of the new text.
+    # There is an unsaved change: it is kept and applied to the new text.
     field(page, "pan_logging").select_option("unconnected on purpose")
     page.get_by_text("● Unsaved changes").wait_for()
     jiwy.file.write_text(jiwy.text().replace("tilt: encoder_pan", "tilt: encoder_tilt"), encoding="utf-8")
@@ -378,7 +378,7 @@ def test_conflict_with_an_edit_outside(jiwy: Project, open_page: Open, choice: s
 
 
 def test_state_elsewhere_keeps_focus_scroll_and_what_is_typed(jiwy: Project, open_page: Open) -> None:
-    """The page is drawn again for every state: whoever is doing something must not notice."""
+    """The page is drawn again for every state, which must not disturb the user's actions."""
     page = open_page(jiwy.address, viewport={"width": 1280, "height": 620})
     page.get_by_role("button", name="Conversion from encoder_pan to position_pan").click()
     dialog = page.get_by_role("dialog")
@@ -394,7 +394,7 @@ def test_state_elsewhere_keeps_focus_scroll_and_what_is_typed(jiwy: Project, ope
 
 
 def test_several_targets_of_one_project(browser: Any, open_page: Open, tmp_path: Path) -> None:
-    """One at a time; what is not saved keeps one from leaving."""
+    """The page shows one target at a time; unsaved changes prevent a switch to another one."""
     folder = tmp_path / "two"
     copy_jiwy(folder)
     with (folder / "CMakeLists.txt").open("a", encoding="utf-8") as cmake:
@@ -419,7 +419,7 @@ def test_several_targets_of_one_project(browser: Any, open_page: Open, tmp_path:
 
 
 def test_a_model_that_cannot_be_read(browser: Any, open_page: Open, tmp_path: Path) -> None:
-    """The page says what is wrong, and goes on when it is mended."""
+    """The page shows the error, and works again when the model is corrected."""
     folder = tmp_path / "jiwy"
     copy_jiwy(folder)
     (folder / "model").rename(folder / "away")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A page whose server is gone says so, keeps what it shows, and goes on when it is back."""
+"""A page without its server reports this, keeps its contents, and continues when the server is back."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def test_says_that_the_connection_is_lost(browser: Any, open_page: Open, tmp_pat
     assert "epg connect" in page.get_by_role("alert").inner_text()
     assert field(page, "position_tilt").is_visible(), "what was on the page stays to be read"
 
-    # Whoever leaves with unsaved changes is asked.
+    # The browser asks a user who leaves with unsaved changes.
     with page.expect_event("dialog") as leaving:
         page.close(run_before_unload=True)
     assert leaving.value.type == "beforeunload"

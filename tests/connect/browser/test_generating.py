@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Generate: a real build for this computer, its progress, what it makes and what goes wrong."""
+"""Generate: a real build for this computer, its progress, its products and its errors."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .acts import field, until
 from .conftest import Project
 
 Open = Callable[..., Any]
-PATIENT = 60_000  # milliseconds for a build on a busy computer
+PATIENT = 60_000  # milliseconds for a build on a computer with high load
 
 
 def test_generates_shows_errors_and_cancels(jiwy: Project, open_page: Open) -> None:
@@ -21,7 +21,7 @@ def test_generates_shows_errors_and_cancels(jiwy: Project, open_page: Open) -> N
     generate = page.get_by_role("button", name="Generate", exact=True)
     panel = page.get_by_role("tabpanel")
 
-    # With a mistake in the bindings nothing is built; the page says so and shows the list.
+    # With a mistake in the bindings there is no build; the page gives the reason and shows the list.
     field(page, "setpoint_pan").select_option("")
     page.get_by_text("1 error", exact=True).wait_for()
     generate.click()
@@ -30,10 +30,10 @@ def test_generates_shows_errors_and_cancels(jiwy: Project, open_page: Open) -> N
     field(page, "setpoint_pan").select_option("pan_subscriber")
     page.get_by_text("No problems", exact=True).wait_for()
 
-    # A compiler's error leads to its line.
+    # A compiler's error links to its line.
     source.write_text(original + "\nint broken = nowhere;\n", encoding="utf-8")
     line = original.count("\n") + 2
-    # Before the first build in a folder the page says what runs there.
+    # Before the first build in a folder, the page shows the commands that will run there.
     generate.click()
     asked = page.get_by_role("dialog", name="What Generate runs")
     assert f"cmake -S {jiwy.folder} -B {jiwy.folder}/build" in asked.locator("pre").inner_text()
@@ -50,7 +50,7 @@ def test_generates_shows_errors_and_cancels(jiwy: Project, open_page: Open) -> N
     assert dialog.locator(".line.here").first.inner_text().startswith(f"> {line}  int broken = nowhere;")
     page.keyboard.press("Escape")
 
-    # Mended: progress with a known end, and a product.
+    # After the correction: progress with a known end, and a product.
     source.write_text(original, encoding="utf-8")
     page.evaluate(
         "(() => { window.seen = []; new MutationObserver(() => { const bar = document.querySelector('progress');"
@@ -70,7 +70,7 @@ def test_generates_shows_errors_and_cancels(jiwy: Project, open_page: Open) -> N
     panel.get_by_text("Log,").click()
     until(page, f"document.querySelector('.log pre').textContent.split('\\n').length >= {build['lines']}")
 
-    # Everything again, and cancelled at once.
+    # A build of everything that is cancelled at once.
     source.write_text(original + "\n", encoding="utf-8")
     generate.click()
     page.get_by_role("button", name="Cancel", exact=True).click()

@@ -37,7 +37,7 @@ def test_everything_by_keyboard(started: Served, model: Path, open_page: Open) -
     folder = Path(started.state()["project"]["folder"])
     assert folder.parent == model.parent
 
-    # A wire away by the list, and back by the handles.
+    # A wire removed by the list, and restored by the handles.
     tab_to("it.id === 'ends-pwm_tilt-0'")
     page.keyboard.press("Home")
     until(page, "document.querySelector('.saved').textContent.includes('Unsaved')")

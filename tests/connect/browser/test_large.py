@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A model with 60 ports and a target with 80: everything is there, at the speed of a hand."""
+"""A model with 60 ports and a target with 80: the page shows everything, and is fast enough for a drag."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def test_large_model(large: Served, open_page: Open) -> None:
     assert page.locator(".ports .port").count() == 2 * PORTS
     assert page.locator(".component .port").count() == 2 * COMPONENTS
 
-    # Every wire is drawn at every move of a dragged end, and all of the page for every state.
+    # Every move of a dragged end draws every wire; every new state draws the whole page.
     draw = page.evaluate(
         "(async () => { const { draw } = await import(new URL('ui.js', location)); draw();"
         " const times = []; for (let n = 0; n < 5; n++) { const start = performance.now(); draw();"
@@ -75,7 +75,7 @@ def test_large_model(large: Served, open_page: Open) -> None:
     )
     assert draw < 100, f"{draw:.0f} ms for drawing the page once"
 
-    # What is out of sight can be reached: the diagram scrolls when an end is held at its edge.
+    # Ports out of sight can be reached: the diagram scrolls while an end is held at its edge.
     last = f"out_{PORTS - 1}"
     start, end = handle(page, "outputs", last), handle(page, "sinks", f"value_{COMPONENTS - 1}")
     start.scroll_into_view_if_needed()

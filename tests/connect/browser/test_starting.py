@@ -20,7 +20,7 @@ def test_from_model_to_project(started: Served, model: Path, open_page: Open) ->
     page.get_by_role("radio", name="host_jiwy").wait_for()
     assert not create.is_enabled()
 
-    # Search and filter leave what was asked for.
+    # Search and filter leave only matching cards.
     everything = page.locator(".card").count()
     assert everything == len(started.state()["configurations"])
     page.get_by_label("Search").fill("pico 2 freertos")
@@ -32,7 +32,7 @@ def test_from_model_to_project(started: Served, model: Path, open_page: Open) ->
     page.get_by_label("Robot", exact=True).select_option("jiwy")
     assert {card.split("_")[-1] for card in page.locator(".card .name").all_inner_texts()} == {"jiwy"}
 
-    # What a configuration offers stands on its card.
+    # A card shows the contents of its configuration.
     card = page.locator(".card").filter(has=page.get_by_text("rpi_pico_bare_metal_jiwy", exact=True))
     assert "10 of 10 ports match by name" in card.inner_text()
     until(page, "[...document.querySelectorAll('.card img')].some(image => image.naturalWidth > 0)")
@@ -42,7 +42,7 @@ def test_from_model_to_project(started: Served, model: Path, open_page: Open) ->
     page.get_by_role("textbox", name="Folder").fill(str(folder))
     page.get_by_role("textbox", name="Name").fill("1 camera")
     create.click()
-    page.get_by_role("alert").wait_for()  # no name of a CMake target
+    page.get_by_role("alert").wait_for()  # this is not a valid name of a CMake target
     assert not folder.exists()
     page.get_by_role("textbox", name="Name").fill("camera")
     create.click()
@@ -50,7 +50,7 @@ def test_from_model_to_project(started: Served, model: Path, open_page: Open) ->
     assert page.get_by_role("heading", level=1).inner_text() == "camera"
     assert (folder / "CMakeLists.txt").is_file()
 
-    # It is connected as far as names match, and the board is there to look at.
+    # Ports with matching names are connected, and the board is shown.
     assert field(page, "position_pan").input_value() == ":encoder_pan"
     page.get_by_role("tab", name="Pins and peripherals").click()
     table = page.get_by_role("table")
@@ -65,7 +65,7 @@ def test_from_model_to_project(started: Served, model: Path, open_page: Open) ->
     page.get_by_role("button", name="Zoom in").click()
     assert picture.bounding_box()["width"] > width
 
-    # Another target for the same board and RTOS is a change like others.
+    # Another target for the same board and RTOS is a normal change.
     page.get_by_role("button", name="Target").click()
     dialog = page.get_by_role("dialog")
     dialog.get_by_label("Robot", exact=True).select_option("relbot")

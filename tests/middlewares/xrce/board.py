@@ -33,7 +33,7 @@ class Board:
         self.process.communicate()
 
     def stop(self) -> str:
-        """Ends the program in the normal way; returns its output, which is empty unless a sanitizer reports an error."""
+        """Ends the program normally; returns its output, which is empty unless a sanitizer reports an error."""
         self.process.terminate()
         output, errors = self.process.communicate(timeout=PATIENCE)
         assert self.process.returncode == 130, errors

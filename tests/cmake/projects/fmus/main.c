@@ -1,4 +1,4 @@
-/* The same controller from an archive, twice, and from a folder. */
+/* The same controller, twice from an archive, and once from a folder. */
 #include <stdio.h>
 
 #include "axes.h"

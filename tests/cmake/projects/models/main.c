@@ -1,4 +1,4 @@
-/* Models side by side do not disturb each other. */
+/* Several models in one program do not disturb each other. */
 #include <stdio.h>
 
 #include "by_hand.h"
@@ -15,7 +15,7 @@ int main(void)
     second_outputs_t y2;
     first_init(first_instance(0), &u1, &y1);
     second_init(second_instance(0), &u2, &y2);
-    for (int i = 0; i < 7000; i++) { /* no movement: homing gives up */
+    for (int i = 0; i < 7000; i++) { /* no movement: homing stops with an error */
         first_step(first_instance(0), &u1, &y1);
     }
     printf("first %.17g second %.17g\n", y1.pwm_pan, y2.pwm_pan);

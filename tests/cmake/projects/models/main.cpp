@@ -1,4 +1,4 @@
-// The headers are good C++ too.
+// The headers also compile as C++.
 #include <cstdio>
 
 #include "first.h"

@@ -1,4 +1,4 @@
-/* A model without memory: what comes in goes out. */
+/* A model without states: its outputs are its inputs. */
 #ifndef COPY_H
 #define COPY_H
 

@@ -1,4 +1,4 @@
-/* The user's own main(): two targets, one of them run for a moment. */
+/* The user's own main(): two targets, of which one runs for a short time. */
 #include <stdio.h>
 #include <time.h>
 

@@ -1,8 +1,8 @@
-# Written for EPG's tests: what Zephyr 4.1's package does with the variables of an application, and what a module may
-# call.  There is no kernel behind it.  CONFIG and PROPERTIES say what has become of configuration and devicetree.
+# Written for EPG's tests: treats an application's variables as Zephyr 4.1's package does, and defines the functions
+# that a module may call.  There is no kernel.  CONFIG and PROPERTIES show the resulting configuration and devicetree.
 set(Zephyr_FOUND TRUE)
 
-# As zephyr_get(): sysbuild, cache, environment, here; all of a scope before the next one.
+# Like zephyr_get(): sysbuild, cache, environment, here; all of a scope before the next one.
 function(fake_get result)
   set(${result} "" PARENT_SCOPE)
   foreach(scope CACHE ENV HERE)
@@ -22,7 +22,7 @@ function(fake_get result)
   endforeach()
 endfunction()
 
-# As zephyr_check_cache(): what came first stays.
+# Like zephyr_check_cache(): the first value stays.
 macro(fake_check_cache variable)
   if(DEFINED CACHED_${variable})
     if(NOT "$CACHE{${variable}}" STREQUAL "${CACHED_${variable}}")
@@ -47,7 +47,7 @@ foreach(root IN LISTS BOARD_ROOT)
   message(STATUS "Files of shields: ${found}")
 endforeach()
 
-set(CMAKE_C_COMPILER_ID_RUN TRUE) # nothing is compiled: no need to try the compiler
+set(CMAKE_C_COMPILER_ID_RUN TRUE) # no compilation: CMake need not test the compiler
 set(CMAKE_C_COMPILER_ID GNU)
 set(CMAKE_C_COMPILER_FORCED TRUE)
 project(Zephyr-Kernel C)

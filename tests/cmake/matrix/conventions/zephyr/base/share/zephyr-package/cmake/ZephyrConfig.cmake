@@ -1,4 +1,5 @@
-# Written for EPG's tests, with the conventions of Zephyr's package: what an application meets, without the kernel.
+# Written for EPG's tests, with the conventions of Zephyr's package: the parts that an application uses, without a
+# kernel.
 set(Zephyr_FOUND TRUE)
 set(ZEPHYR_BASE "$ENV{ZEPHYR_BASE}" CACHE PATH "Zephyr base")
 set(APPLICATION_SOURCE_DIR "${CMAKE_CURRENT_SOURCE_DIR}" CACHE PATH "Application Source Directory")
@@ -21,7 +22,7 @@ enable_language(ASM)
 set(PROJECT_BINARY_DIR "${CMAKE_CURRENT_BINARY_DIR}/zephyr")
 set(PROJECT_SOURCE_DIR "${ZEPHYR_BASE}")
 
-# Every flag that all code of an image must share, the processor's among them, is this target's.
+# This target has every flag that all code of an image must share, such as those of the processor.
 add_library(zephyr_interface INTERFACE)
 target_compile_options(zephyr_interface INTERFACE -std=c11 -Wall -Wdouble-promotion -ffunction-sections -fdata-sections)
 if(CROSS) # the prefix of the cross compiler
