@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""CMake fetches small libraries that the build needs and that are missing: a fixed version, completely or not at all."""
+"""CMake fetches small libraries that the build needs: a fixed version, completely or not at all."""
 
 from __future__ import annotations
 

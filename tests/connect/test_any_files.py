@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Any contents of files and any edits: EPG refuses an edit or makes it, without an exception, and files stay consistent."""
+"""Any contents of files and any edits: EPG makes an edit or refuses it, never crashes, and files stay consistent."""
 
 from __future__ import annotations
 

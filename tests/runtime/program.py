@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Compiles C tests against the runtime, the component drivers and a port layer the tests control."""
+"""Compiles C tests with the runtime, the component drivers and a port layer that the tests control."""
 
 from __future__ import annotations
 
@@ -51,14 +51,14 @@ def component_sources() -> list[Path]:
 
 
 def names_in(source: Path) -> list[str]:
-    """Names of the ``TEST(name)`` in a C file, in order."""
+    """The names of all ``TEST(name)`` in a C file, in order."""
     return re.findall(r"^TEST\((\w+)\)", source.read_text(), flags=re.MULTILINE)
 
 
 def run_program(
     command: Sequence[str | Path], *, environment: Mapping[str, str] | None = None
 ) -> subprocess.CompletedProcess[str]:
-    """Runs a program and keeps what it prints; the caller judges its exit status.  ``environment`` is added to ours."""
+    """Runs a program and captures its output; the caller checks its exit status.  ``environment`` extends this one."""
     return subprocess.run(
         [str(part) for part in command],
         capture_output=True,

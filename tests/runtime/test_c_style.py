@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The C of runtime, drivers and their tests as other tools see it: other compilers' modes, cppcheck, clang-format."""
+"""The C of runtime, drivers and their tests passes other tools: other compilers' modes, cppcheck, clang-format."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def test_header_stands_alone_and_may_be_included_twice(header: Path, tmp_path: P
 
 @pytest.mark.parametrize("name", ["status.h", "fault.h", "statistics.h", "port.h", "finite.h"])
 def test_header_of_users_is_cpp_too(name: str, tmp_path: Path) -> None:
-    """Those a user's C++ main() or a C++ model sees; control.h and exchange.h need C11 atomics."""
+    """The headers that a user's C++ main() or a C++ model includes; control.h and exchange.h need C11 atomics."""
     source = tmp_path / "alone.cpp"
     source.write_text(f'#include "epg/{name}"\nextern int used;\nint used;\n')
     options = ["-std=c++17", "-Wall", "-Wextra", "-Wconversion", "-pedantic", "-Werror"]
@@ -48,7 +48,7 @@ def test_runtime_has_no_warnings_at_any_optimisation(source: Path, optimise: str
 
 
 def test_runtime_needs_no_heap_and_no_library_but_string_h(tmp_path: Path) -> None:
-    """What it leaves for the linker: the port layer, and what copies, clears and compares bytes."""
+    """The linker must only add the port layer, and functions that copy, clear and compare bytes."""
     undefined: set[str] = set()
     defined: set[str] = set()
     for source in runtime_sources():
@@ -63,9 +63,9 @@ def test_runtime_needs_no_heap_and_no_library_but_string_h(tmp_path: Path) -> No
 
 
 def test_runtime_has_no_state_of_its_own(tmp_path: Path) -> None:
-    """All state is the caller's: nothing in .data or .bss, so several targets live in one image.
+    """The caller owns all state: .data and .bss are empty, so that several targets can be in one image.
 
-    Position-independent code would have constants that hold addresses in .data.rel.ro, which nm calls data.
+    Position-independent code would have constants with addresses in .data.rel.ro, which nm lists as data.
     """
     for source in runtime_sources():
         output = tmp_path / f"{source.stem}.o"
@@ -75,7 +75,7 @@ def test_runtime_has_no_state_of_its_own(tmp_path: Path) -> None:
 
 
 def test_drivers_work_with_fast_math(tmp_path: Path) -> None:
-    """NaN is found by its bits, so even a compiler that assumes there is none finds it."""
+    """NaN is detected by its bits, even with a compiler that assumes that there is no NaN."""
     program = compile_program(
         tmp_path / "fast",
         [
@@ -101,7 +101,7 @@ def test_cppcheck_finds_nothing() -> None:
 
 
 def clang_format_version() -> int:
-    """The major version that is installed; 0 for none."""
+    """The installed major version; 0 if clang-format is missing."""
     if shutil.which("clang-format") is None:
         return 0
     shown = subprocess.run(["clang-format", "--version"], capture_output=True, text=True, check=True).stdout

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The exchange proven: every interleaving by the model checker spin, real threads by ThreadSanitizer and by counting.
+"""Proofs of the exchange: every interleaving by the model checker spin, real threads by ThreadSanitizer and counting.
 
-Each check is also shown to fail: broken variants of the model, and of ``exchange.c`` itself, must be refused.
+Each check must also be able to fail: broken variants of the model, and of ``exchange.c`` itself, must be refused.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from .program import RUNTIME, SOURCES, THREAD_SANITIZER, compile_program, run_pr
 MODEL = Path(__file__).resolve().parent / "exchange.pml"
 EXCHANGE = RUNTIME / "src" / "exchange.c"
 SECONDS = "2"
-# A broken exchange is refused at its first wrong value; how soon that comes depends on what else the machine does.
+# A broken exchange is refused at its first wrong value; the time until then depends on the load of the machine.
 PATIENCE = "60"
 
 BROKEN_MODELS = {
@@ -35,10 +35,10 @@ needs_spin = pytest.mark.skipif(shutil.which("spin") is None, reason="spin is no
 
 
 def spin(folder: Path, *defines: str) -> str:
-    """What the verifier made of the model prints, after a search of its whole state space."""
+    """The output of the model's verifier after a search of its whole state space."""
     options = [f"-D{define}" for define in defines]
     subprocess.run(["spin", "-a", *options, str(MODEL)], cwd=folder, check=True, capture_output=True)
-    # -DSAFETY: assertions and end states only; nothing is approximated (no -DBITSTATE).
+    # -DSAFETY: assertions and end states only; the search is exact (no -DBITSTATE).
     subprocess.run(["gcc", "-O2", "-w", "-DSAFETY", "-o", "pan", "pan.c"], cwd=folder, check=True, capture_output=True)
     return subprocess.run(["./pan", "-m100000"], cwd=folder, check=False, capture_output=True, text=True).stdout
 
@@ -84,7 +84,7 @@ def test_all_broken_models_are_tried() -> None:
 
 
 def test_model_and_code_have_the_same_statements() -> None:
-    """Loads and stores of control words, in their order, are those of the C functions."""
+    """Loads and stores of control words in the model have the same order as in the C functions."""
 
     code = EXCHANGE.read_text()
     write = code[code.index("void epg_exchange_write") : code.index("bool epg_exchange_read")]
@@ -97,7 +97,7 @@ def test_model_and_code_have_the_same_statements() -> None:
         "memcpy",
         "newest",
         "latest",
-        "writes",  # stored; loaded is its own count, which nobody else changes
+        "writes",  # stored; the writer loads its own count, which only it changes
         "writes",
     ]
     assert ["".join(match) for match in re.findall(in_code, read)] == [
@@ -131,13 +131,13 @@ def test_model_and_code_have_the_same_statements() -> None:
 
 
 def _without_broken(model: str) -> str:
-    """The model as the preprocessor leaves it when nothing is defined."""
+    """The model after the preprocessor, with no macro defined."""
     done = subprocess.run(["gcc", "-E", "-P", "-xc", "-"], input=model, capture_output=True, text=True, check=True)
     return done.stdout
 
 
 def mutated(folder: Path, old: str, new: str) -> Path:
-    """A copy of ``exchange.c`` in which ``old``, which occurs once, is ``new``."""
+    """A copy of ``exchange.c`` in which ``old``, which occurs once, is replaced by ``new``."""
     code = EXCHANGE.read_text()
     assert code.count(old) == 1, old
     path = folder / "exchange.c"
@@ -185,7 +185,7 @@ def test_two_threads_see_a_broken_exchange(tmp_path: Path, mutation: str) -> Non
 
 
 def under_thread_sanitizer(folder: Path, exchange: Path, seconds: str) -> tuple[int, str]:
-    """Exit status and report; 66, at once, when ThreadSanitizer finds something."""
+    """Exit status and report; 66, immediately, if ThreadSanitizer detects an error."""
     options = ["-O1", *THREAD_SANITIZER]
     program = compile_program(
         folder / "races", [SOURCES / "stress.c", exchange], options=options, defines=["RACES_ONLY"]
@@ -193,7 +193,7 @@ def under_thread_sanitizer(folder: Path, exchange: Path, seconds: str) -> tuple[
     environment = {"TSAN_OPTIONS": "halt_on_error=1 exitcode=66"}
     done = run_program([program, seconds], environment=environment)
     if "unexpected memory mapping" in done.stderr:
-        # Address-space layout randomisation beyond what this ThreadSanitizer knows.
+        # This ThreadSanitizer does not support the address-space randomisation of newer kernels.
         done = run_program(["setarch", platform.machine(), "-R", program, seconds], environment=environment)
     return done.returncode, done.stdout + done.stderr
 

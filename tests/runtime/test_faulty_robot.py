@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A real executable and its simulated robot: what broken and swapped wires do, and where timing probes toggle."""
+"""A real executable with its simulated robot: the effect of broken and swapped wires, and the times of probes."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def robot(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def run(robot: Path, folder: Path, wiring: str, *events: str, seconds: float = 16) -> Run:
-    """Homing, then a move of pan by 2 rad in 3 s from 9 s on, with what goes wrong."""
+    """Homing, then a move of pan by 2 rad in 3 s from 9 s on, with these faults."""
     moves = [f"{9 + 0.033 * k:.3f},pan_subscriber,{min(2.0, 0.022 * k):.3f}" for k in range(200)]
     lines = sorted([*moves, *events], key=lambda line: float(line.partition(",")[0]))
     (folder / "in.csv").write_text("time,topic,value\n" + "\n".join(lines) + "\n")
@@ -67,7 +67,7 @@ def run(robot: Path, folder: Path, wiring: str, *events: str, seconds: float = 1
 
 
 def check_fault(found: Run, fault: str, component: str, at: float) -> None:
-    """Disabled by this fault at that time, named, latched; the motors are without voltage from the same cycle on."""
+    """Disabled by this fault at this time, with its component, latched; no voltage at the motors from that cycle on."""
     assert (found.statistics["fault"], found.statistics["fault_component"]) == (fault, component)
     assert f"{fault} ({component})" in found.summary
     assert found.statistics["faults"] == 1
@@ -81,7 +81,7 @@ def check_fault(found: Run, fault: str, component: str, at: float) -> None:
 
 
 def driven_from(found: Run, duty: float, since: float) -> float:
-    """When the size of the pan motor's duty first reached ``duty``."""
+    """The time at which the magnitude of the pan motor's duty first reached ``duty``."""
     return next(
         time
         for time, applied in zip(found.trace["time"], found.trace["plant.inputs.duty_pan"])
@@ -101,7 +101,7 @@ def test_encoder_that_dies_while_the_axis_moves(robot: Path, tmp_path: Path) -> 
     at = found.first("enabled", 0.0)
     assert at is not None
     check_fault(found, "stall", "guard_pan", at)
-    begun = driven_from(found, 0.3, 10.0)  # for moments only, with each new setpoint; steadily a little later
+    begun = driven_from(found, 0.3, 10.0)  # first only briefly, with each new setpoint; steadily a little later
     assert STALL_S - 0.002 <= at - begun < STALL_S + 0.15
     duties = found.trace["plant.inputs.duty_pan"][round(begun * 1000) : round(at * 1000)]
     assert 0 <= sum(duty >= 0.3 for duty in duties) - STALL_S * 1000 < 60
@@ -128,7 +128,7 @@ def test_motor_whose_wires_are_swapped(robot: Path, tmp_path: Path) -> None:
 
 
 def test_motor_that_is_unplugged(robot: Path, tmp_path: Path) -> None:
-    """The fault comes from the duty that is applied, not from what the motor makes of it."""
+    """The fault depends on the applied duty, not on the motor's reaction to it."""
     found = run(robot, tmp_path, "motor-unplugged@10")
     assert (found.statistics["fault"], found.statistics["fault_component"]) == ("stall", "guard_pan")
 
@@ -160,7 +160,7 @@ def test_homing_that_does_not_end(robot: Path, tmp_path: Path) -> None:
 
 
 def test_decoder_that_stops(robot: Path, tmp_path: Path) -> None:
-    """Safe in the same cycle; enabling is in vain while it lasts, and homes again afterwards."""
+    """Safe in the same cycle; enabling has no effect during the fault, and starts homing after it."""
     found = run(robot, tmp_path, "decoder-halted@10", "11,$enable,1", "13,$enable,1", seconds=20)
     enabled = found.trace["enabled"]
     assert enabled[9_999] == 1.0
@@ -175,7 +175,7 @@ def test_decoder_that_stops(robot: Path, tmp_path: Path) -> None:
 
 
 def test_axis_that_is_turned_by_hand_while_disabled(robot: Path, tmp_path: Path) -> None:
-    """Teleoperation: the leading robot is disabled, and its model sees what looks like everything at once."""
+    """Teleoperation: the leading robot is disabled, and its model reads a motion that looks like several faults."""
     found = run(robot, tmp_path, "encoder-turned-by-hand@9.5", "9.4,$enable,0")
     assert found.statistics["fault"] == "none"
     assert found.statistics["faults"] == 0
@@ -186,8 +186,8 @@ def test_axis_that_is_turned_by_hand_while_disabled(robot: Path, tmp_path: Path)
 
 
 def signals(robot: Path, folder: Path, seconds: float, *events: str) -> list[tuple[int, str, int]]:
-    """All that the program did to its hardware: time in ns, what, and its value; probes by their names."""
-    # the host numbers pins in the order of the .tcf: four of the encoders, six of the bridges
+    """Every access of the program to its hardware: time in ns, signal and value; probes by their names."""
+    # The host numbers pins in the order of the .tcf: four of the encoders, six of the bridges.
     names = {10 + number: name for number, name in enumerate(PROBES)}
     (folder / "in.csv").write_text("time,topic,value\n" + "".join(f"{event}\n" for event in events))
     command = [

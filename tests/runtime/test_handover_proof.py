@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The handover proven as the exchange is: every interleaving by spin, real threads, and broken variants refused."""
+"""Proofs of the handover, as for the exchange: every interleaving by spin, real threads, and refused broken variants."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .program import RUNTIME, SOURCES, THREAD_SANITIZER, compile_program, run_pr
 MODEL = Path(__file__).resolve().parent / "handover.pml"
 HANDOVER = RUNTIME / "include" / "epg" / "handover.h"
 STRESS = SOURCES / "handover_stress.c"
-PATIENCE = "60"  # a broken one ends at its first wrong block
+PATIENCE = "60"  # a broken handover ends at its first wrong block
 
 BROKEN_MODELS = {
     "BROKEN_GIVER_DOES_NOT_ASK",
@@ -47,7 +47,7 @@ needs_spin = pytest.mark.skipif(shutil.which("spin") is None, reason="spin is no
 
 
 def spin(folder: Path, *defines: str) -> str:
-    """What the verifier made of the model prints, after a search of its whole state space."""
+    """The output of the model's verifier after a search of its whole state space."""
     options = [f"-D{define}" for define in defines]
     subprocess.run(["spin", "-a", *options, str(MODEL)], cwd=folder, check=True, capture_output=True)
     subprocess.run(["gcc", "-O2", "-w", "-DSAFETY", "-o", "pan", "pan.c"], cwd=folder, check=True, capture_output=True)
@@ -78,7 +78,7 @@ def test_all_broken_models_are_tried() -> None:
 def test_two_threads_lose_nothing(tmp_path: Path) -> None:
     program = compile_program(tmp_path / "stress", [STRESS], options=["-O2"])
     count = 0
-    for seconds in ("1", "10", "60"):  # a round takes a few milliseconds where the threads share one processor
+    for seconds in ("1", "10", "60"):  # a round takes a few milliseconds if the threads share one processor
         done = run_program([program, seconds])
         assert done.returncode == 0, done.stdout
         rounds = re.search(r"rounds (\d+)", done.stdout)
@@ -90,7 +90,7 @@ def test_two_threads_lose_nothing(tmp_path: Path) -> None:
 
 
 def under_thread_sanitizer(folder: Path, header: Path, seconds: str) -> tuple[int, str]:
-    """Exit status and report; 66, at once, when ThreadSanitizer finds something."""
+    """Exit status and report; 66, immediately, if ThreadSanitizer detects an error."""
     include = folder / "include" / "epg"
     include.mkdir(parents=True)
     shutil.copy(header, include / "handover.h")
@@ -100,7 +100,7 @@ def under_thread_sanitizer(folder: Path, header: Path, seconds: str) -> tuple[in
     environment = {"TSAN_OPTIONS": "halt_on_error=1 exitcode=66"}
     done = run_program([program, seconds], environment=environment)
     if "unexpected memory mapping" in done.stderr:
-        # Address-space layout randomisation beyond what this ThreadSanitizer knows.
+        # This ThreadSanitizer does not support the address-space randomisation of newer kernels.
         done = run_program(["setarch", platform.machine(), "-R", program, seconds], environment=environment)
     return done.returncode, done.stdout + done.stderr
 

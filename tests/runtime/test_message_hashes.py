@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names and hashes by which ROS 2 tells message types apart, computed from the definitions as REP 2016 says.
+"""Names and hashes by which ROS 2 distinguishes message types, computed from the definitions by REP 2016.
 
-A hash is the SHA-256 of a type's description and of the descriptions of all types it refers to, as JSON text with the
+A hash is the SHA-256 of the descriptions of a type and of all types that it refers to, as JSON text with the
 keys in the order below.
 """
 
@@ -69,7 +69,7 @@ def hash_of(name: str) -> str:
 
 
 def messages() -> list[tuple[str, str]]:
-    """Type and hash of each message in the runtime's sources."""
+    """The type and hash of each message in the runtime's sources."""
     found = []
     for source in sorted((RUNTIME / "src").glob("*.c")):
         found += re.findall(r'\.type = "([^"]*)",\s*\.hash =\s*"([^"]*)"', source.read_text())

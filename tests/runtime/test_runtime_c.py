@@ -23,7 +23,7 @@ CASES = [
 
 @pytest.fixture(scope="session")
 def program_of(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Path], Path]:
-    """The program made of a C test file; each is compiled once."""
+    """The program for a C test file; each is compiled once."""
     folder = tmp_path_factory.mktemp("c")
     programs: dict[Path, Path] = {}
 

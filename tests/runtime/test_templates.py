@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The kinds' code templates: rendered as the generator does, compiled, and run against simulated peripherals."""
+"""The kinds' code templates: rendered as the generator does, compiled, and run with simulated peripherals."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def bridge_claims(value: int, a: int, b: int, slot: int) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Component:
-    """A component as its ``.tcf`` writes it, and the hardware it got."""
+    """A component as in a ``.tcf``, and the hardware that was assigned to it."""
 
     name: str
     text: str
@@ -253,7 +253,7 @@ class Renderer:
 
 
 def header(renderers: list[Renderer]) -> str:
-    """``generated.h``: drivers, all components, and the functions that start and make safe all of them."""
+    """``generated.h``: drivers, all components, and functions that start all of them and make all of them safe."""
     includes = sorted({header for renderer in renderers for header in renderer.kind.headers})
     lines = [f'#include "{include}"' for include in includes]
     lines += [renderer.functions() for renderer in renderers]
@@ -280,7 +280,7 @@ def test_generated_code(program: Path, name: str) -> None:
 
 
 def test_every_kind_is_tried(catalog: Catalog) -> None:
-    """Every one that the host's peripherals can be."""
+    """Every kind that the host can simulate."""
     classes = {"digital_input", "digital_output", "pwm", "quadrature"}
     kinds = [catalog.find_kind(path.parent.name) for path in COMPONENTS.glob("*/component.yaml")]
     tried = {kind.name for kind in kinds if kind and {claim.resource_class for claim in kind.claims} <= classes}
@@ -288,7 +288,7 @@ def test_every_kind_is_tried(catalog: Catalog) -> None:
 
 
 def test_generated_code_reads_well(catalog: Catalog) -> None:
-    """The generated block of an encoder, as a user finds it."""
+    """The generated block of an encoder, as the user reads it."""
     assert Renderer(catalog, COMPONENTS_TRIED[2]).render("globals") == (
         "static const epg_quadrature_encoder_config_t encoder_gear_config = {\n"
         "    .decoder = {.pin_a = 14,\n"

@@ -1,6 +1,6 @@
 /**
  * @file
- * H-bridges: coasting and braking, dead time, and the one with two PWM inputs.
+ * H-bridges: coasting and braking, dead time, and the bridge with two PWM inputs.
  */
 #include <math.h>
 
@@ -113,14 +113,14 @@ TEST(brakes_when_safe_and_coasts_at_zero)
     drive(0.5);
     CHECK(drive(INFINITY));
     check_pins(true, true, CLOCKS);
-    fake_port.outputs[PIN_A] = false; /* as something else may have left it */
+    fake_port.outputs[PIN_A] = false; /* another program may have left it so */
     epg_pwm_h_bridge_safe(&bridge, &config);
     check_pins(true, true, CLOCKS);
 }
 
 static bool last_a, last_b;
 
-/** Pins change only while the PWM is low: no pulses of one state with the pins of another. */
+/** Pins change only while the PWM is low: no pulse of one state occurs with the pins of another. */
 static void watch(void)
 {
     if (fake_port.outputs[PIN_A] != last_a || fake_port.outputs[PIN_B] != last_b) {
@@ -147,7 +147,7 @@ TEST(dead_time_between_directions)
 {
     begin((epg_bridge_config_t){.max_duty = 1.0, .dead_writes = 2});
     drive(0.5);
-    check_pins(true, false, 500); /* none before the first drive */
+    check_pins(true, false, 500); /* no dead time before the first drive */
     for (int direction = 0; direction < 2; direction++) {
         const double duty = direction == 0 ? -0.5 : 0.5;
         drive(duty);
@@ -233,7 +233,7 @@ TEST(dual_with_fast_decay)
 TEST(dual_with_slow_decay)
 {
     begin_dual((epg_bridge_config_t){.max_duty = 1.0}, true);
-    check_levels(0, 0); /* coasts: slow decay is between the pulses only */
+    check_levels(0, 0); /* coasts: slow decay happens only between pulses */
     drive_dual(0.25);
     check_levels(CLOCKS, 750);
     drive_dual(-0.25);
@@ -279,7 +279,7 @@ static void watch_dual(void)
     CHECK(fake_port.levels[FORWARDS] == 0 || fake_port.levels[BACKWARDS] == 0);
 }
 
-/** A PWM period may end between the two writes: then it has what is written by then. */
+/** A PWM period may end between the two writes.  It then uses the values that were written by then. */
 TEST(dual_has_no_pulses_both_ways_between_two_writes)
 {
     begin_dual((epg_bridge_config_t){.max_duty = 1.0}, false);

@@ -14,9 +14,9 @@ enum { CAPACITY = 60 };
 
 static double memory[CAPACITY];
 static epg_capture_t capture;
-static double ramp; /* what the test lets a signal be */
+static double ramp; /* the value of a signal, set by the test */
 
-/** Ticks are whole milliseconds, which the tests count. */
+/** Ticks are at whole milliseconds, which the tests count. */
 static void begin(void)
 {
     fake_reset();
@@ -26,7 +26,7 @@ static void begin(void)
     ramp = 0.0;
 }
 
-/** `count` cycles in which the signal grows by `slope`. */
+/** Runs `count` cycles, in each of which the signal grows by `slope`. */
 static void cycles(unsigned int count, double slope)
 {
     for (unsigned int i = 0; i < count; i++) {
@@ -42,7 +42,7 @@ static epg_capture_request_t request_of(size_t rows)
         .columns = 2, .signals = {&fake.input, &fake.output}, .rows = rows, .every = 1, .trigger = EPG_CAPTURE_NOW};
 }
 
-/** Tick of a row in milliseconds; `*value` is its first signal. */
+/** The tick of a row in milliseconds; `*value` is the row's first signal. */
 static uint64_t row(size_t index, double *value)
 {
     uint64_t tick_ns;
@@ -95,7 +95,7 @@ TEST(rows_from_before_the_trigger_are_kept)
             cycles(1, 50.0);
             cycles(lead, 0.5);
             const uint64_t tick = fake.tick;
-            cycles(1, 60.0); /* here */
+            cycles(1, 60.0); /* the trigger */
             cycles(9, 0.5);
             CHECK(epg_capture_idle(&capture));
             const size_t kept = lead + 1U < before ? lead + 1U : before;
@@ -123,7 +123,7 @@ TEST(every_nth_cycle_and_always_that_of_the_trigger)
     cycles(30, -1.0);
     CHECK(epg_capture_idle(&capture));
     double value;
-    /* The trigger is in the tenth cycle; rows before it stand in the first, fifth and ninth. */
+    /* The trigger is in the tenth cycle; the rows before it are from the first, fifth and ninth cycle. */
     CHECK_EQUAL(epg_capture_trigger_row(&capture), 2);
     CHECK_EQUAL(row(0, &value), 4);
     CHECK_EQUAL(row(1, &value), 8);

@@ -1,9 +1,9 @@
 /**
  * @file
- * The least a C test needs: named tests, checks that say where they failed.
+ * A minimal framework for C tests: named tests, and checks that report their position.
  *
- * A file ends with RUN(ENTRY(first), ENTRY(second), ...).  The program runs the test its argument names; pytest calls
- * it once for each TEST() it finds in the source, so that one that is not entered fails.
+ * A file ends with RUN(ENTRY(first), ENTRY(second), ...).  The program runs the test that its argument names.  pytest
+ * calls it once for each TEST() in the source; a test without an ENTRY() therefore fails.
  */
 #ifndef CHECK_H
 #define CHECK_H
@@ -22,7 +22,7 @@
         }                                                                                                              \
     } while (0)
 
-/** Exactly equal, and shows both numbers if not. */
+/** Checks that two numbers are exactly equal; prints both if they are not. */
 #define CHECK_EQUAL(actual, expected)                                                                                  \
     do {                                                                                                               \
         const double check_actual = (double)(actual);                                                                  \

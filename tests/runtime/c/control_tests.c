@@ -30,7 +30,7 @@ static void request(bool enable)
     epg_control_request(&fake.control, enable);
 }
 
-/** The target is off and says why; and it stays so though its cause has gone, until it is enabled again. */
+/** The target is disabled with this fault, and stays so after the cause has gone, until it is enabled again. */
 static void check_latched(epg_fault_t fault)
 {
     CHECK_EQUAL(fake.actuator, 0.0);
@@ -194,7 +194,7 @@ TEST(disabled_is_safe_within_one_cycle_while_the_model_runs_on)
     fake.sensor = 50.0;
     fake_cycle();
     CHECK_EQUAL(fake_published(), 55.0);
-    CHECK_EQUAL(fake.safes, 3); /* one of the start */
+    CHECK_EQUAL(fake.safes, 3); /* including the one at the start */
     CHECK_EQUAL(fake.writes, 3);
 }
 
@@ -274,7 +274,7 @@ TEST(input_not_a_number)
     fake_cycles(3);
     fake.sensor = NAN;
     fake_cycle();
-    CHECK_EQUAL(fake.steps, 3); /* the model never saw it */
+    CHECK_EQUAL(fake.steps, 3); /* the model never got this value */
     check_latched(EPG_FAULT_NOT_FINITE);
 }
 
@@ -432,7 +432,7 @@ TEST(outputs_are_prepared_before_the_output_delay)
     request(false);
     prepared_ns = 0;
     fake_cycle();
-    CHECK_EQUAL(prepared_ns, 0); /* safe outputs are none of the model's */
+    CHECK_EQUAL(prepared_ns, 0); /* safe outputs are not values of the model */
 }
 
 TEST(outputs_that_are_not_ready_at_the_output_delay_follow_at_once_and_are_counted)
@@ -526,7 +526,7 @@ TEST(fail_safe_input_at_start)
     fake_start();
     fake_cycle();
     CHECK_EQUAL(fake.writes, 0);
-    CHECK_EQUAL(fake_published(), 1.0); /* the model runs on as when disabled by request */
+    CHECK_EQUAL(fake_published(), 1.0); /* the model keeps running, as after a request to disable */
     check_latched(EPG_FAULT_FAIL_SAFE);
 }
 
@@ -546,7 +546,7 @@ TEST(fail_safe_input_refuses_enabling)
     CHECK(fake_status().fault == EPG_FAULT_FAIL_SAFE);
     fake.fail_safe = true;
     fake_cycles(3);
-    CHECK(!fake_status().enabled); /* the refused request does not wait */
+    CHECK(!fake_status().enabled); /* the refused request is not kept */
 }
 
 TEST(an_active_fail_safe_input_changes_nothing)

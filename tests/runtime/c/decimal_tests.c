@@ -1,6 +1,6 @@
 /**
  * @file
- * Decimal numbers against the C library of this machine, which rounds correctly.
+ * Decimal numbers, compared with this computer's C library, which rounds correctly.
  */
 #include "epg/decimal.h"
 
@@ -50,7 +50,7 @@ static bool reads(const char *text, double *value)
     return epg_decimal_read(text, strlen(text), value);
 }
 
-/** Digits of the shortest text that the C library reads back as `value`. */
+/** Number of digits in the shortest text that the C library reads back as `value`. */
 static int least_digits(double value)
 {
     char text[32];
@@ -142,7 +142,7 @@ TEST(ordinary_numbers_are_exact)
     }
 }
 
-/** What a person or a program may write, which is not always the shortest. */
+/** Texts that a user or a program may write, which are not always the shortest. */
 TEST(texts_are_read_as_the_c_library_reads_them)
 {
     for (int i = 0; i < 60000; i++) {
@@ -184,7 +184,7 @@ TEST(ties_go_to_the_even_neighbour)
     CHECK(bits_of(value) == 0U);
     CHECK(reads("2.4703282292062328e-324", &value));
     CHECK(bits_of(value) == 1U);
-    CHECK(reads("2.2250738585072011e-308", &value)); /* the largest that is not normal */
+    CHECK(reads("2.2250738585072011e-308", &value)); /* the largest subnormal number */
     CHECK(bits_of(value) == 0x000FFFFFFFFFFFFFU);
     CHECK(reads("2.2250738585072014e-308", &value));
     CHECK(bits_of(value) == 0x0010000000000000U);

@@ -1,6 +1,6 @@
 /**
  * @file
- * The component drivers against a port whose every signal is seen.
+ * The component drivers with a port layer whose signals are all recorded.
  */
 #include <math.h>
 
@@ -89,7 +89,7 @@ TEST(encoder_reset_loses_no_counts)
     CHECK_EQUAL(position_at(40), 20.0);
     fake_port.counts[1] = 43; /* between sampling and reset */
     reset(1.0);
-    CHECK_EQUAL(position_at(47), 103.5); /* 7 counts after the sample the reset refers to */
+    CHECK_EQUAL(position_at(47), 103.5); /* 7 counts after the sample to which the reset refers */
     reset(1.0);
     CHECK_EQUAL(position_at(49), 104.5);
 }
@@ -98,7 +98,7 @@ TEST(encoder_reset_acts_on_a_rising_edge_only)
 {
     begin_encoder(0);
     position_at(40);
-    reset(0.5); /* not above */
+    reset(0.5); /* not above the threshold */
     CHECK_EQUAL(position_at(40), 20.0);
     reset(0.51);
     CHECK_EQUAL(position_at(42), 101.0);
@@ -146,7 +146,7 @@ TEST(encoder_first_high_signal_after_withholding_is_an_edge)
     reset(1.0);
     position_at(50);
     epg_quadrature_encoder_withhold_reset(&encoder);
-    CHECK_EQUAL(position_at(50), 105.0); /* the zero position stays */
+    CHECK_EQUAL(position_at(50), 105.0); /* the zero position does not change */
     reset(1.0);
     CHECK_EQUAL(position_at(50), 100.0);
 }
@@ -182,13 +182,13 @@ static epg_pwm_h_bridge_t bridge;
 /** Direction of the bridge: 1, 0 (coasting) or -1. */
 static int direction(void)
 {
-    CHECK(!(fake_port.outputs[BRIDGE_A] && fake_port.outputs[BRIDGE_B])); /* a short circuit, never */
+    CHECK(!(fake_port.outputs[BRIDGE_A] && fake_port.outputs[BRIDGE_B])); /* never a short circuit */
     return (int)fake_port.outputs[BRIDGE_A] - (int)fake_port.outputs[BRIDGE_B];
 }
 
 static int last_direction;
 
-/** At no instant is a direction taken while the PWM still has a level of the other one. */
+/** The direction never changes while the PWM still has a level of the other direction. */
 static void watch_bridge(void)
 {
     const int now = direction();
@@ -304,7 +304,7 @@ TEST(bridge_never_drives_the_wrong_way)
     for (int i = 0; i < 100000; i++) {
         random = random * 1664525U + 1013904223U;
         const double duty = (double)(random >> 8) / 8388608.0 - 1.0;
-        drive(duty); /* watch_bridge() checks each signal on the way */
+        drive(duty); /* watch_bridge() checks each intermediate signal */
         CHECK(direction() == (duty > 0.0001 ? 1 : duty < -0.0001 ? -1 : direction()));
     }
 }
@@ -322,7 +322,7 @@ TEST(bridge_safe_writes_every_signal)
 {
     begin_bridge(false, 0.9);
     fake_port.on_write = NULL;
-    fake_port.levels[3] = 77; /* as something else may have left them */
+    fake_port.levels[3] = 77; /* another program may have left them so */
     fake_port.outputs[BRIDGE_A] = true;
     fake_port.outputs[BRIDGE_B] = true;
     epg_pwm_h_bridge_safe(&bridge, &bridge_config);

@@ -1,9 +1,9 @@
 /**
  * @file
- * What a fault does to a motor: control cycle, encoder and H-bridge drivers and a simulated motor in one loop.
+ * The effect of a fault on a motor: control cycle, encoder and H-bridge drivers and a simulated motor in one loop.
  *
- * The controller is a speed controller whose setpoint is a load speed in rad/s; the speed it reaches shows that the
- * loop runs, the motor's coming to rest without torque that it was made safe.
+ * The controller controls the speed; its setpoint is a load speed in rad/s.  A motor that reaches the setpoint proves
+ * that the loop runs.  A motor that slows down without torque proves that its outputs are safe.
  */
 #include <math.h>
 
@@ -39,7 +39,7 @@ static struct {
     unsigned int inits;
 } model;
 
-/* What a test makes go wrong. */
+/* The errors that a test causes. */
 static struct {
     double sensor;   /* added to the position */
     double integral; /* added to the state */
@@ -87,7 +87,7 @@ static void model_step(void)
     const double error = model.setpoint - model.speed;
     model.integral += 0.5 * error * 1e-3 + wrong.integral;
     model.duty = 0.05 * error + model.integral + wrong.duty;
-    model.duty = model.duty > 0.9 ? 0.9 : model.duty; /* a limiter that hides an infinite state */
+    model.duty = model.duty > 0.9 ? 0.9 : model.duty; /* a limiter that hides an infinite state from the outputs */
     fake_port.now_ns += wrong.step_ns;
 }
 
@@ -170,7 +170,7 @@ static const epg_application_t application = {
     .monitor_exchange = &monitor_exchange,
 };
 
-/** The motor and its encoder for one control period with the bridge as it is. */
+/** Simulates the motor and its encoder for one control period, with the present state of the bridge. */
 static void plant(void)
 {
     const int direction = (int)fake_port.outputs[PIN_A] - (int)fake_port.outputs[PIN_B];
@@ -209,7 +209,7 @@ static double load_speed(void)
     return motor.speed / 19.0;
 }
 
-/** Setpoints of 10 rad/s every 33 ms, `count` of them. */
+/** Sends `count` setpoints of 10 rad/s, one every 33 ms. */
 static void send(int count)
 {
     for (int i = 0; i < count; i++) {
@@ -218,7 +218,7 @@ static void send(int count)
     }
 }
 
-/** The motor runs at 10 rad/s under control. */
+/** Brings the motor to 10 rad/s under control. */
 static void begin(epg_setpoint_t setpoint)
 {
     fake_port_reset();
@@ -237,7 +237,7 @@ static void check_bridge_off(void)
     CHECK(!fake_port.outputs[PIN_A] && !fake_port.outputs[PIN_B]);
 }
 
-/** Off in the same cycle; the motor coasts from there, without a push, until it stands. */
+/** The bridge is off in the same cycle; from there the motor coasts to rest without any torque. */
 static void check_coasts(void)
 {
     const double speed = motor.speed;
@@ -266,7 +266,7 @@ static void check_fault(epg_fault_t fault)
     CHECK(status().fault == fault);
 }
 
-/** With the cause gone the motor stays off; enabling starts the model afresh and brings it back to speed. */
+/** The motor stays off after the cause has gone.  Enabling initialises the model and brings the motor back to speed. */
 static void check_comes_back_by_enabling_only(void)
 {
     const unsigned int inits = model.inits;
@@ -324,7 +324,7 @@ TEST(motor_coasts_when_a_state_is_infinite_behind_a_limiter)
     begin((epg_setpoint_t){0});
     wrong.integral = INFINITY;
     check_fault(EPG_FAULT_NOT_FINITE);
-    CHECK_EQUAL(model.duty, 0.9); /* which would have been full speed */
+    CHECK_EQUAL(model.duty, 0.9); /* this would have been full speed */
     check_comes_back_by_enabling_only();
 }
 
@@ -354,7 +354,7 @@ TEST(motor_coasts_when_the_fail_safe_input_falls)
     check_comes_back_by_enabling_only();
 }
 
-/** Setpoints every 33 ms until now, and none from here on. */
+/** Setpoints have come every 33 ms until now; from here on there are none. */
 static void begin_with_sender(epg_timeout_action_t action)
 {
     begin((epg_setpoint_t){.timeout_ns = 500 * (uint64_t)PERIOD_NS, .action = action});
@@ -443,10 +443,10 @@ TEST(encoder_zero_stays_while_disabled)
     model.reset = 0.0;
     run(1);
     const double origin = motor.angle - encoder.position;
-    CHECK(encoder.position < 0.1); /* taken: the motor has done 30 rad */
+    CHECK(encoder.position < 0.1); /* the reset has acted: the motor has turned by 30 rad */
     epg_control_request(&control, false);
     run(1);
-    model.reset = 1.0; /* a model that homes while it is disabled */
+    model.reset = 1.0; /* the model homes while it is disabled */
     run(100);
     model.reset = 0.0;
     run(2000);

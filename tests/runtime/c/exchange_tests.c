@@ -1,6 +1,6 @@
 /**
  * @file
- * The exchange from one thread: what a write leaves for a read.  Two threads: stress.c and exchange.pml.
+ * The exchange in one thread: the values that a read gets after a write.  Two threads: stress.c and exchange.pml.
  */
 #include <limits.h>
 
@@ -71,7 +71,7 @@ TEST(a_value_is_taken_once)
     value.number = 77;
     CHECK(!epg_exchange_take(&exchange, &value));
     CHECK(value.number == 77);
-    CHECK(holds(5)); /* reading it is another matter */
+    CHECK(holds(5)); /* a read is independent of a take */
     write_number(6);
     write_number(7);
     CHECK(epg_exchange_take(&exchange, &value) && value.number == 7);

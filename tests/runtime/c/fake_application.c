@@ -1,6 +1,6 @@
 /**
  * @file
- * An application of one number in and one out, whose every function a test can steer and count.
+ * An application with one input and one output.  A test can control and count each of its functions.
  */
 #include "fake_application.h"
 

@@ -1,6 +1,6 @@
 /**
  * @file
- * A port layer whose clock and signals a test sets and sees.
+ * A port layer whose clock and signals a test sets and reads.
  */
 #include "fake_port.h"
 
@@ -21,7 +21,7 @@ static void written(void)
     }
 }
 
-/** As ports do whose drivers may refuse a write; false: nothing is written. */
+/** Like ports whose drivers may refuse a write; returns false if nothing is written. */
 static bool may_write(uint8_t pin, epg_level_t level)
 {
     if (fake_port.guarded == NULL) {

@@ -1,6 +1,6 @@
 /**
  * @file
- * A port layer whose clock and signals a test sets and sees.  Using a peripheral that was not started fails the test.
+ * A port layer whose clock and signals a test sets and reads.  Using a peripheral that was not started fails the test.
  */
 #ifndef FAKE_PORT_H
 #define FAKE_PORT_H
@@ -12,32 +12,32 @@
 enum { FAKE_UNITS = 8, FAKE_PINS = 32, FAKE_STORE = 1024 };
 
 typedef struct fake_port {
-    uint64_t now_ns;             /**< what epg_port_time_ns() returns */
-    uint32_t counts[FAKE_UNITS]; /**< of the quadrature decoders */
-    uint32_t levels[FAKE_UNITS]; /**< of the PWM outputs, as written last */
-    uint32_t tops[FAKE_UNITS];   /**< as started */
+    uint64_t now_ns;             /**< result of epg_port_time_ns() */
+    uint32_t counts[FAKE_UNITS]; /**< counts of the quadrature decoders */
+    uint32_t levels[FAKE_UNITS]; /**< levels of the PWM outputs, as written last */
+    uint32_t tops[FAKE_UNITS];   /**< TOP values with which the outputs were started */
     bool outputs[FAKE_PINS];
     bool inputs[FAKE_PINS];
     epg_port_pull_t pulls[FAKE_PINS];
     bool decoders_started[FAKE_UNITS];
-    bool decoders_failed[FAKE_UNITS]; /**< as they say of themselves */
+    bool decoders_failed[FAKE_UNITS]; /**< decoders that report a failure */
     bool pwms_started[FAKE_UNITS];
     bool outputs_started[FAKE_PINS];
     bool inputs_started[FAKE_PINS];
     unsigned char store[FAKE_STORE];
-    size_t store_size;      /**< bytes stored; 0: nothing */
-    bool store_refuses;     /**< nothing can be stored */
+    size_t store_size;      /**< number of stored bytes; 0: nothing is stored */
+    bool store_refuses;     /**< every request to store fails */
     epg_outputs_t *guarded; /**< NULL: no write is refused; rows are numbers of pins */
-    uint32_t refuses;       /**< pins whose writes are refused, one bit each, */
-    uint32_t refused;       /**< and those whose writes have been */
+    uint32_t refuses;       /**< pins whose writes are refused, one bit each */
+    uint32_t refused;       /**< pins whose writes have been refused so far */
     epg_take_over_t take_over;
-    unsigned int writes;    /**< of PWM levels and pins */
-    void (*on_write)(void); /**< called after each of them: nothing happens unseen */
+    unsigned int writes;    /**< number of writes of PWM levels and pins */
+    void (*on_write)(void); /**< called after each write, so that the test sees every change */
 } fake_port_t;
 
 extern fake_port_t fake_port;
 
-/** Everything to zero. */
+/** Sets everything to zero. */
 void fake_port_reset(void);
 
 #endif

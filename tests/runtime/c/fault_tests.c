@@ -1,6 +1,6 @@
 /**
  * @file
- * Faults that components and platforms find, and what the communication side reports of itself.
+ * Faults that components and platforms detect, and the report of the communication side about itself.
  */
 #include <limits.h>
 #include <math.h>
@@ -30,7 +30,7 @@ TEST(sensors_are_sampled_before_anything_else)
     fake_receive(0, 1.0);
     fake_cycle();
     CHECK(strncmp(fake.calls, "xr", 2) == 0);
-    CHECK_EQUAL(fake.input, 1.0); /* though the setpoint was taken after that */
+    CHECK_EQUAL(fake.input, 1.0); /* although the setpoint was read after that */
 }
 
 TEST(fault_of_a_component_is_safe_in_the_same_cycle)
@@ -47,7 +47,7 @@ TEST(fault_of_a_component_is_safe_in_the_same_cycle)
     fake_cycles(5);
     check_fault(EPG_FAULT_STALL, FAKE_COMPONENT);
     CHECK_EQUAL(fake_status().statistics.faults, 1);
-    CHECK_EQUAL(fake.steps, 9); /* the model runs on as when disabled by request */
+    CHECK_EQUAL(fake.steps, 9); /* the model keeps running, as after a request to disable */
 }
 
 TEST(enabling_clears_the_fault_of_a_component)
@@ -163,7 +163,7 @@ TEST(signs_of_life_may_wrap)
     CHECK_EQUAL(epg_control_silence(&fake.control), 1);
     epg_control_alive(&fake.control);
     fake_cycles(3);
-    CHECK_EQUAL(epg_control_silence(&fake.control), 2); /* not the 0 of one that never was alive */
+    CHECK_EQUAL(epg_control_silence(&fake.control), 2); /* not 0, which means that it has never been alive */
 }
 
 TEST(stacks_are_reported)

@@ -1,6 +1,6 @@
 /**
  * @file
- * The motion guard by itself: what is a fault, and what must be none.
+ * The motion guard by itself: motions that are a fault, and motions that must not be one.
  */
 #include "motion_guard.h"
 
@@ -27,7 +27,7 @@ static epg_fault_t step(double duty, double motion)
     return epg_motion_guard_check(&guard, &config, true, angle, resets, duty);
 }
 
-/** The number of the step that first finds a fault, 1 ... `count`; 0 if none does. */
+/** The number of the step that first finds a fault, 1 ... `count`; 0 if no step does. */
 static int fault_after(int count, double duty, double motion, epg_fault_t fault)
 {
     for (int i = 1; i <= count; i++) {
@@ -63,7 +63,7 @@ TEST(no_stall_while_the_axis_moves)
     begin(stall);
     CHECK_EQUAL(fault_after(10000, 1.0, 0.0011, EPG_FAULT_STALL), 0);
     begin(stall);
-    CHECK_EQUAL(fault_after(10000, 1.0, -0.0011, EPG_FAULT_STALL), 0); /* either way */
+    CHECK_EQUAL(fault_after(10000, 1.0, -0.0011, EPG_FAULT_STALL), 0); /* in both directions */
 }
 
 TEST(stall_when_the_axis_moves_too_little)
@@ -113,11 +113,11 @@ TEST(no_fault_while_disabled)
 {
     begin((epg_motion_guard_config_t){
         .stall = stall.stall, .runaway = {.duty = 0.1, .angle = 1.0}, .homing = {.travel = 1.0, .cycles = 10}});
-    for (int i = 0; i < 10000; i++) { /* moved by hand, whatever the duty says */
+    for (int i = 0; i < 10000; i++) { /* moved by hand, at any duty */
         angle -= 0.01;
         CHECK(epg_motion_guard_check(&guard, &config, false, angle, resets, 1.0) == EPG_FAULT_NONE);
     }
-    CHECK(step(0.0, 0.0) == EPG_FAULT_NONE); /* enabled where it is now */
+    CHECK(step(0.0, 0.0) == EPG_FAULT_NONE); /* enabled at the present position */
 }
 
 TEST(enabling_begins_anew)
@@ -145,7 +145,7 @@ TEST(runaway_at_constant_speed)
 {
     begin(runaway);
     const int found = fault_after(10000, 0.5, -0.01, EPG_FAULT_RUNAWAY);
-    CHECK(found >= 100 && found <= 402); /* a rounding may make the second half the slower one, a few times */
+    CHECK(found >= 100 && found <= 402); /* because of rounding, the second half may be the slower one a few times */
     begin(runaway);
     CHECK(fault_after(10000, -0.5, 0.01, EPG_FAULT_RUNAWAY) > 0);
 }
@@ -171,7 +171,7 @@ TEST(no_runaway_with_the_drive_or_below_its_duty)
     CHECK_EQUAL(fault_after(10000, 0.0, -0.01, EPG_FAULT_RUNAWAY), 0);
 }
 
-/** From `speed` (rad per cycle), slower by the factor `slower` in each cycle, until it stands. */
+/** Starts at `speed` (rad per cycle), reduces it by the factor `slower` in each cycle, until the axis stops. */
 static epg_fault_t brake(double speed, double slower)
 {
     epg_fault_t found = EPG_FAULT_NONE;
@@ -190,7 +190,7 @@ TEST(braking_is_no_runaway_however_long_it_takes)
         CHECK(brake(speeds[i], 0.97) == EPG_FAULT_NONE);
         begin(runaway);
         CHECK(brake(speeds[i], 0.998) == EPG_FAULT_NONE);
-        CHECK(i == 0 || angle > 2.0); /* twice what is allowed to an axis that runs away */
+        CHECK(i == 0 || angle > 2.0); /* twice the angle that a runaway axis may move */
     }
 }
 
@@ -210,7 +210,7 @@ TEST(braking_seen_by_a_coarse_encoder_is_no_runaway)
 TEST(swinging_about_a_point_is_no_runaway)
 {
     begin(runaway);
-    for (int i = 0; i < 20000; i++) { /* half of the time against the drive, 0.9 rad at most */
+    for (int i = 0; i < 20000; i++) { /* half of the time against the drive, by 0.9 rad at most */
         const double phase = 0.01 * i;
         const double next = 0.45 * sin(phase);
         CHECK(step(-sin(phase + 0.8), next - angle) == EPG_FAULT_NONE);
@@ -227,7 +227,7 @@ TEST(motion_with_the_drive_is_where_the_angle_counts_from)
         speed += 1e-3;
         steps++;
     }
-    CHECK(angle > 3.9 && steps < 100); /* found 1 rad back from there */
+    CHECK(angle > 3.9 && steps < 100); /* detected 1 rad back from there */
 }
 
 /* Homing -------------------------------------------------------------------------------------------------------- */

@@ -1,6 +1,6 @@
 /**
  * @file
- * Messages: their bytes, and what strangers send.
+ * Messages: their bytes, and messages of foreign programs.
  */
 #include "epg/message.h"
 
@@ -46,7 +46,7 @@ static size_t write_values(const epg_topic_t *topic, const double *numbers)
     return topic->message->write(topic, numbers, stamp, bytes, sizeof bytes);
 }
 
-/** From a copy of exactly that size, so that reading beyond it is found. */
+/** Reads from a copy of exactly this size, so that sanitizers detect a read beyond it. */
 static bool read_values(const epg_topic_t *topic, const void *data, size_t size)
 {
     unsigned char *copy = malloc(size > 0 ? size : 1);
@@ -171,7 +171,7 @@ TEST(joints_leave_out_what_none_has)
     CHECK(!reader.failed && reader.position == size);
 }
 
-/** A message of joints as somebody else may write it: `names` in their order, positions and velocities from 10 and 20. */
+/** A message of joints from a foreign program: `names` in their order, positions from 10 and velocities from 20. */
 static size_t foreign_joints(const char *const *names, uint32_t count, uint32_t positions, uint32_t velocities)
 {
     epg_cdr_writer_t writer = {.data = bytes, .size = sizeof bytes};

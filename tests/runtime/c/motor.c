@@ -22,7 +22,7 @@ void motor_step(motor_t *motor, int direction, double duty, double seconds)
 
     const double driving = motor->torque - viscous * motor->speed;
     double speed = motor->speed + driving / inertia * seconds;
-    /* Coulomb friction brakes down to standstill but drives nothing. */
+    /* Coulomb friction brakes the motor to rest, but never drives it. */
     const double brake = coulomb / inertia * seconds;
     speed = fabs(speed) <= brake ? 0.0 : speed - copysign(brake, speed);
     motor->speed = speed;

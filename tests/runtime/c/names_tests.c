@@ -1,6 +1,6 @@
 /**
  * @file
- * Names of a node: the rules of ROS 2, and what a board keeps.
+ * Names of a node: the rules of ROS 2, and the names that a board stores.
  */
 #include "epg/names.h"
 
@@ -104,7 +104,7 @@ TEST(names_that_are_saved_are_back_after_a_restart)
     CHECK(epg_names_set_node(&target, "generated") && epg_names_set_space(&target, "/"));
     save();
     restart();
-    target.node = "renamed"; /* by a new firmware: nobody has set another name */
+    target.node = "renamed"; /* by new firmware: no other name was set */
     target.name_space = "/new";
     CHECK(strcmp(epg_names_node(&target), "renamed") == 0);
     CHECK(strcmp(epg_names_space(&target), "/new") == 0);
@@ -144,7 +144,7 @@ TEST(names_outlive_the_model)
     values[1] = 4.0;
     CHECK(epg_store_save(&store, &count));
     CHECK_EQUAL(count, 2);
-    restart(); /* a firmware without parameters, which reads no more than its own store holds */
+    restart(); /* firmware without parameters, which must not read beyond its own store */
     CHECK(strcmp(epg_names_node(&target), "kept") == 0);
     parameters.model = 6;
     store = (epg_store_t){.bytes = more, .parameters = &parameters};

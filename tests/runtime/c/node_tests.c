@@ -1,6 +1,6 @@
 /**
  * @file
- * The node: what is due, what arrives, names, diagnostics.
+ * The node: due messages, received messages, names, diagnostics.
  */
 #include "epg/node.h"
 
@@ -51,7 +51,7 @@ static epg_node_t node;
 static epg_target_t target;
 
 static unsigned int sent[PUBLICATIONS];
-static double last[PUBLICATIONS]; /* number in the message sent last */
+static double last[PUBLICATIONS]; /* value in the last message */
 static size_t last_size;
 static bool room;
 
@@ -111,7 +111,7 @@ static void begin(void)
     epg_node_connected(&node, fake_port.now_ns);
 }
 
-/** `count` cycles, with a poll after each. */
+/** Runs `count` cycles, with a poll after each. */
 static void run(unsigned int count)
 {
     for (unsigned int i = 0; i < count; i++) {
@@ -128,7 +128,7 @@ TEST(each_publication_has_its_own_time)
     run(30);
     CHECK_EQUAL(sent[AT_PERIOD], 6);  /* at 0, 5, ... 25 ms */
     CHECK_EQUAL(sent[AT_CYCLES], 10); /* cycles 0, 3, ... 27 */
-    CHECK_EQUAL(last[AT_CYCLES], 28); /* steps, the first of which is in cycle 0 */
+    CHECK_EQUAL(last[AT_CYCLES], 28); /* number of steps; the first one is in cycle 0 */
     CHECK_EQUAL(sent[ON_CHANGE], 8);
     CHECK_EQUAL(sent[ANSWER], 0);
     CHECK_EQUAL(node.unsent, 0);
@@ -138,10 +138,10 @@ TEST(a_late_poll_makes_nothing_up_and_moves_nothing)
 {
     begin();
     run(2);
-    fake_cycles(20); /* nobody polls for 20 ms */
+    fake_cycles(20); /* no poll for 20 ms */
     run(1);
     CHECK_EQUAL(sent[AT_PERIOD], 2);
-    run(3); /* 25 ms is the next one */
+    run(3); /* the next one is due at 25 ms */
     CHECK_EQUAL(sent[AT_PERIOD], 3);
 }
 
@@ -153,7 +153,7 @@ TEST(without_room_the_newest_values_wait)
     run(5); /* due at 5 ms */
     CHECK_EQUAL(sent[AT_PERIOD], 1);
     CHECK_EQUAL(states[AT_PERIOD].waiting, true);
-    run(6); /* and again at 10 ms: the first is lost */
+    run(6); /* due again at 10 ms: the first message is lost */
     CHECK(node.unsent >= 1);
     room = true;
     run(1);
@@ -172,7 +172,7 @@ TEST(a_connection_begins_with_what_is_new)
     epg_node_connected(&node, fake_port.now_ns);
     epg_node_poll(&node, fake_port.now_ns);
     CHECK_EQUAL(sent[AT_PERIOD], 1);
-    CHECK_EQUAL(sent[ON_CHANGE], 1); /* who has just come has nothing yet */
+    CHECK_EQUAL(sent[ON_CHANGE], 1); /* a new subscriber has no value yet */
     CHECK_EQUAL(sent[DIAGNOSTICS], 1);
     epg_node_poll(&node, fake_port.now_ns);
     CHECK_EQUAL(sent[AT_PERIOD] + sent[ON_CHANGE], 2);
@@ -287,7 +287,7 @@ TEST(stamps_are_of_the_control_cycle)
     CHECK_EQUAL(epg_cdr_read_u32(&reader), 20 * MS);
 }
 
-/** Reads the message in `buffer` and finds the value of `key`. */
+/** Reads the message in `buffer`; returns the value of `key`. */
 static const char *diagnosed(const char *key, size_t size, uint8_t *level)
 {
     epg_cdr_reader_t reader = {.data = buffer, .size = size};

@@ -1,6 +1,7 @@
 /**
  * @file
- * H-bridges whose outputs refuse writes: all pins that fail, with all changes of duty, whatever level a pin is left at.
+ * H-bridges whose outputs refuse writes, for all sets of failing pins, all changes of duty and all levels of these
+ * pins.
  */
 #include <math.h>
 
@@ -12,7 +13,7 @@
 
 enum { PINS = 3, FIRST = 4, TOP = 999, COMPONENT = 7 };
 
-/* As in component.yaml of the kinds: test_builtin_catalog.py compares them. */
+/* Copies from component.yaml of the kinds; test_builtin_catalog.py compares them. */
 static const epg_safe_state_t single_states[] = {{.low = 1}, {.low = 6}, {.high = 6}};
 static const epg_safe_state_t dual_states[] = {{.low = 3}, {.high = 3}};
 
@@ -21,12 +22,12 @@ static const epg_output_group_t single_group = {
 static const epg_output_group_t dual_group = {
     .component = COMPONENT, .first = FIRST, .count = 2, .state_count = 2, .states = dual_states};
 
-/** A duty that stands for safe(). */
+/** A duty that means a call of safe(). */
 #define SAFE 2.0
 static const double duties[] = {-1.0, -0.5, 0.0, 0.5, 1.0, NAN, SAFE};
 enum { DUTIES = sizeof duties / sizeof duties[0] };
 
-/** What the bridge is configured to, and the state of its driver. */
+/** The configuration of the bridge, and the state of its driver. */
 static struct {
     bool is_dual;
     epg_pwm_h_bridge_config_t single_config;
@@ -39,10 +40,10 @@ static epg_outputs_t outputs;
 static uint32_t refuses_take_over; /* pins, one bit each */
 static uint32_t taken;             /* pins that are plain pins, one bit each */
 static double taken_levels[PINS];
-static double stuck[PINS]; /* share of the period for which a pin is high that has refused; NAN: as before */
+static double stuck[PINS]; /* share of the period for which a refusing pin is high; NAN: as before */
 static unsigned int take_overs;
 
-/** Share of the period for which a pin is high. */
+/** The share of the period for which a pin is high. */
 static double share(unsigned int i)
 {
     const unsigned int pin = FIRST + i;
@@ -56,7 +57,7 @@ static double share(unsigned int i)
     return is_pwm ? (double)fake_port.levels[i] / (TOP + 1) : fake_port.outputs[pin] ? 1.0 : 0.0;
 }
 
-/** By the kinds' truth tables: the mean of the voltage, more than 0 forwards. */
+/** The mean voltage by the kinds' truth tables; more than 0 is forwards. */
 static double drive(void)
 {
     return motor.is_dual ? share(0) - share(1) : share(0) * (share(1) - share(2));
@@ -67,7 +68,7 @@ static int sign(double value)
     return (value > 0.0) - (value < 0.0);
 }
 
-/* While pins are left as they were, the motor is not driven against what it did and what it was to do. */
+/* If pins keep their levels, the motor is not driven against its previous or its new direction. */
 static bool watching;
 static int allowed[3];
 
@@ -131,7 +132,7 @@ static void begin(bool is_dual, epg_bridge_config_t config, bool slow_decay)
     }
 }
 
-/** Whether the component is safe for every level of the pins that have refused and could not be taken over. */
+/** True if the component is safe for every level of the pins that have refused and could not be taken over. */
 static bool is_safe_at_any_level(void)
 {
     static const double levels[] = {0.0, 0.5, 1.0};
@@ -149,7 +150,7 @@ static bool is_safe_at_any_level(void)
     return safe;
 }
 
-/** One case: a duty, then another while pins refuse, then all duties again. */
+/** One case: a duty, then another one while pins refuse, then all duties again. */
 static void fail(uint32_t refuses, uint32_t refuses_too, double from, double to)
 {
     command(0.0);
@@ -164,7 +165,7 @@ static void fail(uint32_t refuses, uint32_t refuses_too, double from, double to)
     fake_port.refuses = refuses << FIRST;
     refuses_take_over = refuses_too << FIRST;
     command(to);
-    if (!outputs.refused) { /* the pins that refuse were not written */
+    if (!outputs.refused) { /* the refusing pins were not written */
         CHECK_EQUAL(take_overs, 0);
         return;
     }
@@ -174,7 +175,7 @@ static void fail(uint32_t refuses, uint32_t refuses_too, double from, double to)
     const unsigned int done = take_overs;
     for (int i = 0; i < DUTIES; i++) {
         command(duties[i]);
-        CHECK_EQUAL(drive(), left); /* nothing is written any more */
+        CHECK_EQUAL(drive(), left); /* no further write */
     }
     CHECK_EQUAL(take_overs, done);
 }
@@ -184,7 +185,7 @@ typedef struct counts {
     unsigned int unsafe;
 } counts_t;
 
-/** All pins that fail, times all pins among these that cannot be taken over, times all changes of duty. */
+/** All sets of failing pins, all subsets of these that cannot be taken over, and all changes of duty. */
 static counts_t fail_all(bool is_dual)
 {
     static const epg_bridge_state_t rests[] = {EPG_BRIDGE_COAST, EPG_BRIDGE_BRAKE};
@@ -221,7 +222,7 @@ TEST(two_pwm_pins)
     CHECK(counts.unsafe > 500);
 }
 
-/* A pin that could not be taken over: what a bridge does then. */
+/* The behaviour of a bridge with a pin that could not be taken over. */
 
 static void fail_one(bool is_dual, unsigned int pin, double from, double to)
 {
@@ -233,7 +234,7 @@ TEST(the_other_input_of_a_bridge_is_no_way_out)
 {
     fail_one(true, 0, 0.5, -0.5);
     CHECK(outputs.unsafe);
-    CHECK_EQUAL(fake_port.levels[0], 500); /* it goes on forwards until the watchdog */
+    CHECK_EQUAL(fake_port.levels[0], 500); /* it drives forwards until the watchdog resets */
     CHECK_EQUAL(fake_port.levels[1], 0);
     CHECK_EQUAL(taken, 0);
 }

@@ -1,6 +1,6 @@
 /**
  * @file
- * Parameters: changed between cycles, kept over enabling, stored.
+ * Parameters: changed between cycles, kept when the target is enabled, stored.
  */
 #include "epg/parameters.h"
 
@@ -11,9 +11,9 @@
 #include "fake_application.h"
 #include "fake_port.h"
 
-enum { COUNT = 10, MODEL = 140 /* place of the model in a store */ };
+enum { COUNT = 10, MODEL = 140 /* offset of the model's name in a store */ };
 
-static double model[COUNT]; /* as the model has them */
+static double model[COUNT]; /* the model's parameters */
 static unsigned int sets;   /* calls of set() */
 static unsigned int steps_at_set;
 
@@ -127,7 +127,7 @@ TEST(a_change_waits_for_the_one_before)
     CHECK_EQUAL(model[0], 2.0);
 }
 
-/** model_init() of a real model sets its parameters as they were generated. */
+/** model_init() of a real model sets its parameters to the generated values. */
 static void forget(void)
 {
     for (size_t i = 0; i < COUNT; i++) {
@@ -143,7 +143,7 @@ TEST(changes_outlive_enabling)
     fake_cycle();
     epg_control_request(&fake.control, false);
     fake_cycles(2);
-    CHECK(change(2, 5.0)); /* while disabled: the model runs on */
+    CHECK(change(2, 5.0)); /* while disabled: the model keeps running */
     fake_cycle();
     CHECK_EQUAL(model[2], 5.0);
     epg_control_request(&fake.control, true);
@@ -186,7 +186,7 @@ TEST(stored_values_are_back_after_a_restart)
     CHECK(epg_store_save(&store, &stored));
     CHECK_EQUAL(stored, 2);
 
-    make(1); /* the next start: the store is as it was */
+    make(1); /* the next start: the store is unchanged */
     CHECK(parameters.stored == EPG_STORED_LOADED);
     CHECK_EQUAL(epg_parameters_value(&parameters, 0), 0.1);
     CHECK_EQUAL(epg_parameters_value(&parameters, 1), 0.05);
@@ -273,7 +273,7 @@ TEST(random_bytes_are_no_store)
         for (size_t k = 0; k < fake_port.store_size; k++) {
             fake_port.store[k] = (unsigned char)rand();
         }
-        if (i % 2 == 0) { /* with a beginning that is right */
+        if (i % 2 == 0) { /* with a valid beginning */
             static const unsigned char head[8] = {'E', 'P', 'G', 'P', 2};
             static const unsigned char model_one[12] = {1};
             memcpy(fake_port.store, head, sizeof head);

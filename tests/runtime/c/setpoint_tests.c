@@ -152,7 +152,7 @@ TEST(zero_comes_after_the_timeout_and_ends_with_a_fresh_one)
     fake_cycle(); /* at 0 */
     fake_receive(0, 5.0);
     fake_cycles(10);
-    CHECK_EQUAL(value(0), 5.0); /* at 10 ms it is exactly as old as it may be */
+    CHECK_EQUAL(value(0), 5.0); /* at 10 ms its age is exactly the timeout */
     fake_cycle();
     CHECK_EQUAL(value(0), 0.0);
     CHECK(fake_status().enabled);
@@ -245,7 +245,7 @@ TEST(timeouts_start_again_when_enabled)
     epg_control_request(&fake.control, true);
     fake_cycles(10); /* up to 17 ms */
     CHECK(fake_status().enabled);
-    CHECK_EQUAL(value(0), 5.0); /* had not timed out when it was enabled */
+    CHECK_EQUAL(value(0), 5.0); /* it had not timed out when the target was enabled */
     fake_cycles(2);
     CHECK(!fake_status().enabled);
 }
@@ -298,7 +298,7 @@ TEST(the_count_of_samples_may_wrap)
         CHECK_EQUAL(value(0), 1.0 + i);
     }
     fake_cycles(20);
-    CHECK_EQUAL(value(0), 0.0); /* still known to have arrived */
+    CHECK_EQUAL(value(0), 0.0); /* it still counts as arrived */
 }
 
 static size_t arrivals[4];

@@ -1,10 +1,10 @@
 /**
  * @file
- * One thread writes as fast as it can, one reads as fast as it can: no value may be torn, older than the one read
- * before, or older than a write that had returned.
+ * One thread writes and one reads, both as fast as they can.  No value may be torn, older than the last one read, or
+ * older than a write that had returned.
  *
- * Argument: seconds; it ends at the first wrong value.  With -DRACES_ONLY, for ThreadSanitizer, the two threads share nothing but the exchange, since
- * anything else they would use to compare notes would order their accesses and so hide races.
+ * Argument: seconds; the program ends at the first wrong value.  With -DRACES_ONLY, for ThreadSanitizer, the threads
+ * share only the exchange: any other shared variable would order their accesses and hide races.
  */
 #define _POSIX_C_SOURCE 200809L
 
@@ -27,10 +27,10 @@ static epg_exchange_t exchange = EPG_EXCHANGE(buffers);
 static uint64_t end_ns;
 
 #ifdef RACES_ONLY
-enum { RACES = 1 }; /* ThreadSanitizer ends the program */
+enum { RACES = 1 }; /* at a race, ThreadSanitizer ends the program */
 #else
 enum { RACES = 0 };
-static _Atomic uint64_t finished; /* newest write that has returned */
+static _Atomic uint64_t finished; /* number of the newest write that has returned */
 #endif
 
 static uint64_t time_ns(void)
@@ -108,5 +108,5 @@ int main(int argc, char **argv)
     printf("writes %" PRIu64 " reads %" PRIu64 " changes %" PRIu64 " torn %" PRIu64 " disordered %" PRIu64
            " stale %" PRIu64 "\n",
            RACES || !wrong ? writes : 0, reads, changes, torn, disordered, stale);
-    return wrong ? 1 : 0; /* which ends the writer, too */
+    return wrong ? 1 : 0; /* this also ends the writer */
 }

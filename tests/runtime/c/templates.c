@@ -1,9 +1,9 @@
 /**
  * @file
- * Code that the kinds' templates gave, against the host's simulated peripherals.
+ * The code that the kinds' templates generate, with the host's simulated peripherals.
  *
- * `generated.h` is rendered by test_templates.py from the components it names: for each of them what its macros give,
- * as functions <component>_<macro>.
+ * test_templates.py renders `generated.h` from the components in it: for each component, the results of its macros as
+ * functions <component>_<macro>.
  */
 #include <math.h>
 
@@ -25,7 +25,7 @@ static void begin(void)
     safe_all();
 }
 
-/** Position that an encoder shows when its load stands at `angle`. */
+/** The position that an encoder reads when its load is at `angle`. */
 #define POSITION(encoder, angle) (encoder##_plant_write_position(angle), encoder##_sample(), encoder##_read_position())
 
 TEST(span_gives_radians_at_the_load)
@@ -52,7 +52,7 @@ TEST(counts_per_revolution_and_gear)
 {
     begin();
     CHECK(encoder_gear_config.rad_per_count == 2.0 * pi / (4096.0 * 5625.0 / 361.0));
-    /* 1000 revolutions of a wheel, 63822.7 counts each: the ratio is exact, so nothing adds up. */
+    /* 1000 revolutions of a wheel, 63822.7 counts each: the ratio is exact, so errors do not add up. */
     const double angle = 2000.0 * pi;
     CHECK(fabs(POSITION(encoder_gear, angle) - angle) < 1.01 * 2.0 * pi / 63822.0);
     CHECK_EQUAL(encoder_gear.counts, 63822714);
@@ -174,13 +174,13 @@ TEST(dual_bridge_drives_the_plant_with_the_duty_written)
 TEST(dual_bridge_with_slow_decay_moves_the_plant_the_same)
 {
     begin();
-    CHECK_EQUAL(dual_inverted_config.bridge.dead_writes, 1); /* a whole cycle holds a whole period of the PWM */
+    CHECK_EQUAL(dual_inverted_config.bridge.dead_writes, 1); /* a whole cycle contains a whole period of the PWM */
     CHECK(dual_inverted_config.slow_decay);
     CHECK_EQUAL(epg_plant_pwm_duty(12), 1.0); /* brakes when safe */
     CHECK_EQUAL(epg_plant_pwm_duty(13), 1.0);
     dual_inverted_write_duty(0.25);
     CHECK(fabs(dual_inverted_plant_read_duty() - 0.25) < 1e-3);
-    CHECK_EQUAL(epg_plant_pwm_duty(13), 1.0); /* inverted: the other pin has the pulses' begin */
+    CHECK_EQUAL(epg_plant_pwm_duty(13), 1.0); /* inverted: on the other pin, pulses begin */
     CHECK(fabs(epg_plant_pwm_duty(12) - 0.75) < 1e-3);
 }
 
@@ -289,7 +289,7 @@ TEST(pwm_drives_the_plant_with_the_duty_written)
 TEST(digital_input_from_the_plant)
 {
     begin();
-    CHECK_EQUAL(button_read_level(), 1.0); /* pulled up, nothing drives it */
+    CHECK_EQUAL(button_read_level(), 1.0); /* pulled up, not driven */
     button_plant_write_level(0.25 + 0.25);
     CHECK_EQUAL(button_read_level(), 0.0);
     button_plant_write_level(0.6);
@@ -305,7 +305,7 @@ TEST(digital_output_to_the_plant)
     begin();
     CHECK_EQUAL(valve_plant_read_level(), 0.0);
     CHECK_EQUAL(brake_plant_read_level(), 1.0);
-    CHECK(!epg_plant_output(18)); /* on is low */
+    CHECK(!epg_plant_output(18)); /* "on" is the low level */
     valve_write_level(1.0);
     brake_write_level(0.0);
     CHECK_EQUAL(valve_plant_read_level(), 1.0);
@@ -332,7 +332,7 @@ TEST(topics_and_constant)
     CHECK_EQUAL(number_read_value(), 0.1);
 }
 
-/** Bytes of the message of `topic` for its values from `numbers` on. */
+/** The bytes of the message of `topic` with its values from `numbers` on. */
 static size_t message_size(const epg_topic_t *topic, const double *numbers, unsigned char bytes[512])
 {
     const epg_stamp_t stamp = {0};

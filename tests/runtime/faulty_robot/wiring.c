@@ -1,10 +1,10 @@
 /**
  * @file
- * Wires of the pan axis that break, or that somebody has swapped, from a moment on.
+ * Wires of the pan axis that break or are swapped, from a given time on.
  *
- * The environment says what happens: `WIRING=encoder-dead@8.5` and so on.  With `SIGNALS=<file>` each access of the
- * program to the hardware is recorded there.  The functions stand between program, simulated peripherals and simulated
- * plant; the linker puts them there (--wrap).
+ * The environment selects the fault: `WIRING=encoder-dead@8.5` and so on.  With `SIGNALS=<file>`, that file records
+ * each access of the program to the hardware.  The linker inserts the functions here between the program, the simulated
+ * peripherals and the simulated plant (--wrap).
  */
 #include <inttypes.h>
 #include <math.h>
@@ -31,7 +31,7 @@ void __wrap_epg_port_output_write(uint8_t pin, bool level);
 
 enum { PAN = 0 };
 
-/** Whether `what` is the case now. */
+/** True if the fault `what` is present now. */
 static bool wired(const char *what)
 {
     const char *wiring = getenv("WIRING");
@@ -42,7 +42,7 @@ static bool wired(const char *what)
 
 void __wrap_epg_plant_quadrature_set(uint8_t slot, int64_t count)
 {
-    static int64_t last; /* of the pan axis, while everything was right */
+    static int64_t last; /* last count of the pan axis before the fault */
     int64_t seen = count;
     if (slot == PAN) {
         if (wired("encoder-dead")) {
@@ -75,7 +75,7 @@ bool __wrap_epg_port_quadrature_healthy(const epg_port_quadrature_t *decoder)
     return !halted && __real_epg_port_quadrature_healthy(decoder);
 }
 
-/* Signals in the order in which the program reads and writes them. */
+/* The signals, in the order in which the program reads and writes them. */
 
 static void record(const char *what, unsigned int number, uint32_t value)
 {
