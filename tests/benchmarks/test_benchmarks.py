@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Each benchmark runs, with counts too small to measure anything, and prints its tables."""
+"""Each benchmark runs, with counts too small for a measurement, and prints its tables."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def run(program: str) -> str:
 
 @pytest.mark.parametrize("program", PROGRAMS)
 def test_it_runs_and_prints_what_the_page_shows(program: str) -> None:
-    """The page is written by the programs: the same tables, in the same order."""
+    """The programs write the page: it has the same tables in the same order."""
     if program == "runtime" and shutil.which("valgrind") is None:
         pytest.skip("valgrind is not installed: apt install valgrind")
     if program in ("configure", "scaling") and shutil.which("cmake") is None:
@@ -73,14 +73,14 @@ def test_it_runs_and_prints_what_the_page_shows(program: str) -> None:
 
 @pytest.mark.skipif(shutil.which("valgrind") is None, reason="valgrind is not installed: apt install valgrind")
 def test_generated_code_costs_little_more_than_code_written_by_hand() -> None:
-    """Instructions are counted, not timed: the figure does not depend on what else the machine does."""
+    """Counts instructions instead of time: the result does not depend on the load of the machine."""
     found = re.search(r"everything else +[\d.]+ +[\d.]+ +([\d.]+) x", run("runtime"))
     assert found is not None
     assert float(found[1]) <= 1.2
 
 
 def test_the_two_programs_are_compared_through_faults() -> None:
-    """A difference would end the program: what is compared must be worth it."""
+    """A difference would end the program; the compared run must contain enough events."""
     if shutil.which("valgrind") is None:
         pytest.skip("valgrind is not installed: apt install valgrind")
     found = re.search(r"same ([\d,]+) lines of trace, in ([\d,]+) of which the target was disabled", run("runtime"))

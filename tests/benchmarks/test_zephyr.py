@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The benchmark of Zephyr runs, with one board and one round: both applications make the same image."""
+"""The benchmark of Zephyr runs with one board and one round: both applications make the same image."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""EPG in a Python that lacks its packages: installs them once, whole, into its cache, or says what to do."""
+"""EPG in a Python without its packages installs them once, completely, into its cache, or reports how to install them."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ EPG = [str(ROOT / "epg" / "__main__.py"), "targets"]
 
 @pytest.fixture(scope="module")
 def bare_python(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A virtual environment with pip and nothing else."""
+    """A virtual environment that contains only pip."""
     folder = tmp_path_factory.mktemp("venv")
     venv.EnvBuilder(with_pip=True, symlinks=os.name != "nt").create(folder)
     return folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
@@ -37,7 +37,7 @@ def test_packages_are_installed_once_and_found_again(bare_python: Path, tmp_path
     first = run(bare_python, tmp_path, *EPG)
     assert first.returncode == 0, first.stderr
     assert f"EPG: installing Jinja2, PyYAML, jsonschema for {bare_python} into {tmp_path}" in first.stderr
-    # Every package is named when its download begins: pip alone would be silent for up to a minute.
+    # Every package is printed when its download begins: pip alone would print nothing for up to a minute.
     progress = [line for line in first.stderr.splitlines() if line.startswith("EPG:   ")]
     assert {line.split()[1].lower() for line in progress} >= {"jinja2", "pyyaml", "jsonschema", "unpacking"}
     assert "host" in first.stdout
@@ -128,7 +128,7 @@ def test_every_lock_file_pins_all_its_packages_by_hash(group: str) -> None:
 
 
 def test_pip_and_the_bootstrap_want_the_same_packages(tmp_path: Path) -> None:
-    """One file names them: what a wheel requires is what the generator looks for."""
+    """One file names the packages that a wheel requires and that the generator searches."""
     command = [
         sys.executable,
         "-m",
@@ -160,7 +160,7 @@ def test_pip_and_the_bootstrap_want_the_same_packages(tmp_path: Path) -> None:
 @pytest.mark.skipif(os.name == "nt", reason="EPG: the user's folders are private on Windows")
 @pytest.mark.parametrize("mode", [0o777, 0o1777, 0o775, 0o702], ids=oct)
 def test_a_cache_that_others_may_write_is_not_used(mode: int, tmp_path: Path) -> None:
-    """What is in it would be run: packages, compiled templates, SDKs."""
+    """EPG would run its contents: packages, compiled templates, SDKs."""
     cache = tmp_path / "cache"
     planted = cache / bootstrap.package_folder("generator").name / "yaml"
     planted.mkdir(parents=True)
@@ -191,7 +191,7 @@ def test_a_cache_of_another_user_is_not_used(tmp_path: Path) -> None:
 
 
 def test_a_new_cache_is_the_users_own(tmp_path: Path) -> None:
-    """Also where files are writable for everybody by default."""
+    """Even if new files are writable for all users by default."""
     script = f"import os, sys; os.umask(0); os.execv(sys.executable, [sys.executable, {EPG[0]!r}, *sys.argv[1:]])"
     jiwy = ROOT / "examples/jiwy"
     target = ["--tcf", "host_jiwy.tcf", "--model", str(jiwy / "model"), "--bindings", str(jiwy / "jiwy.bindings.yaml")]
@@ -213,7 +213,7 @@ def test_a_new_cache_is_the_users_own(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(os.name == "nt", reason="EPG: POSIX has groups of a user's own")
 def test_the_users_own_group_may_write(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Debian and Fedora make a group for each user, and files are writable for it by default."""
+    """Debian and Fedora make a group for each user, and files are writable for this group by default."""
     import grp
     import pwd
 

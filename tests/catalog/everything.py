@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads everything in a catalog, so that all mistakes of all its files are reported."""
+"""Reads everything in a catalog, so that all mistakes in all its files are reported."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""EPG's own chips, boards, platforms, kinds and robots: all of them right, and what the data sheets say."""
+"""EPG's own chips, boards, platforms, kinds and robots are valid, and agree with the data sheets."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def test_everything_is_right() -> None:
     read_everything(catalog)
     assert [(p.span, p.message) for p in problems] == []
     folders = {path.name for folder in FOLDERS.values() for path in (TARGETS / folder).iterdir() if path.is_dir()}
-    shared = {"mcu", "common"}  # by platforms, by kinds
+    shared = {"mcu", "common"}  # shared by platforms, and by kinds
     assert {name for category in FOLDERS for name in catalog.names(category)} == folders - shared
 
 
@@ -80,7 +80,7 @@ def test_the_kinds() -> None:
 
 
 def test_drivers_name_all_their_files() -> None:
-    """A C file that component.yaml does not list would not be compiled, and a header would not be found."""
+    """A C file that component.yaml does not list would not be compiled; a header would not be found."""
     catalog, _ = builtin()
     for name in catalog.kind_names():
         kind = catalog.find_kind(name)
@@ -127,7 +127,7 @@ def test_numbers_of_the_data_sheets(name: str, slices: int, blocks: int, clock: 
 
 @pytest.mark.parametrize("name", predefined_tcf_names(targets_roots()))
 def test_predefined_configurations(name: str) -> None:
-    """Those with a target are right as they are, robots and wirings once the rest is set from outside."""
+    """Configurations with a target are valid; robots and wirings are valid once the missing keys are set."""
     catalog, problems = builtin()
     chain = load_tcf_chain(name, targets_roots(), problems)
     missing = "target" not in merge_chain(chain)
@@ -142,7 +142,7 @@ def test_predefined_configurations(name: str) -> None:
 
 @pytest.mark.parametrize("robot", ["host_jiwy", "rpi_pico_bare_metal_jiwy", "rpi_pico2_freertos_jiwy"])
 def test_jiwy_is_the_thesis_robot(robot: str) -> None:
-    """Names, topics and counts of thesis-facts; the same on each target."""
+    """Names, topics and counts of the thesis's robot; the same on each target."""
     catalog, problems = builtin()
     configuration = check_configuration(load_tcf_chain(robot, targets_roots(), problems), [], catalog, problems)
     assert (configuration.node, configuration.control.period) == ("JIWY_node", Fraction(1, 1000))
@@ -165,7 +165,7 @@ def test_relbot_has_exact_gears_and_a_right_wheel_that_counts_backwards() -> Non
 
 
 def typed(kind_name: str, text: str) -> tuple[dict[str, object], Diagnostics]:
-    """The typed parameters of a component that is written as ``text``."""
+    """The typed parameters of a component whose YAML is ``text``."""
     catalog, _ = builtin()
     problems = Diagnostics()
     kind = catalog.find_kind(kind_name)
@@ -248,7 +248,7 @@ def test_a_users_folder_comes_first_and_a_missing_one_is_said(tmp_path: Path) ->
 
 
 def test_only_what_is_asked_for_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A target costs the files of board, chip, platform and family, a kind its own."""
+    """A target reads only the files of its board, chip, platform and family; a kind only its own."""
     from epg.catalog import catalog as module
 
     read: list[str] = []
@@ -262,7 +262,7 @@ def test_only_what_is_asked_for_is_read(monkeypatch: pytest.MonkeyPatch) -> None
 
 
 def test_a_kind_of_a_user_shares_parameters_with_those_of_epg(tmp_path: Path) -> None:
-    """Its own parameter replaces a shared one, and the user's file one of EPG's with the same name."""
+    """A kind's own parameter replaces a shared one, and the user's file one of EPG's with the same name."""
     kind, common = tmp_path / "components" / "speed", tmp_path / "components" / "common"
     for folder in (kind, common):
         folder.mkdir(parents=True)
@@ -293,7 +293,7 @@ def test_a_kind_of_a_user_shares_parameters_with_those_of_epg(tmp_path: Path) ->
 
 
 def test_what_is_wrong_is_reported_once(tmp_path: Path) -> None:
-    """A kind that cannot be read is not reported again as unknown, however often it is used."""
+    """A kind that cannot be read is not also reported as unknown, however often it is used."""
     (tmp_path / "components" / "broken").mkdir(parents=True)
     (tmp_path / "components" / "broken" / "component.yaml").write_text("api: 1\nkind: [", encoding="utf-8")
     problems = Diagnostics()
@@ -305,7 +305,7 @@ def test_what_is_wrong_is_reported_once(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("kind", "name"), [("pwm_h_bridge", "single_states"), ("dual_pwm_h_bridge", "dual_states")])
 def test_safe_states_of_bridges_are_those_that_their_test_tries(kind: str, name: str) -> None:
-    """tests/runtime/c/outputs_tests.c."""
+    """Compared with tests/runtime/c/outputs_tests.c."""
     catalog, _ = builtin()
     found = catalog.find_kind(kind)
     assert found is not None

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The how-tos are right: their files are written and their commands run as they stand there.
+"""The how-tos are correct: the tests write their files and run their commands exactly as printed there.
 
-A block that follows a line ending in "`path`:" is that file.  In a ``console`` block a line ``$ command`` is run, and
-what follows it is what it prints; a line ``...`` stands for any lines.  A ``session`` block is a talk with the console.
+A block after a line that ends in "`path`:" is that file.  In a ``console`` block, a line ``$ command`` is run, and the
+lines after it are its output; a line ``...`` matches any lines.  A ``session`` block is a dialogue with the console.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _FILE = re.compile(r"`([^`\s]+)`[^`\n]*:\s*\Z")
 
 @dataclass(frozen=True)
 class Step:
-    """A file to write (``command`` is empty) or a command to run with what it prints."""
+    """A file to write (``command`` is empty), or a command to run with its output."""
 
     path: str
     command: str
@@ -46,7 +46,7 @@ class Step:
 
 
 def steps(page: str) -> list[Step]:
-    """The files and commands of a page in their order."""
+    """The files and commands of a page, in their order."""
     result: list[Step] = []
     end = 0
     for block in _BLOCK.finditer(page):
@@ -63,7 +63,7 @@ def steps(page: str) -> list[Step]:
 
 
 def run(command: str, folder: Path) -> str:
-    """What a command of the shell prints; ``epg`` is the one of this checkout."""
+    """The output of a shell command; ``epg`` is the program of this checkout."""
     environment = {name: value for name, value in os.environ.items() if name not in ("EPG_PATH", "EPG_TARGETS_PATH")}
     first = command.split()[0]
     if first == "cmake" and "--build" not in command:
@@ -86,13 +86,13 @@ def run(command: str, folder: Path) -> str:
 
 
 def matches(output: str, expected: str) -> bool:
-    """Whether ``output`` is ``expected``, in which a line ``...`` stands for any lines."""
+    """True if ``output`` is ``expected``, in which a line ``...`` matches any lines."""
     parts = [re.escape(part) for part in re.split(r"^\.\.\.\n", expected, flags=re.MULTILINE)]
     return re.fullmatch(r"(?:.*\n)*?".join(parts), output) is not None
 
 
 def follow(found: list[Step], folder: Path) -> None:
-    """Writes the files and runs the commands; each must print what stands there."""
+    """Writes the files and runs the commands; each must print the output on the page."""
     if any(step.command.startswith("cmake") for step in found) and not shutil.which("ninja"):
         pytest.skip("ninja is missing: apt install ninja-build")
     for step in found:
@@ -106,7 +106,7 @@ def follow(found: list[Step], folder: Path) -> None:
 
 
 def read(name: str) -> tuple[str, str]:
-    """A page in two parts: commands of the second one need the Pico SDK."""
+    """A page in two parts: the commands of the second one need the Pico SDK."""
     here, _, board = (ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8").partition(NEEDS_PICO_SDK)
     return here, board
 
@@ -119,7 +119,7 @@ def test_how_to(name: str, tmp_path: Path) -> None:
 
 
 def test_tutorial_on_a_board(tmp_path: Path) -> None:
-    """The firmware is built of the files of the simulation; what this computer ran is not run again."""
+    """The firmware is built from the files of the simulation; the steps that ran on this computer do not run again."""
     skip_if_missing(pico_sdk, arm_gcc, lambda: tool("picotool"))  # without it, the SDK fetches one
     here, board = read("tutorial")
     found = steps(board)
@@ -128,7 +128,7 @@ def test_tutorial_on_a_board(tmp_path: Path) -> None:
 
 
 def test_tutorial_in_real_time(tmp_path: Path) -> None:
-    """Its bring-up is held with the simulated robot."""
+    """The page's first session on the board, held with the simulated robot."""
     here, board = read("tutorial")
     (session,) = re.findall(r"^```session\n(.*?)^```$", board, re.MULTILINE | re.DOTALL)
     follow([step for step in steps(here) if "build/stop" not in step.command], tmp_path)
@@ -138,7 +138,7 @@ def test_tutorial_in_real_time(tmp_path: Path) -> None:
 
 
 def test_a_page_that_is_wrong_is_noticed() -> None:
-    """The test above can fail."""
+    """The test above is able to fail."""
     page = "A file `a/b.yaml`:\n\n```yaml\nx: 1\n```\n\n```console\n$ epg check x\none\n...\ntwo\n$ epg y\n```\n"
     assert steps(page) == [
         Step("a/b.yaml", "", "x: 1\n"),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files of a user's targets folder may hold anything: that gives messages, never an exception."""
+"""Files of a user's targets folder may contain anything: EPG reports errors, and never raises another exception."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def places(value: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
 
 
 def changed(document: Any, chance: random.Random) -> Any:
-    """A copy with up to three values deleted, replaced, or moved to another name."""
+    """A copy in which up to three values are deleted, replaced, or moved to another name."""
     document = copy.deepcopy(document)
     for _ in range(chance.randint(1, 3)):
         found = list(places(document))
@@ -61,7 +61,7 @@ def changed(document: Any, chance: random.Random) -> Any:
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: f"{path.parent.parent.name}-{path.parent.name}")
 def test_no_change_of_a_file_raises(path: Path, tmp_path: Path) -> None:
-    """Changed at random in values and structure, and used for JIWY on a board and on the host."""
+    """Random changes of values and structure, used for JIWY on a board and on the host."""
     chance = random.Random(path.parent.name)
     document = yaml.safe_load(path.read_text(encoding="utf-8"))
     copied = tmp_path / path.parent.parent.name / path.parent.name
@@ -84,4 +84,4 @@ def test_no_change_of_a_file_raises(path: Path, tmp_path: Path) -> None:
                 ticks = tick_claims(configuration.target, control.period, control.period_span)
                 allocate([*component_claims(configuration), *ticks], configuration.target, problems)
         reported += problems.has_errors
-    assert reported > 5  # the changes do change something
+    assert reported > 5  # the changes do have an effect

@@ -70,7 +70,7 @@ def test_serial_numbers_in_names(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["$serial", "$serial_robot", "robot_$serials!", "robot_$other", "r" * 48 + "$serial"])
 def test_serial_numbers_that_make_no_name(name: str) -> None:
-    """They may begin with a digit, and are as long as any (16 characters)."""
+    """They may begin with a digit, and may have up to 16 characters."""
     assert node_name_problem(name) is not None
     assert namespace_problem(f"/fleet/{name}") is not None
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Quantities: exact where they can be, and clear about what is wrong."""
+"""Quantities are exact where possible, and errors in them get a clear message."""
 
 from __future__ import annotations
 

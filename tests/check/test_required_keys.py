@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""docs/files.md says which keys are required: what the schemas and the kinds say."""
+"""docs/files.md lists the required keys as the schemas and the kinds do."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def _list(names: list[str]) -> str:
 
 
 def _required(kind: Kind) -> str:
-    """What a component of ``kind`` must state besides ``kind``, as the page says it."""
+    """The required keys of a component of ``kind``, besides ``kind``, in the words of the page."""
     names = [f"pins: {{{', '.join(kind.pins)}}}"] if kind.pins else []
     names += [parameter.name for parameter in kind.parameters if parameter.required]
     names += [use.name for use in kind.uses if use.required]

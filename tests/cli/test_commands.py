@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The subcommands as a user calls them."""
+"""The subcommands, called as a user calls them."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ FILES = [
 
 @pytest.fixture
 def robot(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The files of the tests of messages, in the current folder."""
+    """The files for tests of messages, in the current folder."""
     shutil.copytree(ROOT / "tests/errors/common", tmp_path, dirs_exist_ok=True)
     monkeypatch.chdir(tmp_path)
     return tmp_path
@@ -81,7 +81,7 @@ def test_check_alone_and_together(robot: Path, capsys: pytest.CaptureFixture[str
 
 
 def test_check_says_what_was_not_checked(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Files that are given without the rest of their target are checked, too: by themselves."""
+    """Files that are given without the other files of their target are also checked, each by itself."""
     by_itself = "no errors in each of them by itself; to check them together, add "
     assert main(["check", "--plant", "model"]) == 0
     assert capsys.readouterr().out == f"{by_itself}--tcf, --model, --bindings, --plant-bindings\n"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg doctor``: what is there, and the command for what is not."""
+"""``epg doctor``: the installed tools, and the commands that install missing ones."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 
 @pytest.fixture(autouse=True)
 def bare(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """No SDK in the home folder, the environment or EPG's cache; a PATH with what the tests put there."""
+    """No SDK in the home folder, the environment or EPG's cache; a PATH with only the programs of the test."""
     for name in list(os.environ):
         if name.endswith(("_PATH", "_BASE", "_DIR")) or name in ("CC", "CXX", "EPG_NO_INSTALL"):
             monkeypatch.delenv(name)
@@ -44,7 +44,7 @@ def host_programs(folder: Path, cmake: str = "3.25.1") -> None:
 
 
 def doctor(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, dict[str, dict[str, Any]], bool]:
-    """Exit status, items by name, and whether the host target can be built."""
+    """Exit status, items by name, and True if the host target can be built."""
     status = main(["doctor", "--json", *arguments])
     data = json.loads(capsys.readouterr().out)
     return status, {item["name"]: item for item in data["items"]}, data["host"]
@@ -111,7 +111,7 @@ def test_commands_put_sdks_into_the_cache(bare: Path, capsys: pytest.CaptureFixt
 
 
 def test_picotool_is_built_with_an_sdk_and_with_usb(bare: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Its build needs the SDK's folder, and without libusb `picotool load` finds no board."""
+    """The build of picotool needs the SDK's folder; without libusb, `picotool load` finds no board."""
     program(bare, "apt-get", "")
     _, items, _ = doctor(capsys)
     sdk = (bare / "cache/pico-sdk-2.2.0").as_posix()
@@ -164,7 +164,7 @@ def test_variables_of_a_build_folder(bare: Path, capsys: pytest.CaptureFixture[s
 
 
 def test_programs_of_a_build_folder_are_not_started(bare: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Its cache may come from anybody, and name any program."""
+    """The cache in a build folder may come from anyone, and may name any program."""
     host_programs(bare)
     program(bare, "evil", "")
     (bare / "bin/evil").write_text(f"#!/bin/sh\n: > '{bare}/started'\necho 1.2.3\n")
@@ -182,7 +182,7 @@ def test_programs_of_a_build_folder_are_not_started(bare: Path, capsys: pytest.C
 
 
 def test_packages_that_are_missing(bare: Path) -> None:
-    """Without any package, in a Python of its own, and nothing is installed by asking."""
+    """In a Python of its own without packages; the question installs nothing."""
     host_programs(bare)
     environment = {**os.environ, "EPG_NO_INSTALL": "1"}
     command = [sys.executable, "-S", "-E", str(ROOT / "epg"), "doctor", "--json"]
@@ -225,7 +225,7 @@ def test_a_wrong_table_of_the_user(
 
 
 def test_the_real_computer(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    """The one that runs these tests builds host targets, so all is there."""
+    """The computer that runs these tests builds host targets, so it must have everything."""
     monkeypatch.undo()
     assert main(["doctor"]) == 0
     assert capsys.readouterr().out.endswith("\nthe host target can be built\n")

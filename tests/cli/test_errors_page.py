@@ -13,7 +13,7 @@ FIRST_LINE = re.compile(r"^(\S.*: (?:error|warning|note): .* \[([a-z0-9.-]+)\])$
 
 
 def ids_in_sources() -> tuple[set[str], set[str]]:
-    """Ids that the sources name, and patterns of those they put together."""
+    """The ids in the sources, and patterns for the ids that the sources compose."""
     literal, composed = set(), set()
     for path in (ROOT / "epg").rglob("*.py"):
         text = path.read_text(encoding="utf-8")
@@ -25,7 +25,7 @@ def ids_in_sources() -> tuple[set[str], set[str]]:
 
 
 def printed() -> dict[str, set[str]]:
-    """First lines of messages in golden files, by id."""
+    """The first lines of messages in golden files, by id."""
     files = [*(ROOT / "tests/errors/cases").glob("*.case"), *(ROOT / "tests/simulate/wrong").glob("*.txt")]
     lines: dict[str, set[str]] = {}
     for path in files:

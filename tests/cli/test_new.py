@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg new``: the project it writes, what it does with the model, and what it leaves alone."""
+"""``epg new``: the project that it writes, its use of the model, and the files that it does not change."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def test_a_project_is_complete_and_right(target: str, tmp_path: Path, capsys: py
 
 @pytest.mark.parametrize("target", TARGETS)
 def test_enabling_is_for_people(target: str, tmp_path: Path) -> None:
-    """Whatever the robot's configuration says: a new project does not move anything by itself."""
+    """For any configuration of the robot: a new project does not move anything without a command of the user."""
     from epg.catalog.catalog import load_catalog
     from epg.new_project import ProjectRequest
     from epg.project import Request, load_configuration
@@ -249,7 +249,7 @@ def test_a_robot_of_which_no_port_has_a_name_in_common(tmp_path: Path, capsys: p
 
 
 def test_what_does_not_fit_is_said_at_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """A step of 1.5 ms is no multiple of JIWY's period of 1 ms: the project is written, and says what to change."""
+    """A step of 1.5 ms is not a multiple of JIWY's period of 1 ms: EPG writes the project and reports the needed change."""
     model = shutil.copytree(TURNTABLE, tmp_path / "odd")
     for file in model.iterdir():
         text = file.read_text()
@@ -296,7 +296,7 @@ def test_a_model_that_is_called_after_its_folder(tmp_path: Path) -> None:
 
 
 def test_ports_with_names_of_epgs_own(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """`robot_inputs`, `robot_start` and `epg_...` are EPG's; boolean and integer inputs have topics of their types."""
+    """`robot_inputs`, `robot_start` and `epg_...` are EPG's names; boolean and integer inputs get topics of their types."""
     model = tmp_path / "odd"
     model.mkdir()
     for name, text in (("model.yaml", MODEL_YAML), ("odd.h", ODD_H), ("odd.c", ODD_C)):
@@ -403,7 +403,7 @@ def cmakelists(tmp_path: Path, target: str) -> str:
 
 @pytest.mark.parametrize(("target", "board"), [("rpi_pico_bare_metal", "pico"), ("rpi_pico2_freertos_jiwy", "pico2")])
 def test_the_vs_code_extension_recognises_the_project(target: str, board: str, tmp_path: Path) -> None:
-    """What the extension (0.21) looks for: files, its header, and lines that its regular expressions match."""
+    """The extension (0.21) searches for these files, this header, and lines that match its regular expressions."""
     text = cmakelists(tmp_path, target)
     assert (tmp_path / "robot/pico_sdk_import.cmake").is_file(), "it is activated by this file"
     assert (tmp_path / "robot/.vscode").is_dir()
@@ -417,7 +417,7 @@ def test_the_vs_code_extension_recognises_the_project(target: str, board: str, t
 
 
 def test_choosing_another_sdk_in_the_extension_keeps_the_rest(tmp_path: Path) -> None:
-    """The extension replaces everything from its header to the last line of a rule."""
+    """The extension replaces everything from its header to the last line that matches a rule."""
     text = cmakelists(tmp_path, "rpi_pico2_freertos_jiwy")
     replaced = re.search(rf"^{re.escape(EXTENSION_HEADER)}.*# =+$", text, re.M | re.S)
     assert replaced
@@ -457,7 +457,7 @@ def test_settings_for_editors_are_json(tmp_path: Path) -> None:
 
 
 def test_editors_find_the_schema_of_each_file(tmp_path: Path) -> None:
-    """Each file that a project has is one that VS Code's YAML extension checks, and the schema accepts it."""
+    """VS Code's YAML extension checks each file of a project, and the schema accepts it."""
     from fnmatch import fnmatch
 
     from jsonschema import Draft202012Validator
@@ -482,12 +482,12 @@ def test_editors_find_the_schema_of_each_file(tmp_path: Path) -> None:
         assert checked >= 2
 
 
-# what people read ---------------------------------------------------------------------------------------------------
+# texts for the user ---------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("target", ["rpi_pico_bare_metal", "rpi_pico2_freertos", "host"])
 def test_the_examples_in_a_fresh_configuration_are_right(target: str, tmp_path: Path) -> None:
-    """The components that stand in it as comments, taken out of the comment."""
+    """The components in its comments are valid when they are uncommented."""
     assert new(tmp_path / "robot", target, TURNTABLE) == 0
     file = tmp_path / "robot/robot.tcf"
     text, count = re.subn(r"^  # (\w+: \{kind: )", r"  \1", file.read_text(), flags=re.M)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg new`` for Zephyr: an application and a workspace, and nothing of other build systems."""
+"""``epg new`` for Zephyr: an application and a workspace, without files of other build systems."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def test_a_project_is_complete_and_right(target: str, tmp_path: Path, capsys: py
 
 @pytest.mark.parametrize("target", TARGETS)
 def test_the_target_is_there_before_zephyr(target: str, tmp_path: Path) -> None:
-    """Zephyr reads the devicetree in find_package(): what comes later is too late."""
+    """find_package(Zephyr) reads the devicetree: anything defined after it is too late."""
     text = (new(tmp_path / "robot", target) / "CMakeLists.txt").read_text()
     words = ("\ninclude(epg_import.cmake)", "\nepg_add_target(robot", "\nfind_package(Zephyr")
     places = [text.index(word) for word in words]
@@ -49,7 +49,7 @@ def test_the_target_is_there_before_zephyr(target: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("target", "expected"), TARGETS.items())
 def test_board_and_modules(target: str, expected: tuple[str, list[str]], tmp_path: Path) -> None:
-    """The README builds for the target's board, and the manifest has what that board needs."""
+    """The README builds for the target's board, and the manifest has the modules that this board needs."""
     board, hals = expected
     project = new(tmp_path / "robot", target)
     assert f"\nwest build -b {board}\n" in (project / "README.md").read_text()

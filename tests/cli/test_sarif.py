@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg check --format``: SARIF for continuous integration, by the rules of the standard."""
+"""``epg check --format``: SARIF for continuous integration, as the standard requires."""
 
 from __future__ import annotations
 
@@ -116,12 +116,12 @@ SARIF = {
     "required": ["version", "runs"],
     "additionalProperties": False,
 }
-"""What SARIF 2.1.0 (sections 3.13 to 3.30, 3.49) asks of the parts of a log that EPG writes, and of no others."""
+"""The requirements of SARIF 2.1.0 (3.13 to 3.30, 3.49) on the parts of a log that EPG writes, and on no others."""
 
 
 @pytest.fixture
 def robot(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The files of the tests of messages, in the current folder."""
+    """The files for tests of messages, in the current folder."""
     shutil.copytree(ROOT / "tests/errors/common", tmp_path, dirs_exist_ok=True)
     monkeypatch.chdir(tmp_path)
     return tmp_path
@@ -134,7 +134,7 @@ def change(file: Path, old: str, new: str) -> None:
 
 
 def sarif(capsys: pytest.CaptureFixture[str]) -> dict[str, Any]:
-    """The one run of the log that was printed."""
+    """The single run in the printed log."""
     log = json.loads(capsys.readouterr().out)
     jsonschema.Draft202012Validator(SARIF).validate(log)
     run: dict[str, Any] = log["runs"][0]
@@ -199,7 +199,7 @@ def test_notes_are_related_places(robot: Path, capsys: pytest.CaptureFixture[str
 def test_files_elsewhere_and_odd_names(
     robot: Path, tmp_path_factory: pytest.TempPathFactory, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Relative and percent-encoded below the current folder, ``file://`` elsewhere."""
+    """Paths below the current folder are relative and percent-encoded; other paths are ``file://`` URIs."""
     odd = robot / "my robots" / "é: 100%.tcf"
     odd.parent.mkdir()
     other = tmp_path_factory.mktemp("other") / "other.tcf"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg schema``: what editors get says the same of a file as EPG itself."""
+"""``epg schema``: an editor with this schema gives the same verdict on a file as EPG."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ KEYWORDS = set(
     " pattern minLength maxLength minimum maximum exclusiveMinimum exclusiveMaximum"
     " allOf anyOf oneOf not if then".split()
 )
-"""The part of draft 2020-12 that the YAML and JSON extensions of editors understand."""
+"""The keywords of draft 2020-12 that the YAML and JSON extensions of editors support."""
 
 
 def schema(name: str) -> dict[str, Any]:
@@ -48,7 +48,7 @@ def plain(path: Path) -> Any:
 
 
 def parts(value: Any) -> Iterator[dict[str, Any]]:
-    """All schemas in a schema."""
+    """All schemas within a schema."""
     if not isinstance(value, dict):
         return
     if value and all(isinstance(child, dict) for child in value.values()):  # a group of definitions
@@ -117,19 +117,19 @@ def test_the_files_of_the_tests_of_messages_are_right() -> None:
 
 STRUCTURE = {"unknown-key", "missing-key", "wrong-type", "wrong-unit", "wrong-quantity", "exactly-one", "only-with"}
 STRUCTURE |= {"unknown-kind", "unknown-target", "unknown-middleware"}
-"""Mistakes that a schema can know of; others need the model, the bindings or the pins."""
+"""Mistakes that a schema can detect; others need the model, the bindings or the pins."""
 READABLE = re.compile(r"^robot\.tcf:\d+:\d+: error: .* \[([a-z-]+)\]$", re.MULTILINE)
 
 
 def is_about_a_configuration(case: Path) -> bool:
-    """Whether ``robot.tcf`` is checked in the usual way, with no kinds or boards of its own."""
+    """True if ``robot.tcf`` is checked in the usual way, without the user's own kinds or boards."""
     command, files, _ = read_case(case)
     return command == COMMAND and not any(name.startswith("targets/") for name in files)
 
 
 @pytest.mark.parametrize("case", filter(is_about_a_configuration, CASES), ids=lambda path: path.stem)
 def test_editors_refuse_what_epg_refuses(case: Path, tmp_path: Path) -> None:
-    """Of each golden case the mistakes of structure in ``robot.tcf``, and of the others none."""
+    """Of each golden case, the schema detects the mistakes of structure in ``robot.tcf``, and no others."""
     _, files, expected = read_case(case)
     found = set(READABLE.findall(expected))
     lay_out(tmp_path, files)
@@ -294,7 +294,7 @@ MODELINE = re.compile(r"^# yaml-language-server: \$schema=(\S+)$", re.MULTILINE)
 
 @pytest.mark.parametrize("tree", ["targets/robots", "examples"])
 def test_files_name_their_schema(tree: str) -> None:
-    """By a path that holds in a checkout, and for ``targets`` in a wheel too."""
+    """By a path that is valid in a checkout, and for ``targets`` also in a wheel."""
     for path in sorted((ROOT / tree).glob("*/*")):
         name = {".tcf": "tcf", ".yaml": "scenario" if path.name == "tracking.yaml" else "bindings"}.get(path.suffix)
         if name is not None:

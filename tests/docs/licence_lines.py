@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which sources name the licence at their beginning, and how.
+"""The sources that must name the licence at their beginning, and the form of that line.
 
-Left out are inputs and models of tests and examples, whose lines are counted, and files that can have no comment.
+Excluded are files without comments, and inputs and models of tests and examples, because tests count their lines.
 """
 
 from __future__ import annotations
@@ -12,10 +12,10 @@ from pathlib import PurePosixPath
 
 LINE = "SPDX-License-Identifier: Apache-2.0"
 EVERYTHING = ("epg", "cmake", "targets", "integration", "zephyr", "zephyr_module", "benchmarks")
-"""Folders of which every source counts; of the others, scripts alone."""
+"""Folders in which every source needs the line; in other folders, only scripts do."""
 SCRIPTS = (".py", ".mjs")
 LOOKED_AT = 6
-"""So many lines at the beginning of a file may hold the line."""
+"""The line must be among this many first lines of a file."""
 COMMENTS = {
     (".py", ".cmake"): "# {}",
     (".c", ".h", ".cpp", ".hpp", ".S", ".ld", ".css", ".overlay"): "/* {} */",
@@ -25,16 +25,16 @@ COMMENTS = {
     (".pio",): "; {}",
 }
 _BEFORE = re.compile(r"(?:#!.*\n|(?i:<!doctype [^>]*>\n?))")
-"""What has to stay the first line."""
+"""Lines that must stay the first line."""
 
 
 def sources(names: Iterable[str]) -> list[str]:
-    """Those of ``names``, relative to the repository, that must have the line."""
+    """The files among ``names``, relative to the repository, that must have the line."""
     return [name for name in names if comment(name) and _counts(PurePosixPath(name))]
 
 
 def comment(name: str) -> str:
-    """The line as a comment of the file's language, or ""."""
+    """The line as a comment in the file's language, or ""."""
     path = PurePosixPath(name)
     hashes = path.name == "CMakeLists.txt" or path.name.split(".")[0] == "Kconfig"
     form = "# {}" if hashes else next((form for ends, form in COMMENTS.items() if path.suffix in ends), "")
@@ -42,7 +42,7 @@ def comment(name: str) -> str:
 
 
 def with_line(name: str, text: str) -> str:
-    """``text`` with the line, if it lacks that and is not empty."""
+    """``text`` with the line added, if it lacks the line and is not empty."""
     if not text.strip() or LINE in "\n".join(text.split("\n")[:LOOKED_AT]):
         return text
     match = _BEFORE.match(text)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""docs/architecture.md says which part of the package imports which, and what each folder is for."""
+"""docs/architecture.md: each part of the package imports only allowed parts, and each folder has a description."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ PACKAGE = ROOT / "epg"
 
 
 def floors() -> dict[str, int]:
-    """The line of each part in the page's list, counted from the top."""
+    """The position of each part in the page's list, counted from the top."""
     block = next(block for block in PAGE.split("```")[1::2] if "documents" in block.split())
     return {room: number for number, line in enumerate(block.splitlines()) for room in line.split()}
 
 
 def room_of(module: list[str]) -> str | None:
-    """The part of the package in which a module is; None for ``epg`` itself."""
+    """The part of the package to which a module belongs; None for ``epg`` itself."""
     return module[1] if len(module) > 1 else None
 
 
 def imports(path: Path) -> Iterator[tuple[int, str | None]]:
-    """The parts that a file of EPG imports, wherever in the file, with their lines."""
+    """The parts that a file of EPG imports, anywhere in the file, with their lines."""
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The pages of the boards: wiring and limits are what EPG makes of its own configurations.
+"""The pages of the boards have the wiring and limits that EPG computes from its own configurations.
 
-``EPG_UPDATE_GOLDEN=1`` writes the tables anew.
+``EPG_UPDATE_GOLDEN=1`` rewrites the tables.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from epg.resolve.divider import clock_range, divide
 ROOT = Path(__file__).resolve().parent.parent.parent
 BOARDS = ("rpi_pico", "rpi_pico2")
 WIRELESS = ("rpi_pico_w", "rpi_pico2_w")
-"""Their pages say what differs."""
+"""Boards whose pages only list the differences."""
 ROBOTS = ("jiwy", "relbot")
 PLATFORMS = ("bare_metal", "freertos")
 FREQUENCIES = (1_000, 5_000, 10_000, 20_000, 25_000, 50_000, 100_000)
@@ -43,14 +43,14 @@ def target(board: str) -> Target:
 
 
 def board_pin(gpio: int) -> int:
-    """The number of a GPIO's pin at the edge of the board: Pico data sheet, 2.1; Pico 2 has the same."""
+    """The number of a GPIO's pin at the edge of the board: Pico data sheet, 2.1; the Pico 2 has the same numbers."""
     edge = [0, 1, None, 2, 3, 4, 5, None, 6, 7, 8, 9, None, 10, 11, 12, 13, None, 14, 15]
     edge += [16, 17, None, 18, 19, 20, 21, None, 22, "RUN", 26, 27, None, 28]
     return edge.index(gpio) + 1
 
 
 def hardware(name: str, capsys: pytest.CaptureFixture[str]) -> list[dict[str, Any]]:
-    """What `epg check --hardware` says of a predefined configuration."""
+    """The output of `epg check --hardware` for a predefined configuration."""
     capsys.readouterr()
     assert main(["check", name, "--hardware", "--json"]) == 0
     (found,) = json.loads(capsys.readouterr().out)["hardware"].values()
@@ -133,7 +133,7 @@ def test_numbers_in_the_text_are_true(board: str) -> None:
 
 @pytest.mark.parametrize("board", WIRELESS)
 def test_the_radio_s_pins_are_nobody_s(board: str) -> None:
-    """Pico W data sheet, 2.1: GPIO 23, 24, 25 and 29 are the radio's, and the LED is a pin of the radio."""
+    """Pico W data sheet, 2.1: GPIO 23, 24, 25 and 29 belong to the radio, and the LED is a pin of the radio."""
     text = page(board).read_text(encoding="utf-8")
     found, other = target(board).board, target(board.removesuffix("_w")).board
     assert sorted(found.reserved) == ["23", "24", "25", "29"]
@@ -153,7 +153,7 @@ def test_gpios_on_both_boards_have_their_places() -> None:
 
 
 def test_the_pages_have_the_same_sections() -> None:
-    """What is said of one board is said of the other; the second has an erratum besides."""
+    """Both pages have the same sections; the second one also has an erratum."""
     sections = [re.findall(r"^##+ (.+)$", page(board).read_text(encoding="utf-8"), re.M) for board in BOARDS]
     assert [title for title in sections[1] if "E9" not in title] == sections[0]
     assert len(sections[1]) == len(sections[0]) + 1

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""EPG needs CMake 3.22: every project, preset and page says so."""
+"""EPG needs CMake 3.22: every project, preset and page states this version."""
 
 from __future__ import annotations
 

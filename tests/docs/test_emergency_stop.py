@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page on wiring an emergency stop: its wiring gives no warning on any chip, and the table of pulls is true."""
+"""The page about wiring an emergency stop: its wiring gives no warning on any chip, and its table of pulls is correct."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ PINS = {"rpi_pico_bare_metal": "14", "rpi_pico2_bare_metal": "14", "nucleo_h743z
 
 
 def said(text: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> set[str]:
-    """The ids of what ``epg check`` says about a .tcf."""
+    """The ids of the diagnostics of ``epg check`` for a .tcf."""
     path = folder / "robot.tcf"
     path.write_text(text, encoding="utf-8")
     main(["check", "--tcf", str(path)])

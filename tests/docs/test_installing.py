@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How EPG is installed is said the same everywhere: it is not on PyPI, and Debian wants a virtual environment."""
+"""Every page gives the same instructions: EPG is not on PyPI, and Debian requires a virtual environment."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ TEXTS = ("*.md", "*.cmake", "*.j2", "*.py", "*.json", "*.yaml", "*.txt", "*.cmd"
 
 
 def files() -> list[Path]:
-    """All texts of the project but its tests."""
+    """All texts of the project except those of its tests."""
     if shutil.which("git") is None:
         pytest.skip("git is not installed: apt install git")
     listed = subprocess.run(["git", "-C", str(ROOT), "ls-files", "--", *TEXTS], capture_output=True, text=True)

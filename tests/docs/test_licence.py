@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The licence: its text, and the line that sources and generated files begin with."""
+"""The licence: its text, and the line at the beginning of sources and generated files."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def test_the_licence_is_the_whole_text() -> None:
-    """That of https://www.apache.org/licenses/LICENSE-2.0.txt."""
+    """The text is that of https://www.apache.org/licenses/LICENSE-2.0.txt."""
     text = (ROOT / "LICENSE").read_bytes()
     assert hashlib.sha256(text).hexdigest() == "cfc7749b96f63bd31c3c42b5c471bf756814053e847c10f3eb003417bc523d30"
 
@@ -43,7 +43,7 @@ def test_what_is_not_epgs_text_has_no_line_or_another_one() -> None:
 
 
 def test_sources_say_it_at_their_beginning() -> None:
-    """``EPG_UPDATE_GOLDEN=1`` writes the lines that are missing."""
+    """``EPG_UPDATE_GOLDEN=1`` adds the missing lines."""
     if shutil.which("git") is None:
         pytest.skip("git is not installed: apt install git")
     listed = subprocess.run(

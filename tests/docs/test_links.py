@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pages: each link leads to a file and a heading that exist, each picture is shown, and the project's files agree."""
+"""Pages: each link leads to an existing file and heading, each picture is shown, and the project's files agree."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ PICTURES = (".png", ".svg")
 
 
 def links(page: Path) -> list[str]:
-    """The targets of a page's links, without those in blocks of code."""
+    """The targets of a page's links, except those in blocks of code."""
     text = re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL | re.MULTILINE)
     return LINK.findall(re.sub(r"`[^`\n]*`", "", text))
 
 
 def anchors(page: Path) -> set[str]:
-    """The anchors that GitHub makes of a page's headings."""
+    """The anchors that GitHub makes from a page's headings."""
     result: set[str] = set()
     for heading in re.findall(r"^#+ (.+)$", page.read_text(encoding="utf-8"), flags=re.MULTILINE):
         words = re.sub(r"[^\w\- ]", "", LINK.sub(lambda link: link[0][1 : link[0].index("]")], heading).lower())

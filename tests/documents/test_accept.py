@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is accepted without jsonschema is what jsonschema accepts."""
+"""The check without jsonschema accepts exactly the documents that jsonschema accepts."""
 
 from __future__ import annotations
 
@@ -118,7 +118,7 @@ def test_epgs_own_files_are_accepted_without_jsonschema() -> None:
 
 
 def _patterns(schema: Any, place: str) -> list[tuple[str, dict[str, Any]]]:
-    """The schemas with a pattern in ``schema``, and where each stands."""
+    """The schemas with a pattern in ``schema``, and the position of each."""
     if isinstance(schema, list):
         return [found for number, child in enumerate(schema) for found in _patterns(child, f"{place}/{number}")]
     if not isinstance(schema, dict):
@@ -128,7 +128,7 @@ def _patterns(schema: Any, place: str) -> list[tuple[str, dict[str, Any]]]:
 
 
 def test_every_pattern_is_explained_in_words() -> None:
-    """A regular expression tells a user nothing: a sentence stands beside it, or the dimension of a quantity."""
+    """A regular expression does not help a user: it must have a sentence beside it, or the dimension of a quantity."""
     schemas = {path.name: json.loads(path.read_text()) for path in data_folder("schemas").glob("*.schema.json")}
     found = [each for name, schema in schemas.items() for each in _patterns(schema, name)]
     assert len(found) > 30
@@ -136,7 +136,7 @@ def test_every_pattern_is_explained_in_words() -> None:
 
 
 def test_every_pattern_of_a_kind_is_explained_in_words() -> None:
-    """The message about a parameter that does not match is what the kind says about it."""
+    """The message about a parameter that does not match uses the kind's text for it."""
     folders = [
         *data_folder("targets").glob("components/*/*.yaml"),
         *data_folder("targets").glob("middlewares/*/*.yaml"),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""YAML 1.2 scalars, positions, and limits that hold before anything recurses."""
+"""YAML 1.2 scalars, positions, and limits that are checked before any recursion."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Mistakes in YAML: the line that is wrong, and how it must be written, with libyaml's parser and with PyYAML's own."""
+"""Mistakes in YAML: the wrong line and its correction, with libyaml's parser and with PyYAML's own."""
 
 from __future__ import annotations
 

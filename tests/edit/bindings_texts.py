@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Random bindings files in every style people write them in, with comments that say whom they belong to.
+"""Random bindings files in every style of users, with comments that show to which line they belong.
 
-A comment of the user is ``#17`` with a number of its own, so that a test can tell which are there and in what order.
+A comment is ``#17``, each with its own number, so that a test can check which comments remain, and their order.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ PORTS = {
     "outputs": ("duty", "log", "it's", "größe", "{}"),
 }
 TAB = ["\t"] if yaml.__with_libyaml__ else []
-"""What a comment may follow, but not for PyYAML's own parser."""
+"""A tab before a comment, which PyYAML's own parser does not allow."""
 KEY = {"inputs": "from", "outputs": "to"}
 
 references = st.sampled_from(["encoder", "motor", "motor.duty", "joint_states.pan.position", "lamp", "a"])
@@ -33,12 +33,12 @@ ends = st.builds(
     st.none() | st.tuples(numbers, numbers),
     st.sampled_from(["", "", "rad", "rad/s", "%", "1", "N m"]),
 )
-"""Ends with conversions; limits may be the wrong way round, which is no matter of the text."""
+"""Ends with conversions.  Limits may be in the wrong order, because that does not matter for the text."""
 
 
 @dataclass
 class Line:
-    """``owner`` is the port whose value it is, the section that it begins or all of which it is, or nothing."""
+    """``owner``: the port whose value is on this line, or the section that begins here or is this line, or empty."""
 
     text: str
     owner: str = ""
@@ -46,7 +46,7 @@ class Line:
 
 @dataclass
 class Text:
-    """A file, its lines, and what it says: section -> port -> ends."""
+    """A file, its lines, and its meaning: section -> port -> ends."""
 
     lines: list[Line]
     said: dict[str, dict[str, tuple[End, ...]]]
@@ -68,17 +68,17 @@ class Writer:
         self.comments = 0
 
     def chance(self, one_in: int = 3) -> bool:
-        return self.draw(st.integers(1, one_in)) == one_in  # the simplest is no
+        return self.draw(st.integers(1, one_in)) == one_in  # the simplest result is no
 
     def comment(self) -> str:
-        """A comment behind a value, mostly none."""
+        """A comment after a value; most values have none."""
         if not self.chance(4):
             return ""
         self.comments += 1
         return self.draw(st.sampled_from([" ", "   ", *TAB])) + f"#{self.comments}: {{not}} [a] 'value',"
 
     def between(self, indent: int, owner: str = "") -> None:
-        """Lines of their own that say nothing."""
+        """Lines without content: empty ones and comments."""
         while self.chance(5):
             self.comments += 1
             self.lines.append(
@@ -127,7 +127,7 @@ class Writer:
         self.lines.append(Line(" " * indent + marks[1] + self.comment(), owner))
 
     def map(self, first: str, end: End, key: str, indent: int, owner: str) -> None:
-        """A map in block style."""
+        """A mapping in block style."""
         for index, (name, value) in enumerate(self.parts(end, key)):
             if index:
                 self.between(indent, owner)

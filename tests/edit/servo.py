@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A model for tests of bindings: only the names of its ports count."""
+"""A model for tests of bindings, in which only the names of ports matter."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Edits of random bindings files: what is wanted is said, nothing else is said otherwise or written otherwise."""
+"""Edits of random bindings files: the requested change is made; no other meaning and no other text changes."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def test_what_is_wanted_is_said_and_comments_stay(
     for _, port, said in told:
         if said is not None and port in file.open:
             assert f"# {scalar_text(port)}:    # no name matches" not in text
-    # in braces, a comment is on the line of a port, but the text of the file does not say of which
+    # in braces, a comment is on the line of a port, but the text does not show to which port it belongs
     may_go = _own_comments(file, edited | (file.in_braces & {section for section, _, _ in told}))
     kept = [comment for comment in _comments(text) if comment not in may_go]
     assert kept == [comment for comment in _comments(before) if comment not in may_go]
@@ -105,7 +105,7 @@ def test_lines_of_others_are_untouched(file: Text, edit: tuple[str, str, tuple[E
     after = _set(file.text, port, said).split(file.line_end)
     if file.has_last_end:
         after.pop()
-    # the section's name changes where the section begins or ends to have ports, or is in braces
+    # the section's name changes if the section gets its first port or loses its last one, or is in braces
     ports = file.said[section]
     may_change = {port, section} if section in file.in_braces or not set(ports) - {port} else {port}
     rest = iter(after)
@@ -117,7 +117,7 @@ def test_lines_of_others_are_untouched(file: Text, edit: tuple[str, str, tuple[E
 @given(bindings_texts(), st.data())
 def test_there_and_back(file: Text, data: st.DataObject) -> None:
     note(file.text)
-    # ports that are not there in sections that are, and ports with one word behind them
+    # new ports in existing sections, and ports whose value is one word
     added = [
         (section, port)
         for section, said in file.said.items()
@@ -167,7 +167,7 @@ def test_names_of_any_kind(names: list[str], reference: str, typed: str, rest: s
         try:
             text = set_ends(text, "servo.bindings.yaml", model, name, (end, End("z")))
         except CannotEdit:
-            # only what YAML has no way to write
+            # only characters that YAML cannot represent
             assert any("\ud800" <= character <= "\udfff" for character in name + reference + typed)
             event("cannot be written")
             continue

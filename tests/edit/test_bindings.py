@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Edits of bindings files: what changes, what stays as it was, and what is refused.
+"""Edits of bindings files: the changed text, the unchanged text, and refused edits.
 
-``bindings_edits.txt`` holds examples as texts before and after.
+``bindings_edits.txt`` has examples, as texts before and after an edit.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def section_of(port: str, model: Model = SERVO) -> str:
 
 
 def _examples() -> dict[str, tuple[str, tuple[End, ...] | None, str, str]]:
-    """What is told, the port, its ends, the file before and after."""
+    """The edit's description, the port, its ends, the file before and after."""
     found = {}
     for part in (Path(__file__).parent / "bindings_edits.txt").read_text(encoding="utf-8").split("=== ")[1:]:
         told, _, texts = part.partition("--- before\n")
@@ -60,7 +60,7 @@ EXAMPLES = _examples()
 
 @pytest.fixture(params=["libyaml", "PyYAML"])
 def parser(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Both parsers that a user can have: their positions differ in places."""
+    """Both parsers that a user may have: in some places their positions differ."""
     import yaml
 
     if request.param == "PyYAML":
@@ -172,7 +172,7 @@ FILES = sorted(ROOT.glob("examples/**/*bindings.yaml"))
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: f"{path.parent.name}/{path.name}")
 def test_files_of_the_examples(path: Path) -> None:
-    """Every port is connected otherwise and as before, and taken out and put back: the file is the same."""
+    """Every port is connected otherwise and restored, and removed and restored: the file is the same."""
     text = path.read_bytes().decode()
     root = tree(text)
     names = {section: [key for key, _ in root[section].items()] for section in ("inputs", "outputs") if section in root}

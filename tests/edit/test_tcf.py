@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Another file that a .tcf builds on: the one line changes, or a line comes in."""
+"""Changing the file that a .tcf extends: one line changes, or one line is added."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The hash of an application: the same for the same behaviour, another one for any other."""
+"""The hash of an application is the same for the same behaviour, and differs for any other behaviour."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ ROBOTS = data_folder("targets") / "robots" / "jiwy"
 
 
 def copy(folder: Path) -> Path:
-    """JIWY's files, all in one place."""
+    """JIWY's files, all in one folder."""
     shutil.copytree(EXAMPLE, folder)
     for file in ROBOTS.glob("*.tcf"):
         shutil.copy(file, folder)
@@ -73,7 +73,7 @@ def test_it_is_in_all_that_names_it(tmp_path: Path) -> None:
     hash = hash_of(files)
     assert f'#define JIWY_HASH "{hash}"' in files["jiwy_version.h"]
     assert f'"hash": "{hash}"' in files["jiwy.json"]
-    assert hash not in files["jiwy.h"] + files["jiwy_app.c"]  # which would be compiled again
+    assert hash not in files["jiwy.h"] + files["jiwy_app.c"]  # a change would compile these files again
     assert not any("\ue000" in text for text in files.values())
 
 
@@ -132,7 +132,7 @@ def test_the_sources_of_models(original: str, tmp_path: Path, file: str, more: s
 
 
 def test_the_code_of_kinds(original: str, tmp_path: Path) -> None:
-    """A user's own kind, of the same name or another, is part of the firmware."""
+    """A user's own kind, with the same name or another, is part of the firmware."""
     folder = copy(tmp_path / "jiwy")
     roots = tmp_path / "targets"
     kind = roots / "components" / "quadrature_encoder"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Text of a user in the files of a new project."""
+"""A user's text in the files of a new project."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a target says about a setpoint reaches the table that the runtime reads."""
+"""A target's settings of a setpoint reach the table that the runtime reads."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""No text of a user can break out of a C string, a comment, an identifier or a CMake argument."""
+"""A user's text cannot break out of a C string, a comment, an identifier or a CMake argument."""
 
 from __future__ import annotations
 
@@ -136,7 +136,7 @@ def test_text_of_another_language_is_raw_text(language: type[Escaped]) -> None:
     ],
 )
 def test_no_template_lets_raw_text_pass(template: str) -> None:
-    """``y`` is raw and holds what HTML would escape: neither it nor its escaped form comes out."""
+    """``y`` is raw text with characters that HTML would escape: neither it nor its escaped form is in the output."""
     with pytest.raises((TypeError, jinja2.TemplateError)):
         environment([]).from_string(template).render(x=Code("x"), y="<&>")
 

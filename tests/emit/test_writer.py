@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The writer touches only what changed, writes whole files, and stays in its folder."""
+"""The writer changes only files whose contents differ, writes whole files, and stays in its folder."""
 
 from __future__ import annotations
 

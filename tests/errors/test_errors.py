@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every message EPG gives, to the letter.
+"""Every message of EPG, to the letter.
 
-A file ``cases/<name>.case`` holds the files that are wrong and what EPG says about them::
+A file ``cases/<name>.case`` has the wrong files and EPG's messages about them::
 
     $ epg check --tcf robot.tcf --model model --bindings bindings.yaml
     --- robot.tcf
@@ -11,10 +11,10 @@ A file ``cases/<name>.case`` holds the files that are wrong and what EPG says ab
     robot.tcf:3:1: error: ...
 
 Files that a case does not mention are those of ``common/``; the command is the one above unless the first line gives
-another.  Below ``--- name <- edit`` stand changes to the common file, one ``old => new`` a line, where ``\\n`` is a
+another.  After ``--- name <- edit`` come changes to the common file, one ``old => new`` per line, where ``\\n`` is a
 line end.  ``--- name <- copy PATH`` is a folder of the repository under another name, ``--- name <- python`` the bytes
-an expression gives.  A folder ``targets`` is in ``EPG_TARGETS_PATH``.  The command may begin with variables of the
-environment, as in a shell.  ``EPG_UPDATE_GOLDEN=1`` rewrites what is expected: read the difference.
+that an expression gives.  A folder ``targets`` is in ``EPG_TARGETS_PATH``.  The command may begin with variables of the
+environment, as in a shell.  ``EPG_UPDATE_GOLDEN=1`` rewrites the expected messages: review the difference.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def read_case(path: Path) -> tuple[str, dict[str, str], str]:
 
 
 def lay_out(folder: Path, files: dict[str, str]) -> None:
-    """The common files, and those of the case over them."""
+    """Writes the common files, and then those of the case."""
     shutil.copytree(HERE / "common", folder, dirs_exist_ok=True)
     for name, text in files.items():
         copied, _, origin = name.partition(" <- copy ")
@@ -99,7 +99,7 @@ def test_message(
 
 
 def test_every_kind_of_message_has_a_case() -> None:
-    """The ids in EPG's sources are those in the cases (modules of the simulation have tests of their own)."""
+    """The ids in EPG's sources are those in the cases (modules of the simulation have their own tests)."""
     root = HERE.parent.parent / "epg"
     ids = set()
     for path in root.rglob("*.py"):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Proofs of the handover, as for the exchange: every interleaving by spin, real threads, and refused broken variants."""
+"""Proofs of the handover as of the exchange: every interleaving by spin, real threads, and refused broken variants."""
 
 from __future__ import annotations
 

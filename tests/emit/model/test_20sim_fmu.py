@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""FMUs of 20-sim take one step of their own at each step of the library, whatever their integration method promises."""
+"""FMUs of 20-sim take one of their own steps at each step of the library, with every integration method."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ PORTS = (["in", "position"], ["corr", "out"])
 
 
 def c_function(export: Export, work: Path) -> str:
-    """What the C function target of the same controller gives, called by its own main program."""
+    """The results of the C function target for the same controller, called by its own main program."""
     folder = export.write(work / "c")
     sources = [path for path in sorted(folder.glob("*.c")) if path.name != "xxmain.c"]
     return run_c_vectors(sources, [folder], work, (2, 2), STEPS)
@@ -28,7 +28,7 @@ def c_function(export: Export, work: Path) -> str:
     [("globals", "RungeKutta4"), ("instance", "Discrete"), *(("output time", method) for method in METHODS)],
 )
 def test_one_step_at_a_time(form: str, method: str, tmp_path: Path) -> None:
-    """1 ms is no sum of powers of two: a method that gets the time of the next output must get the very sum."""
+    """1 ms is not a sum of powers of two: a method that gets the time of the next output must get exactly that sum."""
     export = Export(method=method)
     folder = export.write_whole_fmu(tmp_path / "fmu", form)
     library = build(loaded(folder), "pan", tmp_path)
@@ -37,7 +37,7 @@ def test_one_step_at_a_time(form: str, method: str, tmp_path: Path) -> None:
     if form != "output time":
         assert found == expected
         return
-    # the last step is as long as the time that is left: another rounding of 1 ms
+    # the last step has the length of the remaining time, which rounds 1 ms otherwise
     for row, other in zip(values(found), values(expected), strict=True):
         assert row == pytest.approx(other, rel=1e-9, abs=1e-9)
 
@@ -59,7 +59,7 @@ def test_a_method_whose_steps_vary_is_a_warning_in_an_fmu_and_an_error_in_its_so
 
 @pytest.mark.parametrize("method", ["Discrete", "RungeKutta4"])
 def test_sources_of_an_fmu_that_get_the_time_of_the_next_output(method: str, tmp_path: Path) -> None:
-    """Named as what they are, without FMI."""
+    """These sources are recognised without FMI."""
     folder = Export(method=method).write_whole_fmu(tmp_path / "fmu", "output time")
     library = build(loaded(folder / "sources"), "pan", tmp_path)
     assert run_wrapper(library, STEPS, True) == run_fmu(folder / "sources", tmp_path / "own", *PORTS, STEPS)
@@ -120,11 +120,11 @@ int main(void)
 
 
 def test_a_start_puts_back_global_variables(tmp_path: Path) -> None:
-    """FMUs of 4.5 keep their state in these, and set only some of them when they start."""
+    """FMUs of 4.5 keep their state in global variables, and set only some of them at a start."""
     kept = {"model": "XXDouble xx_kept = 0.25;\n", "dynamic": "\txx_kept += 0.5;\n\txx_V[6] = xx_V[6] - xx_kept;\n"}
     folder = Export(method="Euler", **kept).write_whole_fmu(tmp_path / "fmu", "globals")
     model = loaded(folder)
-    assert not model.instantiable  # whatever its description says
+    assert not model.instantiable  # independent of its description
     rows = run_program(tmp_path / "run", AGAIN, [build(model, "pan", tmp_path)]).splitlines()
     assert len(set(rows)) == 20
     assert rows[:20] == rows[20:40] == rows[40:]

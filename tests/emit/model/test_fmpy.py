@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""FMUs of 20-sim give through the library what FMPy, an ordinary importer, gets from them.
+"""FMUs of 20-sim give the same results in EPG's library as in FMPy, an ordinary importer.
 
-FMPy brings numpy, lxml, CMake and more, some 200 MB: this is a test of ``check_long``.
+This is a test of ``check_long``, because FMPy needs numpy, lxml, CMake and more, some 200 MB.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from tests.models.harness import COMMON, build, load, run, run_program
 
 STEPS = 1000
 NEEDED = "FMPy is not installed: pip install -r epg/lock/fmpy.txt"
-EXACT = "0.0009765625"  # a power of two: no sum of it is rounded
+EXACT = "0.0009765625"  # a power of two: its sums are exact
 FORMS = ("globals", "instance", "output time")
 METHODS = ("Discrete", "Euler", "RungeKutta2", "RungeKutta4")
 
@@ -34,7 +34,7 @@ def fmpy() -> Any:
 
 
 def compiled(folder: Path, target: Path) -> Path:
-    """A copy of an FMU with a shared library, as its own makefile would compile it."""
+    """A copy of an FMU with a shared library, compiled as its own makefile would do it."""
     shutil.copytree(folder, target, ignore=shutil.ignore_patterns("binaries", "resources"))
     root = ElementTree.parse(target / "modelDescription.xml").getroot()
     identifier = root.find("CoSimulation").attrib["modelIdentifier"]  # type: ignore[union-attr]
@@ -46,7 +46,7 @@ def compiled(folder: Path, target: Path) -> Path:
         place.mkdir(parents=True)
     for name, text in fmi_headers(2).items():
         (headers / name).write_text(text)
-    rest = headers / "rest.c"  # FMPy looks up functions that it does not call, which FMUs may lack
+    rest = headers / "rest.c"  # FMPy looks up functions that it does not call and that FMUs may lack
     rest.write_text("".join(f"__attribute__((weak)) int {name}(void) {{ return 3; }}\n" for name in fmi_functions(2)))
     options = ["-std=c11", "-w", "-shared", "-fPIC", "-DNO_FUNCTION_PREFIX", f"-I{sources}", f"-I{headers}"]
     run(["gcc", *COMMON, *options, *map(str, [*listed, rest]), "-lm", "-o", str(binaries / f"{identifier}.so")])
@@ -127,7 +127,7 @@ def by_calls(fmpy: Any, folder: Path, step: float, inputs: list[list[float]]) ->
 
 
 def by_simulation(fmpy: Any, folder: Path, step: float, inputs: list[list[float]]) -> list[list[float]]:
-    """FMPy's own loop, which multiplies the step."""
+    """FMPy's own loop, which computes time as a multiple of the step."""
     import numpy
 
     taken, given, _ = ports(fmpy, folder)
@@ -144,7 +144,7 @@ def by_simulation(fmpy: Any, folder: Path, step: float, inputs: list[list[float]
         input=table if taken else None,
         output=[variable.name for variable in given],
         set_stop_time=False,
-        validate=False,  # 20-sim's descriptions leave out what a validator wants
+        validate=False,  # 20-sim's descriptions omit parts that a validator requires
     )
     return [[float(row[variable.name]) for variable in given] for row in result]
 

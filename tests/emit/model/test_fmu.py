@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The library of an FMU gives what calls of the standard's functions give, bit for bit, from memory of fixed size."""
+"""The library of an FMU gives the same bits as the standard's functions, and uses memory of fixed size."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ RUN = {FMU2: run_fmu2, FMU3: run_fmu3}
 
 @pytest.mark.parametrize("folder", [FMU2, FMU3], ids=["fmi2", "fmi3"])
 def test_gives_its_own_numbers(folder: Path, tmp_path: Path) -> None:
-    """From the folder and from the archive."""
-    # the last line is after the end: EPG passes the inputs once more, which these FMUs then do not look at
+    """Tested from the folder and from the archive."""
+    # the last line is after the end: EPG sets the inputs once more, which these FMUs ignore then
     expected = RUN[folder](tmp_path / "direct", STEPS)
     assert len(set(expected.splitlines())) > STEPS / 2
     sanitize = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
@@ -31,7 +31,7 @@ def test_gives_its_own_numbers(folder: Path, tmp_path: Path) -> None:
 
 
 def test_a_prefix_that_is_put_together(tmp_path: Path) -> None:
-    """Of the model identifier, in macros, by sources that insist on it."""
+    """The prefix is composed from the model identifier, in macros, by sources that require it."""
     parts = """#define MODEL_IDENTIFIER Servo
 #define paste(a, b) a##b
 #define paste_values(a, b) paste(a, b)
@@ -43,7 +43,7 @@ def test_a_prefix_that_is_put_together(tmp_path: Path) -> None:
 
 
 def test_functions_of_its_own_that_are_named_like_the_standards(tmp_path: Path) -> None:
-    """Two FMUs with such a function go together."""
+    """Two FMUs with such a function can be in one program."""
     more = "int fmi2DoStepInternal(int steps)\n{\n    return steps + 1;\n}\n\nfmi2Component fmi2Instantiate("
     folder = changed(FMU2, tmp_path / "fmu", "sources/servo.c", ("fmi2Component fmi2Instantiate(", more))
     libraries = [build(loaded(folder), name, tmp_path) for name in ("pan", "tilt")]
@@ -52,7 +52,7 @@ def test_functions_of_its_own_that_are_named_like_the_standards(tmp_path: Path) 
 
 
 def test_arrays_with_a_size_of_their_own_and_text(tmp_path: Path) -> None:
-    """A structural parameter keeps its start value, a state may be an array, and what is no number is left alone."""
+    """A structural parameter keeps its start value, a state may be an array, and other types than numbers are ignored."""
     size, text = '<Dimension start="3"/>', '<String name="label" valueReference="21" causality="input"/>'
     text += '<Binary name="trace" valueReference="22" causality="output"/>'
     text += '<Clock name="tick" valueReference="23" causality="output" intervalVariability="triggered"/>'
@@ -73,7 +73,7 @@ def test_arrays_with_a_size_of_their_own_and_text(tmp_path: Path) -> None:
 
 
 def test_enumerations_get_no_value_beyond_their_items(tmp_path: Path) -> None:
-    """This one refuses others: what is bound to it may be 0 before anybody has said anything."""
+    """This FMU refuses other values; a value that is bound to it may be 0 before the first message."""
     items = '<SimpleType name="Mode"><Enumeration><Item name="on" value="2"/><Item name="off" value="1"/></Enumeration>'
     folder = changed(
         FMU2,
@@ -128,7 +128,7 @@ SHOW = 'printf("%.17g %.17g %.17g\\n", out.duty, out.steps, out.saturated);'
 
 
 def test_starting_again_is_starting_afresh(tmp_path: Path) -> None:
-    """Twenty times, within a heap that holds one instance."""
+    """Twenty times, with a heap that can contain one instance."""
     library = build(loaded(FMU2), "pan", tmp_path)
     body = f"""{SERVO}
     for (int i = 0; i < 20; i++) {{
@@ -148,7 +148,7 @@ def test_starting_again_is_starting_afresh(tmp_path: Path) -> None:
 
 
 def test_parameters(tmp_path: Path) -> None:
-    """From the start, while running, and one that is fixed."""
+    """Set at the start, set while running, and one that is fixed."""
     model = loaded(FMU2)
     body = f"""{SERVO}
     pan_init(a, &in, &out);
@@ -193,9 +193,11 @@ def test_a_heap_that_is_too_small_is_seen(tmp_path: Path) -> None:
 
 
 def test_memory_in_a_step(tmp_path: Path) -> None:
-    """What is given back can be taken for ever, in whatever order.  What is not is refused at the end, and seen.
+    """Memory that is returned can be allocated again without end, in any order.
 
-    The check of the sources does not see the call through a pointer.
+    Without a return, an allocation fails in the end, and this is detected.
+
+    The check of the sources does not detect the call through a pointer.
     """
     in_step = """
     if (self->integers[0] == 5) {
@@ -236,7 +238,7 @@ def test_memory_in_a_step(tmp_path: Path) -> None:
 
 
 def test_errors_and_stopping(tmp_path: Path) -> None:
-    """An FMU that fails or stops is called no more until it starts again."""
+    """An FMU that fails or stops is not called again until it starts again."""
     body = f"""{SERVO}
     for (int mode = 1007; mode <= 1008; mode++) {{
         in.mode = 0.0;
@@ -257,7 +259,7 @@ def test_errors_and_stopping(tmp_path: Path) -> None:
 
 
 def test_states_that_are_not_finite_are_found(tmp_path: Path) -> None:
-    """The limiter hides it from the output."""
+    """The limiter hides the state from the output."""
     body = f"""{SERVO}
     pan_init(a, &in, &out);
     pan_step(a, &in, &out);
@@ -272,7 +274,7 @@ def test_states_that_are_not_finite_are_found(tmp_path: Path) -> None:
 
 
 def test_two_instances_and_two_fmus_at_once(tmp_path: Path) -> None:
-    """Of the same sources, whose names are all the same."""
+    """Both have the same sources and therefore the same names."""
     servo, axes = loaded(FMU2), loaded(FMU3)
     libraries = [
         build(servo, "pan", tmp_path, instances=2),
@@ -331,7 +333,7 @@ def test_fmi3_stops_and_fails(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("cpu", ["cortex-m0plus", "cortex-m33"])
 def test_links_for_microcontrollers(cpu: str, tmp_path: Path) -> None:
-    """Without a heap of the C library: nothing in the image asks for memory."""
+    """Without a heap of the C library: no code in the image allocates memory."""
     compiler = shutil.which("arm-none-eabi-gcc")
     if compiler is None:
         pytest.skip("arm-none-eabi-gcc is missing: apt-get install gcc-arm-none-eabi libnewlib-arm-none-eabi")

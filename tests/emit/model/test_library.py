@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The library of a model: what it computes, and that several go together.
+"""The library of a model: its results, and several libraries in one program.
 
-Results are compared bit for bit with what the export's own code gives through its own interface.
+Results must be equal, bit for bit, to those of the export's own code through its own interface.
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ def test_tokens_alone_give_the_numbers_of_the_sources(method: str, tmp_path: Pat
 
 
 def test_runge_kutta_4_from_tokens_is_of_fourth_order(tmp_path: Path) -> None:
-    """Halving the step divides the error of x' = -x by 16, against the exact solution."""
+    """Halving the step divides the error of x' = -x by 16, compared with the exact solution."""
     zero = {"DYNAMIC_EQUATIONS": "\txx_R[0] = -xx_s[0];\n\txx_R[1] = xx_V[4] * 0.0;\n\txx_V[1] = xx_s[0];\n"}
     zero |= {"OUTPUT_EQUATIONS": "", "INITIALIZE_STATES": "\txx_s[0] = 1.0;\n\txx_s[1] = 0.0;\n"}
     errors = []
@@ -186,7 +186,7 @@ def test_setting_a_parameter_recomputes_what_depends_on_it(servo: Path, tmp_path
     """
     out, kp, tau = map(float, program(library, body, tmp_path)[-1])
     assert (kp, tau) == (0.05, 0.05)
-    assert 2 * 0.05 * 0.4 <= out < 0.1  # 2 kp (in - position), and a little of the states
+    assert 2 * 0.05 * 0.4 <= out < 0.1  # 2 kp (in - position), plus a small part from the states
 
 
 def test_a_model_that_stops_is_seen(tmp_path: Path) -> None:
@@ -209,7 +209,7 @@ def test_a_model_that_stops_is_seen(tmp_path: Path) -> None:
 
 
 def test_the_end_of_the_experiment_ends_nothing(servo: Path, tmp_path: Path) -> None:
-    """The experiment ends after 2 s, 2000 steps."""
+    """The experiment ends after 2 s, which are 2000 steps."""
     rows = program(build(loaded(servo), "pan", tmp_path), "run(self, 2100);", tmp_path)
     times = [float(row[0]) - 25.0 for row in rows]
     assert times[2100] == pytest.approx(2.1, abs=1e-9) and times[2100] > times[2099]
@@ -273,7 +273,7 @@ int main(void)
     ("first", "second"), [("c", "c"), ("c++", "c++"), ("c", "c++"), ("tokens", "c"), ("tokens", "tokens")]
 )
 def test_two_models_in_one_program(first: str, second: str, tmp_path: Path) -> None:
-    """The same unrenamed export twice, and exports of different kinds, keep out of each other's way."""
+    """The same unrenamed export twice, and exports of different kinds, do not disturb each other."""
     a = loaded(KINDS[first](Export(), tmp_path / "model_a"))
     b = loaded(KINDS[second](Export(name="Tilt", method="Euler"), tmp_path / "model_b"))
     both = run_program(tmp_path / "both", TWO, [build(a, "a", tmp_path / "1"), build(b, "b", tmp_path / "1")])
@@ -288,7 +288,7 @@ def test_two_models_in_one_program(first: str, second: str, tmp_path: Path) -> N
 
 
 def loaded_dummy(folder: Path):  # type: ignore[no-untyped-def]
-    """A model of another kind that shares nothing with the two."""
+    """A model of another kind that shares no code with the two."""
     return loaded(
         Export(name="Dummy", variable="dd_", function="DD", suffix="dummy", tokens=False).write(folder / "dummy")
     )
@@ -369,7 +369,7 @@ int main(void)
 
 @pytest.mark.parametrize("rate", [0.125, 0.5])
 def test_hand_written_model_with_instances(rate: float, tmp_path: Path) -> None:
-    # the library has another name than the user's own symbols, which would otherwise meet
+    # the library's name differs from the user's own symbols, which would otherwise collide
     library = build(loaded(MODELS / "pid_c"), "loop", tmp_path, {"integral rate": rate}, instances=2)
     text = re.sub(
         r"\bpid_(?=[a-z_]+\(|inputs_t|outputs_t|t\b)",
@@ -386,7 +386,7 @@ def test_hand_written_model_with_instances(rate: float, tmp_path: Path) -> None:
 
 
 def test_an_integer_of_a_hand_written_model_stays_in_its_range(tmp_path: Path) -> None:
-    """A double beyond an int would be undefined behaviour in C."""
+    """In C, converting a double outside the range of an int is undefined behaviour."""
     text = """
 #include "loop.h"
 #include <math.h>
@@ -410,7 +410,7 @@ int main(void)
 
 
 def test_a_library_called_like_the_code_it_wraps(tmp_path: Path) -> None:
-    """Header, types and functions of the user have the names of the generated ones; and a class that of its library."""
+    """The user's header, types and functions have the names of the generated ones; a class has that of its library."""
     pid = build(loaded(MODELS / "pid_c"), "pid", tmp_path, instances=2)
     assert run_program(tmp_path, PID, [pid]).split()[0] == "1.5"
     for kind, write in sorted(KINDS.items()):
@@ -442,7 +442,7 @@ int main(void)
 
 
 def test_hand_written_model_with_globals_beside_another(tmp_path: Path) -> None:
-    """Both define a global called `shared`."""
+    """Both define a global variable `shared`."""
     text = """
 #include "g.h"
 #include "loop.h"
@@ -469,7 +469,7 @@ int main(void)
 
 
 def test_text_of_the_export_cannot_break_out(tmp_path: Path) -> None:
-    """Names that end comments, continue lines or hide in trigraphs give a header that compiles and means the same."""
+    """Names that end comments, continue lines or contain trigraphs give a header that compiles and has the same meaning."""
     tokens = Export(token_values={}).write_tokens(tmp_path / "model")
     path = tokens / "tokens.xml"
     text = path.read_text()
@@ -577,7 +577,7 @@ def test_no_undefined_behaviour(servo: Path, tmp_path: Path) -> None:
 
 
 def test_nothing_is_allocated_after_the_start(tmp_path: Path) -> None:
-    """A C++ export allocates in its constructor; from the first step on, and when starting again, it must not."""
+    """A C++ export allocates in its constructor; it must not allocate in a step or when it starts again."""
     library = build(loaded(Export().write_cpp(tmp_path / "model")), "pan", tmp_path)
     counter = tmp_path / "count.cpp"
     counter.write_text(
@@ -600,7 +600,7 @@ def test_nothing_is_allocated_after_the_start(tmp_path: Path) -> None:
 
 
 def test_symbols_begin_with_the_name(tmp_path: Path) -> None:
-    """Nothing but the library's own names is visible to the linker."""
+    """The linker sees only the library's own names."""
     for kind, write in sorted(KINDS.items()):
         library = build(loaded(write(Export(), tmp_path / kind / "model")), "pan", tmp_path / kind)
         for made in library.objects:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Real exports give through the library what their own code gives, bit for bit.
+"""Real exports give the same bits in EPG's library as with their own code.
 
 They are not part of EPG: the environment variable EPG_TEST_EXPORTS names a folder whose subfolders are repositories
-with exports of 20-sim, in whatever layout.
+with exports of 20-sim, in any layout.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ SKIPPED = "set EPG_TEST_EXPORTS to a folder with real exports of 20-sim"
 
 
 def model_paths() -> list[Path]:
-    """Every submodel below the folder: files with a C submodel's functions, files of C++ classes."""
+    """Every submodel below the folder: files with the functions of a C submodel, and files of C++ classes."""
     root = os.environ.get("EPG_TEST_EXPORTS")
     if not root:
         return []
@@ -37,7 +37,7 @@ def model_paths() -> list[Path]:
 
 
 def _lacks_description(sources: Path) -> bool:
-    """Whether these are sources of an FMU whose description, by which its own functions are called, is not there."""
+    """True for the sources of an FMU without its description, which is needed to call its functions."""
     return (sources / "fmi2Functions.c").is_file() and not (sources.parent / "modelDescription.xml").is_file()
 
 
@@ -52,7 +52,7 @@ needs_exports = pytest.mark.skipif(not PATHS, reason=SKIPPED)
 
 
 def direct(model: Model, path: Path, work: Path) -> tuple[str, bool]:
-    """What the export's own code gives, and whether it starts with inputs of zero."""
+    """The results of the export's own code, and True if it starts with inputs of zero."""
     counts = (len(model.inputs), len(model.outputs))
     details = model.details
     if model.language == "c++":
@@ -81,7 +81,7 @@ def direct(model: Model, path: Path, work: Path) -> tuple[str, bool]:
 def test_same_numbers(path: Path, tmp_path: Path) -> None:
     model, diagnostics = load(path)
     if model is None:
-        # an export that developers left half edited, that reads files, or of several models in one folder
+        # an export that developers have edited in part, that reads files, or that shares its folder with other models
         assert {i.id for i in diagnostics if i.severity == "error"} <= {
             "model-file-missing",
             "model-incomplete",
@@ -124,7 +124,7 @@ TOKENS = sorted(Path(os.environ["EPG_TEST_EXPORTS"]).rglob("*tokens.xml")) if PA
 @needs_exports
 @pytest.mark.parametrize("path", TOKENS or [Path("none")], ids=readable)
 def test_what_epgs_target_makes_of_their_tokens(path: Path, tmp_path: Path) -> None:
-    """20-sim with our templates would export this: under strict warnings, with the numbers of the tokens alone."""
+    """20-sim with EPG's templates would export this: it compiles with strict warnings and gives the tokens' results."""
     from_tokens, diagnostics = load(path)
     if from_tokens is None and any("matrices" in i.message or i.id == "model-stub" for i in diagnostics):
         return
@@ -144,7 +144,7 @@ def test_what_epgs_target_makes_of_their_tokens(path: Path, tmp_path: Path) -> N
 
 @needs_exports
 def test_all_of_them_in_one_program(tmp_path: Path) -> None:
-    """Every export that loads, each under a name of its own, linked together: each runs as it does alone."""
+    """All exports that load, each under its own name, in one program: each gives the same results as alone."""
     libraries = []
     for index, path in enumerate(PATHS):
         model, _ = load(path)

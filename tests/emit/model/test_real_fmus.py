@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Real FMUs give through the library what calls of their own functions give, bit for bit, and fit microcontrollers.
+"""Real FMUs give the same bits in EPG's library as with their own functions, and fit microcontrollers.
 
 They are not part of EPG: the environment variable EPG_TEST_EXPORTS names a folder with unpacked FMUs anywhere below it.
-They may leave the prefix of the standard's functions to the importer, or have one that can be left out.
+Their functions may have no prefix, because the importer sets it, or one that can be omitted.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def readable(path: Path) -> str:
 
 
 def usable(path: Path, folder: Path) -> Model | None:
-    """The model, with a step of 10 ms where the FMU says none; None if it is one of those EPG refuses."""
+    """The model, with a step of 10 ms if the FMU has none; None if EPG refuses it."""
     model, diagnostics = load(path)
     if model is None and any(item.id == "fmu-step" for item in diagnostics):
         folder.mkdir(exist_ok=True)
@@ -86,7 +86,7 @@ def test_same_numbers(path: Path, tmp_path: Path) -> None:
 
 @needs_fmus
 def test_all_of_them_in_one_program(tmp_path: Path) -> None:
-    """Each in as many instances as it allows: they do not know of each other."""
+    """Each has as many instances as it allows; they do not affect each other."""
     libraries = []
     for index, path in enumerate(PATHS):
         model = usable(path, tmp_path / f"own{index}")
@@ -128,7 +128,7 @@ static void {name}_run(int first, int last, unsigned instances)
 @needs_fmus
 @pytest.mark.parametrize("cpu", ["cortex-m0plus", "cortex-m33"])
 def test_links_for_microcontrollers(cpu: str, tmp_path: Path) -> None:
-    """Each alone, with the library's own memory only."""
+    """Each alone, with only the library's own memory."""
     compiler = shutil.which("arm-none-eabi-gcc")
     if compiler is None:
         pytest.skip("arm-none-eabi-gcc is missing: apt-get install gcc-arm-none-eabi libnewlib-arm-none-eabi")

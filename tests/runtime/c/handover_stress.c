@@ -1,9 +1,9 @@
 /**
  * @file
- * Two threads hand a block to and fro as fast as they can: all of it arrives, once, and its answer comes back.
+ * Two threads hand a block over and back as fast as they can: the whole block arrives, once, and its answer returns.
  *
- * Argument: seconds.  The threads share nothing else, so that ThreadSanitizer sees any access that the handover does
- * not order.
+ * Argument: seconds.  The threads share no other data, so that ThreadSanitizer detects every access that the handover
+ * does not order.
  */
 #define _POSIX_C_SOURCE 200809L
 

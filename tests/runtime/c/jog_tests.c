@@ -65,8 +65,8 @@ TEST(it_drives_for_as_many_cycles_as_asked_and_is_safe_afterwards)
     for (int i = 0; i < 20; i++) {
         fake_cycle();
         CHECK_EQUAL(fake.actuator, -1.0);
-        CHECK(strchr(fake.calls, 'm') == NULL); /* the model rests */
-        CHECK(strchr(fake.calls, 's') == NULL); /* nothing switches the motor off in between */
+        CHECK(strchr(fake.calls, 'm') == NULL); /* the model does not run */
+        CHECK(strchr(fake.calls, 's') == NULL); /* the motor is not switched off in between */
     }
     fake_cycle();
     CHECK_EQUAL(fake.actuator, 0.0);
@@ -88,7 +88,7 @@ TEST(the_model_begins_again_afterwards)
     fake_cycle();
     CHECK_EQUAL(fake.inits, inits + 1);
     CHECK(strchr(fake.calls, 'm') != NULL);
-    CHECK_EQUAL(fake.actuator, 0.0); /* and is still disabled */
+    CHECK_EQUAL(fake.actuator, 0.0); /* the target is still disabled */
 }
 
 TEST(a_model_that_rests_after_a_fault_goes_on_resting)
