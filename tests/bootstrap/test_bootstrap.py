@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""EPG in a Python without its packages installs them once, completely, into its cache, or reports how to install them."""
+"""EPG in a Python without its packages installs them once, completely, into its cache, or explains how to do so."""
 
 from __future__ import annotations
 

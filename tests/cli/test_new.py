@@ -249,7 +249,7 @@ def test_a_robot_of_which_no_port_has_a_name_in_common(tmp_path: Path, capsys: p
 
 
 def test_what_does_not_fit_is_said_at_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """A step of 1.5 ms is not a multiple of JIWY's period of 1 ms: EPG writes the project and reports the needed change."""
+    """A step of 1.5 ms is not a multiple of JIWY's period of 1 ms: EPG writes the project and says what to change."""
     model = shutil.copytree(TURNTABLE, tmp_path / "odd")
     for file in model.iterdir():
         text = file.read_text()
@@ -296,7 +296,7 @@ def test_a_model_that_is_called_after_its_folder(tmp_path: Path) -> None:
 
 
 def test_ports_with_names_of_epgs_own(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """`robot_inputs`, `robot_start` and `epg_...` are EPG's names; boolean and integer inputs get topics of their types."""
+    """`robot_inputs`, `robot_start`, `epg_...` are EPG's; boolean and integer inputs get topics of their types."""
     model = tmp_path / "odd"
     model.mkdir()
     for name, text in (("model.yaml", MODEL_YAML), ("odd.h", ODD_H), ("odd.c", ODD_C)):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page about wiring an emergency stop: its wiring gives no warning on any chip, and its table of pulls is correct."""
+"""The page about wiring an emergency stop: its wiring gives no warning on any chip, and its table is correct."""
 
 from __future__ import annotations
 

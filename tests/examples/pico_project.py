@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pico projects in temporary folders: what is needed to build them, configuring and building."""
+"""Pico projects in temporary folders: the tools to build them, configuring and building."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def freertos_kernel() -> Path:
 
 
 def sdk_of_new_projects() -> Path:
-    """The Pico SDK of the version that new projects are written for."""
+    """The Pico SDK in the version that new projects use."""
     folder, version = pico_sdk(), version_tested_with("pico_sdk")
     text = (folder / "pico_sdk_version.cmake").read_text(encoding="utf-8")
     if not all(f"{part} {number})" in text for part, number in zip(("MAJOR", "MINOR", "REVISION"), version.split("."))):
@@ -45,7 +45,7 @@ def skip_unless_buildable(*more: object) -> None:
 
 
 def environment(**changes: str | None) -> dict[str, str]:
-    """This process's, without what leads to EPG or an SDK; with a fixed date, which the SDK puts into images."""
+    """This process's environment without variables of EPG or an SDK, and with a fixed date, which images contain."""
     dropped = ("EPG_DIR", "EPG_PATH", "EPG_TARGETS_PATH", "PICO_", "picotool", "FREERTOS_", "CMAKE_", "CC", "CXX")
     kept = {key: value for key, value in os.environ.items() if not key.startswith(dropped)}
     wanted = {"SOURCE_DATE_EPOCH": "1767225600", **changes}
@@ -53,7 +53,7 @@ def environment(**changes: str | None) -> dict[str, str]:
 
 
 def run(folder: Path, *command: str | Path, check: bool = True, env: dict[str, str] | None = None) -> str:
-    """What a command prints; it must succeed, or fail if not ``check``."""
+    """The output of a command, which must succeed, or may fail if not ``check``."""
     done = subprocess.run(
         command, cwd=folder, env=env or environment(), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
     )
@@ -73,13 +73,13 @@ def configure(
 
 
 def commands(build: Path) -> dict[str, dict[str, str]]:
-    """The commands that compile, by the objects they make."""
+    """The compile commands, by their object files."""
     entries = json.loads((build / "compile_commands.json").read_text(encoding="utf-8"))
     return {re.findall(r" -o (\S+)", entry["command"])[0]: entry for entry in entries}
 
 
 def digests(build: Path, *folders: str) -> dict[str, tuple[str, int]]:
-    """Contents and time of change of every file in some folders of a build tree."""
+    """Contents and time of change of every file in some folders of a build folder."""
     found = {}
     for folder in folders:
         for path in sorted((build / folder).rglob("*")):

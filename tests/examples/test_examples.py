@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The examples through CMake, as the README says, and what their robots do when things fail."""
+"""The examples, built with CMake as in their README, and the reactions of their robots to faults."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``examples/existing_firmware``: a repository with its own ways gains a controller, and nothing else in it changes."""
+"""``examples/existing_firmware``: a repository with its own conventions gets a controller; all else stays the same."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def run(folder: Path, *command: str, check: bool = True) -> str:
 
 
 def copy(folder: Path) -> Path:
-    """The example as a repository of its own."""
+    """The example as a separate repository."""
     return shutil.copytree(EXAMPLE, folder / "repository", ignore=shutil.ignore_patterns("build"))
 
 
@@ -76,7 +76,7 @@ def commands(repository: Path) -> dict[str, dict[str, str]]:
 
 def test_other_executables_are_compiled_as_before(built: Path, tmp_path: Path) -> None:
     with_epg = commands(built)
-    # in the same folder, so that the commands can be equal byte by byte
+    # in the same folder, so that the commands can be compared byte by byte
     aside = built.with_name("with_epg")
     built.rename(aside)
     try:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``examples/existing_pico_repository``: one executable of several gains a controller, and the others do not notice."""
+"""``examples/existing_pico_repository``: one executable gets a controller, and the other executables do not change."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.examples.pico_project import ROOT, commands, configure, digests, pico
 EXAMPLE = ROOT / "examples/existing_pico_repository"
 BLOCK = re.compile(r"\n# --- the turntable's controller, by EPG ---\n(.*\n.*\n.*\n)# ---\n")
 BUILT = ("blink", "hello_usb")
-"""Of the others, those that tests build; all others' commands are compared."""
+"""The other executables that tests build; of all others, the commands are compared."""
 
 
 def options(board: str) -> list[str]:
@@ -35,7 +35,7 @@ def test_the_import_file_is_epgs() -> None:
 
 
 def test_other_executables_do_not_notice(tmp_path: Path) -> None:
-    """The lines are added to a repository that was built: nothing of the others is compiled or linked again."""
+    """The lines are added to a built repository: no file of the other executables is compiled or linked again."""
     skip_unless_buildable()
     repository = shutil.copytree(EXAMPLE, tmp_path / "repository")
     build = repository / "build"
@@ -60,7 +60,8 @@ def test_other_executables_do_not_notice(tmp_path: Path) -> None:
     main = repository / "turntable/main.c"
     with_start = main.read_text(encoding="utf-8")
     main.write_text("int main(void)\n{\n    return 0;\n}\n", encoding="utf-8")
-    run(repository, "cmake", "--build", "build", "--target", "turntable_station")  # not a call of EPG's yet: it links
+    # it links, although it does not call EPG yet
+    run(repository, "cmake", "--build", "build", "--target", "turntable_station")
     main.write_text(with_start, encoding="utf-8")
     output = run(repository, "cmake", "--build", "build", "--target", "turntable_station")
     assert_good(build, output)
@@ -71,18 +72,18 @@ NEEDED = {
     # TinyUSB and the libraries of the SDK that EPG links
     "CFG_TUSB_DEBUG", "CFG_TUSB_MCU", "CFG_TUSB_OS", "PICO_RP2040_USB_DEVICE_UFRAME_FIX",
     "LIB_PICO_FIX_RP2040_USB_DEVICE_ENUMERATION", "LIB_PICO_MULTICORE", "LIB_PICO_UNIQUE_ID",
-    # what EPG asks of the SDK's C files
+    # Definitions that EPG sets for the SDK's C files
     "PICO_CORE1_STACK_SIZE", "PICO_DOUBLE_PROPAGATE_NANS", "PICO_USE_STACK_GUARDS",
     # <name>.h, epg/control.h, epg/pico.h, epg/pico_quadrature.h, tusb_config.h, tusb.h
     "build/epg/turntable", "targets/runtime/include", "targets/families/rp2/include",
     "targets/platforms/mcu/include",
     "targets/libraries/pico_quadrature/include", "targets/families/rp2/usb/include", "lib/tinyusb/src",
 }  # fmt: skip
-"""Definitions and folders of headers by which the commands that compile the program's own files change."""
+"""Definitions and include folders that EPG adds to the commands for the program's own files."""
 
 
 def changes(before: dict[str, dict[str, str]], after: dict[str, dict[str, str]]) -> set[str]:
-    """What is different for main.c of the executable that gained the controller, but for the SDK's system headers."""
+    """The differences for main.c of the executable that gets the controller, except for the SDK's system headers."""
     words = [set(shlex.split(commands["turntable/CMakeFiles/turntable_station.dir/main.c.o"]["command"]))
              for commands in (before, after)]  # fmt: skip
     found = {word.split("=")[0].removeprefix("-D") for word in words[0] ^ words[1] if word.startswith("-D")}
@@ -91,7 +92,7 @@ def changes(before: dict[str, dict[str, str]], after: dict[str, dict[str, str]])
 
 
 def assert_good(build: Path, output: str) -> None:
-    """The controller's executable is there, with no warning but the SDK's own."""
+    """The controller's executable exists, with no warning except the SDK's own."""
     warned = re.findall(r"^(\S+?):\d+:\d+: warning: ", output, re.MULTILINE)
     assert [file for file in warned if not file.startswith(str(pico_sdk()))] == []
     folder = build / "turntable"
@@ -107,7 +108,7 @@ def test_the_controllers_executable_for_pico_2(tmp_path: Path) -> None:
 
 
 def test_another_board_is_one_clear_message(tmp_path: Path) -> None:
-    """The board that CMake builds for and the target's are not the same."""
+    """The board that CMake builds for differs from the target's board."""
     skip_unless_buildable()
     repository = shutil.copytree(EXAMPLE, tmp_path / "repository")
     file = repository / "turntable/CMakeLists.txt"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Projects that ``epg new`` has written, as their users configure, build and run them."""
+"""Projects of ``epg new``, which the tests configure, build and run as their users do."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def new(folder: Path, target: str, model: Path = JIWY, name: str = "robot") -> P
 
 
 def readme_commands(project: Path, beginning: str) -> list[str]:
-    """Commands of the README that begin so."""
+    """The README's commands that begin with this text."""
     readme = (project / "README.md").read_text(encoding="utf-8")
     return re.findall(rf"^({re.escape(beginning)}.*)$", readme, re.MULTILINE)
 
@@ -44,7 +44,7 @@ def simulate(project: Path, command: str) -> list[dict[str, str]]:
 
 
 def assert_it_moves(project: Path, build: str, target: str) -> None:
-    """The README's simulation; of JIWY, an axis follows its setpoint."""
+    """The README's simulation; for JIWY, also that an axis follows its setpoint."""
     (command,) = readme_commands(project, f"cmake --build {build} --target")
     assert "FAILED" not in run(project, "sh", "-c", command)
     with (project / build / "tracking.csv").open(newline="") as file:
@@ -58,7 +58,7 @@ def assert_it_moves(project: Path, build: str, target: str) -> None:
 
 
 def talk(project: Path, command: str) -> str:
-    """What the README's second run, the console, answers."""
+    """The output of the console in the README's second run."""
     assert command.endswith("--realtime --console")
     answers = run(project, "sh", "-c", f"printf 'stats\\nenable\\nports\\n' | {command}")
     assert "stat enabled=0" in answers, "nothing moves until somebody enables"
@@ -94,7 +94,7 @@ def test_the_simulation_of_a_project_for_a_board(target: str, tmp_path: Path) ->
     assert not re.search(r"^ *MODEL .*build", (project / "simulation/CMakeLists.txt").read_text(), re.M)
 
 
-# what is missing ------------------------------------------------------------------------------------------------------
+# missing tools ------------------------------------------------------------------------------------------------------
 
 
 def fake_sdk(home: Path, version: str) -> Path:
@@ -114,7 +114,7 @@ def fake_compiler(home: Path, version: str = "14_2_Rel1") -> Path:
 
 
 def programs(folder: Path, *names: str) -> str:
-    """A PATH with these programs only."""
+    """A PATH with only these programs."""
     folder.mkdir(parents=True)
     for name in names:
         found = shutil.which(name)
@@ -124,7 +124,7 @@ def programs(folder: Path, *names: str) -> str:
 
 
 class User:
-    """Somebody with a new project, a home folder of their own, and what is put into it."""
+    """A user with a new project, a home folder, and the tools that the test puts into it."""
 
     def __init__(self, folder: Path, target: str) -> None:
         self.home = folder / "home"
@@ -164,7 +164,7 @@ def test_no_compiler(user: User, tmp_path: Path) -> None:
 
 
 def test_another_sdk(user: User) -> None:
-    """The installed one is not the one the project is written for: it says both ways out."""
+    """The installed SDK has another version than the project needs: the message gives both solutions."""
     folder = fake_sdk(user.home, "2.1.1")
     output = user.configure()
     assert (
@@ -204,7 +204,7 @@ def test_of_several_sdks_the_projects_is_taken(user: User) -> None:
 
 
 def test_the_vs_code_extensions_file_is_heeded(user: User) -> None:
-    """It names the folders that the extension fills; where it has not yet, that is said."""
+    """It names the folders that the extension fills; the message says if one of them is still missing."""
     extension = user.home / ".pico-sdk/cmake/pico-vscode.cmake"
     extension.parent.mkdir(parents=True)
     extension.write_text('set(PICO_SDK_PATH "${USERHOME}/.pico-sdk/sdk/${sdkVersion}")\n')
@@ -217,7 +217,7 @@ def test_the_vs_code_extensions_file_is_heeded(user: User) -> None:
 
 
 def cache_without(folder: Path, name: str) -> str:
-    """EPG's cache as it is, but for one thing."""
+    """A copy of EPG's cache without one entry."""
     from epg.bootstrap import cache_folder
 
     folder.mkdir()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``examples/ping_pong``: every ping comes back, in all combinations of QoS, and the peer computes what it says."""
+"""``examples/ping_pong``: every ping has an answer, for all combinations of QoS; the peer's statistics are right."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``examples/ping_pong`` for a Pico 2: the image builds, without a warning.  On an emulated Pico the example runs."""
+"""``examples/ping_pong`` for a Pico 2 builds without a warning.  On an emulated Pico, other tests run the example."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the READMEs of the Zephyr examples say is what stands in their files."""
+"""The READMEs of the Zephyr examples show the same text as the examples' files."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ def test_the_import_file_is_epgs(file: str) -> None:
 
 
 def added(file: str, what: str) -> list[str]:
-    """Lines between the marks of an addition to a file."""
+    """The lines between the marks of an addition to a file."""
     text = (EXISTING / file).read_text(encoding="utf-8")
     return re.findall(rf"^[^\n]*--- {what}, by EPG ---[^\n]*\n(.*?)\n[^\n]*(?:# ---|/\* --- \*/)$", text, re.M | re.S)
 
 
 def shown() -> list[str]:
-    """The additions that the README shows."""
+    """The additions in the README."""
     readme = (EXISTING / "README.md").read_text(encoding="utf-8")
     return [
         "\n".join(line.removeprefix("+") for line in block.splitlines())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What stands in an SVG that EPG drew: texts with the room they take, and lines."""
+"""The contents of an SVG of EPG: texts with the space that they need, and lines."""
 
 from __future__ import annotations
 
@@ -51,12 +51,12 @@ class Svg:
         return [text.text for text in self.texts]
 
     def line(self, title: str) -> Line:
-        """The one line with this title, as a pointer over it shows."""
+        """The only line with this title, which is shown under the pointer."""
         (found,) = (line for line in self.lines if line.title.partition(":")[0] == title)
         return found
 
     def overlaps(self) -> list[tuple[str, str]]:
-        """Texts that stand on each other."""
+        """Pairs of texts that overlap."""
         return [
             (one.text, other.text)
             for index, one in enumerate(self.texts)
@@ -65,7 +65,7 @@ class Svg:
         ]
 
     def outside(self) -> list[str]:
-        """Texts that the edge of the picture cuts."""
+        """Texts that cross the edge of the picture."""
         left, top, wide, high = self.box
         return [
             t.text for t in self.texts if t.left < left or t.top < top or t.right > left + wide or t.bottom > top + high

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg graph``: everything is in the pictures, nothing covers anything, and the same target gives the same bytes."""
+"""``epg graph``: the pictures are complete, nothing overlaps, and the same target gives the same bytes."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def assert_readable(svg: Svg) -> None:
 
 
 def assert_lines_apart(lines: list[Line]) -> None:
-    """Lines may cross, but not lie on each other; grounds may, as they are one."""
+    """Lines may cross, but must not overlap; ground lines may, because they are one net."""
     for one, other in itertools.combinations(lines, 2):
         if one.style == other.style == "earth":
             continue
@@ -121,7 +121,7 @@ def test_every_wire_goes_from_its_contact_to_its_component(capsys: pytest.Captur
         label = next(text for text in svg.texts if text.text == name)
         assert wire.points[1][0] < label.left and label.right < wire.points[0][0]
         assert label.bottom <= wire.points[0][1] < label.bottom + 5
-    assert len({svg.line(ground).points[0] for ground in grounds}) == 4  # a contact of its own for each
+    assert len({svg.line(ground).points[0] for ground in grounds}) == 4  # each has its own contact
     assert_lines_apart(wires)
 
 
@@ -152,7 +152,7 @@ def test_the_application_shows_every_port_and_its_way(capsys: pytest.CaptureFixt
         "node JIWY_node, rpi_pico2_freertos, xrce over usb, control period 1 ms",
     ):
         assert word in svg.words
-    assert len([line for line in svg.lines if line.title]) == 4 * 2 + 4 * 2 + 2  # a reset leaves the board alone
+    assert len([line for line in svg.lines if line.title]) == 4 * 2 + 4 * 2 + 2  # a reset has no line to the board
 
 
 def test_conversions_and_outputs_without_a_binding(big: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -202,7 +202,7 @@ def test_text_is_escaped() -> None:
 
 @pytest.mark.parametrize("name", DOCUMENTED)
 def test_the_pictures_in_the_documentation_are_what_epg_draws(name: str, capsys: pytest.CaptureFixture[str]) -> None:
-    """``EPG_UPDATE_GOLDEN=1`` draws them anew: look at them."""
+    """``EPG_UPDATE_GOLDEN=1`` draws them again: review them."""
     what, target, robot = DOCUMENTED[name]
     text = draw(capsys, target, "--what", what, *example(robot))
     path = ROOT / "docs/pictures" / name

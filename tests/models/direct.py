@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Programs that run an export through its own interface, as its authors would: what the wrapper is compared with."""
+"""Programs that run an export through its own interface, as its authors do, to compare EPG's wrapper with them."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def run_c_vectors(
     prefixes: tuple[str, str] = ("xx_", "XX"),
     argument: str = "",
 ) -> str:
-    """The C function target.  ``argument`` is what the third argument of Calculate gets, by default the time."""
+    """Runs the C function target.  ``argument`` is the third argument of Calculate, by default the time."""
     variable, function = prefixes
     time = argument or f"{variable}time{suffix}"
     inputs, outputs = counts
@@ -53,9 +53,9 @@ def run_cpp_class(
     sources: list[Path] | None = None,
     includes: list[Path] | None = None,
 ) -> str:
-    """The C++ class target, as its test program does, but without an end of the experiment.
+    """Runs the C++ class target like its test program, but without an end of the experiment.
 
-    ``sources`` and ``includes`` are for exports whose files lie in other places than 20-sim gives them.
+    ``sources`` and ``includes`` are for exports whose files are in other places than 20-sim's.
     """
     text = f"""{SIGNAL}
 #include <stddef.h>
@@ -83,7 +83,7 @@ static {name} model;
 
 
 def run_fmu(sources: Path, folder: Path, inputs: list[str], outputs: list[str], steps: int) -> str:
-    """The C sources of an FMU of 20-sim, through its FMI 2.0 functions, step by step at the sum of its steps.
+    """Runs the C sources of an FMU of 20-sim through its FMI 2.0 functions, step by step at the sum of its steps.
 
     ``inputs`` and ``outputs`` are names of variables.
     """
@@ -94,7 +94,7 @@ def run_fmu(sources: Path, folder: Path, inputs: list[str], outputs: list[str], 
 
     def set_input(name: str) -> str:
         reference = variables[name].attrib["valueReference"]
-        # the interface has no access to raw values of booleans: reals reach the same memory
+        # the interface gives no access to the raw values of booleans, but reals use the same memory
         return f"{{ fmi2ValueReference r = {reference}; double v = signal(); fmi2SetReal(c, &r, 1, &v); }}"
 
     def show_output(name: str) -> str:
@@ -170,6 +170,6 @@ def _run_c(text: str, sources: list[Path], includes: list[Path], folder: Path, o
 
 
 def has_entry_points(path: Path) -> bool:
-    """Whether a C file defines the functions of a submodel."""
+    """True if a C file defines the functions of a submodel."""
     pattern = r"^\w+[ \t]+\w*InitializeSubmodel\w*\s*\([^;{}()]*\)\s*\{"
     return re.search(pattern, path.read_text("latin-1"), re.MULTILINE) is not None

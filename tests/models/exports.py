@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Small models in the shape 20-sim exports, written by us for the tests: a PI controller with a filter and a limiter.
+"""Small models in the form of 20-sim's exports, written for the tests: a PI controller with a filter and a limiter.
 
-:class:`Export` says what is different from one test to the next: version, integration method, prefixes, line ends,
-what is broken.  Nothing here is text of 20-sim's templates; only the interface and the layout of the files is theirs.
+:class:`Export` sets the differences between tests: version, integration method, prefixes, line ends, damage.  No text
+comes from 20-sim's templates; only the interface and the layout of the files are 20-sim's.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class Export:
     declarations: str = ""  # added to xxfuncs.h
     model: str = ""  # added to xxmodel.c outside of functions
     omit: tuple[str, ...] = ()  # files that are not written
-    rename: dict[str, str] = field(default_factory=dict)  # file name -> name written
+    rename: dict[str, str] = field(default_factory=dict)  # usual file name -> name that is used instead
 
     @property
     def old(self) -> bool:
@@ -66,7 +66,7 @@ class Export:
         return self._save(folder, replace(self, variable="m_").cpp_files())
 
     def write_fmu(self, folder: Path, instance: bool, describe: str = "tokens.xml") -> Path:
-        """Writes the C sources of an FMU: without u and y, with one memory, since 4.6 in an ``instance``.
+        """Writes the C sources of an FMU: without u and y, with one memory; since 4.6 in an ``instance``.
 
         ``describe`` is the file that names the ports: tokens.xml, ModelConfiguration.xml or modelDescription.xml.
         """
@@ -118,7 +118,7 @@ class Export:
         return folder
 
     def write_tokens(self, folder: Path) -> Path:
-        """Writes ``tokens.xml`` alone."""
+        """Writes only ``tokens.xml``."""
         return self._save(folder, {"tokens.xml": self.tokens_xml()})
 
     def _save(self, folder: Path, files: dict[str, str]) -> Path:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The shapes that 20-sim's FMUs give to :class:`~tests.models.exports.Export`, and FMI 2.0's functions for them.
+"""The forms of 20-sim's FMUs for :class:`~tests.models.exports.Export`, and FMI 2.0's functions for them.
 
-As in ``exports.py``, nothing here is text of 20-sim's templates: only the interfaces and what they promise is theirs.
+As in ``exports.py``, no text comes from 20-sim's templates: only the interfaces and their promises are 20-sim's.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ GUID = "{look-alike}"
 
 
 def as_fmu(files: dict[str, str], parameters: int) -> dict[str, str]:
-    """Takes the port vectors out of a C export and lays its arrays into one memory, as 4.5 does for FMUs."""
+    """Removes the port vectors from a C export and puts its arrays into one memory, as 4.5 does for FMUs."""
     result = {}
     for name, text in files.items():
         text = text.replace("XXDouble *u, XXDouble *y, ", "")
@@ -38,7 +38,7 @@ def as_fmu(files: dict[str, str], parameters: int) -> dict[str, str]:
 
 
 def with_instance(files: dict[str, str], step: str) -> dict[str, str]:
-    """Moves the global variables of an FMU into an instance, as since 4.6."""
+    """Moves the global variables of an FMU into an instance, as 20-sim does since 4.6."""
     scalars = ("start_time", "finish_time", "step_size", "time", "steps", "initialize", "major", "stop_simulation")
     macros = "".join(f"#define xx_{name} model_instance->{name}\n" for name in (*"PIVsR", *scalars))
     counts = "".join(
@@ -87,7 +87,7 @@ typedef struct xx_ModelInstance
 def with_output_time(files: dict[str, str], method: str) -> dict[str, str]:
     """Integration methods that get the time of the next output, as since 4.6.3 of July 2017.
 
-    They shorten the step that would lead past it; the discrete method takes no step then, but moves the time.
+    They shorten a step that would go beyond it; the discrete method then takes no step, but advances the time.
     """
     instance = "xx_ModelInstance* model_instance"
     result = {}
@@ -223,7 +223,7 @@ void fmi2FreeInstance (fmi2Component c)
 
 
 def model_description(export: Export, ports: list[tuple[str, str, int]]) -> str:
-    """``modelDescription.xml`` as 20-sim's FMUs have it."""
+    """``modelDescription.xml`` in the form of 20-sim's FMUs."""
     variables = "".join(
         f'<ScalarVariable name="{name}" valueReference="{reference}" causality="{causality}" variability="continuous"'
         f"{' initial=' + chr(34) + 'calculated' + chr(34) if causality == 'output' else ''}>"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sample FMUs for tests, and programs that call their functions as the standard says: what EPG's library is compared
-with."""
+"""Sample FMUs for tests, and programs that call their functions as the standard requires, to compare EPG's library with
+them."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ FMU3 = MODELS / "fmu3"
 
 
 def pack(folder: Path, archive: Path, more: Mapping[str, bytes] | None = None) -> Path:
-    """The folder as an ``.fmu``, with ``more`` files in it."""
+    """Packs the folder as an ``.fmu``, with ``more`` files in it."""
     archive.parent.mkdir(parents=True, exist_ok=True)
     with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as packed:
         for path in sorted(folder.rglob("*")):
@@ -65,7 +65,7 @@ int main(void)
 
 
 def run_fmu2(work: Path, steps: int) -> str:
-    """What ``fmu2`` gives with the inputs of ``wrapper_driver``: its ports in the order of its description."""
+    """The outputs of ``fmu2`` with the inputs of ``wrapper_driver``: its ports in the order of its description."""
     set_all = """
     reals[0] = signal(); reals[1] = signal(); enable = signal() > 0.5;
     { double m = signal(); mode = m < -2147483648.0 ? -2147483647 - 1 : (int)m; }"""
@@ -112,7 +112,7 @@ static void put(void)
 
 
 def run_fmu3(work: Path, steps: int) -> str:
-    """What ``fmu3`` gives, as :func:`run_fmu2`."""
+    """The outputs of ``fmu3``, as in :func:`run_fmu2`."""
     take = """
     for (int i = 0; i < 3; i++) { setpoints[i] = signal(); }
     gain = (float)signal();
@@ -166,9 +166,9 @@ _GET_2 = {"Real": "fmi2Real", "Integer": "fmi2Integer", "Enumeration": "fmi2Inte
 
 
 def run_any(folder: Path, work: Path, step: float, steps: int) -> str:
-    """What an FMU gives whose functions have the prefix that the standard asks for, or the importer's.
+    """The outputs of an FMU whose functions have the prefix that the standard requires, or the importer's.
 
-    Text and binary data among its ports are left as they are; when the FMU says that it has ended, no step follows.
+    Ports for text and binary data are not set; when the FMU reports its end, no step follows.
     """
     root = ElementTree.parse(folder / "modelDescription.xml").getroot()
     standard = int(root.attrib["fmiVersion"][0])
@@ -260,7 +260,7 @@ def _limits(c: str) -> tuple[str, str]:
 
 
 def _sources(folder: Path, root: ElementTree.Element, standard: int) -> tuple[list[Path], list[Path], list[str]]:
-    """Files to compile, include folders and options as the FMU's own lists say."""
+    """The source files, include folders and options in the FMU's own lists."""
     inside = folder / "sources"
     build = inside / "buildDescription.xml"
     if standard == 3 and build.is_file():
@@ -272,7 +272,7 @@ def _sources(folder: Path, root: ElementTree.Element, standard: int) -> tuple[li
         return files, folders, [f"-D{item.attrib['name']}={item.attrib.get('value', '')}" for item in given]
     listed = root.find("CoSimulation/SourceFiles")
     files = [inside / file.attrib["name"] for file in listed] if listed is not None else sorted(inside.glob("*.c"))
-    below = [path for path in sorted(inside.rglob("*")) if path.is_dir()]  # some tools name these folders nowhere
+    below = [path for path in sorted(inside.rglob("*")) if path.is_dir()]  # some tools do not list these folders
     return files, [inside, *below], []
 
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Builds a model's library with the compiler of this machine and runs it, or the model's own code, step by step.
+"""Builds a model's library with this computer's compiler and runs it, or the model's own code, step by step.
 
-Both print the bits of every output of every step, so that results are compared exactly.  Inputs are a fixed sequence
-of pseudo-random numbers.
+Both print the bits of every output of every step, so that the comparison of results is exact.  Inputs are a fixed
+sequence of pseudo-random numbers.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ HAVE_COMPILER = shutil.which("gcc") is not None and shutil.which("g++") is not N
 STRICT = ["-Wall", "-Wextra", "-Wconversion", "-Wdouble-promotion", "-Wshadow", "-Wmissing-prototypes", "-Werror"]
 COMMON = ["-O1", "-ffp-contract=off"]
 
-#: inputs of every step, the same in every program
+#: Inputs of every step, the same in every program.
 SIGNAL = """
 #include <stdint.h>
 #include <stdio.h>
@@ -85,7 +85,7 @@ def build(
     instances: int = 1,
     options: Sequence[str] = (),
 ) -> Library:
-    """The library of ``model``, made as EPG's CMake functions make it."""
+    """The library of ``model``, built like EPG's CMake functions do it."""
     output = folder / name
     for file, text in emit_model(model, name, parameters, instances).items():
         path = output / file
@@ -130,7 +130,7 @@ def lines(text: str) -> list[list[str]]:
 
 
 def values(text: str) -> list[list[float]]:
-    """The numbers behind printed bits."""
+    """The numbers for printed bits."""
     return [[struct.unpack(">d", bytes.fromhex(word))[0] for word in line] for line in lines(text)]
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The little that is understood of C."""
+"""The parts of C that EPG reads."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Import of C function exports, as 20-sim writes them and as developers leave them."""
+"""Import of C function exports, as 20-sim writes them and as developers change them."""
 
 from __future__ import annotations
 
@@ -109,7 +109,7 @@ def test_two_renamed_models_in_one_folder_are_told_apart(tmp_path: Path) -> None
             path.write_text(text)
             path = tmp_path / f"xx{part}{suffix}.h"
             path.write_text(path.read_text().replace('"xxmodel.h"', f'"xxmodel{suffix}.h"'))
-    shared = tmp_path / "xxfuncs.c"  # its stop flag is of the model exported last
+    shared = tmp_path / "xxfuncs.c"  # its stop flag belongs to the model that was exported last
     shared.write_text(re.sub(r"XXBoolean XXStopSimulation[^{]*\{.*?\n\}\n", "", shared.read_text(), flags=re.DOTALL))
     model, diagnostics = load(tmp_path)
     assert model is None
@@ -255,7 +255,7 @@ def test_string_parameters_are_left_out(tmp_path: Path) -> None:
 
 
 def test_truncated_and_mangled_sources_never_raise(tmp_path: Path) -> None:
-    """Cutting a file anywhere gives a model or an error, and no exception."""
+    """A file cut anywhere gives a model or an error, and no other exception."""
     original = Export().c_files()
     folder = Export().write(tmp_path)
     for name in ("xxsubmod.c", "xxmodel.c", "xxmodel.h", "tokens.xml"):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Exports that somebody has trimmed: what is missing is said, and not by the linker."""
+"""Incomplete exports: EPG reports the missing parts before the linker does."""
 
 from __future__ import annotations
 

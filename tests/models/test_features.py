@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What models do that targets cannot run: refused where it runs, and only there."""
+"""Features of models that targets cannot run: refused on such targets, and only there."""
 
 from __future__ import annotations
 

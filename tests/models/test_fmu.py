@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""FMUs: what is read of them, from folders and archives, and what is said of those that cannot be used."""
+"""FMUs: the data that EPG reads from folders and archives, and the messages for FMUs that it cannot use."""
 
 from __future__ import annotations
 
@@ -143,7 +143,7 @@ def test_files_when_it_starts(tmp_path: Path) -> None:
 
 
 def test_sources_that_nobody_lists(tmp_path: Path) -> None:
-    """FMUs of older tools: every C file."""
+    """For FMUs of older tools, every C file is a source."""
     folder = tmp_path / "fmu"
     text = (FMU2 / "modelDescription.xml").read_text()
     start, end = text.index("<SourceFiles>"), text.index("</SourceFiles>") + len("</SourceFiles>")
@@ -244,7 +244,7 @@ def test_wrong_model_yaml(change: dict[str, object], id: str, tmp_path: Path) ->
 
 
 def test_the_step_must_suit_20sim(tmp_path: Path) -> None:
-    """Its FMUs take whole steps of their own."""
+    """20-sim's FMUs take whole steps of their own length."""
     folder = changed(
         FMU2, tmp_path / "fmu", "modelDescription.xml", ('generationTool="tests"', 'generationTool="20-sim"')
     )
@@ -255,7 +255,7 @@ def test_the_step_must_suit_20sim(tmp_path: Path) -> None:
 
 
 def test_the_step_of_20sims_method_is_read_from_the_sources(tmp_path: Path) -> None:
-    """Whatever the description says, and whether or not it names 20-sim."""
+    """Independent of the description, and also if it does not name 20-sim."""
     for form in ("globals", "instance", "output time"):
         folder = Export(step="0.0005").write_whole_fmu(tmp_path / form, form)
         description = folder / "modelDescription.xml"
@@ -272,7 +272,7 @@ def test_the_step_of_20sims_method_is_read_from_the_sources(tmp_path: Path) -> N
 
 
 def test_the_identifier_of_the_sources(tmp_path: Path) -> None:
-    """Only one that the code uses counts; of those for several versions of FMI, one must fit."""
+    """Only an identifier that the code uses counts; of several for different versions of FMI, one must fit."""
     define = '#define GUID "{6f1c9a0e-servo}"'
     other = '#define GUID "{another}"'
     for name, text, id in (
@@ -322,7 +322,7 @@ def edited(data: bytes, old: bytes, new: bytes) -> bytes:
 
 
 def encrypted(data: bytes) -> bytes:
-    """The flag of encryption in every entry of the list of files."""
+    """The flag for encryption is set in every entry of the list of files."""
     at = data.find(b"PK\1\2")
     while at >= 0:
         data = data[: at + 8] + struct.pack("<H", struct.unpack_from("<H", data, at + 8)[0] | 1) + data[at + 10 :]
@@ -337,7 +337,7 @@ def bomb() -> bytes:
 
 
 def lying_bomb() -> bytes:
-    """The list of files says that 40 MiB are 6 bytes."""
+    """The list of files claims that 40 MiB are 6 bytes."""
     data = archive(("modelDescription.xml", DESCRIPTION), ("sources/a.c", b"\n" * (40 << 20)))
     return data.replace(struct.pack("<L", 40 << 20), struct.pack("<L", 6))
 
@@ -360,14 +360,14 @@ def huge_directory() -> bytes:
 
 
 def binary_source() -> bytes:
-    """A listed source that is no text."""
+    """A listed source that is not text."""
     sources = {path.name: path.read_bytes() for path in (FMU2 / "sources").iterdir()}
     sources["law.c"] = b"\0\1\2"
     return archive(("modelDescription.xml", DESCRIPTION), *((f"sources/{name}", d) for name, d in sources.items()))
 
 
 def packed_by(method: int, data: bytes = b"int x;\n" * 999) -> bytes:
-    """An FMU of which one source is packed by another method than deflate."""
+    """An FMU with one source that is packed by another method than deflate."""
     output = io.BytesIO()
     with zipfile.ZipFile(output, "w", zipfile.ZIP_DEFLATED) as packed:
         packed.writestr("modelDescription.xml", DESCRIPTION)
@@ -382,13 +382,13 @@ def corrupt_lzma() -> bytes:
 
 
 def hidden_entries() -> bytes:
-    """More entries than allowed, in an archive whose end says that there is one."""
+    """More entries than allowed, in an archive whose end record counts only one."""
     data = archive(*((f"r/{n}", b"") for n in range(20_001)))
     return data[:-14] + struct.pack("<2H", 1, 1) + data[-10:]
 
 
 def claims_more() -> bytes:
-    """The list of files says that a stored file is 3 bytes longer than it is."""
+    """The list of files claims that a stored file is 3 bytes longer than it is."""
     output = io.BytesIO()
     with zipfile.ZipFile(output, "w") as packed:
         packed.writestr("modelDescription.xml", DESCRIPTION)
@@ -438,7 +438,7 @@ HOSTILE: dict[str, tuple[Callable[[], bytes], str]] = {
 
 @pytest.mark.parametrize("kind", sorted(HOSTILE))
 def test_hostile_archives(kind: str, tmp_path: Path) -> None:
-    """One error each, in little time and memory, and nothing is written."""
+    """One error each, in little time and memory, and no file is written."""
     make, id = HOSTILE[kind]
     folder = tmp_path / "a" / "b"
     folder.mkdir(parents=True)
@@ -465,7 +465,7 @@ def test_other_methods_of_compression_are_named(method: int, name: str, tmp_path
 
 @pytest.mark.parametrize("folder", [FMU2, FMU3], ids=["fmi2", "fmi3"])
 def test_damage_of_any_kind(folder: Path, tmp_path: Path) -> None:
-    """Bytes that are others, in the archive or in its files: a model or an error, never another exception."""
+    """Changed bytes, in the archive or in its files, give a model or an error, never another exception."""
     random = Random(2)
     whole = pack(folder, tmp_path / "whole.fmu").read_bytes()
     names = [path.relative_to(folder).as_posix() for path in sorted(folder.rglob("*")) if path.is_file()]
@@ -494,7 +494,7 @@ def test_damage_of_any_kind(folder: Path, tmp_path: Path) -> None:
 
 
 def test_what_is_no_part_of_the_model_does_not_matter(tmp_path: Path) -> None:
-    """Nothing else is ever unpacked, whatever it is called."""
+    """EPG unpacks no other file, whatever its name is."""
     path = tmp_path / "servo.fmu"
     path.write_bytes(with_source("resources/../../evil?.txt"))
     loaded(path)

@@ -151,7 +151,7 @@ def test_everything_is_reported_at_once(tmp_path: Path) -> None:
 
 
 def test_schema_agrees() -> None:
-    """The schema for editors accepts and refuses what the importer does, but for what no schema can see."""
+    """The schema for editors gives the same verdict as the importer, except where a schema cannot check."""
     from jsonschema import Draft202012Validator
 
     schema = json.loads(SCHEMA.read_text())
@@ -177,7 +177,7 @@ def _words(value: object) -> list[object]:
 
 
 def changed(folder: Path, name: str, **files: tuple[str, str]) -> Path:
-    """A copy of one of the tests' models with one change of each file; ``_`` stands for the dot in its name."""
+    """A copy of one of the tests' models with one change in each file; ``_`` replaces the dot in a file's name."""
     shutil.copytree(MODELS / name, folder)
     for file, (old, new) in files.items():
         path = folder / file.replace("_", ".")

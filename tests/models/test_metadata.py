@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files beside the sources: what they add, and what is said when they are of another export."""
+"""Files beside the sources: the data that they add, and the messages if they belong to another export."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ def test_tokens_of_a_second_model_beside_it_are_not_used(tmp_path: Path) -> None
 
 @pytest.mark.parametrize("kind", ["c", "c++", "fmu sources"])
 def test_other_values_of_parameters_are_named(kind: str, tmp_path: Path) -> None:
-    """Once, at the value in the tokens, with both values; those in the sources run."""
+    """One warning at the value in the tokens, with both values; the model runs with the value in the sources."""
     other = (
         ("PI1\\kp", "2.5", ""),
         ("PI1\\tauI", "8e-1", "s"),
@@ -150,7 +150,7 @@ def test_a_value_that_was_changed_in_one_place_of_the_tokens(tmp_path: Path) -> 
 
 @pytest.mark.parametrize("archive", [False, True], ids=["folder", "archive"])
 def test_other_values_in_the_description_of_an_fmu(archive: bool, tmp_path: Path) -> None:
-    """They are not set: the FMU runs with those of its sources."""
+    """Such values are not set: the FMU runs with those of its sources."""
     folder = Export(method="Euler").write_whole_fmu(tmp_path / "fmu", "output time")
     assert not load(folder)[1].items
     description = folder / "modelDescription.xml"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files of a model that lie beside its folder: which are used, which are not, and what is said."""
+"""Files of a model beside its folder: the used files, the ignored files, and the messages."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def c_model(folder: Path, place: Path) -> Path:
 
 
 def only(folder: Path) -> Diagnostic:
-    """The first error about a model that cannot be loaded, of one kind."""
+    """The first error about a model that cannot be loaded; all errors must be of one kind."""
     model, diagnostics = load(folder)
     assert model is None
     errors = [item for item in diagnostics if item.severity == "error"]
@@ -98,7 +98,7 @@ def test_files_that_differ_are_not_chosen_from(tmp_path: Path) -> None:
     (tmp_path / "old").mkdir()
     text = (tmp_path / "common" / "xxtypes.h").read_text()
     (tmp_path / "old" / "xxtypes.h").write_text("/* of 2019 */\r\n" + text.replace("\n", "\r\n"))
-    model = loaded(folder)  # they say the same
+    model = loaded(folder)  # both have the same contents
     assert model.twins == (tmp_path / "common" / "xxtypes.h", tmp_path / "old" / "xxtypes.h")
     (tmp_path / "old" / "xxtypes.h").write_text(text.replace("double", "float"))
     problem = only(folder)
@@ -111,7 +111,7 @@ def test_functions_that_differ_are_not_chosen_from(tmp_path: Path) -> None:
     (tmp_path / "old").mkdir()
     text = (tmp_path / "common" / "xxinteg.c").read_text()
     (tmp_path / "old" / "xxinteg.c").write_text(text + "int XXother;\n")
-    assert tmp_path / "common" / "xxinteg.c" in loaded(folder).files  # it lies beside its header
+    assert tmp_path / "common" / "xxinteg.c" in loaded(folder).files  # it is beside its header
     shutil.move(tmp_path / "common" / "xxinteg.h", folder / "xxinteg.h")
     shutil.move(tmp_path / "common" / "xxtypes.h", folder / "xxtypes.h")
     shutil.move(tmp_path / "common" / "xxfuncs.h", folder / "xxfuncs.h")
@@ -149,7 +149,7 @@ def test_places_that_are_not_searched(tmp_path: Path, monkeypatch: pytest.Monkey
     tmp_path.chmod(0o777)
     assert "everybody may write" in only(folder).hint
     tmp_path.chmod(0o700)
-    (tmp_path / "common").rename(tmp_path / "common[")  # CMake cannot have that in a list
+    (tmp_path / "common").rename(tmp_path / "common[")  # CMake cannot have this name in a list
     assert only(folder).id == "model-file-missing"
 
 

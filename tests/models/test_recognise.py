@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is a model, what is none, and what is said then."""
+"""Files that are a model, files that are not, and the messages about them."""
 
 from __future__ import annotations
 

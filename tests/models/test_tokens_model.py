@@ -63,7 +63,7 @@ def test_tokens_that_are_gone_are_named_at_once(count: int, tmp_path: Path) -> N
 
 @pytest.mark.parametrize("name", ["NUMBER_VARIABLES", "NUMBER_STATES", "NUMBER_PARAMETERS", "NUMBER_INITIAL_VALUES"])
 def test_arrays_that_are_too_small_are_refused(name: str, tmp_path: Path) -> None:
-    """The equations would write behind their ends."""
+    """The equations would write beyond the end of the arrays."""
     model, diagnostics = load(Export(token_values={name: "1"}).write_tokens(tmp_path))
     assert model is None and {item.id for item in diagnostics} == {"model-tokens"}
     assert all(f"but '{name}' is 1" in item.message for item in diagnostics)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What tests of the ROS tools share: CycloneDDS for Python, and a network of their own."""
+"""Fixtures for the tests of the ROS tools: CycloneDDS for Python, and a separate network."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from epg import bootstrap
 
 bootstrap.ensure("ros")
 
-from tests.ros2.network import Network, network  # noqa: E402  # after cyclonedds can be imported
+from tests.ros2.network import Network, network  # noqa: E402  # only after the check that cyclonedds can be imported
 
 
 @pytest.fixture

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Descriptions of targets for tests of what works on them."""
+"""Descriptions of targets, for tests of the tools that read them."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def write_description(
     subscriptions: Sequence[dict[str, Any]] = (topic("pan_subscriber"),),
     publications: Sequence[dict[str, Any]] = (topic("pan_publisher"),),
 ) -> Path:
-    """A description as EPG writes it, with what the tools read."""
+    """A description in EPG's format, with the entries that the tools read."""
     data = {
         "name": file.stem,
         "target": {"board": "rpi_pico2", "platform": "freertos"},

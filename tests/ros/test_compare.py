@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg plot``: known shifts, lags and differences are found in recordings."""
+"""``epg plot`` finds known shifts, lags and differences in recordings."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from epg.diagnostics import Diagnostics
 from epg.ros.recording import load_recording
 
 bootstrap.ensure("plot")
-from matplotlib import image  # noqa: E402  # after it can be imported
+from matplotlib import image  # noqa: E402  # only after the check that it can be imported
 
 Motion = Callable[[float], float]
 
 
 def move(t: float) -> float:
-    """At rest until 2 s, to 1 until 4 s, down to -0.5 until 7 s, at rest; no two parts are alike."""
+    """At rest until 2 s, to 1 until 4 s, down to -0.5 until 7 s, at rest; all parts differ."""
     if t < 4.0:
         s = min(max((t - 2.0) / 2.0, 0.0), 1.0)
         return 0.5 - 0.5 * math.cos(math.pi * s)
@@ -32,7 +32,7 @@ def move(t: float) -> float:
 
 
 def write(path: Path, signals: dict[str, Motion], begin: float, end: float, step: float, clock: float = 0.0) -> Path:
-    """A recording from ``begin`` to ``end`` of a clock at which the motion's 0 s is ``clock``."""
+    """A recording from ``begin`` to ``end`` of a clock that shows ``clock`` at the motion's time 0."""
     path.parent.mkdir(parents=True, exist_ok=True)
     count = round((end - begin) / step)
     times = [begin + step * i for i in range(count)]
@@ -58,7 +58,7 @@ def test_another_clock(align: str, clock: float, tmp_path: Path, capsys: pytest.
     run = write(tmp_path / "run.csv", {"pan": move}, 1.0 + clock, 8.0 + clock, 0.033, clock)
     sim = write(tmp_path / "sim.csv", {"pan": move}, 0.0, 9.0, 0.001)
     found = compare(capsys, run, "--against", sim, "--align", align)
-    # first motion is seen at the next of the run's samples
+    # the first motion is detected at the next sample of the run
     assert found["shift"] == pytest.approx(-clock, abs=0.034 if align == "motion" else 0.0005)
     assert found["pan"]["rms"] < (0.03 if align == "motion" else 0.001)
     assert abs(found["pan"]["lag"]) < (0.034 if align == "motion" else 0.001)
@@ -74,11 +74,11 @@ def test_setpoints_align_so_that_the_lag_of_a_position_is_seen(
         write(tmp_path / name / "topics.csv", positions, 0.011 + clock, 9.0 + clock, 0.033, clock)
     found = compare(capsys, tmp_path / "run", "--against", tmp_path / "sim")
     assert found["shift"] == pytest.approx(-3.0, abs=1e-4)
-    assert found["pan"]["lag"] == pytest.approx(0.066, abs=0.005)  # for all the noise
+    assert found["pan"]["lag"] == pytest.approx(0.066, abs=0.005)  # despite the noise
     assert found["tilt"]["lag"] == pytest.approx(0.0, abs=0.002)
     assert found["pan"]["rms_without_lag"] == pytest.approx(0.01, rel=0.25)
     assert found["pan"]["rms"] > 3 * found["pan"]["rms_without_lag"]
-    # without the setpoints the positions have to do, and the lag is split between them
+    # without setpoints, the positions are compared, and the lag is divided between them
     for name in ("run", "sim"):
         (tmp_path / name / "setpoints.csv").unlink()
     found = compare(capsys, tmp_path / "run", "--against", tmp_path / "sim")
@@ -98,7 +98,7 @@ def test_numbers_of_a_difference(tmp_path: Path, capsys: pytest.CaptureFixture[s
 
 
 def test_a_part_of_a_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Homing differs each time and is left out; the whole run aligns."""
+    """Homing differs each time and is excluded; the whole run is still aligned."""
     run = write(tmp_path / "run.csv", {"a": lambda t: move(t) + (5.0 if t < 1.0 else 0.0)}, 0.0, 9.0, 0.01)
     sim = write(tmp_path / "sim.csv", {"a": move}, 0.0, 9.0, 0.01)
     assert compare(capsys, run, "--against", sim, "--align", "none")["a"]["largest"] == pytest.approx(5.0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg launch``: what it writes means what was asked for, to Python, to bash and to systemd."""
+"""``epg launch``: its files mean the same to Python, bash and systemd as the user's request."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ BY_ID = "/dev/serial/by-id/usb-Raspberry_Pi_Pico_{}-if00"
 
 @pytest.fixture
 def robots(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Two images on USB, one behind a serial line, two targets by UDP; the current folder is theirs."""
+    """Two images on USB, one on a serial line, two targets with UDP, in the current folder."""
     monkeypatch.chdir(tmp_path)
     write_description(tmp_path / "jiwy.json", namespace="/robot_$serial")
     write_description(tmp_path / "relbot.json", node="RELbot_node")
@@ -44,7 +44,7 @@ WIRING += ["--device", "crane=/dev/ttyAMA0:921600", "--port", "9999"]
 
 
 def nodes(source: str) -> list[dict[str, Any]]:
-    """The ``Node(...)`` calls of a launch file: their keywords, ``verbosity`` as the name it is."""
+    """The ``Node(...)`` calls of a launch file: their keywords, with ``verbosity`` as a name."""
     found = []
     for call in ast.walk(ast.parse(source)):
         if isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id == "Node":
@@ -79,7 +79,7 @@ def test_one_agent_for_each_board_and_one_for_all_by_udp(robots: Path, capsys: p
 
 
 def test_the_name_of_a_board_is_that_of_its_descriptors() -> None:
-    """udev makes the name of manufacturer, product and serial number."""
+    """udev composes the name from manufacturer, product and serial number."""
     source = next(
         file for root in targets_roots([]) if (file := root / "families/rp2/usb/descriptors.c").is_file()
     ).read_text(encoding="utf-8")
@@ -139,7 +139,7 @@ def test_a_build_folder_stands_for_its_targets(tmp_path: Path, capsys: pytest.Ca
 
 
 def units(folder: Path) -> dict[str, dict[str, str]]:
-    """Settings of each unit file, with those of all sections together (no name occurs in two)."""
+    """The settings of each unit file, with those of all sections together (no name occurs in two)."""
     found = {}
     for path in sorted(folder.glob("*.service")):
         lines = path.read_text(encoding="utf-8").splitlines()
@@ -173,7 +173,7 @@ def test_units_are_bound_to_their_boards(robots: Path) -> None:
 
 
 def test_the_command_of_a_unit_survives_systemd_and_bash(robots: Path) -> None:
-    """systemd unquotes the line and expands % and $; then bash splits it."""
+    """systemd removes quotes and expands % and $; then bash splits the line."""
     workspace = '/home/a b/50% $HOME "quoted" it\'s'
     assert main(["launch", "relbot.json", "--board", f"relbot={FIRST}", "--systemd", "--workspace", workspace]) == 0
     (unit,) = units(robots / "systemd").values()
@@ -230,7 +230,7 @@ HOSTILE = [
 def test_names_that_epg_would_not_write_are_not_read(
     key: str, text: str, robots: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """A build folder may come from anybody; what it says would stand in a program, and in files for root."""
+    """A build folder may come from anyone, and its texts would be in a program and in files for root."""
     file = robots / "relbot.json"
     data = json.loads(file.read_text(encoding="utf-8"))
     place = {"topic": data["publications"][0], "board": data["target"]}.get(key, data)
@@ -251,7 +251,7 @@ def test_options_are_names(option: str, text: str, robots: Path) -> None:
 
 @pytest.mark.parametrize("text", HOSTILE, ids=repr)
 def test_paths_are_one_word_wherever_they_stand(text: str, robots: Path) -> None:
-    """A device and a workspace may be called anything that stands on one line."""
+    """A device and a workspace may have any name without a line end."""
     options = ["--device", f"crane=/dev/{text}", "--systemd", "--workspace", f"/home/{text}"]
     status = main(["launch", "crane.json", *options])
     if not text.isprintable():

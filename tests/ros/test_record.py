@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg record`` on a real DDS network: what was published stands in the files, to the last bit."""
+"""``epg record`` on a real DDS network: its files contain the published values, to the last bit."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ MESSAGES: dict[str, tuple[Callable[[int], Any], dict[str, Callable[[int], float]
     "std_msgs/msg/Int32": (lambda n: msg.Int32(-n), {"": lambda n: -n}),
     "std_msgs/msg/Bool": (lambda n: msg.Bool(n % 2 == 1), {"": lambda n: n % 2}),
     "std_msgs/msg/Float64MultiArray": (
-        # what comes first belongs to somebody else, and nobody wants "second"
+        # The first value belongs to another program, and the user does not record "second".
         lambda n: msg.Float64MultiArray(msg.MultiArrayLayout([], 1), [-1.0, n, 0.0, n / 7]),
         {"first": lambda n: n, "third": lambda n: n / 7},
     ),
@@ -64,7 +64,7 @@ MESSAGES: dict[str, tuple[Callable[[int], Any], dict[str, Callable[[int], float]
 
 @contextmanager
 def publishing(net: Network, topics: dict[str, str], qos: Qos = RELIABLE) -> Iterator[None]:
-    """Publishes message number 1, 2, 3 ... every 10 ms on each topic (DDS name: type), while the block lasts."""
+    """Publishes messages 1, 2, 3 ... every 10 ms on each topic (DDS name: type) during the block."""
     participant = DomainParticipant(net.domain)
     writers = {n: DataWriter(participant, Topic(participant, n, msg.TYPES[t]), qos=qos) for n, t in topics.items()}
     stop = threading.Event()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A robot's run, recorded over DDS, beside what the robot itself has traced: the same motion."""
+"""A robot's run, recorded over DDS, shows the same motion as the robot's own trace."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def test_jiwy(jiwy: Path, net: Network, tmp_path: Path, capsys: pytest.CaptureFi
     thread.join()
     assert [value for _, name, value in rows(tmp_path / "run/setpoints.csv")] == SETPOINTS
 
-    # homing moves both axes, so that there is something to compare
+    # homing moves both axes, so that there is a motion to compare
     signals = [f"{axis}_publisher=outputs.{axis}_logging" for axis in ("pan", "tilt")]
     picture = ["--output", str(tmp_path / "run.png"), "--json"]
     chosen = [word for signal in signals for word in ("--signal", signal)]

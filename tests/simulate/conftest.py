@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A host executable for the tests of simulation runs."""
+"""Fixture: a host executable for the tests of simulation runs."""
 
 from __future__ import annotations
 

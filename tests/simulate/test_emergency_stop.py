@@ -29,7 +29,7 @@ def build(folder: Path) -> Path:
 
 
 def enabled(trace: Path) -> list[tuple[float, int]]:
-    """When the target was enabled and disabled: time of the first cycle, and 1 or 0."""
+    """The changes between enabled and disabled: time of the first cycle, and 1 or 0."""
     header, *lines = trace.read_text().splitlines()
     column = header.split(",").index("enabled")
     rows = [line.split(",") for line in lines]
@@ -41,7 +41,7 @@ def enabled(trace: Path) -> list[tuple[float, int]]:
 
 
 EXPECTED = [(0.0, 1), (1.0, 0), (1.7, 1), (2.5, 0)]
-"""Enabled at 0 s already: the plant's first outputs are there at the first tick."""
+"""The target is enabled at 0 s already: the plant's first outputs exist at the first tick."""
 
 
 def test_a_scenario_forces_what_the_plant_drives(tmp_path: Path) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Scenario files: what they mean, and what is said about wrong ones (golden files beside the wrong scenarios)."""
+"""Scenario files: their meaning, and the messages for wrong ones (golden files beside the wrong scenarios)."""
 
 from __future__ import annotations
 

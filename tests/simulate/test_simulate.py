@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs of a real host executable through scenarios, and what is said when something is wrong with it."""
+"""Runs of a real host executable through scenarios, and the messages if it has an error."""
 
 from __future__ import annotations
 
@@ -181,7 +181,7 @@ def test_components_the_target_does_not_have(motor: Path, tmp_path: Path) -> Non
 
 @pytest.fixture(scope="module")
 def held_motor(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The motor whose plant says in every cycle that the emergency stop is not pressed, and that starts disabled."""
+    """A motor whose plant reports in every cycle that the emergency stop is not pressed, and which starts disabled."""
     output = tmp_path_factory.mktemp("held_motor") / "held_motor"
     return compile_motor(output, "PLANT_HOLDS_INPUT", "ENABLE_AT_START=false")
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where SDKs and programs are looked for: the order of places, and the table of what there is to find."""
+"""The search for SDKs and programs: the order of places, and the table of tools."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ PROGRAM = Tool(
 
 @pytest.fixture
 def where(tmp_path: Path) -> Surroundings:
-    """A computer that has nothing."""
+    """A computer without any tool."""
     for name in ("home", "cache", "bin"):
         (tmp_path / name).mkdir()
     return Surroundings({"PATH": str(tmp_path / "bin")}, {}, tmp_path / "home", tmp_path / "cache")
@@ -64,7 +64,7 @@ def program(file: Path, says: str = "mycc (Company 9.9) 3.4.5", then: str = "") 
 
 
 def test_the_order_of_places(where: Surroundings, tmp_path: Path) -> None:
-    """Each place wins over all that come after it."""
+    """Each place has priority over all later ones."""
     places = [("EPG's cache", where, sdk(where.cache / "my_sdk-1.5"))]
     entry = where.home / ".cmake/packages/MySdk/0123abcd"
     entry.parent.mkdir(parents=True)
@@ -172,7 +172,7 @@ CACHED = [tool for tool in TABLE.values() if "{cache}" in tool.get["any"]]
 
 @pytest.mark.parametrize("tool", CACHED, ids=lambda tool: tool.name)
 def test_what_the_command_gets_is_found(tool: Tool, where: Surroundings) -> None:
-    """The folder that a ``git clone`` of the table makes in EPG's cache is one that the lookup finds."""
+    """The lookup finds the folder that the table's ``git clone`` makes in EPG's cache."""
     names = set(re.findall(r"\{cache\}/([^\s/]+)", tool.get["any"]))
     (name,) = [name for name in names if fnmatch(name, tool.cached.partition("/")[0]) and tool.tested in name]
     folder = where.cache / name
@@ -200,7 +200,7 @@ VERSIONS = {
 
 @pytest.mark.parametrize("name", VERSIONS)
 def test_versions_of_sdks(name: str, where: Surroundings) -> None:
-    """As those SDKs write them (the lines that count)."""
+    """The version files of these SDKs, reduced to the relevant lines."""
     file, text, version = VERSIONS[name]
     tool = replace(TABLE[name], places=(), environment=("HERE",))
     folder = where.cache / "here"

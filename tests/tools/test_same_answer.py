@@ -48,14 +48,14 @@ pytestmark = pytest.mark.skipif(not shutil.which("cmake"), reason="cmake is miss
 
 @dataclass(frozen=True)
 class Situation:
-    """Folders below the home folder with the version of the Thing in them; what variables name is below it, too."""
+    """Folders in the home folder with the version of the Thing in them; variables name folders there, too."""
 
     things: Mapping[str, str] = field(default_factory=dict)
     environment: Mapping[str, str] = field(default_factory=dict)
     cmake: Mapping[str, str] = field(default_factory=dict)
     registry: tuple[str, ...] = ()
     empty: tuple[str, ...] = ()
-    """Folders that hold nothing."""
+    """Empty folders."""
 
 
 SITUATIONS = {
@@ -101,7 +101,7 @@ SITUATIONS = {
 
 
 def environment_of(home: Path, situation: Situation) -> dict[str, str]:
-    """A computer with nothing but what the situation has."""
+    """The environment of a computer with only the folders of the situation."""
     for name, version in situation.things.items():
         (home / name).mkdir(parents=True)
         (home / name / "thing.cmake").write_text("")
@@ -119,7 +119,7 @@ def environment_of(home: Path, situation: Situation) -> dict[str, str]:
 def cmake_says(
     call: str, data: Path, environment: Mapping[str, str], cmake: Mapping[str, str], folder: Path
 ) -> tuple[str, str, str]:
-    """Folder, version and problem that a function of EPG's CMake package gives."""
+    """Folder, version and problem that a function of EPG's CMake package returns."""
     includes = "".join(f'include("{ROOT.as_posix()}/cmake/{name}.cmake")\n' for name in FILES)
     script = folder / "find.cmake"
     script.write_text(
@@ -194,7 +194,7 @@ def test_both_find_the_same_compiler(programs: set[str], expected: str, tmp_path
     "tool", [path.stem for path in sorted((ROOT / "targets" / "tools").glob("*.json")) if '"holds"' in path.read_text()]
 )
 def test_this_computer(tool: str, tmp_path: Path) -> None:
-    """Whatever is installed here."""
+    """With the tools that are installed here."""
     found = find_tool(load_tools([ROOT / "targets"], Diagnostics())[tool], Surroundings.here(cache_folder()))
     call = f"set(FETCHCONTENT_FULLY_DISCONNECTED TRUE)\n_epg_find_sdk(found {tool})"
     path, version, problem = cmake_says(call, ROOT, os.environ, {}, tmp_path)
@@ -207,7 +207,7 @@ def test_this_computer(tool: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("tool", [path.stem for path in sorted((ROOT / "targets" / "tools").glob("*.json"))])
 def test_both_name_the_same_command(tool: str, tmp_path: Path) -> None:
-    """The one that gets a tool that is missing."""
+    """The command that installs a missing tool."""
     tools = load_tools([ROOT / "targets"], Diagnostics())
     expected = command_for(tools[tool], Surroundings.here(cache_folder()), tools)
     call = f'_epg_tool_json(json {tool})\n_epg_remedy(found "${{json}}")'

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A program around the generated C alone, as somebody without EPG would write it."""
+"""A program around the generated C, written as a user without EPG would write it."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from tests.models.harness import SIGNAL, STRICT, compile_file, link, run, values
 
 
 def compile_export(folder: Path, name: str, work: Path, compiler: str = "c") -> Path:
-    """The object of the generated source, under warnings that are errors."""
+    """The object file of the generated source, with warnings as errors."""
     return compile_file(folder / f"{name}.c", work / f"{name}.o", [*STRICT, f"-I{folder}"], compiler)
 
 
 def run_export(folder: Path, name: str, work: Path, counts: tuple[int, int], steps: int) -> str:
-    """The bits of all outputs of every step, for the inputs all programs of the tests have."""
+    """The bits of all outputs of every step, with the inputs that all test programs use."""
     inputs, outputs = counts
     take = f"for (int i = 0; i < {inputs}; i++) {{ u[i] = ({name}_real)signal(); }}"
     show = f'for (int i = 0; i < {outputs}; i++) {{ show((double)y[i]); }} puts("");'
@@ -48,7 +48,7 @@ int main(void)
 
 
 def run_program(text: str, folder: Path, name: str, work: Path) -> str:
-    """What the program ``text`` prints, which is linked with the generated source."""
+    """The output of the program ``text``, linked with the generated source."""
     work.mkdir(parents=True, exist_ok=True)
     main = work / "main.c"
     main.write_text(text, encoding="utf-8")
@@ -57,7 +57,7 @@ def run_program(text: str, folder: Path, name: str, work: Path) -> str:
 
 
 def difference(one: str, other: str) -> str:
-    """The first line in which two runs differ, empty when there is none: pytest's own takes minutes to tell."""
+    """The first line in which two runs differ, or empty.  pytest's own comparison takes minutes."""
     if one == other:
         return ""
     pairs = zip(one.splitlines(), other.splitlines(), strict=False)
@@ -65,7 +65,7 @@ def difference(one: str, other: str) -> str:
 
 
 def close(one: str, other: str, tolerance: float) -> bool:
-    """Whether two runs differ by rounding alone: by ``tolerance``, relative or absolute."""
+    """True if two runs differ only by rounding: by ``tolerance``, relative or absolute."""
     rows = zip(values(one), values(other), strict=True)
     pairs = (pair for row in rows for pair in zip(*row, strict=True))
     return all(math.isclose(a, b, rel_tol=tolerance, abs_tol=tolerance) for a, b in pairs)

@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """Fills templates for 20-sim's C-code generation as 20-sim does, from the tokens of a model.
 
-The language, as templates and exports that are public show it:
+The language, as in public templates and exports:
 
 ``%NAME%``
-    the token's value; left as it stands when there is no such token (``%PATH%`` of a batch file)
+    the token's value; unchanged if there is no such token (``%PATH%`` of a batch file)
 ``%IF%%NAME%`` ... ``%ELSE%`` ... ``%ENDIF%``
-    nested; false are 0, nothing, and a token that does not exist
+    can be nested; false are 0, an empty value, and a missing token
 ``%IF%%OR(A,B)%``, ``AND``, ``NOT(...)``, ``EQ(NAME,text)``, ``NEQ(NAME,text)``
-    blanks after the comma are allowed
-a line that holds nothing but these marks
-    vanishes with its line end
+    spaces after the comma are allowed
+a line that contains only such marks
+    is removed with its line end
 
-``Targets.ini`` is no INI file as Python's ConfigParser knows them: keys repeat, and a section is a bare list.
+``Targets.ini`` is not an INI file for Python's ConfigParser: keys repeat, and a section is a plain list.
 """
 
 from __future__ import annotations
@@ -100,7 +100,7 @@ def tokens_xml(tokens: Mapping[str, str]) -> str:
 
 
 def expand(template: str, tokens: Mapping[str, str]) -> str:
-    """The text 20-sim makes of ``template``.  Raises ValueError where marks do not pair."""
+    """20-sim's text for ``template``.  Raises ValueError if marks do not pair."""
     kept: list[str] = []
     open_marks: list[bool] = []  # for each open IF: whether its present branch is kept
     at = 0
@@ -123,7 +123,7 @@ def expand(template: str, tokens: Mapping[str, str]) -> str:
 
 
 def _marks(template: str) -> list[tuple[int, int, re.Match[str]]]:
-    """Every mark with the range it takes away: the whole line when nothing else stands in it."""
+    """Every mark with the range that it removes: the whole line if there is no other text in it."""
     result = []
     for match in _MARK.finditer(template):
         start, end = match.span()

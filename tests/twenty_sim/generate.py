@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Exports by EPG's own target for 20-sim, without 20-sim: our templates, filled from the tokens of a model."""
+"""Exports by EPG's own target for 20-sim, without 20-sim: EPG's templates, filled from the tokens of a model."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.twenty_sim.expander import Target, read_targets, read_tokens
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "integration/20-sim/EPG"
 
-#: tokens about people, licenses, computers and the moment: no output may hold them
+#: Tokens about people, licences, computers and time: no output may contain them.
 PERSONAL = {
     "USER_NAME": 'Jane Doe */ "]]> & <b>%USER_NAME%</b>',
     "COMPANY_NAME": "20-sim 5.1 Classroom License (Doe's), do not copy",
@@ -36,7 +36,7 @@ def targets() -> dict[str, Target]:
 
 
 def generate(tokens: Mapping[str, str], output: Path, target: str = "EPG", configuration: str = "") -> Path:
-    """What ``target`` makes of ``tokens``, in the folder ``output``; without a configuration when there is none."""
+    """The export by ``target``, in ``output``; without ModelConfiguration.xml if ``configuration`` is empty."""
     targets()[target].generate(tokens, output, configuration)
     if not configuration:
         (output / "ModelConfiguration.xml").unlink()
@@ -48,7 +48,7 @@ def generate_from(tokens_file: Path, output: Path, target: str = "EPG") -> Path:
 
 
 def tokens_of(export: Export) -> dict[str, str]:
-    """All tokens our templates use, in the shape 20-sim gives them, of one of the tests' small models."""
+    """All tokens that EPG's templates use, in the form of 20-sim, for one of the tests' small models."""
     with tempfile.TemporaryDirectory() as folder:
         tokens = read_tokens(replace(export, rename={}, newline="\n").write_tokens(Path(folder)) / "tokens.xml")
     groups = {

@@ -25,7 +25,7 @@ def windows(path: Path) -> str:
 
 
 class Computer:
-    """Windows, with programs that note what they are called with."""
+    """Windows, with programs that record their arguments."""
 
     def __init__(self, folder: Path) -> None:
         self.notes = folder / "notes.txt"
@@ -38,7 +38,7 @@ class Computer:
         self.environment.pop("XXSIM_SCRIPT_MODE", None)
 
     def install(self, program: str, first_words: str) -> None:
-        """A program that does something only when its first arguments are ``first_words``."""
+        """A program that acts only if its first arguments are ``first_words``."""
         checks = "".join(f'if not "%{i}"=="{word}" exit /b 1\r\n' for i, word in enumerate(first_words.split(), 1))
         text = f"@echo off\r\n{checks}echo {program} %*>> {windows(self.notes)}\r\nexit /b 0\r\n"
         (self.programs / f"{program}.bat").write_bytes(text.encode())
@@ -62,7 +62,7 @@ class Computer:
         )
 
     def noted(self) -> list[str]:
-        """What programs were started for, without the questions whether they are there."""
+        """The recorded calls of programs, without the checks that they exist."""
         text = self.notes.read_text() if self.notes.exists() else ""
         return [line.strip() for line in text.splitlines() if "--version" not in line]
 
@@ -83,8 +83,8 @@ def test_epg_is_started_for_the_folder_of_the_export(computer: Computer) -> None
     assert computer.noted() == ['py -3 -m epg exported "."']
     computer.install("epg", "")
     assert computer.run("window").returncode == 0
-    assert computer.noted()[1:] == ['epg exported "." --connect']  # in a window: somebody looks at it
-    assert computer.run().returncode == 0  # opens a window, and does not wait for it
+    assert computer.noted()[1:] == ['epg exported "." --connect']  # in a window that the user sees
+    assert computer.run().returncode == 0  # this opens a window and does not wait for it
     end = time.monotonic() + 60
     while len(computer.noted()) < 3 and time.monotonic() < end:
         time.sleep(0.2)
@@ -93,7 +93,7 @@ def test_epg_is_started_for_the_folder_of_the_export(computer: Computer) -> None
 
 @needs_wine
 def test_the_folder_is_the_one_of_the_file(computer: Computer) -> None:
-    """Wherever it is called from.  Wine, unlike Windows, replaces %PATH% in a name that it is told: none is here."""
+    """Independent of the current folder.  Wine, unlike Windows, expands %PATH% in a name: there is none here."""
     top = computer.programs.parent / "exports"
     top.mkdir()
     computer.export = Path(shutil.move(computer.export, top / "Servo $ 1"))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What follows an export in a window: `epg connect` for the folder 20-sim has written."""
+"""`epg connect` in a window after an export, for the folder that 20-sim has written."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def export_into(folder: Path, export: Export | None = None) -> Path:
 
 
 def test_without_a_window_nothing_is_started(tmp_path: Path) -> None:
-    """A script of 20-sim waits for the command file: see there."""
+    """A script of 20-sim waits for the command file, which therefore must not open a window."""
     done = subprocess.run(exported(export_into(tmp_path)), capture_output=True, text=True, timeout=60, check=True)
     assert "http" not in done.stdout and f'epg connect "{tmp_path}"' in done.stdout
 
@@ -50,7 +50,7 @@ def test_a_project_begins_with_the_export(tmp_path: Path) -> None:
 
 
 def test_the_project_that_has_the_folder_is_opened(tmp_path: Path) -> None:
-    """An export again, into the folder that is its model: the page shows the port that is new."""
+    """A second export into the folder that is a project's model: the page shows the new port."""
     made = [*EPG, "new", "--target", "host", "--model", str(export_into(tmp_path / "once")), str(tmp_path / "servo")]
     subprocess.run(made, check=True, capture_output=True)
     model = export_into(tmp_path / "servo" / "model", Export(inputs=(*Export().inputs, ("brake", "none"))))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The token language, as exports and templates that are public show it."""
+"""The token language, as in public exports and templates."""
 
 from __future__ import annotations
 

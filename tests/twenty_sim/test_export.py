@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""EPG's target for 20-sim: its export computes what the C export of the same model computes, bit for bit."""
+"""EPG's target for 20-sim: its export gives the same bits as the C export of the same model."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ pytestmark = pytest.mark.skipif(not HAVE_COMPILER, reason="gcc and g++ are not i
 
 
 def c_function(export: Export, work: Path) -> str:
-    """The numbers of the small model's C function; its own Runge Kutta 4 does not exist, EPG's from tokens does."""
+    """The results of the small model's C function.  It has no Runge Kutta 4; EPG's own from tokens replaces it."""
     if export.method == "RungeKutta4":
         return run_wrapper(build(loaded(export.write_tokens(work / "tokens")), "tokens", work), STEPS)
     folder = replace(export, tokens=False).write(work / "c_function")
@@ -62,7 +62,7 @@ def test_numbers_of_the_examples(tmp_path: Path) -> None:
 
 
 def test_epg_reads_all_that_20_sim_knows(tmp_path: Path) -> None:
-    """Ports, units, parameters and method as EPG reads them from the C export; types and descriptions besides."""
+    """The same ports, units, parameters and method as from the C export, and also types and descriptions."""
     ours, theirs = loaded(generate_from(JIWY / "tokens.xml", tmp_path / "model")), loaded(JIWY)
     for group in ("inputs", "outputs", "parameters"):
         assert [(p.name, p.unit, p.index) for p in getattr(ours, group)] == [
@@ -152,7 +152,7 @@ def test_nothing_is_kept_outside_of_the_instance(tmp_path: Path) -> None:
     kinds = {line.split()[-2] for line in symbols}
     assert not kinds & set("BbCGgSs"), symbols
     writable = [line for line in symbols if line.split()[-2] in "Dd" and not line.endswith("_names")]
-    assert writable == []  # tables of names need relocation: data that nobody writes
+    assert writable == []  # tables of names need relocation: constant data
     taken = [line.split()[-1] for line in symbols if line.split()[-2] in "TDR"]
     assert all(name.startswith("JIWY_Control_") for name in taken)
 
@@ -178,7 +178,7 @@ CONFIGURATION = """<modelConfiguration>
 
 
 def test_no_personal_data_in_any_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Names, paths and licenses with every special character: in no file, once ``epg exported`` has run."""
+    """Names, paths and licences with every special character: no file has them after ``epg exported``."""
     folder = tmp_path / "My Exports & more" / "Servo (1) 100%"
     generate(tokens_of(Export()), folder, configuration=CONFIGURATION)
     assert main(["exported", str(folder)]) == 0
@@ -266,7 +266,7 @@ LANGUAGE = {
 
 
 def test_functions_of_the_equation_language(tmp_path: Path) -> None:
-    """Each function of SIDOPS+ that C has not, and the memory of delay() and initial()."""
+    """Each function of SIDOPS+ that C lacks, and the memory of delay() and initial()."""
     tokens = tokens_of(Export(outputs=(("a", ""),), inputs=(("in", ""),)))
     results = "".join(f"\txx_V[{8 + i}] = {text};\n" for i, text in enumerate(LANGUAGE))
     count = 8 + len(LANGUAGE)
@@ -317,12 +317,12 @@ def test_a_model_without_inputs_states_and_parameters(tmp_path: Path) -> None:
 
 
 def test_the_command_file(tmp_path: Path) -> None:
-    """20-sim leaves it as it is: no token stands in it, so that no path can break it."""
+    """20-sim does not change it: it has no token, so that no path can break it."""
     folder = generate(tokens_of(Export()), tmp_path)
     text = (folder / "open_in_epg.cmd").read_bytes()
     assert text == (FOLDER / "open_in_epg.cmd").read_bytes()
     assert text.count(b"\r\n") == text.count(b"\n")
-    assert b'"epg_folder=%~dp0."' in text  # with the dot: a backslash before the quote would take it away
+    assert b'"epg_folder=%~dp0."' in text  # with the dot: a backslash before the quote would escape it
 
 
 def test_targets_ini() -> None:

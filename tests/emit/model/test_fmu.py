@@ -52,7 +52,7 @@ def test_functions_of_its_own_that_are_named_like_the_standards(tmp_path: Path) 
 
 
 def test_arrays_with_a_size_of_their_own_and_text(tmp_path: Path) -> None:
-    """A structural parameter keeps its start value, a state may be an array, and other types than numbers are ignored."""
+    """A structural parameter keeps its start value, a state may be an array, and only numbers are read and set."""
     size, text = '<Dimension start="3"/>', '<String name="label" valueReference="21" causality="input"/>'
     text += '<Binary name="trace" valueReference="22" causality="output"/>'
     text += '<Clock name="tick" valueReference="23" causality="output" intervalVariability="triggered"/>'
@@ -195,9 +195,8 @@ def test_a_heap_that_is_too_small_is_seen(tmp_path: Path) -> None:
 def test_memory_in_a_step(tmp_path: Path) -> None:
     """Memory that is returned can be allocated again without end, in any order.
 
-    Without a return, an allocation fails in the end, and this is detected.
-
-    The check of the sources does not detect the call through a pointer.
+    Without a return, an allocation fails in the end, and this is detected.  The check of the
+    sources does not detect the call through a pointer.
     """
     in_step = """
     if (self->integers[0] == 5) {

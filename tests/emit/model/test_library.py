@@ -469,7 +469,7 @@ int main(void)
 
 
 def test_text_of_the_export_cannot_break_out(tmp_path: Path) -> None:
-    """Names that end comments, continue lines or contain trigraphs give a header that compiles and has the same meaning."""
+    """Names that end comments, continue lines or contain trigraphs give a valid header with the same meaning."""
     tokens = Export(token_values={}).write_tokens(tmp_path / "model")
     path = tokens / "tokens.xml"
     text = path.read_text()

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A closed loop of an example's C models, without EPG in between: what the models themselves are worth.
+"""A closed loop of an example's C models without EPG, to test the models themselves.
 
-Encoders count whole steps, are zero at the start, and read zero in the cycle after a reset; PWM has 6250 steps,
-setpoints come every 33 ms, and the cycle takes 1 ms.  The export's own functions are called, through shared libraries.
+Encoders count whole steps, are zero at the start, and read zero in the cycle after a reset.  PWM has 6250 steps,
+setpoints come every 33 ms, and the cycle takes 1 ms.  The export's own functions are called, in shared libraries.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ AXES = ("pan", "tilt")
 
 
 class Export:
-    """A C export as a library of its own: two of them have the same symbols."""
+    """A C export in its own library, because two exports have the same symbols."""
 
     def __init__(self, folder: Path, build: Path, inputs: int, outputs: int, parameters: Mapping[str, float]) -> None:
         library = build / f"{folder.name}.so"
@@ -41,7 +41,7 @@ class Export:
         self.initialize(parameters)
 
     def initialize(self, parameters: Mapping[str, float]) -> None:
-        """Starts anew; ``parameters`` (by name in 20-sim) replace exported values before anything is calculated."""
+        """Starts again; ``parameters`` (by name in 20-sim) replace exported values before the first calculation."""
         for name in ("XXInitializeSubmodel", "XXCalculateSubmodel"):
             getattr(self._code, name).argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_double]
         self._code.XXInitializeSubmodel(self._u, self._y, 0.0)
@@ -60,7 +60,7 @@ class Export:
 
 @dataclass
 class Run:
-    """What was recorded, one value per cycle; angles are the plant's."""
+    """The recorded values, one per cycle; angles are the plant's."""
 
     time: list[float] = field(default_factory=list)
     setpoint: dict[str, list[float]] = field(default_factory=lambda: {axis: [] for axis in AXES})

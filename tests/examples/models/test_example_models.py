@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The examples' models: that they are what their equations say, and that the JIWY pair works in closed loop."""
+"""The examples' models compute their equations, and the two JIWY models work in closed loop."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def build(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def profile(_axis: str, time: float) -> float:
-    """The raised cosine of 1 rad: there and back in 3 s."""
+    """The raised cosine of 1 rad: forwards and back in 3 s."""
     phase = (time - START) / LENGTH
     return 0.5 - 0.5 * math.cos(2 * math.pi * phase) if 0 < phase < 1 else 0.0
 
@@ -49,7 +49,7 @@ def test_files_are_what_the_equations_say() -> None:
     "folder", ["jiwy/model", "jiwy/plant", "relbot/model", "relbot/plant", "existing_firmware/station/model"]
 )
 def test_importer_reads_them(folder: str) -> None:
-    """Ports, parameters and metadata go together: there is nothing to warn about."""
+    """Ports, parameters and metadata are consistent: there is no warning."""
     diagnostics = Diagnostics()
     model = load_model(EXAMPLES / folder, diagnostics)
     assert model is not None
@@ -85,7 +85,7 @@ def test_homes_from_anywhere(build: Path, place: float) -> None:
 
 
 def test_hand_over_has_no_kick(build: Path) -> None:
-    """A setpoint far away when control takes over is approached at the reference's speed."""
+    """If the setpoint is far away when control begins, the axis moves there at the reference's speed."""
     recorded = run(JIWY, build, START, lambda axis, time: 1.0)
     for axis in AXES:
         pulse = recorded.reset[axis].index(1.0)
@@ -118,7 +118,7 @@ def test_homing_gives_up(build: Path) -> None:
 
 
 def test_end_stops_hold(build: Path) -> None:
-    """A setpoint beyond the range presses the axis against its stop, and it comes back as soon as it may."""
+    """A setpoint beyond the range presses the axis against its stop; the axis returns as soon as the setpoint does."""
     recorded = run(JIWY, build, 9.0, lambda axis, time: 9.0 if 4.0 < time < 6.0 else 0.5)
     for axis in AXES:
         assert RANGE[axis] < max(recorded.angle[axis]) < RANGE[axis] + 0.05

@@ -23,7 +23,7 @@ def profile(time: float) -> float:
 
 
 def integrate(axis: str, seconds: float) -> list[float]:
-    """Position each millisecond; motor, gear and PID as separate blocks, semi-implicit Euler."""
+    """The position at each millisecond; motor, gear and PID are separate blocks, integrated by semi-implicit Euler."""
     k, rotor, rotor_d, gear, camera, camera_d, kp, tau_i = {
         "pan": (0.018, 2.06e-7, 1.77e-6, 1 / 19, 3.0e-4, 2.0e-4, 2.6, 9.0),
         "tilt": (0.00701, 5.28e-8, 4.0e-7, 1 / 76, 4.5e-5, 1.0e-4, 1.6, 10.5),

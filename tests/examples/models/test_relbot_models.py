@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""RELbot's C++ models in closed loop, without EPG in between: cycle 1 ms, controller every second cycle."""
+"""RELbot's C++ models in closed loop without EPG: the cycle takes 1 ms, the controller runs every second cycle."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def library(folder: Path, build: Path) -> ctypes.CDLL:
 
 
 def profile(time: float) -> float:
-    """From 0 to 2 pi between 1 s and 4 s."""
+    """Moves from 0 to 2 pi between 1 s and 4 s."""
     phase = min(max((time - 1) / 3, 0.0), 1.0)
     return math.pi * (1 - math.cos(math.pi * phase))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A board with the test program, in the emulator."""
+"""Fixtures: a board with the test program, in the emulator."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ OK, PINS, PIN_IN_USE, PULL, BLOCK, STATE_MACHINE, INSTRUCTION_MEMORY, HALTED = r
 
 @dataclass(frozen=True)
 class Config:
-    """``epg_pico_quadrature_config_t``, and whether to attach instead of to claim."""
+    """``epg_pico_quadrature_config_t``, and True to attach instead of claiming."""
 
     pin_a: int
     pin_b: int
@@ -36,7 +36,7 @@ class Config:
 
 
 class Board:
-    """The test program's requests, and encoders on the pins."""
+    """Requests to the test program, and encoders on the pins."""
 
     def __init__(self, pico: Emulator) -> None:
         self.pico = pico
@@ -44,7 +44,7 @@ class Board:
         pico.run_until("main")
 
     def ask(self, request: int) -> None:
-        """Has the program do something, and waits until it has."""
+        """Sends a request to the program and waits until it is done."""
         self.pico.write_word("done", 0)
         self.pico.write_word("request", request)
         for _ in range(200):
@@ -69,7 +69,7 @@ class Board:
         return [self.pico.word("errors", offset=4 * n) for n in range(len(self.encoders))]
 
     def read(self) -> list[int]:
-        """One read of each: positions."""
+        """The positions after one read of each decoder."""
         self.ask(READ)
         return self.positions()
 
@@ -77,7 +77,7 @@ class Board:
         return [self.pico.word("positions", offset=8 * n, size=8, signed=True) for n in range(len(self.encoders))]
 
     def watch(self, milliseconds: float) -> int:
-        """Has the program read again and again for a while; returns how often."""
+        """Makes the program read repeatedly for this time; returns the number of reads."""
         before = self.pico.word("rounds")
         self.pico.write_word("request", WATCH)
         self.pico.run(milliseconds=milliseconds)
@@ -99,7 +99,7 @@ class Board:
             self.move(n, "rest")
 
     def true_counts(self) -> list[int]:
-        """Edges that the encoders have given."""
+        """The number of edges that each encoder has made."""
         return [self.pico.call("encoder_count", name=str(n)) for n in range(len(self.encoders))]
 
 
@@ -111,7 +111,7 @@ def image() -> Path:
 
 @pytest.fixture
 def new_board(image: Path) -> Iterator[Callable[[], Board]]:
-    """Makes boards, and checks at the end that none has faulted."""
+    """Makes boards; checks at the end that none has had a fault."""
     made: list[Emulator] = []
 
     def make() -> Board:

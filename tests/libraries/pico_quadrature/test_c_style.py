@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The library's C as other tools see it."""
+"""The library's C passes other tools."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ SOURCES = [*sorted(LIBRARY.rglob("*.h")), *sorted(LIBRARY.rglob("*.c"))]
 
 
 def clang_format_version() -> int:
-    """The major version that is installed; 0 for none."""
+    """The installed major version; 0 if clang-format is missing."""
     if shutil.which("clang-format") is None:
         return 0
     shown = subprocess.run(["clang-format", "--version"], capture_output=True, text=True, check=True).stdout
@@ -51,7 +51,7 @@ def test_cppcheck_finds_nothing() -> None:
 
 
 def test_the_hot_path_is_not_in_flash() -> None:
-    """What control loops call is inline or in RAM."""
+    """The functions that control loops call are inline or in RAM."""
     header = (LIBRARY / "include" / "epg" / "pico_quadrature.h").read_text()
     for name in ("newest", "take_skipped", "follow", "read", "preset"):
         assert re.search(rf"static inline [\w ]+epg_pico_quadrature_{name}\(", header), name

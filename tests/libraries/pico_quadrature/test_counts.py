@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Counts are exact: all state machines of both PIO blocks at once, with reversals, up to the stated rate."""
+"""Counts are exact, with all state machines of both PIO blocks at once, with reversals, up to the documented rate."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import pytest
 
 from .conftest import COUNT, OK, VELOCITY, Board, Config
 
-# Distance of edges in cycles that the program counts exactly, one below what the header promises for silicon.
+# Smallest distance of edges, in cycles, that the program counts exactly: one less than the header promises for silicon.
 LIMIT = {COUNT: 9, VELOCITY: 11}
 
 
@@ -20,7 +20,7 @@ def eight(variant: int) -> list[Config]:
 @pytest.mark.parametrize("variant", [COUNT, VELOCITY], ids=["count", "velocity"])
 @pytest.mark.parametrize("seed", [1, 2])
 def test_random_walks_with_reversals(board: Board, variant: int, seed: int) -> None:
-    """Bursts at the limit rate, slow stretches, a reversal every tenth edge, read some hundred times."""
+    """Bursts at the highest rate, slow parts, a reversal after every tenth edge, with some hundred reads."""
     assert board.init(*eight(variant)) == [OK] * 8
     for n in range(8):
         board.move(n, "random", seed=100 * seed + n, shortest=LIMIT[variant], longest=60, reversal=0.1, burst=100)
@@ -35,7 +35,7 @@ def test_random_walks_with_reversals(board: Board, variant: int, seed: int) -> N
 @pytest.mark.parametrize("variant", [COUNT, VELOCITY], ids=["count", "velocity"])
 @pytest.mark.parametrize("reversal", [0.0, 0.02, 0.5])
 def test_every_edge_at_the_limit_rate(board: Board, variant: int, reversal: float) -> None:
-    """No edge is further from the last than the limit; the program gets words all the same."""
+    """All edges have the smallest distance; the program still transfers words."""
     assert board.init(*eight(variant)) == [OK] * 8
     for n in range(8):
         limit = LIMIT[variant]
@@ -62,7 +62,7 @@ def test_constant_speed_both_ways(board: Board, interval: float) -> None:
 
 @pytest.mark.parametrize("variant", [COUNT, VELOCITY], ids=["count", "velocity"])
 def test_edges_beyond_the_limit_are_lost_and_noticed(board: Board, variant: int) -> None:
-    """Below the time of a sample the counts go wrong, which also shows that these tests can fail."""
+    """Edges closer than one sample lose counts, which also proves that these tests can fail."""
     assert board.init(*eight(variant)) == [OK] * 8
     for n in range(8):
         board.move(n, "random", seed=n + 1, shortest=4, longest=5, reversal=0.1)
@@ -75,11 +75,11 @@ def test_edges_beyond_the_limit_are_lost_and_noticed(board: Board, variant: int)
 
 @pytest.mark.parametrize("variant", [COUNT, VELOCITY], ids=["count", "velocity"])
 def test_wraps_of_the_32_bit_count_are_followed(board: Board, variant: int) -> None:
-    """The register is set near its ends; the position, 64 bits wide, goes on."""
+    """The register is set near its limits; the position, 64 bits wide, continues."""
     board.init(Config(10, 11, state_machine=0, variant=variant))
     expected = 0
     for register in (0x70000000, 0xE0000000, 0xFFFFFFF0, 0x7FFFFFF0, 0xFFFFFFE0):
-        # A jump of the register is motion: just below 2^31 counts, or modulo 2^16 with the velocity program.
+        # A jump of the register counts as motion: just below 2^31 counts, or modulo 2^16 with the velocity program.
         before = board.pico.call("pio", block=0, machine=0)["y"]
         board.pico.call("pio", block=0, machine=0, set={"y": register})
         jump = (register - before) % 2**32
@@ -95,7 +95,7 @@ def test_wraps_of_the_32_bit_count_are_followed(board: Board, variant: int) -> N
 
 
 def test_the_zero_of_the_register_does_not_slow_the_decoder(board: Board) -> None:
-    """Backwards through 0, where the decrement falls through, at the limit rate."""
+    """Backwards through 0, where the decrement does not jump, at the highest rate."""
     board.init(Config(10, 11, state_machine=0))
     for _ in range(20):
         board.edges(0, [1] * 5 + [-1] * 10 + [1] * 5, apart=LIMIT[COUNT])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The example builds for both boards, and does what its README says."""
+"""The example builds for both boards, and does what its README promises."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The committed words are what pioasm makes of the source, and their lengths and cycles are as stated."""
+"""The committed words are pioasm's output for the source, and have the documented lengths and cycles."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def test_lengths(variant: str, length: int) -> None:
 
 
 def paths(variant: str) -> dict[str, int]:
-    """Cycles from one IN to the next, by what the pins did: the words are followed as a state machine would."""
+    """Cycles from one IN to the next, by the change of the pins; the words are executed like in a state machine."""
     program = words(variant)
     start, top = number(f"{variant.upper()}_START"), number(f"{variant.upper()}_WRAP")
     kinds = {0: "none", 1: "forward", 2: "backward", 3: "both"}
@@ -68,14 +68,17 @@ def paths(variant: str) -> dict[str, int]:
         while at != start:
             word = program[at]
             cycles += 1 + (word >> 8 & 0x1F)
-            jump = word >> 13 == 0  # counters are not 0 here, and X-- goes to the next instruction either way
+            jump = word >> 13 == 0  # counters are not 0 here, and X-- continues with the next instruction in both cases
             at = word & 0x1F if jump else start if at == top else at + 1
         result[kind] = cycles + 4
     return result
 
 
 def test_cycles() -> None:
-    """As the source states them; the longest is what edges must keep as a distance, with one for the synchroniser."""
+    """As documented in the source.
+
+    The longest path plus one cycle for the synchroniser is the shortest edge distance.
+    """
     assert paths("count") == {"none": 7, "forward": 8, "backward": 6, "both": 9}
     assert paths("velocity") == {"none": 9, "forward": 9, "backward": 7, "both": 11}
     for variant in ("count", "velocity"):
@@ -85,7 +88,7 @@ def test_cycles() -> None:
 
 @pytest.mark.parametrize("language", ["c11", "c++17"])
 def test_program_header_needs_nothing(language: str, tmp_path: Path) -> None:
-    """Zephyr's driver takes it too."""
+    """Zephyr's driver also includes it."""
     skip_if_missing(arm_gcc)
     source = tmp_path / ("alone.cpp" if "+" in language else "alone.c")
     source.write_text(

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A read is bounded, fresh, says when its state machine is halted, and does not touch flash."""
+"""A read has a bounded time and a new value, reports a halted state machine, and does not use flash."""
 
 from __future__ import annotations
 
 from .conftest import HALTED, OK, PRESET, Board, Config
 
 PIO0_CTRL = 0x50200000
-# Bounds of epg_pico_quadrature_read() on a Cortex-M0+, in cycles, as docs/pico-quadrature.md states them.
+# Bounds of epg_pico_quadrature_read() on a Cortex-M0+, in cycles, from docs/pico-quadrature.md.
 LONGEST_READ = 200
 LONGEST_FAILURE = 500
 
@@ -32,7 +32,7 @@ def test_a_halted_state_machine_is_an_error_in_bounded_time(board: Board) -> Non
     assert board.read() == [7]
     board.pico.call("write_register", address=PIO0_CTRL, value=0)
     board.pico.call("watch_span", name="read", core=0, **{"from": "read_once", "to": "return"})
-    assert board.read() == [7]  # what stands in the FIFO is not taken for news
+    assert board.read() == [7]  # words that were already in the FIFO do not count as new
     assert board.errors() == [HALTED]
     assert board.read() == [7]
     assert board.errors() == [HALTED]
@@ -45,7 +45,7 @@ def test_a_halted_state_machine_is_an_error_in_bounded_time(board: Board) -> Non
 
 
 def test_a_read_is_not_older_than_its_call(board: Board) -> None:
-    """The FIFO is full of what was pushed after the last read; an edge long after that, just before the read, shows."""
+    """The FIFO is full of words from after the last read; the read still shows an edge that came long after those."""
     board.init(Config(10, 11, state_machine=0))
     for n in range(20):
         board.pico.run(milliseconds=0.5)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""RP2350: both variants build for it without a warning, and what it refuses is run on a Cortex-M33.
+"""RP2350: both variants build without a warning; an emulated Cortex-M33 runs the checks of the configuration.
 
-There is no emulator of its PIO; the programs use no instruction that RP2040 does not have.
+There is no emulator of its PIO, but the programs use only instructions that the RP2040 has, too.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ STATE = 0x20070100
 
 @pytest.fixture(scope="module")
 def image() -> Path:
-    """The build has EPG's warnings as errors."""
+    """The build treats EPG's warnings as errors."""
     skip_if_missing(pico_sdk, arm_gcc)
     return build(PROJECT, board="pico2", targets=["encoders"]) / "encoders.elf"
 
@@ -43,7 +43,7 @@ def flash_content(image: Path) -> bytes:
 
 
 class Processor:
-    """A Cortex-M33 with the image's flash, RAM, and peripherals that are memory with their SET and CLR aliases."""
+    """A Cortex-M33 with the image's flash and RAM; peripherals are memory with SET and CLR aliases."""
 
     def __init__(self, image: Path) -> None:
         self.module: Any = unicorn()
@@ -58,7 +58,7 @@ class Processor:
         self.registers: dict[int, int] = {}
         self.cpu.mmio_map(0x40000000, 0x10800000, self._read, None, self._write, None)
         self.names = symbols(image)
-        # RAM as the start-up code leaves it: .data from flash.
+        # RAM as after the start-up code: .data copied from flash.
         start, end, source = (self.names[name] for name in ("__data_start__", "__data_end__", "__etext"))
         self.cpu.mem_write(start, binary[source - 0x10000000 : source - 0x10000000 + end - start])
         for pin in range(48):
@@ -77,7 +77,7 @@ class Processor:
         self.registers[address] = after & 0xFFFFFFFF
 
     def init(self, config: list[int]) -> int:
-        """``epg_pico_quadrature_init()``: the error it returns."""
+        """Calls ``epg_pico_quadrature_init()``; returns its error."""
         arm = self.module.arm_const
         self.cpu.mem_write(CONFIG, bytes(config))
         for register, value in (
@@ -107,7 +107,7 @@ class Processor:
     ],
 )
 def test_what_rp2350_takes_and_refuses(image: Path, config: list[int], error: int) -> None:
-    """Pull-down is erratum RP2350-E9; there is a third block; a Pico 2 has 30 pins."""
+    """A pull-down is refused (erratum RP2350-E9); there is a third block; a Pico 2 has 30 pins."""
     skip_if_missing(unicorn)
     processor = Processor(image)
     assert processor.init(config) == error

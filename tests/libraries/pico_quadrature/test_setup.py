@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pins, direction, and what happens when something is not free."""
+"""Pins, direction, and the errors if a resource is not free."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def test_the_position_rises_when_a_leads_unless_inverted(board: Board, a: int, b
 
 @pytest.mark.parametrize("phase", range(4))
 def test_counting_starts_at_0_wherever_the_shaft_stands(board: Board, phase: int) -> None:
-    """The state of the pins at the start is no edge."""
+    """The levels of the pins at the start do not count as an edge."""
     board.pico.call("encoder", name="before", a=10, b=11)
     for _ in range(phase):
         board.pico.call("move", name="before", kind="schedule", edges=[[board.pico.cycle + 10, 1]])
@@ -85,7 +85,8 @@ def test_pulls(board: Board, pull: int) -> None:
 )
 def test_what_cannot_be(board: Board, config: Config, error: int) -> None:
     assert board.init(config) == [error]
-    assert board.init(Config(10, 11), Config(12, 13), Config(14, 15), Config(16, 17)) == [OK] * 4  # nothing was kept
+    # the failed calls kept no resource
+    assert board.init(Config(10, 11), Config(12, 13), Config(14, 15), Config(16, 17)) == [OK] * 4
 
 
 @pytest.mark.parametrize(
@@ -136,7 +137,7 @@ def test_stop_gives_everything_back(board: Board) -> None:
 
 
 def test_attach_to_what_the_caller_has_loaded_and_claimed(new_board: Callable[[], Board]) -> None:
-    """As a driver of another framework would: its own copy of the program, its own claim."""
+    """Like a driver of another framework: with its own copy of the program and its own claim."""
     board = new_board()
     board.pico.write_word("others", 16)  # the program into PIO1, and state machine 1
     board.ask(OTHERS)

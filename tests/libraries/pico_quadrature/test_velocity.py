@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Velocity from edge times: right at low speed, where counts per cycle are 0 or 1."""
+"""Velocity from the times of edges is right at low speed, at which there are 0 or 1 counts per cycle."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def read_each_millisecond(board: Board, times: int) -> list[float]:
 @pytest.mark.parametrize("direction", [1, -1])
 @pytest.mark.parametrize("edges_per_second", [60, 333, 1500, 20_000, 1_000_000])
 def test_constant_speed(board: Board, edges_per_second: int, direction: int) -> None:
-    """After some edges the estimate is within 0.4 % in each read: the clock that is read has a resolution of 1 us."""
+    """After some edges the estimate is within 0.4 % in each read: the clock has a resolution of 1 us."""
     board.init(Config(10, 11, variant=VELOCITY))
     board.move(0, "constant", interval=CLOCK / edges_per_second, direction=direction)
     first = max(10, 3000 // edges_per_second)
@@ -65,7 +65,7 @@ def test_a_reversal_changes_the_sign(board: Board) -> None:
 
 
 def test_after_a_long_pause_counts_per_time(board: Board) -> None:
-    """The age of the edge is ambiguous when reads are further apart than it can count."""
+    """If the time between two reads is longer than the counter's range, the age of an edge is ambiguous."""
     board.init(Config(10, 11, variant=VELOCITY))
     board.move(0, "constant", interval=CLOCK / 3000)
     read_each_millisecond(board, 5)

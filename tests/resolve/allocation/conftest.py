@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Helpers of this folder on the module path."""
+"""Puts the helpers of this folder on the module path."""
 
 import sys
 from pathlib import Path

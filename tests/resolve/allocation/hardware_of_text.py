@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Configurations and allocations of text, for tests."""
+"""Allocations for configurations that are written as text, for tests."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from epg.resolve.claims import ClaimKey, component_claims, tick_claims
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of the hardware of a ``.tcf``."""
+    """The allocated hardware of a ``.tcf``."""
 
     assignments: Mapping[ClaimKey, Assignment] | None
     problems: Diagnostics
@@ -30,13 +30,13 @@ class Outcome:
         return [problem.id for problem in self.problems]
 
     def resources(self) -> dict[str, str]:
-        """What each claim got, in words: ``{"encoder_pan.encoder": "PIO block 0, state machine 0"}``."""
+        """The assignment of each claim in words: ``{"encoder_pan.encoder": "PIO block 0, state machine 0"}``."""
         assert self.assignments is not None, [problem.message for problem in self.problems]
         return {f"{owner}.{claim}".strip("."): found.resource for (owner, claim), found in self.assignments.items()}
 
 
 def allocate_file(name: str, user_roots: Sequence[Path] = (), beside: Path | None = None) -> Outcome:
-    """The hardware of a ``.tcf`` that can be found by ``name``."""
+    """The hardware of a ``.tcf`` that is found by ``name``."""
     problems = Diagnostics()
     roots = targets_roots(user_roots)
     catalog = load_catalog(roots, problems)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Hardware of whole targets: who gets what, and that what is possible is not refused."""
+"""Hardware of whole targets: the assignments, and that EPG refuses no possible target."""
 
 from __future__ import annotations
 
@@ -68,11 +68,11 @@ def test_the_host_numbers_everything_itself(name: str) -> None:
         slots = [found.slot for (_, name), found in outcome.assignments.items() if name == claim]
         assert slots == [0, 1]
     top = {found.settings["top"] for found in outcome.assignments.values() if found.settings}
-    assert top == {6249}  # the steps a Pico has
+    assert top == {6249}  # the number of steps on a Pico
 
 
 def test_the_host_ignores_pins(tmp_path: Path) -> None:
-    """The same file as on a board, and more encoders than any board has."""
+    """The same file as for a board, with more encoders than any board supports."""
     outcome = hardware.allocate_components(tmp_path, "host", [*encoders(40), f"p: {PWM % ('20 kHz', 0)}"])
     assert outcome.ids == []
     assert sorted(found.slot for (_, c), found in outcome.assignments.items() if c == "encoder") == list(range(40))
@@ -128,15 +128,15 @@ def test_pins_by_other_names(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "lines",
     [
-        # the encoder could have TIM1 or TIM2, the outputs only TIM1: the encoder must leave it
+        # The encoder could use TIM1 or TIM2, the outputs only TIM1: the encoder must not take TIM1
         [f"e: {ENCODER % ('PA0', 'PA1')}", f"p: {PWM % ('20 kHz', 'PA2')}", f"q: {PWM % ('20 kHz', 'PA3')}"],
-        # PA0 could have both timers, but a frequency of its own
+        # PA0 could use both timers, but its frequency differs from that of the others
         [f"p: {PWM % ('20 kHz', 'PA0')}", f"q: {PWM % ('10 kHz', 'PA3')}", f"r: {PWM % ('20 kHz', 'PB1')}"],
         [f"p: {PWM % ('20 kHz', 'PA0')}", f"q: {PWM % ('20 kHz', 'PA3')}", f"e: {ENCODER % ('PB0', 'PB1')}"],
     ],
 )
 def test_legal_wirings_that_a_first_choice_would_refuse(tmp_path: Path, lines: list[str]) -> None:
-    """In each order, what is possible is found."""
+    """A possible assignment is found for every order of the components."""
     for order in (lines, lines[::-1], [*lines[1:], lines[0]]):
         outcome = hardware.allocate_components(tmp_path, "timer_board_loop", order, user_roots=[TARGETS])
         assert outcome.ids == []
@@ -192,7 +192,7 @@ def test_named_instances_and_pins(tmp_path: Path) -> None:
     ],
 )
 def test_messages_come_from_the_data(tmp_path: Path, lines: list[str], id: str, message: str, hint: str) -> None:
-    """Names of peripherals, slots and pins are those of the chip that is described, with no Python for it."""
+    """Names of peripherals, slots and pins are those in the chip's description; no Python is needed for the chip."""
     outcome = hardware.allocate_components(tmp_path, "timer_board_loop", lines, user_roots=[TARGETS])
     assert [(p.id, p.message, p.hint) for p in outcome.problems] == [(id, message, hint)]
 
@@ -214,7 +214,7 @@ def test_pull_downs_that_a_chip_has_not(tmp_path: Path, target: str, pull: str) 
 
 
 def test_an_unknown_period_still_takes_a_slice(tmp_path: Path) -> None:
-    """Before the model is known, a board without a slice for the loop is refused already."""
+    """A board without a slice for the control loop is refused even before the model is known."""
     full = [f"  p{n}: {PWM % ('20 kHz', 2 * n)}" for n in range(8)]
     head = [
         "version: 1",
@@ -228,7 +228,7 @@ def test_an_unknown_period_still_takes_a_slice(tmp_path: Path) -> None:
 
 
 def test_the_same_in_every_run(tmp_path: Path) -> None:
-    """Python's string hashes differ from run to run; the hardware must not."""
+    """Python's string hashes differ from run to run, but the hardware must not."""
     lines = [f"e: {ENCODER % ('PA0', 'PA1')}", f"p: {PWM % ('9 kHz', 'PA5')}", f"q: {PWM % ('9 kHz', 'PA2')}"]
     hardware.allocate_components(tmp_path, "timer_board_loop", lines, user_roots=[TARGETS])
     command = [
@@ -253,7 +253,7 @@ def test_the_same_in_every_run(tmp_path: Path) -> None:
 
 
 def test_refusing_a_full_board_is_fast(tmp_path: Path) -> None:
-    """More encoders and PWM outputs than a Pico has: less than a second of computation, with files and messages."""
+    """More encoders and PWM outputs than a Pico has: less than a second of processor time, with files and messages."""
     lines = [*encoders(11), "x: {kind: pwm, pins: {value: 22}}", "y: {kind: pwm, pins: {value: 26}, frequency: 1 kHz}"]
     lines += ["z: {kind: pwm, pins: {value: 27}, frequency: 3 kHz}"]
     start = time.process_time()

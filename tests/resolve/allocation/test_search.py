@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The search against brute force, on what a greedy choice refuses, and against the clock."""
+"""The search against brute force, for problems on which a greedy choice fails, and its speed."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from epg.resolve.search import WHOLE, Demand, Place, _Problem, _Use, find_places
 
 
 def fits(demands: Sequence[Demand], places: Sequence[Place]) -> bool:
-    """Whether these places are one for each demand, with no two users in each other's way: the definition."""
+    """True if there is one place per demand, and no two users disturb each other: the definition of a solution."""
     if any(place not in demand.places for demand, place in zip(demands, places)):
         return False
     for (one, (instance, slot)), (other, (instance2, slot2)) in itertools.combinations(zip(demands, places), 2):
@@ -27,7 +27,7 @@ def fits(demands: Sequence[Demand], places: Sequence[Place]) -> bool:
 
 
 def brute_force(demands: Sequence[Demand]) -> bool:
-    """Whether any choice of places fits, by trying each of them, depth first."""
+    """True if any choice of places fits; tries each choice, depth first."""
 
     def extend(chosen: list[Place]) -> bool:
         if len(chosen) == len(demands):
@@ -41,7 +41,7 @@ def brute_force(demands: Sequence[Demand]) -> bool:
 
 
 def greedy(demands: Sequence[Demand]) -> bool:
-    """Whether taking the first free place for one demand after another works."""
+    """True if it works to take the first free place for one demand after another."""
     chosen: list[Place] = []
     for number, demand in enumerate(demands):
         free = [p for p in sorted(demand.places) if fits(demands[: number + 1], [*chosen, p])]
@@ -53,7 +53,7 @@ def greedy(demands: Sequence[Demand]) -> bool:
 
 @st.composite
 def problems(draw: st.DrawFn) -> list[Demand]:
-    """Small peripherals on which demands take any mixture of slots, or whole instances."""
+    """Small peripherals on which demands take any combination of slots, or whole instances."""
     instances, slots = draw(st.integers(1, 4)), draw(st.integers(1, 3))
     single = st.tuples(st.integers(0, instances - 1), st.integers(0, slots - 1))
     whole = st.tuples(st.integers(0, instances - 1), st.just(WHOLE))
@@ -99,7 +99,7 @@ def test_a_dive_that_gets_through_finds_what_the_search_finds(demands: list[Dema
 
 
 def test_five_hundred_motors_are_placed_in_few_steps() -> None:
-    """Each has one place, agrees with its neighbour, and a timer needs a whole slice: 800,000 calls, half a second."""
+    """Each has one place and agrees with its neighbour; a timer needs a whole slice: 800,000 calls, half a second."""
     motors = [Demand(frozenset({(number // 2, number % 2)}), "20 kHz") for number in range(500)]
     timer = Demand(frozenset((instance, WHOLE) for instance in range(251)))
     found, steps = search([*motors, timer])
@@ -108,14 +108,14 @@ def test_five_hundred_motors_are_placed_in_few_steps() -> None:
 
 
 def test_what_a_greedy_choice_refuses_is_accepted() -> None:
-    """A timer with a choice of two, then one that has none: taking the first free one fails."""
+    """A timer with a choice of two, then a timer with only one: taking the first free one fails."""
     demands = [Demand(frozenset({(0, 0), (1, 0)})), Demand(frozenset({(0, 0)}))]
     assert not greedy(demands)
     assert find_places(demands) == ((1, 0), (0, 0))
 
 
 def test_agreeing_users_share_an_instance_although_another_is_free() -> None:
-    """Three programs on two blocks fit only if both of one program take the same block."""
+    """Three programs on two blocks fit only if both users of the same program take the same block."""
     anywhere = frozenset(itertools.product(range(2), range(2)))
     demands = [Demand(anywhere, "x"), Demand(anywhere, "y"), Demand(anywhere, "x"), Demand(anywhere, "y")]
     found = find_places(demands)
@@ -135,7 +135,7 @@ def test_hundreds_of_demands_do_not_end_the_recursion() -> None:
 
 
 def hard_problems() -> Iterator[tuple[str, list[Demand]]]:
-    """30 claims that fail by one, in the ways that cost a plain search the most."""
+    """30 claims of which one cannot be satisfied, in the ways for which a plain search takes the longest."""
     everywhere = frozenset(itertools.product(range(7), range(4)))
     yield "one too many, all equal", [Demand(everywhere)] * 29 + [Demand(frozenset({(0, 0)}))]
     blocks = frozenset(itertools.product(range(8), range(4)))
@@ -159,7 +159,7 @@ def test_refusing_thirty_claims_takes_few_steps(demands: list[Demand]) -> None:
 
 
 def search(demands: Sequence[Demand]) -> tuple[tuple[Place, ...] | None, int]:
-    """What a search finds, and how many functions it calls: unlike time, the same on every computer."""
+    """The result of a search, and its number of function calls, which is the same on every computer, unlike time."""
     steps = 0
 
     def count(frame: FrameType, event: str, argument: object) -> None:

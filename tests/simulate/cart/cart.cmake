@@ -1,4 +1,4 @@
-# The cart as a target of `board`: a macro, since epg_add_target() sets variables of Zephyr's where it is called.
+# The cart as a target of `board`.  A macro, because epg_add_target() sets variables of Zephyr in its caller's scope.
 get_filename_component(epg "${CMAKE_CURRENT_LIST_DIR}/../../.." ABSOLUTE)
 set(cart "${CMAKE_CURRENT_LIST_DIR}")
 set(EPG_PATH "${epg}")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The shape of 20-sim's C function target: ``xxsubmod.c``, ``xxmodel.c``, ``xxinteg.c``, ``xxfuncs.c``, ..."""
+"""The form of 20-sim's C function target: ``xxsubmod.c``, ``xxmodel.c``, ``xxinteg.c``, ``xxfuncs.c``, ..."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the C and the C++ shape share: file headers and tables of names."""
+"""The common parts of the C and the C++ form: file headers and tables of names."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from collections.abc import Iterable
 
 from writer.model import Definition, Quantity
 
-#: the version whose layout the files follow
+#: Version of 20-sim whose layout the files follow.
 VERSION = "5.1.4.13773"
 
 
 def header(file: str, model: Definition, *, end: str = "\n") -> str:
-    """The comment every file starts with."""
+    """The comment at the beginning of every file."""
     return (
         "/**********************************************************\n"
         " * Written for EPG's examples in the shape of 20-sim's C and C++ export.\n"
@@ -65,5 +65,5 @@ def output_copies(model: Definition, prefix: str) -> str:
 
 
 def quoted(names: Iterable[str]) -> str:
-    """Names as a C string list, one per line."""
+    """Names as a list of C strings, one per line."""
     return ",\n".join('\t"' + name.replace("\\", "\\\\") + '"' for name in names) + "\n"

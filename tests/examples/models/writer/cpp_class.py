@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # ruff: noqa: E101  (the templates indent by tabs, and continue comments by a blank)
-"""The shape of 20-sim's C++ class target: ``<Sub>.cpp``, ``<Sub>.h`` and the folder ``common``."""
+"""The form of 20-sim's C++ class target: ``<Sub>.cpp``, ``<Sub>.h`` and the folder ``common``."""
 
 from __future__ import annotations
 

@@ -31,12 +31,12 @@ class Expression:
 
 
 def to_c(source: str, symbol: Callable[[str], str]) -> str:
-    """The C form of an expression; ``symbol`` gives the array element that holds a name."""
+    """The C form of an expression; ``symbol`` returns the array element for a name."""
     return _c(parse(source), symbol, 1)
 
 
 def names(source: str) -> set[str]:
-    """The names an expression uses."""
+    """The names in an expression."""
     found: set[str] = set()
 
     def visit(expression: Expression) -> None:
@@ -50,12 +50,12 @@ def names(source: str) -> set[str]:
 
 
 def functions(source: str) -> set[str]:
-    """The functions of 20-sim's language an expression calls."""
+    """The functions of 20-sim's language that an expression calls."""
     return {name for name in _FUNCTIONS if re.search(rf"(?<![\w\\]){name}\s*\(", source)}
 
 
 def parse(source: str) -> Expression:
-    """The tree of an expression.  Raises ValueError for anything that is none."""
+    """The tree of an expression.  Raises ValueError for text that is not an expression."""
     tokens: list[str] = []
     position = 0
     while source[position:].strip():
@@ -98,7 +98,7 @@ def _operand(tokens: list[str]) -> tuple[Expression, list[str]]:
         return Expression("not", f"not {operand.text}", (operand,)), rest
     if head == "(":
         inner, rest = _parse(rest, 0)
-        if inner.kind == "if":  # brings its own parentheses
+        if inner.kind == "if":  # this has its own parentheses
             return inner, _after(")", rest)
         return Expression("group", f"({inner.text})", (inner,)), _after(")", rest)
     if head in _FUNCTIONS:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """JIWY, a camera with a pan and a tilt axis: controller and plant.
 
-Numbers are those published for the laboratory's robots; see ``examples/jiwy/README.md`` for their sources and for
-the two that are EPG's choice (winding resistance, Coulomb friction).
+The numbers are those published for the laboratory's robots.  ``examples/jiwy/README.md`` lists their sources, and the
+two numbers that EPG has chosen (winding resistance, Coulomb friction).
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ _AXIS_CONTROL = {
     @\PID\factor = 1 / (sampletime + @\PID\tauD * @\PID\beta)
     @\Reference\step = @\Reference\speed * sampletime
 """,
-    # position since the present stretch began; time without leaving a narrow band; the next mode; duty
+    # Position since the begin of the present motion; time within a narrow band; the next mode; duty
     "dynamic": r"""
     @\Homing\first = @\Homing\elapsed_previous < 1.5 * sampletime
     @\Homing\from = if @\Homing\first then position_$ else @\Homing\origin_previous end
@@ -211,7 +211,7 @@ outputs
 
 
 def _axes(sections: dict[str, str], values: dict[str, dict[str, str]], shared: str) -> str:
-    """Both axes' copies of each section; ``@`` stands for Pan or Tilt, ``$`` for pan or tilt."""
+    """Both axes' copies of each section; ``@`` is replaced by Pan or Tilt, ``$`` by pan or tilt."""
     text = ""
     for section, rows in sections.items():
         text += f"{section}\n" + (shared if section == "parameters" else "")

@@ -27,7 +27,7 @@ _VARIABLE = re.compile(r"([\w\\]+)\s*(?:=\s*([-+\w.]+)\s*)?(?:\{(.*?)\})?\s*(?::
 
 @dataclass(frozen=True)
 class Quantity:
-    """A port, parameter or state.  ``unit`` is None when 20-sim would print none, ``rate`` belongs to states."""
+    """A port, parameter or state.  ``unit`` is None if 20-sim would not print a unit; only states have a ``rate``."""
 
     name: str
     value: str = "0.0"
@@ -55,7 +55,7 @@ class Definition:
 
     @property
     def variables(self) -> tuple[str, ...]:
-        """Everything in the array V: what equations compute, then outputs, then inputs, as 20-sim orders them."""
+        """Everything in the array V: first the results of equations, then outputs, then inputs, in 20-sim's order."""
         rates = {state.rate for state in self.states}
         ports = {port.name for port in self.inputs + self.outputs}
         computed = [left for section in ("static", "dynamic", "output") for left, _ in self.equations[section]]
@@ -67,7 +67,7 @@ class Definition:
         return {f for section in self.equations.values() for _, right in section for f in equations.functions(right)}
 
     def symbol(self, name: str, prefix: str) -> str:
-        """The C expression that holds ``name``: ``xx_V[3]``, ``m_P[0]``, ``xx_step_size``."""
+        """The C expression for ``name``: ``xx_V[3]``, ``m_P[0]``, ``xx_step_size``."""
         if name in ("sampletime", "time"):
             return prefix + {"sampletime": "step_size", "time": "time"}[name]
         tables: tuple[tuple[str, tuple[str, ...]], ...] = (
@@ -92,7 +92,7 @@ class Definition:
 
 
 def define(name: str, method: str, step: str, finish: str, text: str) -> Definition:
-    """Reads a definition and checks that each name is given once, and before it is used."""
+    """Reads a definition; checks that each name is defined once, and before its use."""
     rows: dict[str, list[str]] = {section: [] for section in _SECTIONS}
     section = ""
     for line in re.sub(r"\n {6,}", " ", text).splitlines():  # continuation lines are indented by six or more

@@ -44,7 +44,7 @@ _PARAMETERS = r"""@\kp = 2.0 {}
     @\limit = 1.0 {}
 """
 
-# The integrator rests while the output is limited and the error would drive it further.
+# The integrator stops while the output is limited and the error would increase it further.
 _DYNAMIC = r"""@\error = SetPos$ - Pos$
     @\pdout = @\pdstate + @\kp * @\error / @\beta
     @\pdrate = (@\kp * @\error - @\pdout) / (@\beta * @\tauD)

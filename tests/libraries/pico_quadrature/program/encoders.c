@@ -1,6 +1,6 @@
 /*
- * Up to twelve encoders through the public API.  The test writes `parameters` and `request`, and waits for `done` to
- * become the same; `request` is 0 again then.
+ * Up to twelve encoders through the public API.  The test writes `parameters` and `request`, and waits until `done` has
+ * the same value; `request` is then 0 again.
  */
 #include "epg/pico_quadrature.h"
 #include "epg/pico_quadrature_velocity.h"
@@ -22,7 +22,7 @@ volatile uint32_t skipped[ENCODERS];
 volatile int64_t positions[ENCODERS];
 volatile int64_t preset_to;
 volatile double velocities[ENCODERS];
-volatile uint32_t others; /* what REQUEST_OTHERS is to occupy */
+volatile uint32_t others; /* resources that REQUEST_OTHERS occupies */
 
 epg_pico_quadrature_t encoders[ENCODERS];
 static epg_pico_quadrature_velocity_t estimates[ENCODERS];
@@ -45,7 +45,7 @@ static void init_all(void)
     }
 }
 
-/* What the test times: one read of a position. */
+/* The test measures the time of this: one read of a position. */
 epg_pico_quadrature_error_t __attribute__((noinline))
 __not_in_flash_func(read_once)(epg_pico_quadrature_t *encoder, int64_t *position)
 {
@@ -71,7 +71,7 @@ static void __not_in_flash_func(read_all)(void)
     rounds++;
 }
 
-/* Others who have taken something before: 1 a state machine, 2 instruction memory, 4 a pin for PWM, 8 a pin as output. */
+/* Resources that others have taken: 1 state machine, 2 instruction memory, 4 pin for PWM, 8 pin as output. */
 static void occupy(void)
 {
     static const uint16_t nop[] = {0xa042};

@@ -1,3 +1,3 @@
-// The headers in C++, twice.
+// The headers compile as C++, and can be included twice.
 #include "epg/pico_quadrature.h"
 #include "epg/pico_quadrature_velocity.h"
