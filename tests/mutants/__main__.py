@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tries mutants of the generator and the runtime against the tests::
+"""Tries mutants of the generator and the runtime against the tests.
+
+Two commands are common::
 
     python -m tests.mutants --check     # fails if a mutant that was caught before now survives
     python -m tests.mutants --choose    # tries 200 mutants that tests/mutants/caught.txt does not list
