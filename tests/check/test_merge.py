@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files that extend each other: maps merge, lists and scalars replace, null deletes, positions stay."""
+"""Files that extend each other: mappings merge, lists and scalars replace, null deletes, positions stay."""
 
 from __future__ import annotations
 

@@ -57,7 +57,7 @@ def test_the_console_offers_what_can_be_changed(built: Project) -> None:
 
 
 def test_a_changed_archive_is_unpacked_and_compiled_again(built: Project, tmp_path: Path) -> None:
-    """Only files that have changed in the archive are compiled; without a change, none is."""
+    """Only files that have changed in the archive are compiled; without a change, no file is."""
     assert compiled(built.build()) == set()
     fmu = changed(FMU2, tmp_path / "fmu", "sources/law.c", ("limit(duty);", "limit(0.5 * duty);"))
     path = pack(fmu, built.source / ARCHIVE)

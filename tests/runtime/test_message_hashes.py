@@ -36,7 +36,7 @@ DEFINITIONS = {
     "diagnostic_msgs/msg/KeyValue[] values",
     "diagnostic_msgs/msg/DiagnosticArray": "std_msgs/msg/Header header, diagnostic_msgs/msg/DiagnosticStatus[] status",
 }
-"""Fields of the messages of ROS 2 Jazzy's common_interfaces and rcl_interfaces (constants are no part of a type)."""
+"""Fields of the messages of ROS 2 Jazzy's common_interfaces and rcl_interfaces (constants are not part of a type)."""
 
 # type_description_interfaces/msg/FieldType
 NESTED, UNBOUNDED_SEQUENCE = 1, 144

@@ -26,7 +26,7 @@ STEPS = 1000
 SKIPPED = "set EPG_TEST_EXPORTS to a folder with real exports of 20-sim"
 REFUSED = {
     "fmu-language",  # C++
-    "fmu-file-missing",  # sources without a header, or none that is C
+    "fmu-file-missing",  # sources without a header, or no source in C
     "fmu-no-sources",
     "fmu-interface",
     "model-file-use",

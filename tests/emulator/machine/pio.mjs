@@ -129,7 +129,7 @@ export class PioBlock extends BasePeripheral {
         this.machine.lockstepChanged();
     }
 
-    // What state machines do to the block ---------------------------------------------------------------------------
+    // Effects of state machines on the block ------------------------------------------------------------------------
 
     output(directions, base, count, data, cycle) {
         let mask = count >= 32 ? 0xffffffff : (1 << count) - 1;

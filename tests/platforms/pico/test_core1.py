@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A program that uses core 1 itself: neither it nor the control loop takes the core from the other."""
+"""A program that uses core 1 itself: neither the program nor the control loop takes the core from the other."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from tests.platforms.pico.images import images, skip_unless_emulated
 
 START, STOP, LAUNCH, LAUNCH_WITH_STACK, RESET = range(1, 6)
 OK, TAKEN = 0, 7
-"""EPG_PICO_OK, EPG_PICO_ERROR_CORE_TAKEN."""
+"""The values of EPG_PICO_OK and EPG_PICO_ERROR_CORE_TAKEN."""
 REFUSED, DONE, RETURNED = 0, 1, 2
-"""What start and stop answer; the SDK's functions return nothing."""
+"""The results of start and stop; the SDK's functions do not return a result."""
 
 
 @pytest.fixture
@@ -35,14 +35,14 @@ def obey(pico: Emulator, order: int) -> int:
 
 
 def counts(pico: Emulator) -> bool:
-    """Whether the program's own code runs on core 1."""
+    """True if the program's own code runs on core 1."""
     before = pico.word("turns")
     pico.run(milliseconds=1)
     return pico.word("turns") != before
 
 
 def controls(pico: Emulator) -> bool:
-    """Whether the control loop runs."""
+    """True if the control loop runs."""
     before = pico.word("status", offset=16)
     pico.run(milliseconds=5)
     return pico.word("status", offset=16) > before

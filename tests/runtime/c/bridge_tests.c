@@ -59,7 +59,7 @@ static void check_levels(unsigned int forwards, unsigned int backwards)
     CHECK_EQUAL(fake_port.levels[BACKWARDS], backwards);
 }
 
-/* What is applied ----------------------------------------------------------------------------------------------- */
+/* The applied duty ----------------------------------------------------------------------------------------------- */
 
 TEST(applied_duty_is_what_the_motor_is_given)
 {

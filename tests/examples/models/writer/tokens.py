@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The metadata file: every token of the code generator with its value for one model.
 
-Only tokens that say something about the model are written; a real file also counts each of some 220 functions.
+Only tokens that describe the model are written; a real file also counts the uses of each of some 220 functions.
 """
 
 from __future__ import annotations

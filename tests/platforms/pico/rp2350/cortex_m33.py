@@ -136,7 +136,7 @@ class Processor:
     def pin(self, pin: int) -> int:
         return self.outputs >> pin & 1
 
-    # Registers: what is written is read, through SET, CLR and XOR aliases too -----------------------------------------
+    # Registers: a read returns the last write, also by SET, CLR and XOR aliases -------------------------------------
 
     def _read(self, _: Any, offset: int, size: int, __: Any) -> int:
         address = (PERIPHERALS + offset) & ~0x3000
