@@ -122,7 +122,7 @@ def test_errors_as_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> N
     assert not (tmp_path / "robot").exists()
 
 
-# names and places ---------------------------------------------------------------------------------------------------
+# names and places -----------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -164,7 +164,7 @@ def test_folders_above_are_made(tmp_path: Path) -> None:
     assert (tmp_path / "a/b/robot/CMakeLists.txt").is_file()
 
 
-# the model ----------------------------------------------------------------------------------------------------------
+# the model ------------------------------------------------------------------------------------------------------------
 
 
 def test_a_model_elsewhere_is_copied_with_all_that_it_needs(tmp_path: Path) -> None:
@@ -311,7 +311,7 @@ def test_ports_with_names_of_epgs_own(tmp_path: Path, capsys: pytest.CaptureFixt
     assert check(tmp_path / "robot", "robot") == 0
 
 
-# what is there ------------------------------------------------------------------------------------------------------
+# what is there --------------------------------------------------------------------------------------------------------
 
 
 def test_nothing_is_replaced(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -64,7 +64,7 @@ def messages(build: Build) -> list[tuple[str, str, int]]:
     return [(found["message"], Path(found["file"]).name, found["line"]) for found in build.state()["messages"]]
 
 
-# targets and products -----------------------------------------------------------------------------------------------
+# targets and products -------------------------------------------------------------------------------------------------
 
 
 def test_a_project_is_configured_and_built_and_its_program_runs(robot: Path) -> None:
@@ -111,7 +111,7 @@ def test_an_executable_of_ones_own_is_a_product_and_others_are_not(robot: Path) 
     assert (robot / "build/other").is_file(), "all targets are built, as by cmake --build"
 
 
-# errors ------------------------------------------------------------------------------------------------------
+# errors ---------------------------------------------------------------------------------------------------------------
 
 
 def test_a_mistake_in_the_bindings_is_said_once_in_epgs_words(robot: Path) -> None:
@@ -266,7 +266,7 @@ def test_cancelling_before_the_start_and_twice(robot: Path) -> None:
     assert build.wait(20) and build.state()["state"] == "cancelled"
 
 
-# the run itself -----------------------------------------------------------------------------------------------------
+# the run itself -------------------------------------------------------------------------------------------------------
 
 
 def plan_of(job: Job) -> tuple[list[tuple[str, ...]], dict[str, str]]:

@@ -94,7 +94,7 @@ def test_the_simulation_of_a_project_for_a_board(target: str, tmp_path: Path) ->
     assert not re.search(r"^ *MODEL .*build", (project / "simulation/CMakeLists.txt").read_text(), re.M)
 
 
-# missing tools ------------------------------------------------------------------------------------------------------
+# missing tools --------------------------------------------------------------------------------------------------------
 
 
 def fake_sdk(home: Path, version: str) -> Path:

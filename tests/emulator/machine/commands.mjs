@@ -239,10 +239,7 @@ export class Commands {
         return null;
     }
 
-    /**
-     * The state of state machine {machine} of PIO {block}.  {set: {x, y}} changes registers that no processor can
-     * reach.
-     */
+    /** The state of state machine {machine} of PIO {block}; {set: {x, y}} changes registers without an address. */
     pio({ block, machine: number, set = {} }) {
         this.machine.settle();
         const unit = this.machine.pio[block].units[number];
@@ -447,10 +444,7 @@ export class Commands {
         });
     }
 
-    /**
-     * {passages: [[cycle, cycles, instructions]], flash: [[cycle, pc, address]], flash_total, flash_lines}; clears
-     * them.
-     */
+    /** Takes {passages: [[cycle, cycles, instructions]], flash: [[cycle, pc, address]], flash_total, flash_lines}. */
     span({ name }) {
         const span = this.spans.get(name);
         if (span === undefined) {
@@ -479,10 +473,7 @@ export class Commands {
         return hex;
     }
 
-    /**
-     * Floods serial port {port} with packets: {text} repeated, or printable characters by {seed}.  {on: false} stops
-     * it.
-     */
+    /** Floods serial port {port} with packets: {text} repeated, or characters by {seed}.  {on: false} stops it. */
     usb_flood({ on = true, text, seed = 1, port = 0 }) {
         const random = new Random(seed);
         let at = 0;

@@ -2,8 +2,8 @@
 // A UART and the device connected to it (data sheet of the RP2040, 4.2: Arm's PL011), in whole characters.
 //
 // The levels of the pins are not simulated: a character is transferred if a pin of this UART has the UART's function.
-// The other device sends and samples at its own baud rate.  Characters are damaged if the rates differ by more than 4
-// %.
+// The other device sends and samples at its own baud rate.  If the rates differ by more than 4 %,
+// characters are damaged.
 import { BasePeripheral, IRQ } from './package.mjs';
 
 const FIFO_SIZE = 32;

@@ -86,8 +86,7 @@ def test_publications_in_real_time(patient_motor: Program, tmp_path: Path) -> No
 
 
 def test_slow_cycles_miss_ticks_but_keep_the_phase(motor: Program, tmp_path: Path) -> None:
-    # 5.3 ms of computation in each cycle: only every sixth tick has a cycle, and three overruns in a row cause the
-    # fault.
+    # 5.3 ms of computation in each cycle: only every sixth tick has a cycle, and three overruns cause the fault.
     run = motor.run_good(tmp_path, 0.5, rows("0.1,motor_setpoint,1005.3", "0.3,motor_setpoint,0"), "--realtime")
     assert_consistent(run, 500)
     statistics = run.statistics

@@ -166,8 +166,7 @@ def test_stall_takes_simulated_time_and_misses_ticks(motor: Program, tmp_path: P
     run = motor.run_good(tmp_path, 0.1, rows("0.0095,$stall,0.0025"))
     trace = run.trace
     ticks = [round(time * 1000) for time in trace["time"]]
-    # Cycle 10 lasts until 12.5 ms: tick 11 is missed, cycle 12 starts half a millisecond late, cycle 13 is on time
-    # again.
+    # Cycle 10 lasts until 12.5 ms: tick 11 is missed, cycle 12 starts half a millisecond late, 13 is on time again.
     assert ticks == [*range(11), *range(12, 100)]
     assert trace["computation"][10] == 0.0025
     assert trace["lateness"][11] == 0.0005

@@ -1,7 +1,6 @@
 /**
  * @file
- * H-bridges whose outputs refuse writes, for all sets of failing pins, all changes of duty and all levels of these
- * pins.
+ * H-bridges whose outputs refuse writes: all sets of failing pins, all their levels, and all changes of duty.
  */
 #include <math.h>
 
