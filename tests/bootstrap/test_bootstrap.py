@@ -128,7 +128,7 @@ def test_every_lock_file_pins_all_its_packages_by_hash(group: str) -> None:
 
 
 def test_pip_and_the_bootstrap_want_the_same_packages(tmp_path: Path) -> None:
-    """One file names the packages that a wheel requires and that the generator searches."""
+    """One file names the packages that a wheel requires and that the generator looks for."""
     command = [
         sys.executable,
         "-m",

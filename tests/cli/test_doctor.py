@@ -182,7 +182,7 @@ def test_programs_of_a_build_folder_are_not_started(bare: Path, capsys: pytest.C
 
 
 def test_packages_that_are_missing(bare: Path) -> None:
-    """In a Python of its own without packages; the question installs nothing."""
+    """In a Python without packages (``-S``); ``epg doctor`` does not install any."""
     host_programs(bare)
     environment = {**os.environ, "EPG_NO_INSTALL": "1"}
     command = [sys.executable, "-S", "-E", str(ROOT / "epg"), "doctor", "--json"]

@@ -228,7 +228,7 @@ def test_every_file_of_the_page_is_there(page: Page) -> None:
 
 
 def test_requests_must_be_json_of_the_page_itself(page: Page) -> None:
-    """Forms of other pages are refused: such a form cannot declare JSON without asking the server first."""
+    """HTML forms are refused.  Before a script of another page can send JSON, the browser asks the server."""
     body = json.dumps({"port": "position_pan"}).encode()
     path = "/api/disconnect"
     for kind in ("text/plain", "application/x-www-form-urlencoded", "multipart/form-data; boundary=x", ""):

@@ -27,7 +27,10 @@ IN_PROCESS = [
 ]
 """Tests that call EPG in their own process."""
 CLOSED_LOOP = ["tests/runtime/test_faulty_robot.py"]
-"""Tests that start EPG as a user does.  They run for mutants that survive the others, in areas that such tests run."""
+"""Tests that start EPG as a user does.
+
+They run last, for mutants in the areas :data:`RUNS` that survive the others.
+"""
 RUNS = ("emit", "runtime")
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 PROJECT = "benchmarks/latency"
 DELAYS = (0, 500)
-"""Output delays of the example's targets, in us; 0: none."""
+"""Output delays of the benchmark's targets, in us; 0: none."""
 PERIOD = 0.001
 TOPIC = "rt/setpoint"
 

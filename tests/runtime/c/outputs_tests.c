@@ -67,7 +67,7 @@ static int sign(double value)
     return (value > 0.0) - (value < 0.0);
 }
 
-/* If pins keep their levels, the motor is not driven against its previous or its new direction. */
+/* While pins refuse, the motor is only driven in the direction before the change, or in that after it. */
 static bool watching;
 static int allowed[3];
 
