@@ -121,7 +121,7 @@ def test_only_this_computers_names_are_answered(page: Page) -> None:
         for path in ("/", "/main.js", "/api/state"):
             assert ask(page, "GET", path, Host=host)[0] == 403, host
     assert ask(page, "GET", "/api/state", skip=("Host",))[0] == 403
-    # As through a tunnel with another port at its begin.
+    # As through a tunnel that starts at another port.
     for host in ("127.0.0.1:9999", f"localhost:{port}", "localhost"):
         assert ask(page, "GET", "/api/state", Host=host, Origin=f"http://{host}")[0] == 200, host
 

@@ -144,7 +144,7 @@ JOINT = {"position": "rad", "velocity": "rad/s", "effort": "N.m"}
 
 @st.composite
 def ros_components(draw: st.DrawFn, name: str, kind: str, topic: str) -> Component:
-    """A topic; ``topic`` is its name, or the begin of its names."""
+    """A topic; ``topic`` is its name, or the beginning of its names."""
     text: dict[str, Any] = {"kind": kind}
     flags = st.booleans()
 

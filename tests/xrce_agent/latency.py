@@ -25,7 +25,7 @@ class Step:
     """Number of cycles that began after that, up to the cycle of the output.  1: the next cycle; 0: a cycle that had
     just begun but had not read its setpoints yet."""
     in_cycle: float
-    """From the tick (on the host: the begin of the cycle) to the output."""
+    """From the tick (on the host: the start of the cycle) to the output."""
 
 
 def executable(delay: int, target: str) -> str:

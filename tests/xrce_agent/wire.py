@@ -134,7 +134,7 @@ def submessages(body: bytes) -> Iterator[Submessage]:
 
 
 class CdrReader:
-    """Reads CDR from its begin, to which numbers are aligned."""
+    """Reads CDR from its start, to which numbers are aligned."""
 
     def __init__(self, data: bytes, little: bool = True) -> None:
         self.data, self.position = data, 0

@@ -188,7 +188,7 @@ def test_outputs_of_a_stalled_cycle_come_at_its_end(motor: Program, tmp_path: Pa
     angle = trace["plant.outputs.angle"]
     assert trace["outputs.duty"][9] > 0 > trace["outputs.duty"][10]
     assert trace["time"][10:12] == [0.01, 0.03]
-    # The duty of cycle 9 acts for the whole 20.5 ms, although cycle 10 has read the new setpoint at its begin.
+    # The duty of cycle 9 acts for the whole 20.5 ms, although cycle 10 has read the new setpoint at its start.
     # The row of cycle 10, recorded at its end, is the first that shows the resulting angle.
     assert angle[10] - angle[9] > 5 * (angle[9] - angle[8]) > 0
     assert angle[11] == angle[10]

@@ -45,7 +45,7 @@ _AXIS_CONTROL = {
     @\PID\factor = 1 / (sampletime + @\PID\tauD * @\PID\beta)
     @\Reference\step = @\Reference\speed * sampletime
 """,
-    # Position since the begin of the present motion; time within a narrow band; the next mode; duty
+    # Position since the start of the present motion; time within a narrow band; the next mode; duty
     "dynamic": r"""
     @\Homing\first = @\Homing\elapsed_previous < 1.5 * sampletime
     @\Homing\from = if @\Homing\first then position_$ else @\Homing\origin_previous end

@@ -15,11 +15,11 @@ from .agent import CLOCK
 from .latency import measure, programs
 
 WRAP = 50e-6
-"""Period of the output's PWM in seconds.  A level that was written acts at the begin of the next one."""
+"""Period of the output's PWM in seconds.  A level that was written acts at the start of the next one."""
 ENTRY = 15
 """Clock cycles from the tick to its handler's first instruction, from which the step counts."""
 READ = 15e-6
-"""Seconds from the begin of a cycle until it has read its setpoints."""
+"""Seconds from the start of a cycle until it has read its setpoints."""
 USB = 0.003
 """Longest time of a frame to the control side in seconds: two frames of USB, and a poll of communication."""
 STEPS = 60
