@@ -113,7 +113,7 @@ TEST(brakes_when_safe_and_coasts_at_zero)
     drive(0.5);
     CHECK(drive(INFINITY));
     check_pins(true, true, CLOCKS);
-    fake_port.outputs[PIN_A] = false; /* another program may have left it so */
+    fake_port.outputs[PIN_A] = false; /* earlier code may have left it so */
     epg_pwm_h_bridge_safe(&bridge, &config);
     check_pins(true, true, CLOCKS);
 }

@@ -322,7 +322,7 @@ TEST(bridge_safe_writes_every_signal)
 {
     begin_bridge(false, 0.9);
     fake_port.on_write = NULL;
-    fake_port.levels[3] = 77; /* another program may have left them so */
+    fake_port.levels[3] = 77; /* earlier code may have left them so */
     fake_port.outputs[BRIDGE_A] = true;
     fake_port.outputs[BRIDGE_B] = true;
     epg_pwm_h_bridge_safe(&bridge, &bridge_config);

@@ -180,7 +180,7 @@ TEST(dual_bridge_with_slow_decay_moves_the_plant_the_same)
     CHECK_EQUAL(epg_plant_pwm_duty(13), 1.0);
     dual_inverted_write_duty(0.25);
     CHECK(fabs(dual_inverted_plant_read_duty() - 0.25) < 1e-3);
-    CHECK_EQUAL(epg_plant_pwm_duty(13), 1.0); /* inverted: on the other pin, pulses begin */
+    CHECK_EQUAL(epg_plant_pwm_duty(13), 1.0); /* inverted: the other pin has the pulses */
     CHECK(fabs(epg_plant_pwm_duty(12) - 0.75) < 1e-3);
 }
 

@@ -57,7 +57,7 @@ def test_it_is_stopped_and_started_wherever_it_waits() -> None:
 
 @pytest.mark.parametrize("seed", [3, 4])
 def test_a_quarter_is_left_of_the_stack(seed: int) -> None:
-    """The console does everything it can while the node is made, lost and searched."""
+    """The console does everything it can while the board makes the node, loses its agent and searches for it."""
     draw = random.Random(seed)
     with MicroRosJiwy(seed) as jiwy:
         jiwy.agent.run(300)
