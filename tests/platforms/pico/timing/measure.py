@@ -25,7 +25,7 @@ MOTOR_SLICES = (1, 2)
 MOST_UNANSWERED = 3
 """Number of setpoints that the host sends before it waits for an answer."""
 LINES = 2000
-"""Length of the text that floods USB, before it repeats."""
+"""Number of lines in the text that floods USB, before it repeats."""
 
 
 @dataclass(frozen=True)
