@@ -246,7 +246,7 @@ def test_a_cancelled_build_leaves_no_process_and_goes_on_later(
         time.sleep(0.01)
     began = time.monotonic()
     build.cancel()
-    assert time.monotonic() - began < 1, "whoever cancels does not wait"
+    assert time.monotonic() - began < 1, "the user who cancels does not wait"
     assert build.wait(20)
     assert processes(folder) == []
     assert (build.state()["state"], build.state()["products"]) == ("cancelled", [])
