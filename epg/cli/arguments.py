@@ -17,13 +17,16 @@ if TYPE_CHECKING:
 def add_target_arguments(parser: argparse.ArgumentParser, *, required: bool) -> None:
     """Adds the arguments for the files of a target, and for the values that replace those in the files."""
     parser.add_argument(
-        "--tcf", required=required, metavar="FILE", help="target configuration: a file, or one of EPG's by name"
+        "--tcf",
+        required=required,
+        metavar="FILE",
+        help="target configuration: a file, or the name of a predefined .tcf",
     )
     parser.add_argument("--model", required=required, type=Path, metavar="FOLDER", help="folder of the model")
     parser.add_argument(
         "--bindings", required=required, type=Path, metavar="FILE", help="bindings of the model's ports"
     )
-    parser.add_argument("--plant", type=Path, metavar="FOLDER", help="model of the plant (host)")
+    parser.add_argument("--plant", type=Path, metavar="FOLDER", help="model of the plant, for targets on the host")
     parser.add_argument("--plant-bindings", type=Path, metavar="FILE", help="bindings of the plant's ports")
     parser.add_argument(
         "--set",
@@ -31,10 +34,10 @@ def add_target_arguments(parser: argparse.ArgumentParser, *, required: bool) -> 
         default=[],
         dest="settings",
         metavar="KEY.KEY=VALUE",
-        help="replaces a value of the .tcf",
+        help="replace a value of the .tcf",
     )
-    parser.add_argument("--node", help="name of the ROS 2 node, instead of the .tcf's")
-    parser.add_argument("--namespace", help="namespace of the ROS 2 node, instead of the .tcf's")
+    parser.add_argument("--node", help="name of the ROS 2 node; default: as in the .tcf")
+    parser.add_argument("--namespace", help="namespace of the ROS 2 node; default: as in the .tcf")
     parser.add_argument("--caller", metavar="CMAKELISTS", help=argparse.SUPPRESS)
     parser.add_argument("--beside", type=Path, default=Path(), help=argparse.SUPPRESS)
 

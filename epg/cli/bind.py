@@ -16,11 +16,9 @@ from epg.source import Span
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("model", type=Path, metavar="MODEL", help="folder of the model")
-    parser.add_argument("tcf", metavar="TCF", help="target configuration: a file, or one of EPG's by name")
+    parser.add_argument("tcf", metavar="TCF", help="target configuration: a file, or the name of a predefined .tcf")
     parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="bindings to write; default: standard output")
-    parser.add_argument(
-        "--update", action="store_true", help="keep what FILE says; add new ports, comment removed ones out"
-    )
+    parser.add_argument("--update", action="store_true", help="update FILE: add new ports, comment removed ones out")
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
@@ -41,7 +39,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     matches = match_ports(model, configuration.components)
     if options.update:
         if options.output is None:
-            sys.stderr.write("epg bind: --update needs the file: -o FILE\n")
+            sys.stderr.write("epg bind: --update needs the file to update: add -o FILE\n")
             return 2
         text = read_text(options.output, diagnostics)
         diagnostics.stop_if_errors()
@@ -49,7 +47,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         try:
             change = updated_bindings(text, str(options.output), model, matches, diagnostics)
         except CannotEdit as problem:
-            sys.stderr.write(f"epg bind: {options.output} stays as it is: {problem}\n")
+            sys.stderr.write(f"epg bind: {options.output} was not changed: {problem}\n")
             sys.stderr.write("  write one 'port: component' on each line\n")
             return 1
         diagnostics.stop_if_errors()
@@ -69,7 +67,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         return 0
     if options.output.exists():
         span = Span(str(options.output))
-        diagnostics.error("file-exists", span, "this file exists", hint="use --update to keep it and add what is new")
+        diagnostics.error("file-exists", span, "this file exists", hint="use --update to keep it and add new ports")
         return 1
     options.output.write_text(text, encoding="utf-8")
     open_ports = [port for port, match in matches.items() if match.reference is None]

@@ -16,12 +16,12 @@ if TYPE_CHECKING:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("files", nargs="*", metavar="FILE", help=".tcf files to check by themselves")
+    parser.add_argument("files", nargs="*", metavar="FILE", help=".tcf files to check separately")
     parser.add_argument(
-        "--format", choices=("text", "json", "sarif"), help="what is printed; sarif: SARIF 2.1.0, for CI and editors"
+        "--format", choices=("text", "json", "sarif"), help="form of the output; sarif: SARIF 2.1.0, for CI and editors"
     )
     parser.add_argument(
-        "--hardware", action="store_true", help="also list peripherals, pins, and the frequencies that are reached"
+        "--hardware", action="store_true", help="also list the peripherals, pins and actual frequencies"
     )
     add_target_arguments(parser, required=False)
 
@@ -57,7 +57,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         return 0  # main.py prints the diagnostics
     if not options.json:
         _print_hardware(hardware if options.hardware else {})
-        together = f" in each of them by itself; to check them together, add {missing}" if missing else ""
+        together = f" in each file separately; to check them together, add {missing}" if missing else ""
         print(f"no errors{together}")
     else:
         from epg.cli.report import diagnostics_json, to_json

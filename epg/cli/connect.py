@@ -23,17 +23,19 @@ _TEXT_BROWSERS = frozenset(("lynx", "w3m", "links", "elinks", "links2", "www-bro
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    folder = "a project (a CMakeLists.txt with epg_add_target), or a model; default: the current folder"
+    folder = "folder of a project (a CMakeLists.txt with epg_add_target) or of a model; default: the current folder"
     parser.add_argument("folder", nargs="?", type=Path, metavar="FOLDER", help=folder)
     add_target_arguments(parser, required=False)
-    parser.add_argument("--name", help="the target's name; of several in FOLDER, the one to begin with")
-    parser.add_argument("--source-dir", type=Path, metavar="FOLDER", help="the project's folder, for building it")
-    parser.add_argument("--build-dir", type=Path, metavar="FOLDER", help="the project's build folder")
-    parser.add_argument("--built-by", choices=("cmake", "west"), default="cmake", help="what builds the project")
-    parser.add_argument("--port", type=int, default=0, help="of the page's address; default: any that is free")
+    parser.add_argument("--name", help="name of the target; if FOLDER has several, the one to show first")
+    parser.add_argument("--source-dir", type=Path, metavar="FOLDER", help="folder of the project, to build it")
+    parser.add_argument("--build-dir", type=Path, metavar="FOLDER", help="build folder of the project")
+    parser.add_argument(
+        "--built-by", choices=("cmake", "west"), default="cmake", help="the program that builds the project"
+    )
+    parser.add_argument("--port", type=int, default=0, help="port of the page's address; default: any free port")
     parser.add_argument("--no-browser", action="store_true", help="only print the address")
-    parser.add_argument("--until-closed", action="store_true", help="end when the page has been closed")
-    parser.add_argument("--terminal", action="store_true", help="ask here instead of in a browser")
+    parser.add_argument("--until-closed", action="store_true", help="end when the page is closed")
+    parser.add_argument("--terminal", action="store_true", help="ask in this terminal, without a browser")
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:

@@ -55,9 +55,15 @@ class Item:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--build", type=Path, metavar="FOLDER", help="a build folder whose CMake variables count too")
-    parser.add_argument("--run", action="store_true", help="start programs that this folder names, for their versions")
-    parser.add_argument("--project", type=Path, metavar="FOLDER", help="only what the targets of this project need")
+    parser.add_argument(
+        "--build", type=Path, metavar="FOLDER", help="a build folder: its CMake variables are used, too"
+    )
+    parser.add_argument(
+        "--run", action="store_true", help="start the programs that the build folder names, to read their versions"
+    )
+    parser.add_argument(
+        "--project", type=Path, metavar="FOLDER", help="list only the tools that the targets of this project need"
+    )
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
@@ -109,7 +115,7 @@ def _report_project(items: list[Item], as_json: bool) -> int:
     elif items:
         print("\n".join(_lines(items)))
     else:
-        print("no target was found whose files can be read: 'epg doctor' shows all tools")
+        print("no target with readable files was found: 'epg doctor' lists all tools")
     return 0 if all(item.good for item in items) else 4
 
 
@@ -121,16 +127,16 @@ def _cache_note(cache: Path) -> str:
     """A remark about EPG's cache: not used, not writable, or not yet there.  It is made when it is first needed."""
     problem = bootstrap.cache_problem(cache)
     if problem:
-        return f" (which EPG does not use: {problem})"
+        return f" (EPG does not use it: {problem})"
     existing = next(folder for folder in (cache, *cache.absolute().parents) if folder.exists())
     if not os.access(existing, os.W_OK):
-        return " (which cannot be written)"
-    return "" if cache.is_dir() else " (not yet there)"
+        return " (it cannot be written)"
+    return "" if cache.is_dir() else " (it does not exist yet)"
 
 
 _USES = {
     "plot": "for the plots of 'epg simulate' and 'epg plot'",
-    "ros": "for 'epg record', where ROS 2 is not sourced",
+    "ros": "for 'epg record', if ROS 2 is not sourced",
 }
 """The purposes of optional packages, by group."""
 
@@ -158,16 +164,16 @@ def _item(finding: Finding, where: Surroundings, tools: Mapping[str, Tool]) -> I
     tool = finding.tool
     if finding.status == "wrong":
         wanted = f"no {tool.holds}" if tool.holds else f"no {' or '.join(tool.programs)}"
-        note, remedy = f"there is {wanted} there", f"correct {finding.source}, or leave it unset"
+        note, remedy = f"there is {wanted} at this path", f"correct or unset the {finding.source}"
     elif finding.status == "missing":
-        note, remedy = f"looked in {', '.join(finding.looked)}; get it with:", command_for(tool, where, tools)
+        note, remedy = f"looked in {', '.join(finding.looked)}; install it with:", command_for(tool, where, tools)
     elif finding.status == "old":
-        note, remedy = f"{tool.oldest} or newer is needed; get it with:", command_for(tool, where, tools)
+        note, remedy = f"{tool.oldest} or newer is needed; install it with:", command_for(tool, where, tools)
     else:
         differs = tool.tested and finding.version and not f"{finding.version}.".startswith(f"{tool.tested}.")
         note, remedy = f"tested with {tool.tested}" if differs else "", ""
     if not finding.asked:
-        note = "not started: --run starts the programs that this folder names, to ask for their versions"
+        note = "its version is not known: --run starts the programs that this folder names, to read their versions"
     if tool.optional and not finding.path:
         note = f"{tool.optional}; {note}"
     return Item(

@@ -17,11 +17,14 @@ from epg.source import Span
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("port", help="port of the model, or a component")
+    parser.add_argument("port", help="port of the model, or component")
     parser.add_argument(
-        "--build", type=Path, metavar="PATH", help="a <name>.json, or a folder to look for one; default: here"
+        "--build",
+        type=Path,
+        metavar="PATH",
+        help="a <name>.json, or a folder to search for one; default: the current folder",
     )
-    parser.add_argument("--name", default="target", help="name of the target, with --tcf")
+    parser.add_argument("--name", default="target", help="name of the target, if --tcf is given")
     add_target_arguments(parser, required=False)
 
 

@@ -12,7 +12,7 @@ from epg.diagnostics import Diagnostics
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("folder", type=Path, metavar="FOLDER", help="folder of the export")
-    then = "then start 'epg connect' with it, until its page is closed"
+    then = "then run 'epg connect' with it until the page is closed"
     parser.add_argument("--connect", action="store_true", help=then)
 
 
@@ -21,17 +21,17 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
 
     folder = Path(os.path.abspath(options.folder))
     if _forget_people(folder / "ModelConfiguration.xml") and not options.json:
-        print("ModelConfiguration.xml: the path of the model file and the license were taken out.\n")
+        print("ModelConfiguration.xml: the path of the model file and the license were removed.\n")
     options.model = folder
     status = ports.run(options, diagnostics)  # raises UserError if the model cannot be used: then nothing can follow
     if options.connect and not options.json:
         return _connect(folder, diagnostics)
     if not options.json:
-        print("\nNext: connect its ports, in a page of the browser:")
+        print("\nNext: connect its ports in the browser:")
         print(f'  epg connect "{folder}"')
         print("or choose a target ('epg targets' lists them) and start a project with this model:")
         print(f'  epg new --target NAME --model "{folder}" PROJECT')
-        print("or copy this folder into a project that you have, and run 'epg bind' there for its new ports.")
+        print("or copy this folder into an existing project, and run 'epg bind' there to add the new ports.")
     return status
 
 
@@ -39,7 +39,7 @@ def _connect(folder: Path, diagnostics: Diagnostics) -> int:
     """Runs ``epg connect`` for the project that uses the model in ``folder``, or for a new project with this model."""
     from epg.cli import connect
 
-    print("\nNext: connect its ports, in the page that the browser opens, or at this address:", flush=True)
+    print("\nNext: connect its ports in the page that the browser opens, or at this address:", flush=True)
     parser = argparse.ArgumentParser()
     parser.add_argument("--json", action="store_true")  # epg.cli.main adds this option to all commands
     connect.add_arguments(parser)

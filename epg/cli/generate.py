@@ -29,7 +29,7 @@ def report_mistake_in_template(error: Exception, user_roots: Sequence[Path], dia
 
     file, line, message = mistake_in_template(error) or ("", 0, "")
     if any(Path(file).is_relative_to(root) for root in user_roots):
-        hint = "docs/adding-a-component-kind.md says what a template may print"
+        hint = "docs/adding-a-component-kind.md describes the values that a template can print"
         hint = "save it as UTF-8" if message == NOT_UTF_8 else hint
         diagnostics.error("template-wrong", Span(file, line, 1), f"this template does not work: {message}", hint=hint)
         diagnostics.stop_if_errors()

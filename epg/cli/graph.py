@@ -17,18 +17,23 @@ PICTURES = ("application", "schedule", "wiring")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("tcf", metavar="TARGET.tcf", help="target configuration: a file, or one of EPG's by name")
-    what = (
-        "application: from topics and pins to the model and back; schedule: of one control cycle; wiring: of the board"
-    )
-    parser.add_argument("--what", choices=PICTURES, default="application", help=what)
-    parser.add_argument("--model", type=Path, metavar="FOLDER", help="folder of the model; the wiring needs none")
-    parser.add_argument("--bindings", type=Path, metavar="FILE", help="bindings of the model's ports")
-    parser.add_argument("--output", "-o", type=Path, metavar="FILE.svg", help="the file to write; default: print it")
     parser.add_argument(
-        "--set", action="append", default=[], dest="settings", metavar="KEY.KEY=VALUE", help="as 'check'"
+        "tcf", metavar="TARGET.tcf", help="target configuration: a file, or the name of a predefined .tcf"
     )
-    parser.add_argument("--name", default="", help="what the picture calls the target; default: the .tcf's name")
+    what = "application: topics, pins, components and model; schedule: one control cycle; wiring: the pins of the board"
+    parser.add_argument("--what", choices=PICTURES, default="application", help=what)
+    parser.add_argument("--model", type=Path, metavar="FOLDER", help="folder of the model; not needed for the wiring")
+    parser.add_argument("--bindings", type=Path, metavar="FILE", help="bindings of the model's ports")
+    parser.add_argument("--output", "-o", type=Path, metavar="FILE.svg", help="file to write; default: standard output")
+    parser.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        dest="settings",
+        metavar="KEY.KEY=VALUE",
+        help="replace a value of the .tcf",
+    )
+    parser.add_argument("--name", default="", help="name of the target in the picture; default: the .tcf's name")
     parser.set_defaults(node=None, namespace=None, plant=None, plant_bindings=None, caller=None, beside=Path())
 
 
@@ -66,8 +71,8 @@ def _wiring(request: Request, title: str, diagnostics: Diagnostics) -> str:
     assignments = allocate_hardware(configuration, configuration.control.period, diagnostics)
     target = configuration.target
     if target.board.layout is None:
-        message = f"EPG does not know where the pins of {target.board.summary} are"
-        hint = "its board.yaml needs a 'layout': docs/adding-a-board.md" if target.has_pins else "it has no pins"
+        message = f"EPG cannot draw the wiring of {target.board.summary}"
+        hint = "add a 'layout' to its board.yaml: docs/adding-a-board.md" if target.has_pins else "it has no pins"
         diagnostics.error("no-layout", configuration.root["target"].span, message, hint=hint)
     diagnostics.stop_if_errors()
     assert assignments is not None

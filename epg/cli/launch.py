@@ -22,27 +22,29 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="NAME=SERIAL",
-        help="serial number of the board that runs target NAME; again for each further board",
+        help="serial number of the board that runs target NAME; repeat the option for each board",
     )
     parser.add_argument(
         "--device",
         action="append",
         default=[],
         metavar="NAME=DEVICE[:BAUD]",
-        help="tty that target NAME is behind, for targets that are not on USB",
+        help="tty of target NAME, if it is not connected by USB; repeat the option for each target",
     )
     parser.add_argument("--port", type=_port, default=8888, help="UDP port of the agent; default: 8888")
-    parser.add_argument("--output", type=Path, default=Path(), metavar="FOLDER", help="default: here")
-    parser.add_argument("--force", action="store_true", help="overwrite files")
+    parser.add_argument(
+        "--output", type=Path, default=Path(), metavar="FOLDER", help="folder to write; default: the current folder"
+    )
+    parser.add_argument("--force", action="store_true", help="overwrite existing files")
     units = parser.add_argument_group("services")
-    units.add_argument("--systemd", action="store_true", help="write systemd units too, into FOLDER/systemd")
-    units.add_argument("--user", type=_user, default="ubuntu", help="user that the agents run as; default: ubuntu")
+    units.add_argument("--systemd", action="store_true", help="also write systemd units, into FOLDER/systemd")
+    units.add_argument("--user", type=_user, default="ubuntu", help="user that runs the agents; default: ubuntu")
     units.add_argument("--distribution", type=_distribution, default="jazzy", help="ROS 2 distribution; default: jazzy")
     units.add_argument(
         "--workspace",
         type=_workspace,
         metavar="FOLDER",
-        help="where the agent was built; default: /home/<user>/microros_ws",
+        help="folder in which the agent was built; default: /home/<user>/microros_ws",
     )
     units.add_argument("--domain", type=_domain, default=0, help="ROS_DOMAIN_ID; default: 0")
 
@@ -107,7 +109,7 @@ def _assignments(option: str, texts: list[str], diagnostics: Diagnostics) -> dic
             shown = f"{option} {text}"
             span = Span("command line", 1, len(option) + 2, len(shown) + 1, text=shown)
             hint = f"write {option} <name of the target>=<value>"
-            diagnostics.error("not-an-assignment", span, f"'{text}' does not say which target it is for", hint=hint)
+            diagnostics.error("not-an-assignment", span, f"'{text}' does not name a target", hint=hint)
             continue
         result.setdefault(name, []).append(value)
     return result
@@ -131,7 +133,7 @@ def _distribution(text: str) -> str:
 
 def _workspace(text: str) -> str:
     if not text.isprintable():
-        raise argparse.ArgumentTypeError("the name of a folder is one line of text")
+        raise argparse.ArgumentTypeError("the name of a folder must be one line of text")
     return _matching(text, "/[^`]*", "an absolute path")
 
 
@@ -144,5 +146,5 @@ def _matching(text: str, pattern: str, what: str) -> str:
 def _between(text: str, low: int, high: int) -> int:
     number = int(text)
     if not low <= number <= high:
-        raise argparse.ArgumentTypeError(f"{text} is not within {low} to {high}")
+        raise argparse.ArgumentTypeError(f"must be from {low} to {high}, not {text}")
     return number

@@ -30,15 +30,15 @@ COMMANDS = {
     "generate-model": "write the library of one model (CMake calls this)",
     "bind": "write bindings for the ports whose names match",
     "ports": "list the ports and parameters of a model",
-    "exported": "check an export of 20-sim and say what comes next (EPG's target for 20-sim calls this)",
+    "exported": "check an export of 20-sim and print the next steps (EPG's target for 20-sim calls this)",
     "targets": "list targets, component kinds and predefined .tcf files",
-    "explain": "show the way of a model port to its pin",
+    "explain": "show the path from a model port to its pin",
     "graph": "draw the application, the control cycle or the wiring of the board, as SVG",
-    "simulate": "run a host executable through a scenario and judge the result",
+    "simulate": "run a host executable through a scenario and check its limits",
     "launch": "write a ROS 2 launch file, or systemd units, for the agents of targets",
-    "record": "record what a target says and hears on ROS 2",
+    "record": "record the topics that a target publishes and receives on ROS 2",
     "plot": "compare a recorded run with another one, or with its simulation",
-    "doctor": "show what this computer has and lacks",
+    "doctor": "list the tools that this computer has and those that are missing",
     "schema": "write the JSON Schemas of EPG's files, for editors",
 }
 
@@ -96,7 +96,7 @@ def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
         sub = subparsers.add_parser(name, help=summary, description=summary[0].upper() + summary[1:] + ".")
         if name == chosen:
             sub.set_defaults(parser=sub)
-            sub.add_argument("--json", action="store_true", help="print data for programs")
+            sub.add_argument("--json", action="store_true", help="print JSON, for programs")
             importlib.import_module(f"epg.cli.{name.replace('-', '_')}").add_arguments(sub)
     return parser
 

@@ -17,13 +17,13 @@ if TYPE_CHECKING:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("folder", type=Path, metavar="DIR", help="folder of the project; made if there is none")
-    target = "a target, or one of EPG's .tcf files; 'epg targets' lists both"
+    parser.add_argument("folder", type=Path, metavar="DIR", help="folder of the project; made if it does not exist")
+    target = "a target or a predefined .tcf; 'epg targets' lists both"
     parser.add_argument("--target", required=True, metavar="NAME", help=target)
-    model = "the model; what lies outside of DIR is copied into DIR/model"
+    model = "folder of the model; if it is outside of DIR, it is copied into DIR/model"
     parser.add_argument("--model", required=True, type=Path, metavar="FOLDER", help=model)
-    parser.add_argument("--name", help="name of the project, a C identifier; default: after DIR")
-    middleware = "how topics travel; default: as the .tcf says, or the console"
+    parser.add_argument("--name", help="name of the project, a C identifier; default: made from DIR")
+    middleware = "protocol of the topics; default: that of the .tcf, or the console"
     parser.add_argument("--middleware", metavar="NAME", help=middleware)
 
 
@@ -55,7 +55,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
 def _print(folder: Path, project: NewProject) -> None:
     plan = project.plan
     print(f"wrote {folder}: {len(project.files)} files of the project {plan.name}, for {plan.target.name}")
-    print(f"model:   {folder / plan.model} ({'a copy' if project.model_copied else 'where it is'})")
+    print(f"model:   {folder / plan.model} ({'a copy' if project.model_copied else 'not copied'})")
     for port in project.open:
         print(f"to bind: {port} (in {folder / plan.name}.bindings.yaml)")
     print(f"next:    {folder / 'README.md'}")

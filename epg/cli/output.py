@@ -18,7 +18,7 @@ MANIFEST = ".epg-outputs.json"
 
 def add_output_arguments(parser: argparse.ArgumentParser) -> None:
     """Adds the arguments of commands that write into a build folder.  CMake gives the hidden ones."""
-    parser.add_argument("--output", required=True, type=Path, metavar="FOLDER", help="where the files go")
+    parser.add_argument("--output", required=True, type=Path, metavar="FOLDER", help="folder to write")
     parser.add_argument("--source-dir", type=Path, help=argparse.SUPPRESS)
     parser.add_argument("--warnings", type=Path, help=argparse.SUPPRESS)
 

@@ -19,26 +19,26 @@ if TYPE_CHECKING:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("run", type=Path, metavar="RUN", help="a CSV file, or a folder that record or simulate wrote")
-    parser.add_argument("--against", type=Path, metavar="RUN", help="what to compare it with")
+    parser.add_argument("--against", type=Path, metavar="RUN", help="run to compare with RUN")
     parser.add_argument(
         "--signal",
         action="append",
         default=[],
         metavar="NAME[=NAME]",
-        help="a signal, and what it is called in the other run; again for more; default: all of the same name",
+        help="a signal, and its name in the other run; repeat the option for more; default: all with equal names",
     )
     parser.add_argument(
         "--align",
         choices=("correlation", "motion", "none"),
         default="correlation",
-        help="how the runs are shifted in time: to the best match, to the first motion, not at all",
+        help="how to shift the runs in time: to the best match, to the first motion, or not at all",
     )
     parser.add_argument(
         "--by",
         action="append",
         default=[],
         metavar="NAME",
-        help="signal that aligns the runs; again for more; default: setpoints that both followed, else all",
+        help="signal that aligns the runs; repeat the option for more; default: the setpoints of both runs, else all",
     )
     parser.add_argument(
         "--from",
@@ -46,10 +46,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=-math.inf,
         dest="begin",
         metavar="SECONDS",
-        help="compare from this time of the other",
+        help="compare from this time of the other run",
     )
-    parser.add_argument("--until", type=float, default=math.inf, metavar="SECONDS", help="compare until then")
-    parser.add_argument("--output", type=Path, metavar="PNG", help="default: <name of RUN>.png here")
+    parser.add_argument("--until", type=float, default=math.inf, metavar="SECONDS", help="compare until this time")
+    parser.add_argument(
+        "--output", type=Path, metavar="PNG", help="file to write; default: <name of RUN>.png in the current folder"
+    )
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
@@ -93,7 +95,7 @@ def _compare(
     comparison = compare(recording, other, pairs, options.align, by, (options.begin, options.until))
     for pair in comparison.pairs:
         if math.isnan(pair.rms):
-            message = f"'{pair.name}' was not recorded at the same time in both runs, as they are aligned"
+            message = f"'{pair.name}' was not recorded at the same time in both runs after they were aligned"
             diagnostics.warning("no-overlap", Span(str(options.run)), message)
     if all(math.isnan(pair.rms) for pair in comparison.pairs):
         return 0
@@ -127,7 +129,9 @@ def _pairs(recording: Recording, other: Recording, wanted: list[str], diagnostic
         common = {name: name for name in recording.signals if name in other.signals}
         if not common:
             hint = f"--signal a=b compares {', '.join(recording.signals)} with {', '.join(other.signals)}"
-            diagnostics.error("nothing-in-common", Span(str(other.path)), "no signal has one name in both", hint=hint)
+            diagnostics.error(
+                "nothing-in-common", Span(str(other.path)), "no signal has the same name in both runs", hint=hint
+            )
         return common
     pairs = {}
     for text in wanted:

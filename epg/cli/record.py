@@ -21,18 +21,24 @@ if TYPE_CHECKING:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("target", type=Path, metavar="TARGET", help="<name>.json of a target, or a build folder of one")
+    parser.add_argument("target", type=Path, metavar="TARGET", help="<name>.json of a target, or its build folder")
     parser.add_argument(
-        "--output", type=Path, default=Path(), metavar="FOLDER", help="where the files go; default: here"
+        "--output", type=Path, default=Path(), metavar="FOLDER", help="folder to write; default: the current folder"
     )
     parser.add_argument("--force", action="store_true", help="overwrite an earlier recording")
-    parser.add_argument("--duration", type=_seconds, metavar="SECONDS", help="default: until Ctrl-C")
-    parser.add_argument("--domain", type=int, choices=range(233), metavar="N", help="default: ROS_DOMAIN_ID, else 0")
-    parser.add_argument("--board", metavar="SERIAL", help="serial number of the board, for names that contain $serial")
-    parser.add_argument("--namespace", help="namespace of the node, if another one was set on its console")
-    parser.add_argument("--node", help="name of the node, likewise")
     parser.add_argument(
-        "--through", choices=("dds", "rclpy"), help="default: dds if CycloneDDS for Python is installed, else rclpy"
+        "--duration", type=_seconds, metavar="SECONDS", help="length of the recording; default: until Ctrl-C"
+    )
+    parser.add_argument(
+        "--domain", type=int, choices=range(233), metavar="N", help="ROS domain; default: ROS_DOMAIN_ID, else 0"
+    )
+    parser.add_argument("--board", metavar="SERIAL", help="serial number of the board, if names contain $serial")
+    parser.add_argument("--namespace", help="namespace of the node, if it was changed on the console")
+    parser.add_argument("--node", help="name of the node, if it was changed on the console")
+    parser.add_argument(
+        "--through",
+        choices=("dds", "rclpy"),
+        help="way to receive; default: dds if CycloneDDS for Python is installed, else rclpy",
     )
 
 
@@ -51,7 +57,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     assert robot is not None
     channels, unknown = channels_of(robot)
     for topic in unknown:
-        message = f"'{topic.name}' is not recorded: EPG does not know {topic.type}"
+        message = f"'{topic.name}' is not recorded: EPG does not support the type {topic.type}"
         diagnostics.warning("type-not-recorded", Span(str(robot.file)), message)
     source = open_source(options.through, [channel.subscription for channel in channels], _domain(options, robot))
     progress = Progress(quiet=options.json)
@@ -63,7 +69,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         progress.done()
     for one in heard:
         if one.messages == 0 and one.channel.file == TOPICS:  # setpoints need not be sent during a recording
-            message = f"nothing was heard on {one.channel.name}: {_reason(one)}"
+            message = f"no message was received on {one.channel.name}: {_reason(one)}"
             diagnostics.warning("nothing-heard", Span(str(robot.file)), message)
     if options.json:
         data = [
@@ -87,7 +93,7 @@ def _robot(options: argparse.Namespace, diagnostics: Diagnostics) -> Robot | Non
     robots = load_robots([options.target], diagnostics)
     diagnostics.stop_if_errors()
     if len(robots) != 1:
-        hint = "name one: " + ", ".join(str(robot.file) for robot in robots)
+        hint = "name one of them: " + ", ".join(str(robot.file) for robot in robots)
         diagnostics.error("several-targets", Span(str(options.target)), f"there are {len(robots)} targets", hint=hint)
         return None
     robot = robots[0]
@@ -99,8 +105,8 @@ def _robot(options: argparse.Namespace, diagnostics: Diagnostics) -> Robot | Non
     if options.node:
         robot = replace(robot, node=options.node)
     if robot.has_serial_in_names:
-        message = f"the node is '{robot.full_node}': which board is it?"
-        diagnostics.error("board-unknown", Span(str(robot.file)), message, hint="give its serial number with --board")
+        message = f"the name of the node, '{robot.full_node}', contains the serial number of its board"
+        diagnostics.error("board-unknown", Span(str(robot.file)), message, hint="add --board <serial number>")
     return robot
 
 
@@ -116,7 +122,7 @@ def _domain(options: argparse.Namespace, robot: Robot) -> int:
 
 def _reason(heard: Heard) -> str:
     if heard.publishers < 0:
-        return "its publisher offers best effort, the description says reliable"
+        return "its publisher is best effort, and the description of the target requires reliable"
     if heard.publishers == 0:
         return "there is no publisher in this domain"
     return "its publisher sent nothing"
@@ -156,5 +162,5 @@ class _Stop:
 def _seconds(text: str) -> float:
     value = float(text)
     if not 0.0 < value < 1e9:
-        raise argparse.ArgumentTypeError(f"{text} is no duration in seconds")
+        raise argparse.ArgumentTypeError(f"'{text}' is not a duration in seconds")
     return value

@@ -20,12 +20,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "names",
         nargs="*",
         metavar="NAME",
-        help=f"of which files: {', '.join(names)}; default: tcf, or all with --folder",
+        help=f"kinds of files: {', '.join(names)}; default: tcf, or all with --folder",
     )
     place = parser.add_mutually_exclusive_group()
     place.add_argument("-o", "--output", type=Path, metavar="FILE", help="file to write; default: standard output")
     place.add_argument(
-        "--folder", type=Path, metavar="FOLDER", help="write <name>.schema.json of each into this folder"
+        "--folder", type=Path, metavar="FOLDER", help="folder to write, with <name>.schema.json for each kind"
     )
 
 
@@ -39,7 +39,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     names = options.names or (known if options.folder else ("tcf",))
     unknown = [name for name in names if name not in known]
     if unknown or (len(names) > 1 and not options.folder):
-        problem = f"there are no files called '{unknown[0]}'" if unknown else "several schemas need --folder"
+        problem = f"there is no kind of file '{unknown[0]}'" if unknown else "--folder is needed for several schemas"
         sys.stderr.write(f"epg schema: {problem}; names: {', '.join(known)}\n")
         return 2
     own = user_roots()

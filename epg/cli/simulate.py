@@ -19,8 +19,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "executable", type=Path, metavar="EXECUTABLE", help="a host executable made by epg_add_executable()"
     )
     parser.add_argument("--scenario", required=True, type=Path, metavar="FILE", help="setpoints, events and limits")
-    parser.add_argument("--output", type=Path, default=Path(), metavar="FOLDER", help="where results go; default: here")
-    parser.add_argument("--realtime", action="store_true", help="in real time instead of simulated time")
+    parser.add_argument(
+        "--output",
+        type=Path,
+        default=Path(),
+        metavar="FOLDER",
+        help="folder for the results; default: the current folder",
+    )
+    parser.add_argument("--realtime", action="store_true", help="run in real time instead of simulated time")
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:

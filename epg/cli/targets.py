@@ -66,7 +66,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
             )
             for k in kinds
         ]
-        print(table(("kind", "ports", "what it is"), rows))
+        print(table(("kind", "ports", "short description"), rows))
         return 0
     lines = [
         (

@@ -82,7 +82,7 @@ def test_check_alone_and_together(robot: Path, capsys: pytest.CaptureFixture[str
 
 def test_check_says_what_was_not_checked(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Files that are given without the other files of their target are also checked, each by itself."""
-    by_itself = "no errors in each of them by itself; to check them together, add "
+    by_itself = "no errors in each file separately; to check them together, add "
     assert main(["check", "--plant", "model"]) == 0
     assert capsys.readouterr().out == f"{by_itself}--tcf, --model, --bindings, --plant-bindings\n"
     assert main(["check", "--tcf", "robot.tcf", "--model", "model"]) == 0
@@ -404,7 +404,7 @@ def test_bind_update_leaves_a_file_it_cannot_edit(robot: Path, capsys: pytest.Ca
     text = "version: 1\nmodel: Controller\noutputs:\n  ? log\n  : position\n"
     (robot / "bindings.yaml").write_text(text)
     assert main(["bind", "model", "robot.tcf", "-o", "bindings.yaml", "--update"]) == 1
-    assert capsys.readouterr().err.startswith("epg bind: bindings.yaml stays as it is: ")
+    assert capsys.readouterr().err.startswith("epg bind: bindings.yaml was not changed: ")
     assert (robot / "bindings.yaml").read_text() == text
 
 

@@ -139,7 +139,7 @@ def test_one_project(bare: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert {"arm_gcc", "pico_sdk", "freertos_kernel", "micro_cdr", "micro_xrce_dds_client"} <= set(items)
     (bare / "CMakeLists.txt").write_text("project(x C)\n")
     main(["doctor", "--project", str(bare)])
-    assert "no target was found" in capsys.readouterr().out
+    assert "no target with readable files was found" in capsys.readouterr().out
 
 
 def test_a_variable_that_leads_nowhere(
@@ -148,8 +148,8 @@ def test_a_variable_that_leads_nowhere(
     monkeypatch.setenv("PICO_SDK_PATH", str(bare))
     main(["doctor"])
     text = capsys.readouterr().out
-    assert "there is no pico_sdk_init.cmake there" in text
-    assert "correct environment variable PICO_SDK_PATH" in text
+    assert "there is no pico_sdk_init.cmake at this path" in text
+    assert "correct or unset the environment variable PICO_SDK_PATH" in text
 
 
 def test_variables_of_a_build_folder(bare: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -284,7 +284,7 @@ def test_files_are_written_once(tmp_path: Path, capsys: pytest.CaptureFixture[st
 
 def test_wrong_command_lines(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["schema", "tfc"]) == 2
-    assert "there are no files called 'tfc'" in capsys.readouterr().err
+    assert "there is no kind of file 'tfc'" in capsys.readouterr().err
     assert main(["schema", "tcf", "bindings"]) == 2
     assert main(["schema", "tcf", "-o", "x", "--folder", "y"]) == 2
 

@@ -156,7 +156,7 @@ def test_a_qos_that_does_not_fit_is_told(net: Network, tmp_path: Path, capsys: p
     robot = write_description(tmp_path / "robot.json")
     with publishing(net, {"rt/pan_publisher": "std_msgs/msg/Float64"}, BEST_EFFORT):
         assert record(robot, "--output", tmp_path, "--duration", "1") == 0
-    assert "nothing was heard on /pan_publisher: its publisher offers best effort" in capsys.readouterr().err
+    assert "no message was received on /pan_publisher: its publisher is best effort" in capsys.readouterr().err
 
 
 def test_names_of_a_board(net: Network, tmp_path: Path) -> None:

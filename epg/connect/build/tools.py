@@ -66,7 +66,7 @@ def missing(
         tool = finding.tool
         if finding.status == "wrong":
             message = f"the {finding.source} leads to no {tool.title}: {finding.path}"
-            problems.append(MissingTool(tool.name, tool.title, message, f"correct {finding.source}, or leave it unset"))
+            problems.append(MissingTool(tool.name, tool.title, message, f"correct or unset the {finding.source}"))
         elif finding.status in ("old", "missing"):
             message = f"{tool.title} was not found"
             if finding.status == "old":
