@@ -4,8 +4,10 @@
 #   epg_add_target(<name> TCF <file> MODEL <folder> BINDINGS <file> ...)   library EPG::<name>: model, tables, runtime
 #   epg_add_executable(<executable> EPG::<name>)                           firmware with EPG's own main()
 #   epg_add_model(<name> MODEL <folder> [INSTANCES <n>])                   library EPG::<name>: a model alone
-#   epg_import_pico_sdk(), epg_use_versions(...)                           finds the Pico SDK; chooses its version
+#   epg_use_versions(<SDK> <version> ...)                                  chooses the versions of the project's SDKs
 #   epg_add_simulation(<name> EXECUTABLE <host executable> SCENARIO <file>) target that runs and judges a simulation
+#
+# The files targets/families/<family>/sdk.cmake define the functions that find the SDKs of families of chips.
 #
 # A project may find this package again in each of its directories.  The package therefore only defines functions and
 # macros.  They make common libraries on first use, guarded by if(NOT TARGET).  docs/cmake.md describes the functions.
@@ -28,5 +30,13 @@ include("${CMAKE_CURRENT_LIST_DIR}/EPGModel.cmake")
 include("${CMAKE_CURRENT_LIST_DIR}/EPGConnect.cmake")
 include("${CMAKE_CURRENT_LIST_DIR}/EPGTarget.cmake")
 include("${CMAKE_CURRENT_LIST_DIR}/EPGSimulation.cmake")
-include("${CMAKE_CURRENT_LIST_DIR}/../targets/libraries/pico_quadrature/library.cmake")
+# Libraries, and what families of chips define for projects: functions that find an SDK before project().  The user's
+# folders are loaded last, so a user's family may define a function of EPG's anew.
+_epg_user_folders(_epg_roots)
+foreach(_epg_root "${CMAKE_CURRENT_LIST_DIR}/../targets" ${_epg_roots})
+  file(GLOB _epg_files "${_epg_root}/libraries/*/library.cmake" "${_epg_root}/families/*/sdk.cmake")
+  foreach(_epg_file IN LISTS _epg_files)
+    include("${_epg_file}")
+  endforeach()
+endforeach()
 cmake_policy(POP)

@@ -3,17 +3,13 @@
 #
 # A command is written on a separate line that begins with blanks: CMake does not wrap such lines of a message.
 
-# _epg_stop_without_parts()
+# _epg_stop_without_parts(<tool>...)
 #
-# Stops with a list of everything that is missing: for the Pico SDK, and for the targets that CMakeLists.txt will add
-# after the SDK is found.
+# Stops with a list of everything that is missing: of the tools named here, and of those that the targets need which
+# CMakeLists.txt will add after an SDK is found.
 function(_epg_stop_without_parts)
-  set(tools arm_gcc pico_sdk)
-  if(NOT picotool_DIR AND NOT PICO_NO_PICOTOOL)
-    list(APPEND tools picotool)
-  endif()
   _epg_tools_of_project(needed)
-  list(APPEND tools ${needed})
+  set(tools ${ARGN} ${needed})
   list(REMOVE_DUPLICATES tools)
   _epg_problems(missing text ${tools})
   message(FATAL_ERROR "EPG: this computer lacks parts that the project is built with.\n${text}Then configure again.")

@@ -2,8 +2,9 @@
 # epg_use_versions([EPG <version>] [PICO_SDK <version>] [ARM_GCC <version>] [PICOTOOL <version>]
 #                  [FREERTOS_KERNEL <version>])
 #
-# Fixes the versions of a project's tools.  It must be called before epg_import_pico_sdk().  If several versions of a
-# tool are installed, the given one is taken.  If another version would be taken, the configure run stops with an error.
+# Fixes the versions of a project's tools.  It must be called before the functions that find SDKs.  If several versions
+# of a tool are installed, the given one is taken.  If another version would be taken, the configure run stops with an
+# error.
 #
 #   EPG              version of EPG
 #   PICO_SDK         version of the Raspberry Pi Pico SDK
@@ -124,7 +125,7 @@ endfunction()
 #   <result>   variable that is set to TRUE if the tool in <folder> has the version <wanted>, else to FALSE
 #   <folder>   folder of the tool; a folder in its path that is called <wanted> is enough
 #   <version>  version that the tool states, or ""
-#   <wanted>   wanted version.  Only the numbers at its begin are compared with <version>: 2.2.0-a4 is a release of the
+#   <wanted>   wanted version.  Only the numbers at its beginning are compared with <version>: 2.2.0-a4 is a release of the
 #              tools around picotool, and contains picotool 2.2.0.
 function(_epg_is_version result folder version wanted)
   string(REGEX MATCH "^[0-9.]+" numbers "${wanted}")

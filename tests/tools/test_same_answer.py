@@ -20,7 +20,8 @@ from epg.tools.remedy import command_for
 from epg.tools.tools import load_tools
 
 ROOT = Path(__file__).resolve().parents[2]
-FILES = ("EPGPython", "EPGSdk", "EPGVersions", "EPGMissing", "EPGFetch")
+FILES = [f"cmake/EPG{name}.cmake" for name in ("Python", "Sdk", "Versions", "Missing", "Fetch")]
+FILES.append("targets/families/rp2/sdk.cmake")
 THING = {
     "api": 1,
     "tool": "thing",
@@ -120,7 +121,7 @@ def cmake_says(
     call: str, data: Path, environment: Mapping[str, str], cmake: Mapping[str, str], folder: Path
 ) -> tuple[str, str, str]:
     """Folder, version and problem that a function of EPG's CMake package returns."""
-    includes = "".join(f'include("{ROOT.as_posix()}/cmake/{name}.cmake")\n' for name in FILES)
+    includes = "".join(f'include("{ROOT.as_posix()}/{name}")\n' for name in FILES)
     script = folder / "find.cmake"
     script.write_text(
         f"{includes}function(_epg_data_folder result)\n"

@@ -11,8 +11,8 @@
 #      program epg;
 #   5. CMake's own search.
 #
-# It works before and after project().  It also works with a toolchain file that confines find_package() to a sysroot,
-# such as the Pico SDK's.  The place of EPG is kept in CMake's cache.
+# It works before and after project().  It also works with a toolchain file that confines find_package() to a sysroot, as
+# those of microcontrollers do.  The place of EPG is kept in CMake's cache.
 
 if(COMMAND epg_add_target) # a project around this one has found EPG already
   return()

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: Apache-2.0
+# Finds the Raspberry Pi Pico SDK.  EPG's CMake package loads this file.
+#
+# epg_import_pico_sdk()
+#
+# Finds the Pico SDK, the Arm toolchain and picotool, and includes the SDK.  It must be called before project(), in
+# place of the SDK's pico_sdk_import.cmake, and does not need PICO_SDK_PATH.  After it, as always with the Pico SDK:
+# project(... C CXX ASM) and pico_sdk_init().  It is a macro, because the SDK's file sets variables in the caller.
+#
+# If a part is missing, it stops with an error that names all missing parts of the project.
+
+macro(epg_import_pico_sdk)
+  _epg_find_compiler(_epg_toolchain)
+  _epg_find_sdk(_epg_sdk pico_sdk)
+  if(_epg_toolchain_PROBLEM OR _epg_sdk_PROBLEM)
+    set(_epg_parts arm_gcc pico_sdk)
+    if(NOT picotool_DIR AND NOT PICO_NO_PICOTOOL)
+      list(APPEND _epg_parts picotool)
+    endif()
+    _epg_stop_without_parts(${_epg_parts})
+  endif()
+  if(_epg_toolchain)
+    set(PICO_TOOLCHAIN_PATH "${_epg_toolchain}" CACHE PATH "Folder of the Arm toolchain")
+  endif()
+  _epg_find_picotool()
+  set(PICO_SDK_PATH "${_epg_sdk}" CACHE PATH "Folder of the Pico SDK")
+  include("${_epg_sdk}/pico_sdk_init.cmake")
+endmacro()
+
+# _epg_find_picotool()
+#
+# Sets picotool_DIR to the folder of an installed picotool.  Without one, the SDK downloads and builds picotool, which
+# needs the network.  Stops with an error if FETCHCONTENT_FULLY_DISCONNECTED forbids that.
+macro(_epg_find_picotool)
+  if(NOT picotool_DIR AND NOT PICO_NO_PICOTOOL AND NOT TARGET picotool)
+    _epg_find_sdk(_epg_picotool picotool)
+    if(_epg_picotool)
+      set(picotool_DIR "${_epg_picotool}" CACHE PATH "Folder of picotoolConfig.cmake")
+    elseif(FETCHCONTENT_FULLY_DISCONNECTED)
+      message(FATAL_ERROR "${_epg_picotool_PROBLEM}\nOr configure with -DPICO_NO_PICOTOOL=1: then there is no .uf2, only .elf, .hex and .bin.")
+    endif()
+  endif()
+endmacro()
+
+# _epg_find_compiler(<result>)
+#
+# Finds the Arm toolchain.
+#   <result>          variable that is set to its folder; "" if it is on the PATH, if PICO_TOOLCHAIN_PATH is set, or if
+#                     there is none
+#   <result>_PROBLEM  is set to "", or, if there is none, to a sentence and the command that installs it
+function(_epg_find_compiler result)
+  set(${result} "" PARENT_SCOPE)
+  set(${result}_PROBLEM "" PARENT_SCOPE)
+  if(PICO_TOOLCHAIN_PATH OR NOT "$ENV{PICO_TOOLCHAIN_PATH}" STREQUAL "")
+    return()
+  endif()
+  _epg_tool_json(json arm_gcc)
+  _epg_json_list(programs "${json}" programs)
+  find_program(EPG_ARM_GCC NAMES ${programs} NO_CMAKE_FIND_ROOT_PATH)
+  mark_as_advanced(EPG_ARM_GCC)
+  if(EPG_ARM_GCC)
+    return()
+  endif()
+  _epg_candidates(folders arm_gcc "${json}")
+  if(folders)
+    list(GET folders 0 found)
+    set(${result} "${found}" PARENT_SCOPE)
+    return()
+  endif()
+  string(JSON title GET "${json}" title)
+  _epg_remedy(remedy "${json}")
+  set(${result}_PROBLEM "${title} was not found. ${remedy}" PARENT_SCOPE)
+endfunction()
