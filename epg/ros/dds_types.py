@@ -1,108 +1,44 @@
 # SPDX-License-Identifier: Apache-2.0
 """The ROS 2 messages that targets use, as types of CycloneDDS with the names that ROS 2 gives them in DDS."""
 
-# mypy: disable-error-code="misc,call-arg,valid-type,no-any-unimported"
-# cyclonedds has no types for mypy.  This file must not have "from __future__ import annotations", because CycloneDDS
-# needs the annotations as types and not as text.
+from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import Any
 
 import cyclonedds.idl.annotations as annotate
-from cyclonedds.idl import IdlStruct
+from cyclonedds.idl import IdlStruct, make_idl_struct
 from cyclonedds.idl.types import float32, float64, int32, sequence, uint32
 
 
-@dataclass
-@annotate.final
-class Float64(IdlStruct, typename="std_msgs::msg::dds_::Float64_"):
-    data: float64
+def _message(package: str, name: str, /, **fields: Any) -> Any:
+    """The type ``name`` of a package of ROS 2, with its fields in their order."""
+    return annotate.final(make_idl_struct(name, f"{package}::msg::dds_::{name}_", fields))
 
 
-@dataclass
-@annotate.final
-class Float32(IdlStruct, typename="std_msgs::msg::dds_::Float32_"):
-    data: float32
+Float64 = _message("std_msgs", "Float64", data=float64)
+Float32 = _message("std_msgs", "Float32", data=float32)
+Int32 = _message("std_msgs", "Int32", data=int32)
+Bool = _message("std_msgs", "Bool", data=bool)
 
+MultiArrayDimension = _message("std_msgs", "MultiArrayDimension", label=str, size=uint32, stride=uint32)
+MultiArrayLayout = _message("std_msgs", "MultiArrayLayout", dim=sequence[MultiArrayDimension], data_offset=uint32)
+Float64MultiArray = _message("std_msgs", "Float64MultiArray", layout=MultiArrayLayout, data=sequence[float64])
 
-@dataclass
-@annotate.final
-class Int32(IdlStruct, typename="std_msgs::msg::dds_::Int32_"):
-    data: int32
+Time = _message("builtin_interfaces", "Time", sec=int32, nanosec=uint32)
+Header = _message("std_msgs", "Header", stamp=Time, frame_id=str)
+JointState = _message(
+    "sensor_msgs",
+    "JointState",
+    header=Header,
+    name=sequence[str],
+    position=sequence[float64],
+    velocity=sequence[float64],
+    effort=sequence[float64],
+)
 
-
-@dataclass
-@annotate.final
-class Bool(IdlStruct, typename="std_msgs::msg::dds_::Bool_"):
-    data: bool
-
-
-@dataclass
-@annotate.final
-class MultiArrayDimension(IdlStruct, typename="std_msgs::msg::dds_::MultiArrayDimension_"):
-    label: str
-    size: uint32
-    stride: uint32
-
-
-@dataclass
-@annotate.final
-class MultiArrayLayout(IdlStruct, typename="std_msgs::msg::dds_::MultiArrayLayout_"):
-    dim: sequence[MultiArrayDimension]
-    data_offset: uint32
-
-
-@dataclass
-@annotate.final
-class Float64MultiArray(IdlStruct, typename="std_msgs::msg::dds_::Float64MultiArray_"):
-    layout: MultiArrayLayout
-    data: sequence[float64]
-
-
-@dataclass
-@annotate.final
-class Time(IdlStruct, typename="builtin_interfaces::msg::dds_::Time_"):
-    sec: int32
-    nanosec: uint32
-
-
-@dataclass
-@annotate.final
-class Header(IdlStruct, typename="std_msgs::msg::dds_::Header_"):
-    stamp: Time
-    frame_id: str
-
-
-@dataclass
-@annotate.final
-class JointState(IdlStruct, typename="sensor_msgs::msg::dds_::JointState_"):
-    header: Header
-    name: sequence[str]
-    position: sequence[float64]
-    velocity: sequence[float64]
-    effort: sequence[float64]
-
-
-@dataclass
-@annotate.final
-class Vector3(IdlStruct, typename="geometry_msgs::msg::dds_::Vector3_"):
-    x: float64
-    y: float64
-    z: float64
-
-
-@dataclass
-@annotate.final
-class Twist(IdlStruct, typename="geometry_msgs::msg::dds_::Twist_"):
-    linear: Vector3
-    angular: Vector3
-
-
-@dataclass
-@annotate.final
-class TwistStamped(IdlStruct, typename="geometry_msgs::msg::dds_::TwistStamped_"):
-    header: Header
-    twist: Twist
-
+Vector3 = _message("geometry_msgs", "Vector3", x=float64, y=float64, z=float64)
+Twist = _message("geometry_msgs", "Twist", linear=Vector3, angular=Vector3)
+TwistStamped = _message("geometry_msgs", "TwistStamped", header=Header, twist=Twist)
 
 TYPES: dict[str, type[IdlStruct]] = {
     "std_msgs/msg/Float64": Float64,
