@@ -14,8 +14,9 @@ from typing import Any
 
 Schema = Mapping[str, Any]
 
+# "then" and "else" are part of "if".
 _ANNOTATIONS = frozenset(
-    ("$schema", "$id", "$defs", "$comment", "title", "description", "default", "examples", "deprecated")
+    ("$schema", "$id", "$defs", "$comment", "title", "description", "default", "examples", "deprecated", "then", "else")
 )
 
 
@@ -148,6 +149,11 @@ def _one_of(value: object, wanted: Any, schema: Schema, root: Schema, partial: b
     return sum(_fits(value, option, root, False) for option in wanted) == 1
 
 
+def _if(value: object, wanted: Any, schema: Schema, root: Schema, partial: bool) -> bool:
+    branch = "then" if _fits(value, wanted, root, False) else "else"
+    return _fits(value, schema.get(branch, True), root, partial)
+
+
 def _reference(value: object, wanted: Any, schema: Schema, root: Schema, partial: bool) -> bool:
     name = str(wanted).removeprefix("#/$defs/")
     if "/" in name or name not in root.get("$defs", {}):
@@ -178,5 +184,6 @@ _KEYWORDS: Mapping[str, Callable[..., bool]] = {
     "items": _items,
     "anyOf": _any_of,
     "oneOf": _one_of,
+    "if": _if,
     "$ref": _reference,
 }

@@ -20,6 +20,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Mapping
+from fractions import Fraction
 from functools import cache
 from pathlib import Path as FilePath
 from typing import Any
@@ -70,6 +71,19 @@ def validate(node: YamlNode, schema: Mapping[str, Any], diagnostics: Diagnostics
     return good
 
 
+def quantity_of(node: YamlNode, dimension: str, diagnostics: Diagnostics) -> Fraction | float | None:
+    """The quantity of ``node`` in the base unit of its dimension; None after reporting that it is not one."""
+    try:
+        return parse_quantity(node.value, dimension)
+    except QuantityError as problem:
+        diagnostics.error(_quantity_id(problem), node.span, str(problem), hint=problem.hint)
+        return None
+
+
+def _quantity_id(problem: QuantityError) -> str:
+    return "wrong-unit" if "unit" in str(problem) else "wrong-quantity"
+
+
 def extended_from(node: YamlNode) -> list[Note]:
     """A note for each ``extends`` that leads to the file in which ``node`` is written."""
     return [Note("extended from here", span) for span in node.origins]
@@ -89,7 +103,8 @@ def _report(error: Any, root: YamlNode, diagnostics: Diagnostics) -> None:
             diagnostics.error("unknown-key", node.key_span(str(error.instance)), message, hint=hint, notes=notes)
             return
         message = f"'{error.instance}' {schema.get('x-message', 'is no valid name')}"
-        diagnostics.error("invalid-name", node.key_span(str(error.instance)), message, notes=notes)
+        hint = str(schema.get("x-hint", ""))
+        diagnostics.error("invalid-name", node.key_span(str(error.instance)), message, hint=hint, notes=notes)
         return
     if keyword in ("anyOf", "oneOf"):
         fitting = _fitting_alternative(error)
@@ -133,7 +148,7 @@ def _explain(keyword: str, error: Any, schema: Mapping[str, Any]) -> tuple[str, 
     if "x-quantity" in schema and keyword in ("type", "pattern", "anyOf", "oneOf"):
         problem = _quantity_problem(value, schema["x-quantity"])
         if problem is not None:
-            return "wrong-unit" if "unit" in str(problem) else "wrong-quantity", str(problem), problem.hint
+            return _quantity_id(problem), str(problem), problem.hint
         if keyword == "pattern":
             return "out-of-range", f"{_shown(value)} has a sign", "write the number without a sign"
     if "x-message" in schema and keyword in ("pattern", "anyOf", "oneOf", "not"):

@@ -28,7 +28,7 @@ KEYWORDS = set(
     "$schema $id $ref $defs title description default examples type enum const properties propertyNames"
     " additionalProperties required dependentRequired minProperties maxProperties items minItems maxItems uniqueItems"
     " pattern minLength maxLength minimum maximum exclusiveMinimum exclusiveMaximum"
-    " allOf anyOf oneOf not if then".split()
+    " allOf anyOf oneOf not if then else".split()
 )
 """The keywords of draft 2020-12 that the YAML and JSON extensions of editors support."""
 
@@ -63,7 +63,7 @@ def parts(value: Any) -> Iterator[dict[str, Any]]:
         elif key in ("allOf", "anyOf", "oneOf"):
             for inner in child:
                 yield from parts(inner)
-        elif key in ("items", "additionalProperties", "propertyNames", "not", "if", "then"):
+        elif key in ("items", "additionalProperties", "propertyNames", "not", "if", "then", "else"):
             yield from parts(child)
 
 

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import io
-import json
 import struct
 import time
 import tracemalloc
@@ -22,15 +21,13 @@ from tests.models.exports import Export
 from tests.models.fmus import FMU2, FMU3, changed, pack
 from tests.models.harness import HAVE_COMPILER, build, load, loaded, run_wrapper
 
-SCHEMA = Path(__file__).resolve().parents[2] / "schemas" / "model.schema.json"
-
 
 def only_error(path: Path) -> tuple[str, str]:
     model, diagnostics = load(path)
     assert model is None
     errors = [item for item in diagnostics if item.severity == "error"]
     assert len(errors) == 1, [item.message for item in errors]
-    assert errors[0].hint or errors[0].id == "wrong-type"
+    assert errors[0].hint or errors[0].id in ("wrong-type", "wrong-value")
     return errors[0].id, errors[0].message
 
 
@@ -213,10 +210,10 @@ def test_model_yaml_says_what_the_fmu_does_not(tmp_path: Path) -> None:
 
 WRONG = [
     ({"fmu": "a.fmu"}, "file-not-found"),
-    ({"fmu": ""}, "wrong-type"),
+    ({"fmu": ""}, "wrong-value"),
     ({"fmu": ["servo.fmu"]}, "wrong-type"),
-    ({"heap": 2048}, "wrong-unit"),
-    ({"heap": "2 kB"}, "wrong-unit"),
+    ({"heap": 2048}, "wrong-type"),
+    ({"heap": "2 kB"}, "wrong-value"),
     ({"heap": "1 B"}, "out-of-range"),
     ({"heap": "65 MiB"}, "out-of-range"),
     ({"step": "1"}, "wrong-unit"),
@@ -232,15 +229,9 @@ WRONG = [
 
 @pytest.mark.parametrize(("change", "id"), WRONG, ids=[f"{next(iter(c))}-{n}" for n, (c, _) in enumerate(WRONG)])
 def test_wrong_model_yaml(change: dict[str, object], id: str, tmp_path: Path) -> None:
-    from jsonschema import Draft202012Validator
-
     pack(FMU2, tmp_path / "model/servo.fmu")
     document = {"fmu": "servo.fmu", **change}
     assert only_error(settings(tmp_path / "model", **document))[0] == id
-    validator = Draft202012Validator(json.loads(SCHEMA.read_text()))
-    assert not list(validator.iter_errors({"version": 1, "fmu": "servo.fmu", "step": "1 ms", "heap": "4 KiB"}))
-    seen = bool(list(validator.iter_errors({"version": 1, **document})))
-    assert seen or id in ("file-not-found", "out-of-range", "wrong-value")
 
 
 def test_the_step_must_suit_20sim(tmp_path: Path) -> None:
