@@ -85,24 +85,22 @@ def assignments(file: SourceFile, start: int = 0, end: int | None = None) -> Ite
         )
 
 
-def input_lines(file: SourceFile, vector: str, start: int = 0, end: int | None = None) -> list[PortLine]:
-    """The lines ``array[i] = u[k];``.  ``vector`` is the name of ``u`` in the code."""
+def port_lines(file: SourceFile, direction: str, vector: str, start: int = 0, end: int | None = None) -> list[PortLine]:
+    """The lines ``array[i] = u[k];`` of inputs, or ``y[k] = array[i];`` of outputs.
+
+    ``direction`` is "input" or "output".  ``vector`` is the name of ``u`` or ``y`` in the code.
+    """
+    is_output = direction == "output"
     result = []
     for line in assignments(file, start, end):
-        elements = [match for match in _ELEMENT.finditer(line.value) if match[1] == vector]
-        if len(elements) == 1 and line.array != vector:
-            result.append(PortLine(line.name, line.unit, int(elements[0][2]), line.array, line.index, line.span))
-    return result
-
-
-def output_lines(file: SourceFile, vector: str, start: int = 0, end: int | None = None) -> list[PortLine]:
-    """The lines ``y[k] = array[i];``.  ``vector`` is the name of ``y`` in the code."""
-    result = []
-    for line in assignments(file, start, end):
-        elements = list(_ELEMENT.finditer(line.value))
-        if line.array == vector and len(elements) == 1:
-            element = elements[0]
-            result.append(PortLine(line.name, line.unit, line.index, element[1], int(element[2]), line.span))
+        elements = [match for match in _ELEMENT.finditer(line.value) if is_output or match[1] == vector]
+        if len(elements) != 1 or (line.array == vector) != is_output:
+            continue
+        array, index = elements[0][1], int(elements[0][2])
+        if is_output:
+            result.append(PortLine(line.name, line.unit, line.index, array, index, line.span))
+        else:
+            result.append(PortLine(line.name, line.unit, index, line.array, line.index, line.span))
     return result
 
 

@@ -21,19 +21,16 @@ from epg.models.assignments import (
     PortLine,
     assignments,
     exact_number,
-    finite,
-    input_lines,
-    is_step,
     listed_names,
-    output_lines,
 )
 from epg.models.c_code import Code, Function, integer_value, typedefs
 from epg.models.completeness import check_variables
-from epg.models.features import check_features, check_method, check_tokens
+from epg.models.export import ExportReader, parameters_of
+from epg.models.features import check_features, check_method
 from epg.models.folders import source_files
 from epg.models.global_variables import base_type, global_variables
 from epg.models.link import Linked, link
-from epg.models.metadata import Metadata, cross_check, find_metadata
+from epg.models.metadata import find_metadata
 from epg.models.model import Model, Port
 from epg.models.ports import check_identifiers, make_parameters, make_ports
 from epg.source import Span
@@ -42,7 +39,6 @@ SUFFIXES = (".c",)
 _ENTRY = re.compile(r"\w*?(Initialize|Calculate|Terminate)Submodel\w*")
 _METHODS = re.compile(r"(Discrete|Euler|RungeKutta2|RungeKutta4|MeBDFi|VodeAdams|BDF|AdamsBashford2?|Vode\w*)")
 _SCALAR = re.compile(r"(?<!\w)((?:\w{1,255}->)?\w{1,255})\s{0,80}=(?!=)\s{0,80}([^=;]+);", re.ASCII)
-_MOST_PARAMETERS = 16  # parameters of a function that are parsed; functions of exports have four
 _MEMORY_COUNTS = (
     "constants_count",
     "parameter_count",
@@ -77,14 +73,9 @@ def load_c_function(main: Code, diagnostics: Diagnostics) -> Model | None:
     return _Importer(linked, diagnostics).load() if diagnostics.error_count == before else None
 
 
-class _Importer:
-    """Reads the model from the linked files of one export."""
-
+class _Importer(ExportReader):
     def __init__(self, linked: Linked, diagnostics: Diagnostics) -> None:
-        self.linked = linked
-        self.diagnostics = diagnostics
-        self.main = linked.main
-        self.file = linked.main.file
+        super().__init__(linked, diagnostics)
         self.entries = entry_points(linked.main)
         self.whole = self.file.span(self.entries["Calculate"].start, self.entries["Calculate"].start + 1)
         self.macros = linked.macros()
@@ -92,7 +83,7 @@ class _Importer:
         self.types: dict[str, str] = {
             name: base.removeprefix("const ") for code in linked.all for name, base in typedefs(code)
         }
-        self.metadata: Metadata = find_metadata(self.file.path, self._name(), diagnostics)
+        self.metadata = find_metadata(self.file.path, self._name(), diagnostics)
         self.instance_type = self._instance_type()
 
     def load(self) -> Model | None:
@@ -117,12 +108,11 @@ class _Importer:
         listed = [name for code in self.linked.units for name, _ in listed_names(code.file, "parameter")]
         parameters, places = make_parameters([line for _, line in settings], listed or token_parameters, ())
         holders = {id(line): code.file.path for code, line in settings}
-        finish = self._scalar("finish_time") if not self.instance_type else self.metadata.finish
         model = Model(
             name=self._name(),
             origin="20-sim C function",
             language="c",
-            version=self._version(),
+            version=self.version(),
             method=method,
             step=step,
             inputs=ports[0],
@@ -140,14 +130,10 @@ class _Importer:
                     for group in places
                 ),
             ),
-            finish_time=finite(finish),
             searched=self.linked.searched,
             twins=self.linked.twins,
         )
-        mine = self.diagnostics.error_count
-        if self.metadata.tokens and cross_check(model, self._prefix(), self.metadata, self.diagnostics):
-            check_tokens(self.metadata.tokens, self.diagnostics)
-        return model if self.diagnostics.error_count == mine else None
+        return model if self.agrees(model, self._prefix()) else None
 
     def _ports(self, kind: str, lines: list[PortLine]) -> tuple[Port, ...]:
         """The ports of ``kind`` "input" or "output".  Their names come from the sources, else from the tokens."""
@@ -221,18 +207,7 @@ class _Importer:
     # names ----------------------------------------------------------------------------------------------------------
 
     def _name(self) -> str:
-        for code in (self.main, *self.linked.units, *self.linked.headers):
-            match = re.search(r"^[ \t]*\*[ \t]*subm:([^\n]*)$", code.file.text[:4000], re.MULTILINE)
-            if match and match[1].strip():
-                return one_line(match[1].strip())
-        return one_line(self.file.path.parent.name)
-
-    def _version(self) -> str:
-        for code in (self.main, *self.linked.units, *self.linked.headers):
-            match = re.search(r"^[ \t]*\*[ \t]*build:[ \t]*([\d.]+)", code.file.text[:4000], re.MULTILINE)
-            if match:
-                return match[1]
-        return self.metadata.version
+        return one_line(self.heading("subm", r"[^\n]*") or self.file.path.parent.name)
 
     def _step_name(self) -> str:
         """The name of the variable or macro with the step size.  It has the prefix and the suffix of all names."""
@@ -280,7 +255,7 @@ class _Importer:
         """
         body = self.main.body(function) if function in self.main.functions else ""
         arguments: list[str] = []
-        for parameter in function.parameters.split(",")[:_MOST_PARAMETERS]:
+        for parameter in parameters_of(function):
             name = re.sub(r"\[.*", "", parameter).strip()
             name = name.split("*")[-1].split()[-1] if name.split() else ""
             if not name or name == "void":
@@ -345,13 +320,11 @@ class _Importer:
 
     # values ---------------------------------------------------------------------------------------------------------
 
-    def _scalar(self, word: str) -> Fraction | None:
-        """The initial value of the variable ``<prefix><word><suffix>``, or the value that the FMI functions set."""
-        place = self._scalar_place(word)
-        return exact_number(place[1]) if place else None
-
     def _scalar_place(self, word: str) -> tuple[Span, str] | None:
-        """The place and the text of the value of :meth:`_scalar`."""
+        """The place and the text of the initial value of the variable ``<prefix><word><suffix>``.
+
+        If it has none, the value that the FMI functions set.
+        """
         name = self._variable_name(word)
         if name:
             code, variable = self.variables[name]
@@ -370,18 +343,8 @@ class _Importer:
         return [file for file in files if file is not None]
 
     def _step(self) -> Fraction | None:
-        place = self._scalar_place("step_size")
-        value = exact_number(place[1]) if place else None
-        if not is_step(value):
-            span = place[0] if place else self.whole
-            message = "the model has no step size"
-            if place:
-                message = f"the step size '{place[1][:80]}' is not a positive number"
-            self.diagnostics.error(
-                "model-step", span, message, hint=f"the sources set it as '{self._step_name()} = 0.001;'"
-            )
-            return None
-        return value
+        hint = f"the sources set it as '{self._step_name()} = 0.001;'"
+        return self.checked_step(self._scalar_place("step_size"), hint)
 
     def _stated_count(self, word: str) -> int | None:
         for name, (_, variable) in sorted(self.variables.items()):
@@ -431,8 +394,6 @@ class _Importer:
 
     def _port_lines(self, roots: Iterable[Function]) -> tuple[list[PortLine], list[PortLine]]:
         """The lines that connect inputs and outputs with the model.  Without vectors, they are in the metadata."""
-        inputs: list[PortLine] = []
-        outputs: list[PortLine] = []
         if self._vectorless():
             found = self.metadata.port_elements(self._fmi_array())
             if found is None:
@@ -444,13 +405,8 @@ class _Importer:
                 )
                 return [], []
             return found
-        for code, function in self.linked.reachable(roots):
-            for parameter in function.parameters.split(",")[:_MOST_PARAMETERS]:
-                match = re.search(r"[* ](\w+) ?(?:\[ ?\])?$", " ".join(parameter.split()))
-                if match and ("*" in parameter or "[" in parameter):
-                    inputs += input_lines(code.file, match[1], function.body_start, function.body_end)
-                    outputs += output_lines(code.file, match[1], function.body_start, function.body_end)
-        return inputs, outputs
+        reachable = self.linked.reachable(roots)
+        return self.port_lines(reachable, "input"), self.port_lines(reachable, "output")
 
     def _fmi_array(self) -> str:
         """The name of the array in which a value reference is an index."""

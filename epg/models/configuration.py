@@ -28,8 +28,6 @@ class ConfiguredPort:
     type: str  # "real", "integer" or "boolean"
     unit: str
     description: str
-    rows: int
-    columns: int
     array: str
     index: int
     span: Span
@@ -37,13 +35,11 @@ class ConfiguredPort:
 
 @dataclass(frozen=True)
 class Configuration:
-    """The data of one file.  ``step`` and ``finish`` are texts in seconds, or empty."""
+    """The data of one file.  ``step`` is a text in seconds, or empty."""
 
     path: Path
-    name: str
     step: str
     step_span: Span
-    finish: str
     ports: tuple[ConfiguredPort, ...]
 
     @cached_property
@@ -81,10 +77,8 @@ def load_configuration(path: Path, diagnostics: Diagnostics) -> Configuration | 
     step = root.find("run", "stepSize")
     return Configuration(
         path,
-        root.text_of("general", "name"),
         root.text_of("run", "stepSize"),
         step.span if step else root.span,
-        root.text_of("run", "finishTime"),
         tuple(port for port in ports if port is not None),
     )
 
@@ -106,16 +100,12 @@ def load_model_description(path: Path, diagnostics: Diagnostics) -> Configuratio
         unit = element.children[0].attributes.get("unit", "") if element.children else ""
         name = element.attributes.get("name", "")
         description = element.attributes.get("description", "")
-        ports.append(
-            ConfiguredPort(name, direction, _type(kind), unit, description, 1, 1, "", int(reference), element.span)
-        )
+        ports.append(ConfiguredPort(name, direction, _type(kind), unit, description, "", int(reference), element.span))
     attributes = experiment.attributes if experiment else {}
     return Configuration(
         path,
-        root.attributes.get("modelName", ""),
         attributes.get("stepSize", ""),
         experiment.span if experiment else root.span,
-        attributes.get("stopTime", ""),
         tuple(ports),
     )
 
@@ -131,8 +121,6 @@ def _port(element: Element) -> ConfiguredPort | None:
         _type(element.text_of("type")),
         element.text_of("physical", "unit", "name"),
         element.text_of("description"),
-        _positive(element.text_of("size", "rows")),
-        _positive(element.text_of("size", "columns")),
         element.text_of("storage", "name"),
         int(index) if _INDEX.fullmatch(index) else -1,
         element.span,
@@ -141,7 +129,3 @@ def _port(element: Element) -> ConfiguredPort | None:
 
 def _type(word: str) -> str:
     return word if word in ("integer", "boolean") else "real"
-
-
-def _positive(text: str) -> int:
-    return int(text) if re.fullmatch(r"[1-9][0-9]{0,5}", text) else 1

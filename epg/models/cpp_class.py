@@ -12,24 +12,18 @@ from epg.models import details
 from epg.models.assignments import (
     Assignment,
     assignments,
-    exact_number,
-    finite,
-    input_lines,
-    is_step,
-    output_lines,
 )
-from epg.models.c_code import Code, Function, integer_value, typedefs
+from epg.models.c_code import Code, integer_value, typedefs
 from epg.models.completeness import check_methods
-from epg.models.features import FIXED_STEP_METHODS, check_features, check_method, check_tokens
+from epg.models.export import ExportReader
+from epg.models.features import FIXED_STEP_METHODS, check_features, check_method
 from epg.models.link import Linked, link
-from epg.models.metadata import cross_check, find_metadata
+from epg.models.metadata import find_metadata
 from epg.models.model import Model, Port
 from epg.models.ports import check_identifiers, make_parameters, make_ports
 from epg.source import Span
 
 SUFFIXES = (".cpp", ".cc", ".cxx")
-_MOST_PARAMETERS = 16  # parameters of a method that are parsed; methods of exports have three
-_NEEDED = {"CopyInputsToVariables", "Initialize", "Calculate"}
 
 
 def submodel_classes(code: Code) -> list[str]:
@@ -38,12 +32,11 @@ def submodel_classes(code: Code) -> list[str]:
     for function in code.functions:
         if function.owner:
             methods.setdefault(function.owner, set()).add(function.name)
-    found = [
+    return [
         owner
         for owner, names in sorted(methods.items())
         if {"Initialize", "Calculate"} <= names and names & {"CopyInputsToVariables", "CopyVariablesToOutputs"}
     ]
-    return found
 
 
 def load_cpp_class(main: Code, diagnostics: Diagnostics) -> Model | None:
@@ -60,15 +53,10 @@ def load_cpp_class(main: Code, diagnostics: Diagnostics) -> Model | None:
     return _Importer(linked, submodel_classes(main)[0], diagnostics).load()
 
 
-class _Importer:
-    """Reads the model from the linked files of one export."""
-
+class _Importer(ExportReader):
     def __init__(self, linked: Linked, class_name: str, diagnostics: Diagnostics) -> None:
-        self.linked = linked
+        super().__init__(linked, diagnostics)
         self.class_name = class_name
-        self.diagnostics = diagnostics
-        self.main = linked.main
-        self.file = linked.main.file
         self.methods = {f.name: f for f in self.main.functions if f.owner == class_name}
         at = self.methods["Calculate"].start
         self.whole = self.file.span(at, at + len(class_name) + len("::Calculate"))
@@ -87,18 +75,17 @@ class _Importer:
         ports = [self._ports("input"), self._ports("output")]
         if step is None or self.diagnostics.error_count > before:
             return None
-        array = self._parameter_array()
+        array = self._prefix() + "P"
         body = self.methods["Initialize"]
         lines = [line for line in assignments(self.file, body.body_start, body.body_end) if line.array == array]
         tokens = self.metadata.tokens
         names = tokens.names("PARAMETER") if tokens else []
         parameters, places = make_parameters(lines, names if len(names) == self._count("parameters") else [], ())
-        finish = self._number("finish_time")
         model = Model(
             name=self.class_name,
             origin="20-sim C++ class",
             language="c++",
-            version=self._version(),
+            version=self.version(),
             method=method,
             step=step,
             inputs=ports[0],
@@ -119,52 +106,26 @@ class _Importer:
                 rates=self._prefix() + "R",
                 places=tuple(tuple(self._place(line) for line in group) for group in places),
             ),
-            finish_time=finite(finish),
             searched=self.linked.searched,
             twins=self.linked.twins,
         )
-        if tokens and cross_check(model, self._prefix(), self.metadata, self.diagnostics):
-            check_tokens(tokens, self.diagnostics)
-        return model if self.diagnostics.error_count == before else None
+        return model if self.agrees(model, self._prefix()) else None
 
     def _place(self, line: Assignment) -> details.Place:
         return details.Place(self.file.path, line.value_start, line.value_end)
 
-    def _version(self) -> str:
-        for code in (self.main, *self.linked.units, *self.linked.headers):
-            match = re.search(r"^[ \t]*\*[ \t]*build:[ \t]*([\d.]+)", code.file.text[:4000], re.MULTILINE)
-            if match:
-                return match[1]
-        return self.metadata.version
-
     def _prefix(self) -> str:
         match = re.search(r"\b(\w{0,80}?)step_size\s*=", self.file.code, re.ASCII)
         return match[1] if match else "m_"
-
-    def _parameter_array(self) -> str:
-        return self._prefix() + "P"
 
     def _place_of(self, word: str) -> tuple[Span, str] | None:
         """The place and the text of the first value that is assigned to the member ``<prefix><word>``."""
         match = re.search(rf"\b{re.escape(self._prefix())}{word}\s*=\s*([^=;]+);", self.file.code)
         return (self.file.span(match.start(), match.end()), match[1].strip()) if match else None
 
-    def _number(self, word: str) -> Fraction | None:
-        place = self._place_of(word)
-        return exact_number(place[1]) if place else None
-
     def _step(self) -> Fraction | None:
-        place = self._place_of("step_size")
-        value = exact_number(place[1]) if place else None
-        if not is_step(value):
-            span = place[0] if place else self.whole
-            message = "the model has no step size"
-            if place:
-                message = f"the step size '{place[1][:80]}' is not a positive number"
-            hint = f"{self.class_name}::Reset() sets it as 'm_step_size = 0.001;'"
-            self.diagnostics.error("model-step", span, message, hint=hint)
-            return None
-        return value
+        hint = f"{self.class_name}::Reset() sets it as 'm_step_size = 0.001;'"
+        return self.checked_step(self._place_of("step_size"), hint)
 
     def _count(self, what: str) -> int:
         place = self._place_of(f"number_{what}")
@@ -187,18 +148,7 @@ class _Importer:
         return "", self.main, body.start
 
     def _ports(self, direction: str) -> tuple[Port, ...]:
-        functions: list[tuple[Function, str]] = []
-        for function in self.methods.values():
-            for parameter in function.parameters.split(",")[:_MOST_PARAMETERS]:
-                match = re.search(r"\* ?(\w+)$", " ".join(parameter.split()))
-                if match:
-                    functions.append((function, match[1]))
-        read = input_lines if direction == "input" else output_lines
-        lines = [
-            line
-            for function, name in functions
-            for line in read(self.file, name, function.body_start, function.body_end)
-        ]
+        lines = self.port_lines(((self.main, method) for method in self.methods.values()), direction)
         tokens = self.metadata.tokens
         names = (
             [(name, tokens.span(f"{direction.upper()}_NAMES3")) for name in tokens.names(direction.upper())]

@@ -9,11 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics, Note
-from epg.models.assignments import PortLine, assignments, exact_number, input_lines, number, output_lines
+from epg.models.assignments import PortLine, assignments, exact_number, number, port_lines
 from epg.models.configuration import (
     Configuration,
     find_configuration,
@@ -46,13 +45,6 @@ class Metadata:
     def version(self) -> str:
         return self.tokens.trimmed("GENERATION_BUILD") if self.tokens else ""
 
-    @property
-    def finish(self) -> Fraction | None:
-        """The end of the experiment in seconds, from the first file that states it."""
-        texts = [item.finish for item in (self.configuration, self.description) if item]
-        texts += [self.tokens.trimmed("FINISH_TIME")] if self.tokens else []
-        return next((value for value in map(exact_number, texts) if value is not None), None)
-
     def port_elements(self, memory: str) -> tuple[list[PortLine], list[PortLine]] | None:
         """The array elements of the inputs and of the outputs, for sources of an FMU.  None if no file states them.
 
@@ -60,8 +52,8 @@ class Metadata:
         """
         if self.tokens and {"INPUT_TO_VARIABLE_EQUATIONS", "VARIABLE_TO_OUTPUT_EQUATIONS"} <= self.tokens.values.keys():
             return (
-                input_lines(self.tokens.code("INPUT_TO_VARIABLE_EQUATIONS"), "u"),
-                output_lines(self.tokens.code("VARIABLE_TO_OUTPUT_EQUATIONS"), "y"),
+                port_lines(self.tokens.code("INPUT_TO_VARIABLE_EQUATIONS"), "input", "u"),
+                port_lines(self.tokens.code("VARIABLE_TO_OUTPUT_EQUATIONS"), "output", "y"),
             )
         source = self.configuration or self.description
         if source is None:

@@ -69,8 +69,6 @@ class Model:
     span: Span
     details: object = field(default=None, repr=False)
     """Data that only the emitter for this origin needs: sources, prefixes, name of the class.  See ``details.py``."""
-    finish_time: float | None = None
-    """The end of the experiment in 20-sim, in seconds.  It has no effect on a target."""
     searched: tuple[Path, ...] = ()
     """The folders beside ``directory`` that were searched: a new or removed file in them can change the model."""
     twins: tuple[Path, ...] = ()

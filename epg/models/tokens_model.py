@@ -11,7 +11,7 @@ import re
 from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.documents.text_file import one_line
 from epg.models import details
-from epg.models.assignments import assignments, exact_number, finite, input_lines, is_step, output_lines
+from epg.models.assignments import assignments, exact_number, is_step, port_lines
 from epg.models.c_code import KEYWORDS
 from epg.models.features import FIXED_STEP_METHODS, STUBS, check_tokens
 from epg.models.identifiers import words
@@ -51,17 +51,17 @@ NEEDED = (
     "NUMBER_STATES",
 )
 
-#: arrays, by the token with their name: the default name, and the token with the number of elements
+#: arrays, by the token with their name: the default name, the member of the instance in C, the token with their size
 ARRAYS = {
-    "XX_VARIABLE_ARRAY_NAME": ("V", "NUMBER_VARIABLES"),
-    "XX_PARAMETER_ARRAY_NAME": ("P", "NUMBER_PARAMETERS"),
-    "XX_INITIAL_VALUE_ARRAY_NAME": ("I", "NUMBER_INITIAL_VALUES"),
-    "XX_CONSTANT_ARRAY_NAME": ("C", "NUMBER_CONSTANTS"),
-    "XX_STATE_ARRAY_NAME": ("s", "NUMBER_STATES"),
-    "XX_RATE_ARRAY_NAME": ("R", "NUMBER_STATES"),
-    "XX_UNNAMED_ARRAY_NAME": ("U", "NUMBER_UNNAMED"),
-    "XX_FAVORITE_PARS_ARRAY_NAME": ("F", "NUMBER_FAVORITE_PARAMETERS"),
-    "XX_FAVORITE_VARS_ARRAY_NAME": ("f", "NUMBER_FAVORITE_VARIABLES"),
+    "XX_VARIABLE_ARRAY_NAME": ("V", "variables", "NUMBER_VARIABLES"),
+    "XX_PARAMETER_ARRAY_NAME": ("P", "parameters", "NUMBER_PARAMETERS"),
+    "XX_INITIAL_VALUE_ARRAY_NAME": ("I", "initial_values", "NUMBER_INITIAL_VALUES"),
+    "XX_CONSTANT_ARRAY_NAME": ("C", "constants", "NUMBER_CONSTANTS"),
+    "XX_STATE_ARRAY_NAME": ("s", "states", "NUMBER_STATES"),
+    "XX_RATE_ARRAY_NAME": ("R", "rates", "NUMBER_STATES"),
+    "XX_UNNAMED_ARRAY_NAME": ("U", "unnamed", "NUMBER_UNNAMED"),
+    "XX_FAVORITE_PARS_ARRAY_NAME": ("F", "favorite_parameters", "NUMBER_FAVORITE_PARAMETERS"),
+    "XX_FAVORITE_VARS_ARRAY_NAME": ("f", "favorite_variables", "NUMBER_FAVORITE_VARIABLES"),
 }
 
 #: functions of <math.h> that equations can call directly
@@ -108,10 +108,9 @@ def load_tokens_model(tokens: Tokens, diagnostics: Diagnostics) -> Model | None:
         ("input", "INPUT_TO_VARIABLE_EQUATIONS", "u"),
         ("output", "VARIABLE_TO_OUTPUT_EQUATIONS", "y"),
     ):
-        read = input_lines if kind == "input" else output_lines
         names = [(name, tokens.span(f"{kind.upper()}_NAMES3")) for name in tokens.names(kind.upper())]
         count = tokens.count(f"NUMBER_{kind.upper()}S")
-        lines = read(tokens.code(token), vector)
+        lines = port_lines(tokens.code(token), kind, vector)
         group = make_ports(lines, kind, names, None, diagnostics, tokens.span(token), count)
         check_identifiers(group, diagnostics)
         ports.append(group)
@@ -122,7 +121,6 @@ def load_tokens_model(tokens: Tokens, diagnostics: Diagnostics) -> Model | None:
     names_of_parameters = tokens.names("PARAMETER")
     units = tokens.units("PARAMETER", len(names_of_parameters))
     parameters, _ = make_parameters(lines_of_parameters, names_of_parameters, units)
-    finish = exact_number(tokens.trimmed("FINISH_TIME"))
     return Model(
         name=one_line(tokens.trimmed("SUBMODEL_NAME") or tokens.trimmed("MODEL_NAME") or tokens.path.parent.name),
         origin="20-sim tokens",
@@ -137,7 +135,6 @@ def load_tokens_model(tokens: Tokens, diagnostics: Diagnostics) -> Model | None:
         files=(tokens.path,),
         span=whole,
         details=details.TokensExport(tokens, helpers),
-        finish_time=finite(finish),
     )
 
 
@@ -157,7 +154,7 @@ def _is_complete(tokens: Tokens, diagnostics: Diagnostics) -> bool:
         return False
     before = diagnostics.error_count
     prefix = tokens.trimmed("VARPREFIX")
-    for token, (default, count) in ARRAYS.items():
+    for token, (default, _, count) in ARRAYS.items():
         array = prefix + (tokens.trimmed(token) or default)
         element = re.compile(rf"(?<![\w.]){re.escape(array)}\s{{0,80}}\[\s{{0,80}}(\d{{1,12}})\s{{0,80}}\]", re.ASCII)
         for name in CODE:

@@ -45,7 +45,6 @@ def test_reads_everything(export: Export, tmp_path: Path) -> None:
     assert [p.index for p in model.inputs] == [0, 1]
     assert (model.name, model.origin, model.language) == ("Servo", "20-sim C function", "c")
     assert (model.version, model.method, model.step) == (export.version, export.method, Fraction(1, 1000))
-    assert model.finish_time == 2.0
     assert [(p.name, p.value, p.unit) for p in model.parameters] == [
         ("PI1\\kp", 2.5, ""),
         ("PI1\\tauI", 0.8, "s"),

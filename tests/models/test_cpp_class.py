@@ -21,7 +21,6 @@ def test_reads_everything(export: Export, tmp_path: Path) -> None:
     assert [(p.name, p.unit) for p in model.inputs] == [("in", "rad"), ("position", "rad")]
     assert [p.name for p in model.outputs] == ["corr", "out"]
     assert [p.name for p in model.parameters] == ["PI1\\kp", "PI1\\tauI", "Filter\\tau", "Limiter\\maximum"]
-    assert model.finish_time == 2.0
     assert model.instantiable
     assert not {path.name for path in model.files} & {"test_Servo.cpp"}
 
