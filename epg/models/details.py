@@ -191,7 +191,6 @@ class FmuExport:
     state_count: int  # the number of their values: an array has several
     variables: tuple[GlobalVariable, ...]  # reset at a start; empty if the FMU has memory for each instance
     own_step: Fraction | None  # seconds: the step of an FMU of 20-sim, which each call of DoStep requests
-    endless: bool  # True if the start must give a stop time, far away: the FMU would stop at its own otherwise
     terminated: bool  # True if the function fmi2GetBooleanStatus exists
     heap: int  # bytes of heap for each instance; 0 if the FMU does not allocate memory
     instantiable: bool

@@ -26,7 +26,7 @@ from epg.models.fmu_files import DESCRIPTION, FmuFiles, read_fmu_files
 from epg.models.fmu_sources import FMI_HEADERS, FmuSources, find_sources
 from epg.models.fmu_variables import TYPES_2, TYPES_3, Variable
 from epg.models.global_variables import global_variables
-from epg.models.identifiers import to_identifier, unique_identifiers
+from epg.models.identifiers import to_identifier, unique_identifiers, unique_titles
 from epg.models.link import Linked
 from epg.models.metadata import warn_of_values
 from epg.models.model import Model, Parameter, Port
@@ -121,7 +121,6 @@ def load_fmu(
             state_count=sum(states.values()),
             variables=variables,
             own_step=own_step,
-            endless=own_step is not None,
             terminated="fmi2GetBooleanStatus" in {f.name for _, f in sources.linked.functions()},
             heap=(HEAP if heap is None else heap) if needed else 0,
             instantiable=not description.once and not variables,
@@ -244,11 +243,7 @@ def _parameters(description: Description) -> tuple[tuple[Parameter, ...], tuple[
             if value is not None:
                 chosen.append((variable, value))
     chosen.sort(key=lambda item: item[0].variability != "tunable")
-    names: dict[str, int] = {}
-    titles = []
-    for variable, _ in chosen:
-        names[variable.name] = names.get(variable.name, 0) + 1
-        titles.append(variable.name if names[variable.name] == 1 else f"{variable.name}#{names[variable.name]}")
+    titles = unique_titles(variable.name for variable, _ in chosen)
     parameters = []
     for index, ((variable, value), title, identifier) in enumerate(
         zip(chosen, titles, unique_identifiers(titles), strict=True)

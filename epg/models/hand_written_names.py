@@ -19,7 +19,7 @@ from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.documents.source_file import read_source
 from epg.documents.text_file import is_file
 from epg.models.c_code import Code, Include, parse_code
-from epg.models.declarations import declared_names
+from epg.models.declarations import declared_names, end_of_block
 from epg.models.fmu_sources import C_HEADERS
 from epg.models.folders import source_files
 from epg.source import Span
@@ -33,7 +33,6 @@ _USING = re.compile(r"\busing\s{1,80}([A-Za-z_]\w{0,255})\s{0,80}=\s{0,80}([A-Za
 _TYPE_NAME = re.compile(
     r"\b(?:struct|class|union|enum)\s{1,80}([A-Za-z_]\w{0,255})|[}\w]\s{0,80}\b([A-Za-z_]\w{0,255})\s{0,80};", re.ASCII
 )
-_BRACE = re.compile(r"[{}]")
 _MEMBER = re.compile(r"([A-Za-z_]\w{0,255})\s{0,80}(?:\[[^\]]{0,200}\]\s{0,80}){0,8}$", re.ASCII)
 
 
@@ -219,17 +218,8 @@ def _structs(text: str) -> Iterator[tuple[str, str, int, bool]]:
     at = 0
     for match in _STRUCT.finditer(text):
         if match.start() >= at:
-            at = _end(text, match.end())
+            at = end_of_block(text, match.end())
             yield match[1] or "", text[match.end() : at], at + 1, match[2] is not None
-
-
-def _end(text: str, start: int) -> int:
-    depth = 1
-    for match in _BRACE.finditer(text, start):
-        depth += 1 if match[0] == "{" else -1
-        if depth == 0:
-            return match.start()
-    return len(text)
 
 
 def _struct(body: str, derived: bool, depth: int = 0) -> Struct:
@@ -249,7 +239,7 @@ def _struct(body: str, derived: bool, depth: int = 0) -> Struct:
                     members.setdefault(named[1], None)
             start = position = match.end()
             continue
-        end = _end(body, match.end())
+        end = end_of_block(body, match.end())
         head = body[start : match.start()]
         if re.search(r"\b(?:struct|class)\b", head) and "(" not in head:
             name = re.match(r"\s{0,80}([A-Za-z_]\w{0,255})\s{0,80};", body[end + 1 : end + 500])

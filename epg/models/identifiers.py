@@ -62,6 +62,16 @@ def to_identifier(name: str) -> str:
     return f"{identifier}_" if is_reserved(identifier) else identifier
 
 
+def unique_titles(names: Iterable[str]) -> list[str]:
+    """The names, in order.  If several are equal, all but the first one get a number: ``kp``, ``kp#2``."""
+    counts: dict[str, int] = {}
+    result = []
+    for name in names:
+        counts[name] = counts.get(name, 0) + 1
+        result.append(name if counts[name] == 1 else f"{name}#{counts[name]}")
+    return result
+
+
 def unique_identifiers(names: Iterable[str]) -> list[str]:
     """The identifiers for ``names``, in order.  If several are equal, all but the first one get a number."""
     used: set[str] = set()

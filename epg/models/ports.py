@@ -9,7 +9,7 @@ from epg.diagnostics import Diagnostics, Note
 from epg.documents.text_file import one_line
 from epg.models.assignments import Assignment, PortLine, number
 from epg.models.configuration import Configuration
-from epg.models.identifiers import to_identifier, unique_identifiers
+from epg.models.identifiers import to_identifier, unique_identifiers, unique_titles
 from epg.models.model import Parameter, Port
 from epg.source import Span
 
@@ -126,12 +126,7 @@ def make_parameters(
         if number(line.value) is not None:
             by_index.setdefault(line.index, []).append(line)
     chosen = [by_index[index][-1] for index in sorted(by_index)]
-    titles = [one_line(_title(line, names)) for line in chosen]
-    seen: dict[str, int] = {}
-    for position, title in enumerate(titles):
-        seen[title] = seen.get(title, 0) + 1
-        if seen[title] > 1:
-            titles[position] = f"{title}#{seen[title]}"
+    titles = unique_titles(one_line(_title(line, names)) for line in chosen)
     identifiers = unique_identifiers(titles)
     parameters = []
     for line, title, identifier in zip(chosen, titles, identifiers, strict=True):

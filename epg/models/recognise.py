@@ -6,12 +6,13 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics
 from epg.documents.source_file import SourceFile, read_any_text, read_source
 from epg.models import c_function, cpp_class, hand_written
-from epg.models.c_code import Code, parse_code
+from epg.models.c_code import parse_code
 from epg.models.fmu_files import DESCRIPTION, SUFFIX, is_fmu_folder
 from epg.models.folders import source_files
 from epg.models.link import is_program
@@ -104,21 +105,13 @@ def _candidates(folders: list[Path]) -> list[Candidate]:
 
 def _hand_written(folder: Path) -> list[Candidate]:
     path = folder / FILE_NAME
-    return [_hand_written_candidate(path)] if path.is_file() else []
-
-
-def _hand_written_candidate(path: Path) -> Candidate:
-    return Candidate(path, lambda diagnostics: hand_written.load_hand_written(path, diagnostics))
+    return [Candidate(path, partial(hand_written.load_hand_written, path))] if path.is_file() else []
 
 
 def _fmus(folder: Path) -> list[Candidate]:
     if is_fmu_folder(folder):
-        return [_fmu_candidate(folder, folder / DESCRIPTION)]
-    return [_fmu_candidate(file, file) for file in source_files(folder, (SUFFIX,), 0)]
-
-
-def _fmu_candidate(path: Path, file: Path) -> Candidate:
-    return Candidate(file, lambda diagnostics: _load_fmu(path, diagnostics))
+        return [Candidate(folder / DESCRIPTION, partial(_load_fmu, folder))]
+    return [Candidate(file, partial(_load_fmu, file)) for file in source_files(folder, (SUFFIX,), 0)]
 
 
 def _load_fmu(path: Path, diagnostics: Diagnostics) -> Model | None:
@@ -142,13 +135,13 @@ def _source_candidate(path: Path, diagnostics: Diagnostics) -> Candidate | None:
     file = read_source(path, diagnostics)
     if file is None or "Calculate" not in file.text:
         return None
-    code: Code = parse_code(file)
+    code = parse_code(file)
     if path.suffix.lower() in c_function.SUFFIXES:
         if c_function.is_c_function(code):
-            return Candidate(path, lambda report: c_function.load_c_function(code, report))
+            return Candidate(path, partial(c_function.load_c_function, code))
         return _broken(file) if _SUBMODEL.search(file.code) else None
     if cpp_class.submodel_classes(code):
-        return Candidate(path, lambda report: cpp_class.load_cpp_class(code, report))
+        return Candidate(path, partial(cpp_class.load_cpp_class, code))
     return _broken(file) if "::CopyInputsToVariables" in file.code else None
 
 
@@ -166,15 +159,12 @@ def _broken(file: SourceFile) -> Candidate | None:
 
 def _tokens(folder: Path) -> list[Candidate]:
     files = [f for f in source_files(folder, (".xml",), 0) if is_tokens_file(f)]
-    return [_tokens_candidate(file) for file in files]
+    return [Candidate(file, partial(_load_tokens, file)) for file in files]
 
 
-def _tokens_candidate(path: Path) -> Candidate:
-    def load(diagnostics: Diagnostics) -> Model | None:
-        tokens = load_tokens(path, diagnostics, required=True)
-        return load_tokens_model(tokens, diagnostics) if tokens else None
-
-    return Candidate(path, load)
+def _load_tokens(path: Path, diagnostics: Diagnostics) -> Model | None:
+    tokens = load_tokens(path, diagnostics, required=True)
+    return load_tokens_model(tokens, diagnostics) if tokens else None
 
 
 def _load_file(path: Path, whole: Span, diagnostics: Diagnostics) -> Model | None:
@@ -185,7 +175,7 @@ def _load_file(path: Path, whole: Span, diagnostics: Diagnostics) -> Model | Non
     if path.name == DESCRIPTION and is_fmu_folder(path.parent):
         return _load_fmu(path.parent, diagnostics)
     if suffix == ".xml":
-        return _tokens_candidate(path).load(diagnostics)
+        return _load_tokens(path, diagnostics)
     if suffix in (".yaml", ".yml"):
         return hand_written.load_hand_written(path, diagnostics)
     if suffix in (*c_function.SUFFIXES, *cpp_class.SUFFIXES):

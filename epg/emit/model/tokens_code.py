@@ -21,19 +21,8 @@ from epg.models.assignments import assignments, exact_number
 from epg.models.details import TokensExport
 from epg.models.model import Model
 from epg.models.tokens import Tokens
-from epg.models.tokens_model import CODE
+from epg.models.tokens_model import ARRAYS, CODE
 
-_ARRAYS = {
-    "XX_VARIABLE_ARRAY_NAME": ("V", "variables"),
-    "XX_PARAMETER_ARRAY_NAME": ("P", "parameters"),
-    "XX_INITIAL_VALUE_ARRAY_NAME": ("I", "initial_values"),
-    "XX_CONSTANT_ARRAY_NAME": ("C", "constants"),
-    "XX_STATE_ARRAY_NAME": ("s", "states"),
-    "XX_RATE_ARRAY_NAME": ("R", "rates"),
-    "XX_UNNAMED_ARRAY_NAME": ("U", "unnamed"),
-    "XX_FAVORITE_PARS_ARRAY_NAME": ("F", "favorite_parameters"),
-    "XX_FAVORITE_VARS_ARRAY_NAME": ("f", "favorite_variables"),
-}
 _SCALARS = {
     "step_size": "step_size",
     "start_time": "start_time",
@@ -53,18 +42,9 @@ def tokens_code(model: Model, details: TokensExport, values: Mapping[str, float]
     tokens = details.tokens
     names = _names(tokens, details.functions)
     blocks = {token: Code(_block(tokens, token, names, model, values)) for token in CODE}
-    counts = SimpleNamespace(
-        constants=tokens.count("NUMBER_CONSTANTS"),
-        parameters=tokens.count("NUMBER_PARAMETERS"),
-        initial_values=tokens.count("NUMBER_INITIAL_VALUES"),
-        variables=tokens.count("NUMBER_VARIABLES"),
-        states=tokens.count("NUMBER_STATES"),
-        unnamed=tokens.count("NUMBER_UNNAMED"),
-        favorite_parameters=tokens.count("NUMBER_FAVORITE_PARAMETERS"),
-        favorite_variables=tokens.count("NUMBER_FAVORITE_VARIABLES"),
-        delays=tokens.count("NUMBEROF_DELAYFUNCTION"),
-        initials=tokens.count("NUMBEROF_INITIALFUNCTION"),
-    )
+    counts = {member: tokens.count(count) for _, member, count in ARRAYS.values()}
+    counts["delays"] = tokens.count("NUMBEROF_DELAYFUNCTION")
+    counts["initials"] = tokens.count("NUMBEROF_INITIALFUNCTION")
     start = exact_number(tokens.trimmed("START_TIME")) or Fraction(0)
     finish = exact_number(tokens.trimmed("FINISH_TIME")) or Fraction(0)
     # Up to version 4.5, 20-sim added the four slopes of Runge Kutta 4 in another order, which rounds differently.
@@ -79,7 +59,7 @@ def _names(tokens: Tokens, functions: Sequence[str]) -> dict[str, str]:
     """The identifiers in the equations, with the C that replaces each."""
     prefix = tokens.trimmed("VARPREFIX")
     names = {}
-    for token, (default, member) in _ARRAYS.items():
+    for token, (default, member, _) in ARRAYS.items():
         names[prefix + (tokens.trimmed(token) or default)] = f"self->{member}"
     for word, member in _SCALARS.items():
         names[prefix + word] = f"self->{member}"
