@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Zephyr as a program of this computer: built like the platform zephyr, with the simulated plant.
+# Zephyr as a program on this computer: built like the platform zephyr, with the simulated plant.
 
 include("${CMAKE_CURRENT_LIST_DIR}/../zephyr/zephyr.cmake")
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * native_sim: a target in Zephyr, as a program of this computer, with a simulated plant.
+ * native_sim: a target in Zephyr, as a program on this computer, with a simulated plant.
  *
  * The target's peripherals are emulated by Zephyr's drivers.  Before each control cycle the plant model is simulated up
  * to that time: it reads the outputs (PWM devices, pins) and moves the shafts of the decoders.  Setpoints come from a
