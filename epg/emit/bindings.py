@@ -81,9 +81,7 @@ def updated_bindings(
     # Parse the edited text again, to be sure that only the wanted ports changed.  Maps are equal in any order.  Python
     # treats 1 and true as equal, too, but no edit above turns one into the other.
     if text != before and (after is None or after.plain() != wanted):
-        raise CannotEdit(
-            f"{file}: EPG does not understand how this is written: write one 'port: component' on each line"
-        )
+        raise CannotEdit(f"{file}: EPG cannot edit this form: write one 'port: component' on each line")
     return Change(text, tuple(added), tuple(removed), tuple(left))
 
 

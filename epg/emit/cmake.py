@@ -145,7 +145,9 @@ def _inputs(
     files: Iterable[Path], folders: Iterable[Path], absent: Iterable[Path], generated: Iterable[str], names: PathNames
 ) -> list[str]:
     """The variables that ``EPGGenerate.cmake`` compares to decide whether EPG must run again."""
-    lines = ["# read: files, and folders of which the list of files matters; would be read, if it existed; written"]
+    lines = [
+        "# files that were read; folders that were listed; files that would be read if they existed; written files"
+    ]
     lines += _set("EPG_DEPENDS", names.in_order(files))
     lines += _set("EPG_FOLDERS", names.in_order(folders))
     lines += _set("EPG_ABSENT", names.in_order(absent))

@@ -14,12 +14,12 @@ from epg.resolve.claims import TICK, ClaimKey
 
 
 def divider_text(divider: Mapping[str, Any]) -> tuple[str, str]:
-    """Frequency and remark as text for the user: ``("19.9984 kHz", "6250 steps; 20 kHz asked for, -0.008 %")``."""
+    """Frequency and remark as text for the user: ``("19.9984 kHz", "6250 steps; 20 kHz requested, -0.008 %")``."""
     reached, asked = Fraction(divider["reached"]), Fraction(divider["asked"])
     steps = f"{divider['steps']} steps"
     if divider["error"] == 0:
         return show(asked, "frequency"), steps
-    return show(reached, "frequency"), f"{steps}; {show(asked, 'frequency')} asked for, {100 * divider['error']:+.2g} %"
+    return show(reached, "frequency"), f"{steps}; {show(asked, 'frequency')} requested, {100 * divider['error']:+.2g} %"
 
 
 def hardware_data(assignments: Mapping[ClaimKey, Assignment]) -> list[dict[str, Any]]:

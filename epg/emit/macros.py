@@ -38,14 +38,14 @@ class Macros:
         taken, given = len(function.arguments), 1 + len(arguments)
         if taken < given and not function.catch_varargs:
             raise macro_mistake(
-                component.kind.folder, macro, f"macro '{macro}' takes {taken} of {given} arguments", given
+                component.kind.folder, macro, f"macro '{macro}' must have {given} parameters, not {taken}", given
             )
         try:
             return Code(str(function(self.views[component.name], *arguments)).strip("\n"))
         except ArithmeticError:  # each parameter is in its range, but a computation with several of them is not
             problems = Diagnostics()
-            message = f"the parameters of '{component.name}' together give a number that C's doubles do not hold"
-            hint = "very large and very small ones cancel out badly: check their units"
+            message = f"the parameters of '{component.name}' together result in a number that a double cannot represent"
+            hint = "check their units: very large and very small values do not fit together"
             problems.error("out-of-range", component.span, message, hint=hint)
             raise UserError(problems) from None
 
@@ -60,7 +60,7 @@ class Macros:
             port = f", which port '{arguments[0]}' needs" if arguments else ""
             message = f"kind '{component.kind.name}' has no macro '{macro}'{port}"
             if isinstance(getattr(self._module(component), macro, None), CodeMacro):
-                message = f"macro '{macro}' gives nothing" + (f" for port '{arguments[0]}'" if arguments else "")
+                message = f"macro '{macro}' prints nothing" + (f" for port '{arguments[0]}'" if arguments else "")
             raise macro_mistake(component.kind.folder, macro, message, 1 + len(arguments))
         return code
 

@@ -173,7 +173,7 @@ def _problem(node: nodes.Node) -> str:
     if isinstance(node, nodes.ScopedEvalContextModifier):
         return "autoescape cannot be changed"
     if isinstance(node, nodes.Filter) and node.name == "code" and not _is_constant(node.node):
-        return "'|code' is for constants: use a filter that knows what the value is, such as |identifier or |cstring"
+        return "'|code' is for constants: use a filter for the kind of value, such as |identifier or |cstring"
     return ""
 
 

@@ -112,7 +112,7 @@ def include(name: object) -> Code:
 def double(value: object) -> Code:
     """A C literal whose value is exactly the double nearest to ``value``.  Raises NotFinite for infinite and NaN."""
     if isinstance(value, bool) or not isinstance(value, (int, float, Fraction)):
-        raise TypeError(f"{value!r} is no number")
+        raise TypeError(f"{value!r} is not a number")
     number = float(value)
     if not math.isfinite(number):
         raise NotFinite(f"{number} cannot be written as a literal")
@@ -156,7 +156,7 @@ def kconfig_string(text: object) -> KconfigCode:
     """The quoted value of a string symbol.  It must be on one line: raises ValueError for text with a line end."""
     value = str(text)
     if not all(char.isprintable() for char in value):
-        raise ValueError(f"{value!r} cannot stand on one line")
+        raise ValueError(f"{value!r} cannot be written on one line")
     return KconfigCode('"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"')
 
 
@@ -174,7 +174,7 @@ def word(value: object) -> ProjectText:
     """A name or a version that does not need quotes in CMake, YAML, JSON or Markdown.  Raises ValueError otherwise."""
     name = str(value)
     if not re.fullmatch(r"[A-Za-z0-9_.+-]+", name):
-        raise ValueError(f"{name!r} is no word")
+        raise ValueError(f"{name!r} is not a word")
     return ProjectText(name)
 
 

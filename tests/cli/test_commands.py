@@ -178,7 +178,7 @@ def test_explain_tells_the_frequency_that_is_reached(robot: Path, capsys: pytest
     assert main(["explain", "motor", *files]) == 0
     shown = capsys.readouterr().out
     assert "1.50602 MHz" in shown  # 125 MHz / 83
-    assert "pwm: 83 steps; 1.5 MHz asked for, +0.4 %" in shown
+    assert "pwm: 83 steps; 1.5 MHz requested, +0.4 %" in shown
     for pin in ("GPIO 2                  value", "GPIO 7                  direction_a", "direction_b"):
         assert pin in shown
     assert main(["explain", "motor", "--json", *files]) == 0

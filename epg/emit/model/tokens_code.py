@@ -149,7 +149,7 @@ static double sidops_impulse(double start, double duration, double time, double 
 }
 """,
     "Round": """
-/* to the nearest whole number, halves away from zero */
+/* Rounds to the nearest whole number, and halves away from zero. */
 static double sidops_round(double x)
 {
     if (fabs(x - (int)x) < 0.5) {
@@ -159,7 +159,10 @@ static double sidops_round(double x)
 }
 """,
     "Random": """
-/* uniform between -range and range: 31 bits of a xorshift generator (G. Marsaglia, J. Stat. Software 8(14), 2003) */
+/*
+ * Returns a uniformly distributed number between -range and range: 31 bits of a xorshift generator (G. Marsaglia,
+ * J. Stat. Software 8(14), 2003).
+ */
 static double sidops_random(model_t *self, double range)
 {
     uint32_t x = self->random_state;
@@ -171,7 +174,7 @@ static double sidops_random(model_t *self, double range)
 }
 """,
     "Delay": """
-/* the value of `x` one step ago, at first `initial` */
+/* Returns the value of `x` one step ago; in the first step `initial`. */
 static double sidops_delay(model_t *self, double x, double initial, int id)
 {
     const double value = self->initialize ? initial : self->delayed[id];
@@ -183,7 +186,7 @@ static double sidops_delay(model_t *self, double x, double initial, int id)
 }
 """,
     "InitialValue": """
-/* the value of `x` at the start */
+/* Returns the value of `x` at the start. */
 static double sidops_initial_value(model_t *self, double x, int id)
 {
     if (self->initialize) {
