@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Overlay, Kconfig and needs that EPG generates for Zephyr, tested without Zephyr: golden files, and dtc's grammar.
 
-``EPG_UPDATE_GOLDEN=1`` rewrites the files in ``golden``: review the difference.
+The golden files of the case ``rpi_pico`` are whole.  Those of the other cases are the overlay, and for each other file
+its difference from that of ``rpi_pico``.  ``EPG_UPDATE_GOLDEN=1`` rewrites them: review the difference.
 """
 
 from __future__ import annotations
 
+import difflib
 import os
 import re
 import shutil
@@ -25,6 +27,9 @@ from epg.source import Span
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent.parent
 JIWY = ROOT / "examples/jiwy"
+GOLDEN = HERE / "golden"
+WHOLE = "rpi_pico"
+"""The case whose golden files are all whole."""
 NO_TOPICS = ("communication.middleware=none", "communication.transport=null", "communication.console=false")
 
 CASES = {
@@ -63,15 +68,27 @@ def generate(name: str) -> dict[str, str]:
     return {file: files[file] for file in ("jiwy.overlay", "jiwy.Kconfig", "jiwy_zephyr.cmake", "jiwy_zephyr.c")}
 
 
+def expected_files(name: str) -> dict[str, str]:
+    """The text that each golden file of a case must have, by its path in ``golden``."""
+    texts = dict(generated(name))
+    result = {f"{name}/jiwy.overlay": texts.pop("jiwy.overlay")}
+    if name == WHOLE:
+        return result | {f"{name}/{file}": text for file, text in texts.items()}
+    for file, text in texts.items():
+        lines, others = text.splitlines(keepends=True), generated(WHOLE)[file].splitlines(keepends=True)
+        difference = "".join(difflib.unified_diff(others, lines, f"{WHOLE}/{file}", f"{name}/{file}", n=0))
+        result[f"{name}/{file}.diff"] = difference
+    return result
+
+
 @pytest.mark.parametrize("name", CASES)
 def test_what_is_generated(name: str) -> None:
-    folder = HERE / "golden" / name
-    found = generated(name)
+    expected = expected_files(name)
     if os.environ.get("EPG_UPDATE_GOLDEN"):
-        folder.mkdir(parents=True, exist_ok=True)
-        for file, text in found.items():
-            (folder / file).write_text(text, encoding="utf-8")
-    assert found == {file: (folder / file).read_text(encoding="utf-8") for file in found}
+        for file, text in expected.items():
+            (GOLDEN / file).parent.mkdir(parents=True, exist_ok=True)
+            (GOLDEN / file).write_text(text, encoding="utf-8")
+    assert {file: (GOLDEN / file).read_text(encoding="utf-8") for file in expected} == expected
 
 
 @pytest.mark.parametrize("name", CASES)
