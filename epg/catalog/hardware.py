@@ -23,7 +23,7 @@ from types import MappingProxyType
 
 from epg.catalog.layout import Layout, make_layout
 from epg.catalog.platform import Platform
-from epg.documents.items import flag_of, integer_range, map_of, pin_names, text_of, texts_of
+from epg.documents.items import flag_of, integer_range, map_of, pin_names, text_map_of, text_of, texts_of
 from epg.quantity import parse_quantity
 from epg.source import Span, YamlNode
 
@@ -247,11 +247,11 @@ def make_board(node: YamlNode, folder: Path) -> Board:
         soc=text_of(node, "soc"),
         pins=pin_names(node.get("pins")),
         prefixes=texts_of(node, "prefixes"),
-        names=MappingProxyType({name: str(pin.value) for name, pin in map_of(node, "names").items()}),
+        names=text_map_of(node, "names"),
         onboard=MappingProxyType(onboard),
-        reserved=MappingProxyType({pin: str(reason.value) for pin, reason in map_of(node, "reserved").items()}),
-        sdks=MappingProxyType({sdk: str(name.value) for sdk, name in map_of(node, "sdks").items()}),
-        lacks=MappingProxyType({name: str(reason.value) for name, reason in map_of(node, "lacks").items()}),
+        reserved=text_map_of(node, "reserved"),
+        sdks=text_map_of(node, "sdks"),
+        lacks=text_map_of(node, "lacks"),
         devicetree=MappingProxyType(
             {label: tuple(str(pin.value) for pin in pins.elements()) for label, pins in nodes.items()}
         ),
@@ -298,7 +298,7 @@ def _resource_class(name: str, node: YamlNode, soc: YamlNode) -> ResourceClass:
         peripheral=str(peripheral.value) if peripheral else None,
         whole=text_of(node, "takes") == "instance",
         instances=texts_of(node, "instances"),
-        signals=MappingProxyType({signal: str(how.value) for signal, how in map_of(node, "signals").items()}),
+        signals=text_map_of(node, "signals"),
         neighbours=texts_of(node, "neighbours"),
         fixed=MappingProxyType({key: value.value for key, value in map_of(node, "fixed").items()}),
         divider_from=text_of(divider, "from") if divider else None,

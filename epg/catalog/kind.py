@@ -9,7 +9,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from epg.documents.items import flag_of, map_of, text_of, texts_of
+from epg.documents.items import flag_of, map_of, text_map_of, text_of, texts_of
 from epg.source import Span, YamlNode
 
 TEMPLATE = "code.c.j2"
@@ -193,22 +193,13 @@ class Kind:
 def make_kind(node: YamlNode, folder: Path) -> Kind:
     """The kind that a checked ``component.yaml`` describes."""
     relations = node.get("relations")
-    exactly_one: list[tuple[str, ...]] = []
-    at_least_one: list[tuple[str, ...]] = []
-    at_most_one: list[tuple[str, ...]] = []
-    only_with: list[tuple[str, str]] = []
-    needs_bound: list[NeedsBound] = []
-    for relation in relations.elements() if relations else ():
-        if "exactly_one" in relation:
-            exactly_one.append(texts_of(relation, "exactly_one"))
-        elif "at_least_one" in relation:
-            at_least_one.append(texts_of(relation, "at_least_one"))
-        elif "at_most_one" in relation:
-            at_most_one.append(texts_of(relation, "at_most_one"))
-        elif "needs_bound" in relation:
-            needs_bound.append(NeedsBound(*(text_of(relation["needs_bound"], key) for key in ("key", "use", "port"))))
-        else:
-            only_with.append((text_of(relation["only_with"], "key"), text_of(relation["only_with"], "needs")))
+    listed = relations.elements() if relations else ()
+    alternatives = {
+        key: tuple(texts_of(relation, key) for relation in listed if key in relation)
+        for key in ("exactly_one", "at_least_one", "at_most_one")
+    }
+    bound = (relation["needs_bound"] for relation in listed if "needs_bound" in relation)
+    with_others = (relation["only_with"] for relation in listed if "only_with" in relation)
     return Kind(
         name=text_of(node, "kind"),
         summary=text_of(node, "summary"),
@@ -217,16 +208,15 @@ def make_kind(node: YamlNode, folder: Path) -> Kind:
         pins=texts_of(node, "pins"),
         parameters=make_parameters(node.get("parameters")),
         uses=tuple(_use(name, child) for name, child in map_of(node, "uses").items()),
-        exactly_one=tuple(exactly_one),
-        at_least_one=tuple(at_least_one),
-        at_most_one=tuple(at_most_one),
-        only_with=tuple(only_with),
-        needs_bound=tuple(needs_bound),
+        exactly_one=alternatives["exactly_one"],
+        at_least_one=alternatives["at_least_one"],
+        at_most_one=alternatives["at_most_one"],
+        only_with=tuple((text_of(rule, "key"), text_of(rule, "needs")) for rule in with_others),
+        needs_bound=tuple(NeedsBound(*(text_of(rule, key) for key in ("key", "use", "port"))) for rule in bound),
         ports=tuple(_port(name, child) for name, child in map_of(node, "ports").items()),
         claims=tuple(_claim(name, child, node) for name, child in map_of(node, "claims").items()),
         safe_states=tuple(
-            MappingProxyType({name: str(level.value) for name, level in state.items()})
-            for state in (node["safe_states"].elements() if "safe_states" in node else ())
+            text_map_of(state) for state in (node["safe_states"].elements() if "safe_states" in node else ())
         ),
         headers=texts_of(node, "driver", "headers"),
         sources=texts_of(node, "driver", "sources"),
@@ -257,7 +247,7 @@ def make_parameter(name: str, node: YamlNode, span: Span) -> KindParameter:
         default=node.get("default"),
         bounds=MappingProxyType({key: node[key] for key in _BOUNDS if key in node}),
         keywords=MappingProxyType(keywords),
-        aliases=MappingProxyType({alias: str(child.value) for alias, child in map_of(node, "aliases").items()}),
+        aliases=text_map_of(node, "aliases"),
         properties=make_parameters(node.get("properties")),
         span=span,
     )
@@ -275,13 +265,9 @@ def _port(name: str, node: YamlNode) -> KindPort:
         description=text_of(node, "description"),
         each=text_of(node, "each"),
         part=name,
-        boolean_with=_values(node, "boolean_with"),
-        integer_with=_values(node, "integer_with"),
+        boolean_with=text_map_of(node, "boolean_with"),
+        integer_with=text_map_of(node, "integer_with"),
     )
-
-
-def _values(node: YamlNode, key: str) -> Mapping[str, str]:
-    return MappingProxyType({parameter: str(value.value) for parameter, value in map_of(node, key).items()})
 
 
 def _use(name: str, node: YamlNode) -> KindUse:
@@ -298,7 +284,10 @@ def _use(name: str, node: YamlNode) -> KindUse:
 
 
 def _claim(name: str, node: YamlNode, kind: YamlNode) -> KindClaim:
-    def names(key: str) -> Mapping[str, str]:
-        return MappingProxyType({entry: str(child.value) for entry, child in map_of(node, key).items()})
-
-    return KindClaim(name, text_of(node, "class"), names("signals"), names("attributes"), kind["claims"].key_span(name))
+    return KindClaim(
+        name,
+        text_of(node, "class"),
+        text_map_of(node, "signals"),
+        text_map_of(node, "attributes"),
+        kind["claims"].key_span(name),
+    )

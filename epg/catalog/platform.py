@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
+from typing import Any
 
 from epg.documents.items import flag_of, map_of, text_of, texts_of
 from epg.source import Span, YamlNode
@@ -29,50 +30,57 @@ class Product:
 
 
 @dataclass(frozen=True)
-class Platform:
+class PortLayer:
+    """What a platform and a family both have.
+
+    ``middlewares`` maps each middleware to its transports, the default first.  With ``has_usb_names``, a target
+    configuration can set the names of the USB device.  ``sdk`` is the SDK whose name of the board is passed to a build,
+    or "".  ``headers`` are the headers of the SDK that code includes by their name without a folder.  ``needs`` are
+    names of tools.  ``products`` are the files that a build makes for the user, the most useful first.
+    """
+
+    name: str
+    summary: str
+    classes: tuple[str, ...]
+    middlewares: Mapping[str, tuple[str, ...]]
+    has_usb_names: bool
+    templates: tuple[str, ...]
+    sdk: str
+    headers: tuple[str, ...]
+    needs: tuple[str, ...]
+    products: tuple[Product, ...]
+    node: YamlNode
+    folder: Path
+    span: Span
+
+
+@dataclass(frozen=True)
+class Platform(PortLayer):
     """A way of running, for the chips of ``families``, for one ``board``, or ``by_family``.
 
     The port layer of a platform ``by_family`` is in the folders in ``families/``.  :func:`platform_for` returns the
     platform with the parts that the chip's ``family`` adds.  If ``builds`` is False, there is no port layer yet:
     targets can be checked but not built.
 
-    ``middlewares`` maps each middleware to its transports, the default first.  With ``has_usb_names``, a target
-    configuration can set the names of the USB device.  ``tick`` is the resource class that times the control loop, None
-    if the system software times it.  With ``tick_is_optional``, the system software also times it on chips without this
-    class.  With ``has_nodes``, a component can name a devicetree node instead of pins.  ``shared`` are folders beside
-    this one whose templates the platform uses, too.
-
-    ``sdk`` is the SDK whose name of the board is passed to a build, or "".  ``headers`` are the headers of the SDK that
-    code includes by their name without a folder.  ``built_by`` is "cmake" or "west".  ``program`` is the CMake target
-    of the executable if the SDK makes it.  ``needs`` are names of tools.  ``products`` are the files that a build makes
-    for the user, the most useful first.
+    ``tick`` is the resource class that times the control loop, None if the system software times it.  With
+    ``tick_is_optional``, the system software also times it on chips without this class.  With ``has_nodes``, a
+    component can name a devicetree node instead of pins.  ``shared`` are folders beside this one whose templates the
+    platform uses, too.  ``built_by`` is "cmake" or "west".  ``program`` is the CMake target of the executable if the
+    SDK makes it.
     """
 
-    name: str
-    summary: str
     families: tuple[str, ...]
     board: str | None  # the only board of the platform; the only target then has the name of the platform
     simulates_plant: bool
-    classes: tuple[str, ...]
-    middlewares: Mapping[str, tuple[str, ...]]
-    has_usb_names: bool
     tick: str | None
     tick_is_optional: bool
     has_nodes: bool
     builds: bool
-    templates: tuple[str, ...]
     shared: tuple[str, ...]
-    sdk: str
-    headers: tuple[str, ...]
     built_by: str
     program: str
-    needs: tuple[str, ...]
-    products: tuple[Product, ...]
     by_family: bool
     family: Family | None
-    node: YamlNode
-    folder: Path
-    span: Span
 
     @property
     def offers(self) -> YamlNode:
@@ -97,78 +105,56 @@ class Platform:
 
 
 @dataclass(frozen=True)
-class Family:
-    """The port layer of a family of chips for ``platforms`` that are ``by_family``.
+class Family(PortLayer):
+    """The port layer of a family of chips for ``platforms`` that are ``by_family``."""
 
-    The other attributes are the same as those of :class:`Platform`.
-    """
-
-    name: str
-    summary: str
     platforms: tuple[str, ...]
-    classes: tuple[str, ...]
-    middlewares: Mapping[str, tuple[str, ...]]
-    has_usb_names: bool
-    templates: tuple[str, ...]
-    sdk: str
-    headers: tuple[str, ...]
-    needs: tuple[str, ...]
-    products: tuple[Product, ...]
-    node: YamlNode
-    folder: Path
-    span: Span
+
+
+def _port_layer(node: YamlNode, folder: Path, category: str) -> dict[str, Any]:
+    """The attributes of :class:`PortLayer`."""
+    offered = map_of(node, "middlewares")
+    products = node["products"].elements() if "products" in node else ()
+    return {
+        "name": text_of(node, category),
+        "summary": text_of(node, "summary"),
+        "classes": texts_of(node, "classes"),
+        "middlewares": MappingProxyType({name: texts_of(node, "middlewares", name) for name in offered}),
+        "has_usb_names": flag_of(node, "usb_names"),
+        "templates": texts_of(node, "templates"),
+        "sdk": text_of(node, "sdk"),
+        "headers": texts_of(node, "headers"),
+        "needs": texts_of(node, "needs"),
+        "products": tuple(Product(text_of(product, "file"), text_of(product, "what")) for product in products),
+        "node": node,
+        "folder": folder,
+        "span": node[category].span,
+    }
 
 
 def make_platform(node: YamlNode, folder: Path) -> Platform:
     """The platform that a checked ``platform.yaml`` describes."""
     tick = node.get("tick", "class")
     return Platform(
-        name=text_of(node, "platform"),
-        summary=text_of(node, "summary"),
+        **_port_layer(node, folder, "platform"),
         families=texts_of(node, "families"),
         board=text_of(node, "board") or None,
         simulates_plant=flag_of(node, "simulates_plant"),
-        classes=texts_of(node, "classes"),
-        middlewares=_middlewares(node),
-        has_usb_names=flag_of(node, "usb_names"),
         tick=str(tick.value) if tick is not None else None,
         tick_is_optional=tick is not None and flag_of(node["tick"], "optional"),
         has_nodes=flag_of(node, "nodes"),
         builds=flag_of(node, "builds"),
-        templates=texts_of(node, "templates"),
         shared=texts_of(node, "shared"),
-        sdk=text_of(node, "sdk"),
-        headers=texts_of(node, "headers"),
         built_by=text_of(node, "built_by") or "cmake",
         program=text_of(node, "program"),
-        needs=texts_of(node, "needs"),
-        products=_products(node),
         by_family=flag_of(node, "by_family"),
         family=None,
-        node=node,
-        folder=folder,
-        span=node["platform"].span,
     )
 
 
 def make_family(node: YamlNode, folder: Path) -> Family:
     """The family that a checked ``family.yaml`` describes."""
-    return Family(
-        name=text_of(node, "family"),
-        summary=text_of(node, "summary"),
-        platforms=texts_of(node, "platforms"),
-        classes=texts_of(node, "classes"),
-        middlewares=_middlewares(node),
-        has_usb_names=flag_of(node, "usb_names"),
-        templates=texts_of(node, "templates"),
-        sdk=text_of(node, "sdk"),
-        headers=texts_of(node, "headers"),
-        needs=texts_of(node, "needs"),
-        products=_products(node),
-        node=node,
-        folder=folder,
-        span=node["family"].span,
-    )
+    return Family(**_port_layer(node, folder, "family"), platforms=texts_of(node, "platforms"))
 
 
 def platform_for(platform: Platform, family: Family) -> Platform:
@@ -185,14 +171,3 @@ def platform_for(platform: Platform, family: Family) -> Platform:
         products=family.products,
         family=family,
     )
-
-
-def _middlewares(node: YamlNode) -> Mapping[str, tuple[str, ...]]:
-    offered = map_of(node, "middlewares")
-    return MappingProxyType({name: tuple(str(t.value) for t in child.elements()) for name, child in offered.items()})
-
-
-def _products(node: YamlNode) -> tuple[Product, ...]:
-    products = node.get("products")
-    listed = products.elements() if products is not None else ()
-    return tuple(Product(text_of(product, "file"), text_of(product, "what")) for product in listed)

@@ -9,11 +9,17 @@ from pathlib import Path
 from types import MappingProxyType
 
 from epg.diagnostics import Diagnostics, did_you_mean
+from epg.documents.schema import validate
 from epg.documents.yaml_file import load_yaml, newer_version
-from epg.source import Span, YamlNode
+from epg.source import YamlNode
 
 KEY = "parameters_from"
-_KEYS = ("api", "parameters")
+_SCHEMA = {
+    "type": "object",
+    "required": ["api", "parameters"],
+    "additionalProperties": False,
+    "properties": {"api": {"const": 1}, "parameters": {"type": "object"}},
+}
 
 
 def with_shared_parameters(kind: YamlNode, roots: Sequence[Path], diagnostics: Diagnostics) -> YamlNode | None:
@@ -46,19 +52,6 @@ def _load(name: YamlNode, roots: Sequence[Path], diagnostics: Diagnostics) -> Ya
         diagnostics.error("unknown-name", name.span, f"there are no shared parameters '{name.value}'", hint=hint)
         return None
     node = load_yaml(files[str(name.value)], diagnostics)
-    if node is None or newer_version(node, "api", diagnostics):
-        return None
-    for key, _ in node.items():
-        if key not in _KEYS:
-            hint = did_you_mean(key, _KEYS, "keys")
-            diagnostics.error("unknown-key", node.key_span(key), f"unknown key '{key}'", hint=hint)
-            return None
-    for key in _KEYS:
-        if key not in node:
-            span = Span(node.span.file, 1, 1, 2)
-            diagnostics.error("missing-key", span, f"'{key}' is missing", hint="it holds 'api: 1' and 'parameters'")
-            return None
-    if not node["parameters"].is_mapping:
-        diagnostics.error("wrong-type", node["parameters"].span, "'parameters' must be a map of names to parameters")
+    if node is None or newer_version(node, "api", diagnostics) or not validate(node, _SCHEMA, diagnostics):
         return None
     return node["parameters"]

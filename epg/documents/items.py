@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from types import MappingProxyType
 
 from epg.source import YamlNode
 
@@ -33,6 +34,11 @@ def map_of(node: YamlNode, *path: str) -> dict[str, YamlNode]:
     """The entries of the map at ``path``; empty if it is missing."""
     found = node.get(*path)
     return {} if found is None else dict(found.items())
+
+
+def text_map_of(node: YamlNode, *path: str) -> Mapping[str, str]:
+    """The entries of the map at ``path`` as text; empty if it is missing."""
+    return MappingProxyType({key: str(value.value) for key, value in map_of(node, *path).items()})
 
 
 def pin_names(node: YamlNode | None) -> tuple[str, ...]:
