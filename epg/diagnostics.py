@@ -12,6 +12,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from typing import Any
 
 from epg.source import Span
 
@@ -38,6 +39,21 @@ class Diagnostic:
     hint: str = ""
     notes: tuple[Note, ...] = ()
     about: str = ""
+
+    def data(self) -> dict[str, Any]:
+        """The diagnostic as data for programs."""
+        return {
+            "id": self.id,
+            "severity": self.severity,
+            **_position(self.span),
+            "message": self.message,
+            "hint": self.hint,
+            "notes": [{"message": note.message, **_position(note.span)} for note in self.notes],
+        }
+
+
+def _position(span: Span) -> dict[str, Any]:
+    return {"file": span.file, "line": span.line, "column": span.column}
 
 
 @dataclass

@@ -100,7 +100,7 @@ class _Base:
 def new_project(request: ProjectRequest, diagnostics: Diagnostics) -> NewProject | None:
     """Makes the project without writing its files.  Returns None after reporting mistakes in the request."""
     name = project_name(request.folder) if request.name is None else request.name
-    check_name(name, _argument(name), diagnostics)
+    check_name(name, Span.of_argument(name), diagnostics)
     problem = project_folder_problem(os.path.abspath(request.folder))
     if problem:
         message = f"'{request.folder}' cannot be the folder of a project: {problem}"
@@ -110,7 +110,7 @@ def new_project(request: ProjectRequest, diagnostics: Diagnostics) -> NewProject
     model = load_model(request.model, diagnostics)
     if base is None or model is None:
         return None
-    check_sdk_headers(name, base.target, _argument(name), diagnostics)
+    check_sdk_headers(name, base.target, Span.of_argument(name), diagnostics)
     place, copied = _model_files(request, model, diagnostics)
     if diagnostics.has_errors:
         return None
@@ -165,10 +165,6 @@ def project_name(folder: Path) -> str:
     return f"robot_{name}".rstrip("_") if not name or name[0].isdigit() else name
 
 
-def _argument(text: str) -> Span:
-    return Span("command line", 1, 1, len(text) + 1, text=text)
-
-
 def _find_base(request: ProjectRequest, catalog: Catalog, diagnostics: Diagnostics) -> _Base | None:
     """The target or the predefined configuration that the request names, or None after reporting mistakes."""
     name = request.target
@@ -183,7 +179,7 @@ def _find_base(request: ProjectRequest, catalog: Catalog, diagnostics: Diagnosti
         target = configuration.target if configuration is not None else None
     else:
         hint = target_hint(name, [*targets, *(file.removesuffix(".tcf") for file in files)], "targets and .tcf files")
-        diagnostics.error("unknown-target", _argument(name), f"there is no target '{name}'", hint=hint)
+        diagnostics.error("unknown-target", Span.of_argument(name), f"there is no target '{name}'", hint=hint)
         return None
     if target is None:
         return None
@@ -191,7 +187,7 @@ def _find_base(request: ProjectRequest, catalog: Catalog, diagnostics: Diagnosti
     if templates is None:
         message = f"there are no files of a new project for the platform '{target.platform.name}'"
         hint = f"there are some for {', '.join(project_names(request.roots))}; docs/cmake.md says what to write instead"
-        diagnostics.error("no-project", _argument(name), message, hint=hint)
+        diagnostics.error("no-project", Span.of_argument(name), message, hint=hint)
         return None
     middleware = _choose_middleware(target, configuration, request.middleware, catalog, diagnostics)
     written = catalog.find_middleware(middleware) if middleware else None
@@ -215,7 +211,7 @@ def _choose_middleware(
         if wanted not in offered:
             hint = did_you_mean(wanted, offered, "possible")
             message = f"{target.platform.name} has no middleware '{wanted}'"
-            diagnostics.error("unknown-middleware", _argument(wanted), message, hint=hint)
+            diagnostics.error("unknown-middleware", Span.of_argument(wanted), message, hint=hint)
         return wanted
     if configuration is not None and configuration.communication.middleware.builds:
         return ""

@@ -32,6 +32,12 @@ class Span:
     end: int = 0
     text: str | None = None
 
+    @classmethod
+    def of_argument(cls, value: str, option: str = "") -> Span:
+        """The place of an argument of a command, after ``option`` if it belongs to one."""
+        text = f"{option} {value}" if option else value
+        return cls("command line", 1, len(text) - len(value) + 1, len(text) + 1, text=text)
+
 
 @dataclass(frozen=True)
 class YamlNode:

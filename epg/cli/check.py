@@ -60,10 +60,10 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         together = f" in each file separately; to check them together, add {missing}" if missing else ""
         print(f"no errors{together}")
     else:
-        from epg.cli.report import diagnostics_json, to_json
+        from epg.cli.report import to_json
         from epg.emit.hardware import hardware_data
 
-        data: dict[str, Any] = {"diagnostics": diagnostics_json(diagnostics)}
+        data: dict[str, Any] = {"diagnostics": [item.data() for item in diagnostics]}
         if options.hardware:
             data["hardware"] = {name: hardware_data(found) for name, found in hardware.items()}
         sys.stdout.write(to_json(data))

@@ -11,7 +11,7 @@ from typing import Any
 
 from epg.cli.arguments import add_target_arguments, request_of
 from epg.cli.report import to_json
-from epg.diagnostics import Diagnostics, UserError, did_you_mean
+from epg.diagnostics import Diagnostics, did_you_mean
 from epg.emit.hardware import divider_text
 from epg.source import Span
 
@@ -40,7 +40,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
             if options.port in description["unconnected"]:
                 print(f"{options.port}: output of {description['model']['name']}, unconnected")
                 return 0
-        span = Span("command line", 1, 1, len(options.port) + 1, text=options.port)
+        span = Span.of_argument(options.port)
         hint = did_you_mean(options.port, names, "ports and components")
         diagnostics.error("unknown-port", span, f"there is no port or component '{options.port}'", hint=hint)
         return 1
@@ -53,7 +53,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
 
 def _from_files(options: argparse.Namespace, diagnostics: Diagnostics) -> dict[str, Any]:
     """The description of a target that is made from its files, without a build."""
-    from epg.cli.generate import report_mistake_in_template
+    from epg.cli.generate import mistakes_in_templates
     from epg.emit.application import application_topics
     from epg.emit.cmake import PathNames
     from epg.emit.description import describe
@@ -63,13 +63,8 @@ def _from_files(options: argparse.Namespace, diagnostics: Diagnostics) -> dict[s
     app = load_application(request, diagnostics)
     diagnostics.stop_if_errors()
     assert app is not None
-    try:
+    with mistakes_in_templates(request.user_roots, diagnostics):
         topics = application_topics(app, request.roots)
-    except UserError:
-        raise
-    except Exception as error:
-        report_mistake_in_template(error, request.user_roots, diagnostics)
-        raise
     data: dict[str, Any] = json.loads(describe(app, topics, PathNames(Path.cwd())))
     return data
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 from epg.cli.arguments import add_target_arguments, request_of
@@ -19,20 +20,25 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_target_arguments(parser, required=True)
 
 
-def report_mistake_in_template(error: Exception, user_roots: Sequence[Path], diagnostics: Diagnostics) -> None:
-    """Reports a mistake in a template of the user's own kinds and platforms, and raises UserError.
-
-    Returns for any other error, which is a bug in EPG.
-    """
+@contextmanager
+def mistakes_in_templates(user_roots: Sequence[Path], diagnostics: Diagnostics) -> Iterator[None]:
+    """Reports a mistake in a template of the user's own kinds and platforms.  Any other exception is a bug in EPG."""
     from epg.emit.template import NOT_UTF_8, mistake_in_template
     from epg.source import Span
 
-    file, line, message = mistake_in_template(error) or ("", 0, "")
-    if any(Path(file).is_relative_to(root) for root in user_roots):
-        hint = "docs/adding-a-component-kind.md describes the values that a template can print"
-        hint = "save it as UTF-8" if message == NOT_UTF_8 else hint
-        diagnostics.error("template-wrong", Span(file, line, 1), f"this template does not work: {message}", hint=hint)
-        diagnostics.stop_if_errors()
+    try:
+        yield
+    except UserError:
+        raise
+    except Exception as error:
+        file, line, message = mistake_in_template(error) or ("", 0, "")
+        if any(Path(file).is_relative_to(root) for root in user_roots):
+            hint = "docs/adding-a-component-kind.md describes the values that a template can print"
+            hint = "save it as UTF-8" if message == NOT_UTF_8 else hint
+            told = f"this template does not work: {message}"
+            diagnostics.error("template-wrong", Span(file, line, 1), told, hint=hint)
+            diagnostics.stop_if_errors()
+        raise
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
@@ -56,13 +62,8 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         message = f"middleware '{name}' can be checked, but this EPG has no code for it"
         diagnostics.error("middleware-not-built", communication.span, message, hint=f"choose another one: {others}")
         diagnostics.stop_if_errors()
-    try:
+    with mistakes_in_templates(request.user_roots, diagnostics):
         files = application_outputs(app, request.roots, PathNames(options.source_dir))
-    except UserError:
-        raise
-    except Exception as error:
-        report_mistake_in_template(error, request.user_roots, diagnostics)
-        raise
     update_folder(options.output, files, sys.stdout if options.json else None)
     write_warnings(options.warnings, diagnostics)
     return 0

@@ -106,10 +106,10 @@ def _assignments(option: str, texts: list[str], diagnostics: Diagnostics) -> dic
     for text in texts:
         name, equals, value = text.partition("=")
         if not (name and equals and value):
-            shown = f"{option} {text}"
-            span = Span("command line", 1, len(option) + 2, len(shown) + 1, text=shown)
             hint = f"write {option} <name of the target>=<value>"
-            diagnostics.error("not-an-assignment", span, f"'{text}' does not name a target", hint=hint)
+            diagnostics.error(
+                "not-an-assignment", Span.of_argument(text, option), f"'{text}' does not name a target", hint=hint
+            )
             continue
         result.setdefault(name, []).append(value)
     return result

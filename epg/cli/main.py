@@ -113,7 +113,7 @@ def _refuse(unknown: Sequence[str], parser: argparse.ArgumentParser) -> None:
 
 def _run(options: argparse.Namespace) -> int:
     """Runs the chosen subcommand, prints its diagnostics and returns the exit status."""
-    from epg.cli.report import diagnostics_json, format_diagnostics, to_json
+    from epg.cli.report import format_diagnostics, to_json
     from epg.diagnostics import Diagnostics, UserError
 
     diagnostics = Diagnostics()
@@ -151,6 +151,6 @@ def _run(options: argparse.Namespace) -> int:
 
         sys.stdout.write(to_sarif(diagnostics, Path.cwd()))
     elif diagnostics.items and options.json and diagnostics.has_errors:
-        sys.stdout.write(to_json({"diagnostics": diagnostics_json(diagnostics)}))
+        sys.stdout.write(to_json({"diagnostics": [item.data() for item in diagnostics]}))
     sys.stderr.write(format_diagnostics(diagnostics))
     return EXIT_MISTAKES if diagnostics.has_errors else status

@@ -149,7 +149,9 @@ def _aligning(
     for name in wanted:
         if name not in pairs:
             hint = did_you_mean(name, pairs, "compared")
-            diagnostics.error("unknown-recorded-signal", _span("--by", name), f"'{name}' is not compared", hint=hint)
+            diagnostics.error(
+                "unknown-recorded-signal", Span.of_argument(name, "--by"), f"'{name}' is not compared", hint=hint
+            )
     if wanted:
         return {name: pairs[name] for name in wanted if name in pairs}
     return {name: name for name in sorted(recording.setpoints & other.setpoints)} or pairs
@@ -159,12 +161,7 @@ def _check(name: str, recording: Recording, option: str, diagnostics: Diagnostic
     if name not in recording.signals:
         message = f"'{name}' is not in {recording.path}"
         hint = did_you_mean(name, recording.signals, "signals")
-        diagnostics.error("unknown-recorded-signal", _span(option, name), message, hint=hint)
-
-
-def _span(option: str, name: str) -> Span:
-    text = f"{option} {name}"
-    return Span("command line", 1, len(option) + 2, len(text) + 1, text=text)
+        diagnostics.error("unknown-recorded-signal", Span.of_argument(name, option), message, hint=hint)
 
 
 def _title(path: Path) -> str:

@@ -13,9 +13,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
 
 from epg.diagnostics import Diagnostic, Diagnostics
 from epg.source import Span
@@ -49,21 +47,6 @@ def format_diagnostics(diagnostics: Diagnostics) -> str:
     return "".join(_format(diagnostic, lines) for diagnostic in ordered)
 
 
-def diagnostics_json(diagnostics: Iterable[Diagnostic]) -> list[dict[str, Any]]:
-    """Diagnostics as data for programs."""
-    return [
-        {
-            "id": d.id,
-            "severity": d.severity,
-            **_position(d.span),
-            "message": d.message,
-            "hint": d.hint,
-            "notes": [{"message": note.message, **_position(note.span)} for note in d.notes],
-        }
-        for d in diagnostics
-    ]
-
-
 def to_json(data: object) -> str:
     """The text of ``data`` as JSON, in the form that all commands print with ``--json``."""
     return json.dumps(data, indent=2, sort_keys=False, ensure_ascii=False) + "\n"
@@ -81,10 +64,6 @@ def shown_path(file: str) -> str:
         except (ValueError, OSError):
             return file
     return file
-
-
-def _position(span: Span) -> dict[str, Any]:
-    return {"file": span.file, "line": span.line, "column": span.column}
 
 
 def _format(d: Diagnostic, source: _Lines) -> str:

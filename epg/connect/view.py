@@ -25,7 +25,6 @@ from epg.resolve.application import Step
 from epg.resolve.claims import TICK
 from epg.resolve.matching import Match
 from epg.resolve.wires import component_steps
-from epg.source import Span
 
 Data = dict[str, Any]
 
@@ -184,19 +183,10 @@ def _units(steps: list[Step]) -> str:
 def diagnostic_view(diagnostic: Diagnostic, places: Places | None = None) -> Data:
     """A message as in the command line's JSON, with the port and the component that it is about."""
     return {
-        "id": diagnostic.id,
-        "severity": diagnostic.severity,
-        **_position(diagnostic.span),
-        "message": diagnostic.message,
-        "hint": diagnostic.hint,
-        "notes": [{"message": note.message, **_position(note.span)} for note in diagnostic.notes],
+        **diagnostic.data(),
         "port": places.port(diagnostic) if places is not None else None,
         "component": places.component(diagnostic) if places is not None else None,
     }
-
-
-def _position(span: Span) -> Data:
-    return {"file": span.file, "line": span.line, "column": span.column}
 
 
 def _hardware(loaded: Loaded) -> list[Data]:

@@ -17,7 +17,7 @@ def caller_span(file: str, name: str) -> Span:
 def setting_span(file: str | None, name: str, setting: str) -> Span:
     """The position of a setting: its argument in the CMakeLists.txt ``file``, or the command line if that is None."""
     if file is None:
-        return Span("command line", 1, 1, len(setting) + 1, text=setting)
+        return Span.of_argument(setting)
     key, _, value = setting.partition("=")
     pattern = re.escape(setting)
     if key in ("node", "namespace"):

@@ -58,7 +58,7 @@ def plan_agents(robots: Sequence[Robot], wiring: Wiring, diagnostics: Diagnostic
     for option, given in (("--board", wiring.boards), ("--device", wiring.devices)):
         for name in given:
             if name not in names:
-                span = _argument(option, f"{name}={given[name][0]}")
+                span = Span.of_argument(f"{name}={given[name][0]}", option)
                 hint = did_you_mean(name, names, "targets")
                 diagnostics.error("unknown-target-name", span, f"there is no target '{name}'", hint=hint)
     for name, count in Counter(robot.name for robot in robots).items():
@@ -101,7 +101,7 @@ def _on_usb(robot: Robot, serials: Sequence[str], diagnostics: Diagnostics) -> l
     agents = []
     for serial in serials:
         number = serial.upper() if robot.usb_serial is None else serial
-        span = _argument("--board", f"{robot.name}={serial}")
+        span = Span.of_argument(f"{robot.name}={serial}", "--board")
         if robot.usb_serial is None and not re.fullmatch("[0-9A-F]{16}", number):
             message = f"'{serial}' is not the serial number of a Pico"
             diagnostics.error("wrong-serial-number", span, message, hint="it has 16 hexadecimal digits")
@@ -128,7 +128,7 @@ def _on_device(robot: Robot, text: str, diagnostics: Diagnostics) -> Agent:
     """The agent for a tty.  ``text`` is for example "/dev/ttyAMA0" or "/dev/ttyAMA0:921600"."""
     device, _, rate = text.partition(":")
     if not device.startswith("/dev/") or not device.isprintable() or not re.fullmatch("([1-9][0-9]{2,6})?", rate):
-        span = _argument("--device", f"{robot.name}={text}")
+        span = Span.of_argument(f"{robot.name}={text}", "--device")
         hint = "such as /dev/ttyAMA0 or /dev/ttyAMA0:921600"
         diagnostics.error("wrong-device", span, f"'{text}' is no tty, or no tty and baud rate", hint=hint)
     stem = re.sub("[^0-9A-Za-z]+", "_", device.removeprefix("/dev/"))
@@ -162,8 +162,3 @@ def _warn_of_equal_nodes(agents: Sequence[Agent], diagnostics: Diagnostics) -> N
             message = f"{count} robots are the node '{node}', with the same topics"
             hint = "write namespace: robot_$serial in the .tcf, or give each a name on its console"
             diagnostics.warning("equal-nodes", Span("command line"), message, hint=hint)
-
-
-def _argument(option: str, value: str) -> Span:
-    text = f"{option} {value}"
-    return Span("command line", 1, len(option) + 2, len(text) + 1, text=text)
