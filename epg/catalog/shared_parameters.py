@@ -18,7 +18,7 @@ _SCHEMA = {
     "type": "object",
     "required": ["api", "parameters"],
     "additionalProperties": False,
-    "properties": {"api": {"const": 1}, "parameters": {"type": "object"}},
+    "properties": {"api": {"const": 1, "examples": [1]}, "parameters": {"type": "object"}},
 }
 
 
