@@ -15,9 +15,9 @@ export function bars(state) {
   if (whyLocked()) {
     list.push(
       bar("locked", "error", [
-        h("b", null, whyLocked()),
+        h("b", whyLocked()),
         " Open the address that ",
-        h("code", null, "epg connect"),
+        h("code", "epg connect"),
         " printed last, where it was started.",
       ]),
     );
@@ -25,11 +25,11 @@ export function bars(state) {
     const folder = state?.project?.folder;
     list.push(
       bar("lost", "error", [
-        h("b", null, "The connection to EPG is lost. "),
+        h("b", "The connection to EPG is lost. "),
         "Start it again",
-        folder ? [" in ", h("code", null, folder)] : null,
+        folder ? [" in ", h("code", folder)] : null,
         " with ",
-        h("code", null, "epg connect"),
+        h("code", "epg connect"),
         " and open the address it prints.",
         state?.draft?.changed ? " What was not saved is gone if EPG has ended; Changes, below, still shows it." : null,
       ]),
@@ -43,7 +43,7 @@ export function bars(state) {
       bar(
         "conflict",
         "error",
-        [h("b", null, draft.conflict.message), draft.conflict.hint ? ` ${draft.conflict.hint}` : null],
+        [h("b", draft.conflict.message), draft.conflict.hint ? ` ${draft.conflict.hint}` : null],
         h("button", { onclick: () => attempt("reload") }, "Take the file, drop my changes"),
         h("button", { onclick: () => attempt("save", { anyway: true }) }, "Save mine over it"),
       ),
@@ -59,14 +59,14 @@ export function bars(state) {
     );
   }
   if (state.phase === "connect" && !state.editable) {
-    list.push(bar("readonly", "warning", [h("b", null, "Connections cannot be changed here. "), state.why_not]));
+    list.push(bar("readonly", "warning", [h("b", "Connections cannot be changed here. "), state.why_not]));
   }
   if (ui.refused) {
     list.push(
       bar(
         "refused",
         "error",
-        [h("b", null, ui.refused.message), ui.refused.hint ? ` ${ui.refused.hint}` : null],
+        [h("b", ui.refused.message), ui.refused.hint ? ` ${ui.refused.hint}` : null],
         dismiss(() => (ui.refused = null)),
       ),
     );
@@ -76,9 +76,8 @@ export function bars(state) {
 
 function dismiss(forget) {
   return h(
-    "button",
+    "button.quiet",
     {
-      class: "quiet",
       onclick: () => {
         forget();
         draw();
@@ -93,7 +92,7 @@ function bar(key, severity, text, ...buttons) {
     "div",
     { class: `bar ${severity}`, key, role: severity === "note" ? "status" : "alert" },
     icon(severity),
-    h("p", null, text),
+    h("p", text),
     buttons,
   );
 }

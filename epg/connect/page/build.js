@@ -34,7 +34,7 @@ function question() {
   const { ask } = current().build;
   if (!ask) return null;
   return [
-    h("p", { key: "folder" }, "These commands build the project, in ", h("code", null, ask.folder), ":"),
+    h("p", { key: "folder" }, "These commands build the project, in ", h("code", ask.folder), ":"),
     h("pre", { key: "commands", tabindex: "0", "aria-label": "Commands" }, ask.commands.join("\n")),
     h(
       "p",
@@ -101,22 +101,13 @@ function outcome(state) {
 export function buildPanel(state) {
   const { build } = state;
   if (build.state === "idle") {
-    return h(
-      "p",
-      { class: "empty" },
-      "Generate saves, configures and builds the firmware. Its progress and messages appear here.",
-    );
+    return h("p.empty", "Generate saves, configures and builds the firmware. Its progress and messages appear here.");
   }
   return [
     h("div", { class: `outcome ${build.state}`, key: "outcome" }, status(state), progress(build)),
-    build.products.length ? h("ul", { class: "products", key: "products" }, build.products.map(product)) : null,
-    build.messages.length
-      ? h(
-          "ul",
-          { class: "problem-list", key: "messages", "aria-label": "Messages of the build" },
-          build.messages.map(problem),
-        )
-      : null,
+    build.products.length && h("ul.products", { key: "products" }, build.products.map(product)),
+    build.messages.length &&
+      h("ul.problem-list", { key: "messages", "aria-label": "Messages of the build" }, build.messages.map(problem)),
     logPart(build),
   ];
 }
@@ -125,19 +116,13 @@ function status(state) {
   const { build } = state;
   const name = { done: "done", failed: "error", cancelled: "note" }[build.state];
   return h(
-    "p",
-    { class: "outcome-text" },
+    "p.outcome-text",
     name ? icon(name) : null,
-    h("b", null, outcome(state)),
+    h("b", outcome(state)),
     build.state === "running" && build.step === "build" && build.total
       ? ` ${build.done} of ${build.total} steps`
       : null,
-    h("span", {
-      class: "muted elapsed",
-      id: "elapsed",
-      keep: true,
-      shown: (node) => (node.textContent = elapsed(build)),
-    }),
+    h("span.muted.elapsed", { id: "elapsed", keep: true, shown: (node) => (node.textContent = elapsed(build)) }),
   );
 }
 
@@ -169,11 +154,10 @@ function product({ path, what }, n) {
   return h(
     "li",
     { key: n },
-    h("p", null, what),
+    h("p", what),
     h(
-      "p",
-      { class: "product-path" },
-      h("code", null, path),
+      "p.product-path",
+      h("code", path),
       h("button", { onclick: (event) => copy(path, event.target), "aria-label": `Copy ${path}` }, "Copy path"),
     ),
   );
@@ -208,7 +192,7 @@ function logPart(build) {
         fetchLog();
       },
     },
-    h("summary", null, `Log, ${build.lines} line${build.lines === 1 ? "" : "s"}`),
+    h("summary", `Log, ${build.lines} line${build.lines === 1 ? "" : "s"}`),
     h("pre", { tabindex: "0", "aria-label": "Log", keep: true, shown: showLog }),
   );
 }

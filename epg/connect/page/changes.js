@@ -5,10 +5,9 @@ import { h } from "./dom.js";
 
 export function changes(state) {
   const { diff } = state.draft;
-  if (!diff) return h("p", { class: "empty" }, "Nothing has changed since the files were saved.");
+  if (!diff) return h("p.empty", "Nothing has changed since the files were saved.");
   return h(
-    "pre",
-    { class: "diff" },
+    "pre.diff",
     diff
       .replace(/\n$/, "")
       .split("\n")

@@ -13,8 +13,7 @@ function others(all, toggle) {
   const count = current().configurations.filter((each) => !each.possible).length;
   if (count === 0) return null;
   return h(
-    "label",
-    { class: "check" },
+    "label.check",
     h("input", { type: "checkbox", checked: all, onchange: toggle }),
     `Also show ${count} that this project cannot take, and why`,
   );
@@ -31,14 +30,9 @@ export function chooseTarget() {
     }),
     configurationCards(current(), "other", (each) => all || each.possible),
     h(
-      "div",
-      { class: "buttons sticky" },
-      h(
-        "p",
-        { class: "muted" },
-        `Changes 'extends' in ${shortFile(current().project?.files.tcf || "")}, and can be undone.`,
-      ),
-      h("span", { class: "space" }),
+      "div.buttons.sticky",
+      h("p.muted", `Changes 'extends' in ${shortFile(current().project?.files.tcf || "")}, and can be undone.`),
+      h("span.space"),
       h("button", { type: "button", onclick: () => closeDialog("target") }, "Cancel"),
       h(
         "button",

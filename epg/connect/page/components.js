@@ -15,7 +15,7 @@ export function componentColumn(state, side, diagnostics, users) {
     "section",
     { class: `components ${side}`, key: side, "aria-labelledby": `title-${side}` },
     h("h2", { id: `title-${side}` }, side === "sources" ? "From the target" : "To the target"),
-    shown.length + without.length === 0 ? h("p", { class: "empty" }, "Nothing here.") : null,
+    shown.length + without.length === 0 && h("p.empty", "Nothing here."),
     [...shown, ...without].map((component) => card(state, side, component, direction, diagnostics, users)),
   );
 }
@@ -24,31 +24,27 @@ function card(state, side, component, direction, diagnostics, users) {
   const { name, kind, summary, where, peripheral, topic } = component;
   const ports = component.ports.filter((port) => port.direction === direction);
   const first = direction === "source" || component.ports.every((port) => port.direction === direction);
-  const pins = where?.length ? where.map((pin) => [h("span", { class: "pin" }, pin), " "]) : null;
+  const pins = where?.length ? where.map((pin) => [h("span.pin", pin), " "]) : null;
   const facts = [pins, peripheral, topic].filter(Boolean);
   return h(
-    "article",
-    { class: "component", key: name, "aria-label": `component ${name}` },
+    "article.component",
+    { key: name, "aria-label": `component ${name}` },
     h(
-      "div",
-      { class: "component-head" },
-      h("span", { class: "component-name" }, name),
-      h("span", { class: "kind", title: summary || null }, kind.replace(/_/g, " ")),
+      "div.component-head",
+      h("span.component-name", name),
+      h("span.kind", { title: summary || null }, kind.replace(/_/g, " ")),
     ),
-    facts.length && (first || ports.length === 0)
-      ? h(
-          "ul",
-          { class: "facts" },
-          facts.map((fact, n) => h("li", { key: n }, fact)),
-        )
-      : null,
-    ports.length
-      ? h(
-          "ul",
-          { class: "port-list" },
-          ports.map((port) => row(state, side, port, users.get(port.reference) || [])),
-        )
-      : null,
+    facts.length &&
+      (first || ports.length === 0) &&
+      h(
+        "ul.facts",
+        facts.map((fact, n) => h("li", { key: n }, fact)),
+      ),
+    ports.length &&
+      h(
+        "ul.port-list",
+        ports.map((port) => row(state, side, port, users.get(port.reference) || [])),
+      ),
     ports.length === 0 || first ? inline(diagnostics.get(name) || []) : null,
   );
 }
@@ -77,10 +73,8 @@ function row(state, side, port, users) {
       ),
       users.length > 0,
     ),
-    h("span", { class: "port-name", title: port.summary || null }, name),
+    h("span.port-name", { title: port.summary || null }, name),
     unitMark(port),
-    converted
-      ? h("span", { class: "tcf-label", key: "tcf", title: "The .tcf converts this value" }, ".tcf: ", converted)
-      : null,
+    converted && h("span.tcf-label", { key: "tcf", title: "The .tcf converts this value" }, ".tcf: ", converted),
   );
 }

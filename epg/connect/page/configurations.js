@@ -15,24 +15,23 @@ export function configurationCards(state, prefix, only = () => true) {
   const robots = [...new Set(configurations.map((each) => each.robot || NO_ROBOT))];
   const shown = configurations.filter(isShown);
   return h(
-    "div",
-    { class: "chooser" },
+    "div.chooser",
     filters(robots, prefix),
     h(
-      "p",
-      { class: "muted", role: "status" },
+      "p.muted",
+      { role: "status" },
       shown.length === configurations.length
         ? `${shown.length} target${shown.length === 1 ? "" : "s"}`
         : `${shown.length} of ${configurations.length} targets`,
     ),
     state.configurations.length === 0
-      ? h("p", { class: "empty" }, "Looking for targets and for what this computer has…")
+      ? h("p.empty", "Looking for targets and for what this computer has…")
       : shown.length === 0
-        ? h("p", { class: "empty" }, "No target matches. Clear the search to see all.")
+        ? h("p.empty", "No target matches. Clear the search to see all.")
         : null,
     h(
-      "div",
-      { class: "robots", role: "radiogroup", "aria-label": "Targets" },
+      "div.robots",
+      { role: "radiogroup", "aria-label": "Targets" },
       grouped(shown).map((group) => robotGroup(group, prefix)),
     ),
   );
@@ -76,11 +75,9 @@ function grouped(configurations) {
 
 function filters(robots, prefix) {
   return h(
-    "div",
-    { class: "filters" },
+    "div.filters",
     h(
-      "div",
-      { class: "field" },
+      "div.field",
       h("label", { for: `${prefix}-search` }, "Search"),
       h("input", {
         id: `${prefix}-search`,
@@ -91,8 +88,7 @@ function filters(robots, prefix) {
       }),
     ),
     h(
-      "div",
-      { class: "field" },
+      "div.field",
       h("label", { for: `${prefix}-robot` }, "Robot"),
       h(
         "select",
@@ -102,8 +98,7 @@ function filters(robots, prefix) {
       ),
     ),
     h(
-      "label",
-      { class: "check" },
+      "label.check",
       h("input", {
         type: "checkbox",
         checked: ui.filter.fits,
@@ -124,17 +119,16 @@ function robotGroup({ robot, boards }, prefix) {
   const summary =
     robot === NO_ROBOT ? "no robot yet: every port becomes a topic, and the .tcf is yours to go on with" : "";
   return h(
-    "section",
-    { class: "robot", key: robot, "aria-labelledby": name },
-    h("h3", { id: name }, robot, summary ? h("span", { class: "muted" }, ` ${summary}`) : null),
+    "section.robot",
+    { key: robot, "aria-labelledby": name },
+    h("h3", { id: name }, robot, summary ? h("span.muted", ` ${summary}`) : null),
     boards.map(({ board, list }) =>
       h(
-        "div",
-        { class: "board", key: board, role: "group", "aria-label": `${robot}, ${board}` },
-        h("h4", null, board),
+        "div.board",
+        { key: board, role: "group", "aria-label": `${robot}, ${board}` },
+        h("h4", board),
         h(
-          "div",
-          { class: "cards" },
+          "div.cards",
           list.map((each) => card(each, prefix)),
         ),
       ),
@@ -163,23 +157,15 @@ function card(configuration, prefix) {
     }),
     picture
       ? wiringPicture(name, { alt: "", width: "84", height: "84" })
-      : h("span", { class: "no-picture", "aria-hidden": "true" }),
+      : h("span.no-picture", { "aria-hidden": "true" }),
     h(
-      "span",
-      { class: "card-text" },
-      h(
-        "span",
-        { class: "card-title" },
-        title[0].toUpperCase() + title.slice(1),
-        chosen ? h("span", { class: "tag" }, "in use") : null,
-      ),
-      more.length ? h("span", { class: "card-line" }, more.join(", ")) : null,
-      h("span", { class: "card-line name" }, breakable(name)),
-      h("span", { class: "card-line" }, offer(components, matches, ports)),
-      missing.length
-        ? h("span", { class: "card-line warning" }, icon("warning"), `This computer lacks ${missing.join(", ")}`)
-        : null,
-      reason ? h("span", { class: "card-line warning" }, icon("warning"), reason) : null,
+      "span.card-text",
+      h("span.card-title", title[0].toUpperCase() + title.slice(1), chosen ? h("span.tag", "in use") : null),
+      more.length && h("span.card-line", more.join(", ")),
+      h("span.card-line.name", breakable(name)),
+      h("span.card-line", offer(components, matches, ports)),
+      missing.length && h("span.card-line.warning", icon("warning"), `This computer lacks ${missing.join(", ")}`),
+      reason && h("span.card-line.warning", icon("warning"), reason),
     ),
   );
 }

@@ -47,15 +47,13 @@ export function editConversion(port, n) {
       "form",
       { onsubmit: apply, autocomplete: "off", novalidate: true },
       h(
-        "p",
-        { class: "muted" },
+        "p.muted",
         "The value is multiplied by the scale, the offset is added, and the result is kept within the limits. ",
         "Empty fields change nothing.",
       ),
-      end.from_tcf ? h("p", null, "The .tcf converts it too: ", h("b", null, end.from_tcf)) : null,
+      end.from_tcf && h("p", "The .tcf converts it too: ", h("b", end.from_tcf)),
       h(
-        "div",
-        { class: "fields" },
+        "div.fields",
         text(
           "scale",
           "Scale",
@@ -68,17 +66,9 @@ export function editConversion(port, n) {
         text("high", "Highest", end.limits?.[1], "", readonly),
         text("unit", "Unit", end.unit, "of the value in the model, where it is not the port's", readonly),
       ),
-      error
-        ? h(
-            "p",
-            { class: "refusal", role: "alert" },
-            error.message,
-            error.hint ? h("span", { class: "hint" }, error.hint) : null,
-          )
-        : null,
+      error && h("p.refusal", { role: "alert" }, error.message, error.hint ? h("span.hint", error.hint) : null),
       h(
-        "div",
-        { class: "buttons" },
+        "div.buttons",
         h(
           "button",
           {
@@ -92,7 +82,7 @@ export function editConversion(port, n) {
           },
           "Remove wire",
         ),
-        h("span", { class: "space" }),
+        h("span.space"),
         h("button", { type: "button", onclick: () => closeDialog("conversion") }, "Cancel"),
         h("button", { type: "submit", class: "primary", disabled: readonly }, "Apply"),
       ),
@@ -116,7 +106,7 @@ function text(name, label, value, hint, readonly) {
       readonly,
       "aria-describedby": hint ? `${field}-hint` : null,
     }),
-    hint ? h("span", { class: "hint", id: `${field}-hint` }, hint) : null,
+    hint && h("span.hint", { id: `${field}-hint` }, hint),
   );
 }
 

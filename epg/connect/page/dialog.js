@@ -40,8 +40,8 @@ function drawDialog(name) {
     return;
   }
   const head = h(
-    "div",
-    { class: "dialog-head", key: "head" },
+    "div.dialog-head",
+    { key: "head" },
     h("h2", { id: `${name}-title` }, title),
     h(
       "button",
@@ -49,5 +49,5 @@ function drawDialog(name) {
       icon("close"),
     ),
   );
-  render(element, [head, h("div", { class: "dialog-body", key: "body" }, inside)]);
+  render(element, [head, h("div.dialog-body", { key: "body" }, inside)]);
 }

@@ -29,16 +29,15 @@ export function dock(state) {
   const isOpen = ui.dock !== "closed";
   return [
     h(
-      "div",
-      { class: "dock-head", key: "head" },
+      "div.dock-head",
+      { key: "head" },
       h(
         "div",
         { role: "tablist", "aria-label": "Details", onkeydown: (event) => arrow(event, all, shown) },
         all.map((each) => tab(each, each === shown)),
       ),
       h(
-        "div",
-        { class: "dock-size" },
+        "div.dock-size",
         sizeButton(
           ui.dock === "large" ? "Smaller" : "Larger",
           ui.dock === "large" ? "open" : "large",
@@ -95,9 +94,8 @@ function arrow(event, all, shown) {
 
 function sizeButton(label, size, picture) {
   return h(
-    "button",
+    "button.quiet.icon-button",
     {
-      class: "quiet icon-button",
       "aria-label": label,
       title: label,
       onclick: () => {

@@ -2,23 +2,28 @@
 // Elements as a function of data. h() describes an element. render() changes only the differences between the page and
 // the descriptions, so the focus, scroll positions, open lists and half-typed text stay.
 //
-//   render(document.getElementById("main"), [h("p", {class: "note"}, "4 ports")])
+//   render(document.getElementById("main"), [h("p.note", "4 ports")])
 
 const SVG = "http://www.w3.org/2000/svg";
 const SVG_TAGS = new Set(["svg", "path", "circle", "g", "rect"]);
 
-// Describes an element. Special attributes:
+// Describes an element, as h("p.note", { title: "all ports" }, "4 ports"): its tag and classes, its attributes if it has
+// any, and its children. Special attributes:
 //   key      identifies the element among its siblings
 //   on...    an event handler
 //   keep     render() does not touch the children; another function draws them
 //   made     called once with the new element
 //   shown    called with the element after each drawing
 //   initial  the first value of an input; later the user's text stays
-// Children that are null, undefined or false are left out.
-export function h(tag, attributes, ...children) {
-  const flat = children.flat(Infinity).filter((child) => child !== null && child !== undefined && child !== false);
-  return { tag, attributes: attributes || {}, children: flat };
+// Children that are null, undefined, false, 0 or an empty text are left out.
+export function h(selector, ...rest) {
+  const [tag, ...classes] = selector.split(".");
+  const attributes = isAttributes(rest[0]) ? rest.shift() : {};
+  if (classes.length) attributes.class = classes.join(" ");
+  return { tag, attributes, children: rest.flat(Infinity).filter(Boolean) };
 }
+
+const isAttributes = (value) => value?.constructor === Object && !("tag" in value);
 
 export function render(parent, descriptions) {
   const focused = document.activeElement;

@@ -13,24 +13,20 @@ const COLUMNS = [
 ];
 
 export function hardware(state) {
-  if (state.hardware.length === 0) return h("p", { class: "empty" }, "The target uses no pins or peripherals.");
+  if (state.hardware.length === 0) return h("p.empty", "The target uses no pins or peripherals.");
   const columns = COLUMNS.filter(([name]) => state.hardware.some((row) => row[name]));
   return h(
     "table",
-    null,
-    h("caption", { class: "unseen" }, "Pins and peripherals"),
+    h("caption.unseen", "Pins and peripherals"),
     h(
       "thead",
-      null,
       h(
         "tr",
-        null,
         columns.map(([name, title]) => h("th", { key: name, scope: "col" }, title)),
       ),
     ),
     h(
       "tbody",
-      null,
       state.hardware.map((row, n) =>
         h(
           "tr",

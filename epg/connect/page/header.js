@@ -9,15 +9,10 @@ import { counted, shortFile } from "./problems.js";
 import { attempt, draw, ui } from "./ui.js";
 
 export function header(state) {
-  const brand = h("p", { class: "brand", key: "brand" }, icon("target"), h("span", null, "EPG"));
-  const close = h("button", { class: "quiet", key: "close", onclick: () => attempt("done") }, "Close EPG");
+  const brand = h("p.brand", { key: "brand" }, icon("target"), h("span", "EPG"));
+  const close = h("button.quiet", { key: "close", onclick: () => attempt("done") }, "Close EPG");
   if (state.phase === "choose") {
-    return [
-      brand,
-      h("p", { class: "title", key: "title" }, "New project"),
-      h("span", { class: "space", key: "space" }),
-      close,
-    ];
+    return [brand, h("p.title", { key: "title" }, "New project"), h("span.space", { key: "space" }), close];
   }
   const { draft, build } = state;
   const running = build.state === "running";
@@ -26,15 +21,15 @@ export function header(state) {
     projectName(state),
     targetButton(state),
     problemsButton(state),
-    h("span", { class: "space", key: "space" }),
+    h("span.space", { key: "space" }),
     h(
       "p",
       { class: `saved${draft.changed ? " unsaved" : ""}`, key: "saved", role: "status" },
       draft.changed ? "● Unsaved changes" : "Saved",
     ),
     h(
-      "div",
-      { class: "group", key: "undo" },
+      "div.group",
+      { key: "undo" },
       button("Undo", "Ctrl+Z", draft.can_undo, () => attempt("undo")),
       button("Redo", "Ctrl+Y", draft.can_redo, () => attempt("redo")),
     ),
@@ -56,11 +51,11 @@ function button(text, keys, enabled, onclick) {
 
 function projectName(state) {
   const { name, folder, targets } = state.project;
-  if (targets.length < 2) return h("h1", { class: "title", key: "title", title: folder }, name);
+  if (targets.length < 2) return h("h1.title", { key: "title", title: folder }, name);
   return h(
-    "div",
-    { class: "title", key: "title" },
-    h("h1", { class: "unseen" }, name),
+    "div.title",
+    { key: "title" },
+    h("h1.unseen", name),
     h(
       "select",
       {
@@ -78,14 +73,9 @@ function targetButton(state) {
   const chosen = state.configurations.find((each) => each.chosen);
   const name = chosen ? chosen.name : shortFile(state.project.files.tcf);
   return h(
-    "button",
-    {
-      class: "target",
-      key: "target",
-      onclick: chooseTarget,
-      disabled: state.configurations.length === 0 || !state.editable,
-    },
-    h("span", { class: "muted" }, "Target "),
+    "button.target",
+    { key: "target", onclick: chooseTarget, disabled: state.configurations.length === 0 || !state.editable },
+    h("span.muted", "Target "),
     name,
   );
 }

@@ -27,7 +27,7 @@ function drawPage() {
   render(part("bars"), bars(state));
   if (hasEnded()) {
     for (const name of ["header", "dock"]) part(name).hidden = true;
-    render(part("main"), [h("p", { class: "ended", key: "ended" }, "EPG has ended. This window can be closed.")]);
+    render(part("main"), [h("p.ended", { key: "ended" }, "EPG has ended. This window can be closed.")]);
     return;
   }
   if (!state) return;
@@ -46,7 +46,7 @@ function drawPage() {
 
 function diagram(state) {
   if (!state.model) {
-    return [h("p", { class: "empty", key: "none" }, "The model cannot be read. Problems, below, says why.")];
+    return [h("p.empty", { key: "none" }, "The model cannot be read. Problems, below, says why.")];
   }
   const byPort = group(state.diagnostics, "port");
   const byComponent = group(
@@ -59,15 +59,15 @@ function diagram(state) {
   }
   return [
     h(
-      "div",
-      { class: "diagram", id: "diagram", key: "diagram", made: (node) => sizes.observe(node) },
+      "div.diagram",
+      { id: "diagram", key: "diagram", made: (node) => sizes.observe(node) },
       componentColumn(state, "sources", byComponent, users),
       modelHead(state),
       modelPorts(state, "inputs", byPort),
       modelPorts(state, "outputs", byPort),
       componentColumn(state, "sinks", byComponent, users),
       h("svg", { id: "wires", key: "wires", keep: true, "aria-hidden": "true" }),
-      h("p", { class: "unseen", id: "handle-help", key: "help" }, "Enter or a click picks the end of a wire up"),
+      h("p.unseen", { id: "handle-help", key: "help" }, "Enter or a click picks the end of a wire up"),
     ),
   ];
 }

@@ -12,11 +12,11 @@ export function picture(state, name) {
   const shown = newest(name, `picture/${name}.svg?version=${state.version}`);
   return [
     h(
-      "div",
-      { class: "zoom", key: "zoom", role: "group", "aria-label": "Zoom" },
+      "div.zoom",
+      { key: "zoom", role: "group", "aria-label": "Zoom" },
       button("Fit", () => change(name, 0), zoom === 0),
       button("−", () => change(name, step(zoom, -1)), false, "Zoom out"),
-      h("span", { class: "zoom-value", role: "status" }, zoom ? `${zoom * 100} %` : "fit"),
+      h("span.zoom-value", { role: "status" }, zoom ? `${zoom * 100} %` : "fit"),
       button("+", () => change(name, step(zoom, 1)), false, "Zoom in"),
       h("a", { href: shown, target: "_blank", rel: "noopener" }, "Open by itself"),
     ),

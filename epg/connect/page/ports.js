@@ -13,17 +13,17 @@ export function modelHead(state) {
   const { model, proposals } = state;
   const count = Object.keys(proposals).length;
   return h(
-    "div",
-    { class: "model-head", key: "model-head" },
-    h("h2", null, model.name),
-    h("p", { class: "muted" }, stepText(model.step), model.origin ? ` · ${model.origin}` : ""),
-    count > 0 && state.editable
-      ? h(
-          "button",
-          { class: "accept-all", onclick: acceptAll },
-          count === 1 ? "Accept 1 proposal" : `Accept all ${count} proposals`,
-        )
-      : null,
+    "div.model-head",
+    { key: "model-head" },
+    h("h2", model.name),
+    h("p.muted", stepText(model.step), model.origin ? ` · ${model.origin}` : ""),
+    count > 0 &&
+      state.editable &&
+      h(
+        "button.accept-all",
+        { onclick: acceptAll },
+        count === 1 ? "Accept 1 proposal" : `Accept all ${count} proposals`,
+      ),
   );
 }
 
@@ -50,11 +50,10 @@ export function modelPorts(state, side, diagnostics) {
   return h(
     "section",
     { class: `ports ${side}`, key: side, "aria-labelledby": `title-${side}` },
-    h("h3", { id: `title-${side}` }, title, h("span", { class: "count" }, ` ${ports.length}`)),
-    ports.length === 0 ? h("p", { class: "empty" }, `The model has no ${side}.`) : null,
+    h("h3", { id: `title-${side}` }, title, h("span.count", ` ${ports.length}`)),
+    ports.length === 0 && h("p.empty", `The model has no ${side}.`),
     h(
-      "ul",
-      { class: "port-list" },
+      "ul.port-list",
       ports.map((port) => row(state, side, port, diagnostics.get(port.name) || [])),
     ),
   );
@@ -79,27 +78,24 @@ function row(state, side, port, diagnostics) {
       "data-name": name,
     },
     h(
-      "div",
-      { class: "port-head" },
-      h("label", { class: "port-name", for: id("ends", name, 0), title: port.description || null }, name),
+      "div.port-head",
+      h("label.port-name", { for: id("ends", name, 0), title: port.description || null }, name),
       unitMark(port),
     ),
     fields,
-    proposal
-      ? h(
-          "button",
-          {
-            class: "proposal",
-            key: "proposal",
-            onclick: () => accept(name),
-            "aria-label": `Accept ${proposal} for ${name}`,
-            title: "Its name matches",
-            disabled: !state.editable,
-          },
-          h("span", null, "Accept "),
-          h("b", null, proposal),
-        )
-      : null,
+    proposal &&
+      h(
+        "button.proposal",
+        {
+          key: "proposal",
+          onclick: () => accept(name),
+          "aria-label": `Accept ${proposal} for ${name}`,
+          title: "Its name matches",
+          disabled: !state.editable,
+        },
+        h("span", "Accept "),
+        h("b", proposal),
+      ),
     inline(refused ? [refused, ...diagnostics] : diagnostics),
   );
 }
@@ -111,11 +107,9 @@ function field(state, side, port, end, n) {
   const ends = endsOf(state, name);
   const mayAdd = side === "outputs" && end !== null && n === ends.length - 1 && ui.adding !== name;
   return h(
-    "div",
-    { class: "end", key: `end-${n}`, "data-wire-model": id("wire", name, n) },
-    n === 0
-      ? handle(side, name, modelLabel(state, side, port), ends.length > 0)
-      : h("span", { class: "tap", key: "handle" }),
+    "div.end",
+    { key: `end-${n}`, "data-wire-model": id("wire", name, n) },
+    n === 0 ? handle(side, name, modelLabel(state, side, port), ends.length > 0) : h("span.tap", { key: "handle" }),
     h(
       "select",
       {
@@ -128,24 +122,22 @@ function field(state, side, port, end, n) {
       },
       options(state, side, port, end, n),
     ),
-    mayAdd
-      ? h(
-          "button",
-          {
-            class: "quiet icon-button",
-            key: "add",
-            "aria-label": `Connect ${name} with one more`,
-            title: "Connect with one more",
-            disabled: !state.editable,
-            onclick: () => {
-              ui.adding = name;
-              draw();
-              document.getElementById(id("ends", name, ends.length))?.focus();
-            },
+    mayAdd &&
+      h(
+        "button.quiet.icon-button",
+        {
+          key: "add",
+          "aria-label": `Connect ${name} with one more`,
+          title: "Connect with one more",
+          disabled: !state.editable,
+          onclick: () => {
+            ui.adding = name;
+            draw();
+            document.getElementById(id("ends", name, ends.length))?.focus();
           },
-          icon("plus"),
-        )
-      : null,
+        },
+        icon("plus"),
+      ),
     end ? conversionButton(port, side, end, n) : null,
   );
 }
@@ -197,5 +189,5 @@ function conversionButton(port, side, end, n) {
 // Lets a long conversion wrap between its steps: scale, offset, limits.
 function steps(text) {
   const parts = text.split(/ (?=[×+-]|in )/);
-  return parts.map((part, n) => [n > 0 ? " " : null, h("span", { class: "conversion-step" }, part)]);
+  return parts.map((part, n) => [n > 0 ? " " : null, h("span.conversion-step", part)]);
 }

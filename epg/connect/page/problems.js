@@ -29,8 +29,8 @@ const LISTED = new Set(["unbound-input", "unbound-output"]);
 export function inline(diagnostics) {
   if (diagnostics.length === 0) return null;
   return h(
-    "ul",
-    { class: "inline-problems", key: "problems" },
+    "ul.inline-problems",
+    { key: "problems" },
     diagnostics.map((each) =>
       h(
         "li",
@@ -38,10 +38,9 @@ export function inline(diagnostics) {
         severityIcon(each.severity),
         h(
           "span",
-          null,
-          h("span", { class: "unseen" }, `${each.severity}: `),
+          h("span.unseen", `${each.severity}: `),
           each.message,
-          each.hint && !LISTED.has(each.id) ? h("span", { class: "hint" }, each.hint) : null,
+          each.hint && !LISTED.has(each.id) && h("span.hint", each.hint),
         ),
       ),
     ),
@@ -50,9 +49,9 @@ export function inline(diagnostics) {
 
 export function problemList(state) {
   if (state.diagnostics.length === 0) {
-    return h("p", { class: "empty" }, icon("done"), "No problems. The target can be generated.");
+    return h("p.empty", icon("done"), "No problems. The target can be generated.");
   }
-  return h("ul", { class: "problem-list" }, state.diagnostics.map(problem));
+  return h("ul.problem-list", state.diagnostics.map(problem));
 }
 
 const placeText = (file, { line, column }) => [file, line, column].filter(Boolean).join(":");
@@ -73,25 +72,24 @@ export function problem(message) {
     "li",
     { class: message.severity },
     h(
-      "button",
-      { class: "problem", onclick: () => goTo(message) },
+      "button.problem",
+      { onclick: () => goTo(message) },
       severityIcon(message.severity),
       h(
-        "span",
-        { class: "problem-text" },
-        h("span", { class: "unseen" }, `${message.severity}: `),
-        h("span", { class: "message" }, message.message),
-        message.hint ? h("span", { class: "hint" }, message.hint) : null,
-        h("span", { class: "place", title: full }, message.port ? `port ${message.port}` : place),
+        "span.problem-text",
+        h("span.unseen", `${message.severity}: `),
+        h("span.message", message.message),
+        message.hint && h("span.hint", message.hint),
+        h("span.place", { title: full }, message.port ? `port ${message.port}` : place),
       ),
     ),
-    message.port && message.file
-      ? h(
-          "button",
-          { class: "quiet", onclick: () => showSource(message), "aria-label": `Show ${place}`, title: full },
-          placeText(message.file.split(/[\\/]/).pop(), { line: message.line }),
-        )
-      : null,
+    message.port &&
+      message.file &&
+      h(
+        "button.quiet",
+        { onclick: () => showSource(message), "aria-label": `Show ${place}`, title: full },
+        placeText(message.file.split(/[\\/]/).pop(), { line: message.line }),
+      ),
   );
 }
 

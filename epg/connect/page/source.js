@@ -10,10 +10,10 @@ export async function showSource(message) {
   const places = [message, ...notes];
   const excerpts = await Promise.all(places.map((place) => excerpt(place)));
   openDialog("source", message.message, () => [
-    message.hint ? h("p", { class: "hint" }, message.hint) : null,
+    message.hint && h("p.hint", message.hint),
     excerpts.map((lines, n) => [
-      n > 0 ? h("h3", null, notes[n - 1].message) : null,
-      h("p", { class: "place" }, `${places[n].file}:${places[n].line}`),
+      n > 0 && h("h3", notes[n - 1].message),
+      h("p.place", `${places[n].file}:${places[n].line}`),
       lines,
     ]),
   ]);
@@ -24,12 +24,12 @@ async function excerpt(place) {
   try {
     data = await getJson(`api/source?file=${encodeURIComponent(place.file)}&line=${place.line}`);
   } catch {
-    return h("p", { class: "empty" }, "The file cannot be shown here.");
+    return h("p.empty", "The file cannot be shown here.");
   }
   const column = place.column || 0;
   return h(
-    "pre",
-    { class: "excerpt", tabindex: "0", "aria-label": `Lines ${data.first} and following` },
+    "pre.excerpt",
+    { tabindex: "0", "aria-label": `Lines ${data.first} and following` },
     data.lines.map((text, n) => line(text, data.first + n, data.first + n === data.line ? column : -1)),
   );
 }
@@ -40,7 +40,7 @@ function line(text, number, column) {
   return h(
     "span",
     { class: here ? "line here" : "line" },
-    h("span", { class: "number" }, `${here ? ">" : " "}${String(number).padStart(4)}  `),
+    h("span.number", `${here ? ">" : " "}${String(number).padStart(4)}  `),
     text,
     marker,
     "\n",

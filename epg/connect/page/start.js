@@ -11,13 +11,13 @@ let busy = false;
 
 export function startPage(state) {
   return h(
-    "div",
-    { class: "start", key: "start" },
-    h("h1", { class: "unseen" }, "New project"),
+    "div.start",
+    { key: "start" },
+    h("h1.unseen", "New project"),
     modelStep(state.model),
     h(
-      "section",
-      { class: "step step-target", key: "target", "aria-labelledby": "step-target" },
+      "section.step.step-target",
+      { key: "target", "aria-labelledby": "step-target" },
       heading("step-target", 2, "Target", "The board and robot that the model will control."),
       configurationCards(state, "start"),
     ),
@@ -27,38 +27,33 @@ export function startPage(state) {
 
 function heading(id, number, title, text) {
   return h(
-    "div",
-    { class: "step-head" },
-    h("h2", { id }, h("span", { class: "step-number" }, String(number)), " ", title),
-    text ? h("p", { class: "muted" }, text) : null,
+    "div.step-head",
+    h("h2", { id }, h("span.step-number", String(number)), " ", title),
+    text && h("p.muted", text),
   );
 }
 
 function modelStep(model) {
   if (!model)
-    return h(
-      "section",
-      { class: "step step-model", key: "model" },
-      heading("step-model", 1, "Model", "No model was found."),
-    );
+    return h("section.step.step-model", { key: "model" }, heading("step-model", 1, "Model", "No model was found."));
   const list = (title, ports) =>
     h(
       "div",
       { key: title },
-      h("h3", null, title, h("span", { class: "count" }, ` ${ports.length}`)),
+      h("h3", title, h("span.count", ` ${ports.length}`)),
       h(
-        "ul",
-        { class: "port-names", tabindex: ports.length > 6 ? "0" : null, "aria-label": title },
-        ports.map((port) => h("li", { key: port.name }, h("span", null, port.name), unitMark(port))),
+        "ul.port-names",
+        { tabindex: ports.length > 6 ? "0" : null, "aria-label": title },
+        ports.map((port) => h("li", { key: port.name }, h("span", port.name), unitMark(port))),
       ),
     );
   return h(
-    "section",
-    { class: "step step-model", key: "model", "aria-labelledby": "step-model" },
+    "section.step.step-model",
+    { key: "model", "aria-labelledby": "step-model" },
     heading("step-model", 1, "Model"),
-    h("p", { class: "big" }, model.name),
-    h("p", { class: "muted" }, [model.origin, model.step ? `step ${model.step} s` : ""].filter(Boolean).join(", ")),
-    h("div", { class: "port-lists" }, list("Inputs", model.inputs), list("Outputs", model.outputs)),
+    h("p.big", model.name),
+    h("p.muted", [model.origin, model.step ? `step ${model.step} s` : ""].filter(Boolean).join(", ")),
+    h("div.port-lists", list("Inputs", model.inputs), list("Outputs", model.outputs)),
   );
 }
 
@@ -79,8 +74,8 @@ function projectStep(state) {
     if (done) document.getElementById("main").focus();
   };
   return h(
-    "section",
-    { class: "step step-project", key: "project", "aria-labelledby": "step-project" },
+    "section.step.step-project",
+    { key: "project", "aria-labelledby": "step-project" },
     heading(
       "step-project",
       3,
@@ -91,8 +86,7 @@ function projectStep(state) {
       "form",
       { onsubmit: create, autocomplete: "off" },
       h(
-        "div",
-        { class: "field" },
+        "div.field",
         h("label", { for: "create-name" }, "Name"),
         h("input", {
           id: "create-name",
@@ -104,8 +98,7 @@ function projectStep(state) {
         }),
       ),
       h(
-        "div",
-        { class: "field" },
+        "div.field",
         h("label", { for: "create-folder" }, "Folder"),
         h("input", {
           id: "create-folder",
@@ -116,30 +109,23 @@ function projectStep(state) {
           initial: state.create?.folder,
         }),
       ),
-      h(
-        "p",
-        { class: "picked" },
-        picked ? ["Target ", h("b", null, picked.name)] : h("span", { class: "muted" }, "No target is chosen yet."),
-      ),
-      picked?.missing.length
-        ? h(
-            "p",
-            { class: "muted" },
-            `Connecting works now; generating needs ${picked.missing.join(", ")}. 'epg doctor' says how to get it.`,
-          )
-        : null,
+      h("p.picked", picked ? ["Target ", h("b", picked.name)] : h("span.muted", "No target is chosen yet.")),
+      picked?.missing.length &&
+        h(
+          "p.muted",
+          `Connecting works now; generating needs ${picked.missing.join(", ")}. 'epg doctor' says how to get it.`,
+        ),
       h(
         "button",
         { type: "submit", class: "primary wide", disabled: !picked || busy },
         busy ? "Creating…" : "Create project",
       ),
-      picked?.picture
-        ? wiringPicture(picked.name, {
-            key: "picture",
-            class: "picked-picture",
-            alt: `Board of ${picked.name} with its wiring`,
-          })
-        : null,
+      picked?.picture &&
+        wiringPicture(picked.name, {
+          key: "picture",
+          class: "picked-picture",
+          alt: `Board of ${picked.name} with its wiring`,
+        }),
     ),
   );
 }

@@ -41,10 +41,10 @@ export function drawWires() {
   }
   for (const [port, reference] of Object.entries(state.proposals)) {
     const d = curve(anchors.get(id("at", reference)), anchors.get(id("wire", port, 0)));
-    if (d) paths.push(h("path", { class: "wire proposed", key: `${port} ?`, d }));
+    if (d) paths.push(h("path.wire.proposed", { key: `${port} ?`, d }));
   }
   const held = heldCurve(state, anchors, zero);
-  if (held) paths.push(h("path", { class: "wire held", key: "held", d: held }));
+  if (held) paths.push(h("path.wire.held", { key: "held", d: held }));
   svg.setAttribute("width", size.width);
   svg.setAttribute("height", size.height);
   render(svg, paths);
@@ -61,8 +61,8 @@ function wire(port, n, end, d, isBad) {
       onmouseenter: () => mark(port, end.reference, true),
       onmouseleave: () => mark(port, end.reference, false),
     },
-    h("path", { class: "wire-reach", d }),
-    h("path", { class: "wire", d }),
+    h("path.wire-reach", { d }),
+    h("path.wire", { d }),
   );
 }
 

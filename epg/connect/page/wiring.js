@@ -34,11 +34,7 @@ export function unitText({ unit, type }) {
 // The unit beside the name of a port; a dash for a real port without a unit.
 export function unitMark(port) {
   const text = unitText(port);
-  return h(
-    "span",
-    { class: "unit", title: port.unit ? null : text },
-    port.unit ? text : port.type === "real" ? "–" : port.type,
-  );
+  return h("span.unit", { title: port.unit ? null : text }, port.unit ? text : port.type === "real" ? "–" : port.type);
 }
 
 // The fields of an end that api/connect takes.
