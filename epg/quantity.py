@@ -89,12 +89,12 @@ def number_hint(text: str) -> str:
         return decimal_comma(text)
     percent = re.fullmatch(r"\s*([-+]?[0-9]{1,9}(?:\.[0-9]{0,9})?)\s*%\s*", text)
     if percent:
-        return f"write {float(Fraction(percent[1]) / 100):g} for {text.strip()}"
+        return f"write {float(Fraction(percent[1]) / 100):g} instead of {text.strip()}"
     with_word = re.fullmatch(rf"\s*({_NUMBER})\s*[A-Za-z_]\w*\s*", text)
     try:
         float(text.replace("_", ""))
     except ValueError:
-        return f"write {with_word[1]}: this number has no unit" if with_word else ""
+        return f"write {with_word[1]}: this number must not have a unit" if with_word else ""
     return f"write {text.replace('_', '')} without quotes or underscores"
 
 
@@ -187,7 +187,7 @@ def parse_quantity(value: object, dimension: str) -> Fraction | float:
             raise QuantityError(f"{value} is not {wanted}", hint)
         written = int(value) if value == int(value) and abs(value) < 1e15 else value
         example = f"write for example '{written} {base_unit(dimension)}'; units: {', '.join(units)}"
-        raise QuantityError(f"{dimension} without a unit", example)
+        raise QuantityError(f"this {dimension} has no unit", example)
     if not isinstance(value, str):
         raise QuantityError(f"this is not {wanted}", hint)
     if decimal_comma(value):
@@ -199,7 +199,7 @@ def parse_quantity(value: object, dimension: str) -> Fraction | float:
     unit = normal_unit(match[2] or "")
     if unit not in UNITS or (not unit and dimension != "ratio"):
         if not unit:
-            raise QuantityError(f"{dimension} without a unit", hint)
+            raise QuantityError(f"this {dimension} has no unit", hint)
         raise QuantityError(f"unknown unit '{unit}'", _unit_hint(unit, units))
     found, factor = UNITS[unit]
     if found != dimension:

@@ -187,8 +187,8 @@ class Catalog:
         if node is None or not check_file(category, node, name, self.names("platform"), self._diagnostics):
             return None
         if len(paths) > 1:
-            message = f"{category} '{name}' stands in {len(paths)} targets folders, of which this one is used"
-            hint = "rename its folder to have both"
+            message = f"{category} '{name}' is in {len(paths)} folders of targets: EPG uses this one"
+            hint = "rename its folder to use both"
             self._diagnostics.warning("shadowed-item", node[_NAME_KEYS[category]].span, message, hint=hint)
         return make(node, paths[0].parent)
 
@@ -202,12 +202,12 @@ def not_found_hint(name: str, known: Sequence[str], otherwise: str) -> str:
     The item may be in a folder of the user that EPG does not search yet.
     """
     meant = did_you_mean(name, known, otherwise)
-    return f"{meant}{'' if meant.endswith('?') else '.'} EPG finds your own in the folders that EPG_TARGETS_PATH names"
+    return f"{meant}{'' if meant.endswith('?') else '.'} EPG also searches the folders in EPG_TARGETS_PATH"
 
 
 def target_hint(name: str, known: Sequence[str], otherwise: str) -> str:
     """The hint for a target that does not exist.  Its board may be one that the user must describe first."""
-    return f"{not_found_hint(name, known, otherwise)}; docs/adding-a-board.md says how to describe a board"
+    return f"{not_found_hint(name, known, otherwise)}; docs/adding-a-board.md explains how to add a board"
 
 
 def load_catalog(roots: Sequence[Path], diagnostics: Diagnostics) -> Catalog:
@@ -221,7 +221,7 @@ def load_catalog(roots: Sequence[Path], diagnostics: Diagnostics) -> Catalog:
             hint = "correct EPG_TARGETS_PATH"
             diagnostics.error("targets-not-found", Span(str(root)), f"there is no folder '{root.name}'", hint=hint)
         elif not any((root / folder).is_dir() for folder in (*FOLDERS.values(), "robots")):
-            message = f"'{root.name}' has no shape of a targets folder"
-            hint = f"it should hold folders such as {', '.join([*FOLDERS.values(), 'robots'])}"
+            message = f"'{root.name}' does not have the structure of a folder of targets"
+            hint = f"it must contain folders such as {', '.join([*FOLDERS.values(), 'robots'])}"
             diagnostics.warning("targets-empty", Span(str(root)), message, hint=hint)
     return Catalog(roots, diagnostics)

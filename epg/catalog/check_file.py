@@ -27,14 +27,14 @@ def check_file(category: str, node: YamlNode, name: str, platforms: Sequence[str
     if not node.is_mapping:
         span = Span(node.span.file, 1, 1, 2)
         diagnostics.error(
-            "wrong-type", span, f"a {category}.yaml is a map (key: value)", hint="it begins with 'api: 1'"
+            "wrong-type", span, f"a {category}.yaml must be a map (key: value)", hint="begin the file with 'api: 1'"
         )
         return False
     if newer_version(node, "api", diagnostics) or not validate(node, load_schema(category), diagnostics):
         return False
     errors = diagnostics.error_count
     if node[key].value != name:
-        message = f"{key} '{node[key].value}' stands in a folder called '{name}'"
+        message = f"{key} '{node[key].value}' is in a folder called '{name}'"
         hint = f"write '{key}: {name}', or rename the folder"
         diagnostics.error("wrong-folder", node[key].span, message, hint=hint)
     if category == "soc":
@@ -76,12 +76,12 @@ def _files_exist(node: YamlNode, path: tuple[str, ...], names: Collection[YamlNo
     folder = Path(node.span.file).parent
     for name in names:
         if not _FILE.fullmatch(str(name.value)):
-            message = f"{'.'.join(path)}: '{name.value}' is no name of a file in this folder"
-            hint = "use letters, digits and '_+.-', and '/' for folders below it"
+            message = f"{'.'.join(path)}: '{name.value}' is not the name of a file in this folder"
+            hint = "use letters, digits and '_+.-', and '/' for subfolders"
             diagnostics.error("wrong-value", name.span, message, hint=hint)
         elif not is_file(folder / str(name.value)):
             there = [file.name for file in folder.iterdir() if file.is_file()]
-            hint = did_you_mean(str(name.value), there, "in that folder")
+            hint = did_you_mean(str(name.value), there, "files in that folder")
             message = f"{'.'.join(path)}: there is no file '{name.value}'"
             diagnostics.error("file-not-found", name.span, message, hint=hint)
 
@@ -90,8 +90,8 @@ def _check_templates(names: Collection[YamlNode], diagnostics: Diagnostics) -> N
     """Reports names of a platform's templates that have a wrong form, or that would replace a file of every target."""
     for name in names:
         if not _TEMPLATE.fullmatch(str(name.value)) or str(name.value) in _TAKEN:
-            message = f"templates: '{name.value}' makes no file of the platform"
-            hint = "call it for example 'NAME_<platform>.c.j2': NAME becomes the name of the target"
+            message = f"templates: '{name.value}' cannot be the name of a platform's template"
+            hint = "name it for example 'NAME_<platform>.c.j2': EPG replaces NAME by the name of the target"
             diagnostics.error("wrong-value", name.span, message, hint=hint)
 
 
@@ -108,5 +108,5 @@ def _beside(node: YamlNode, name: str, page: str, diagnostics: Diagnostics) -> N
     """Reports that the folder of ``node`` lacks the file ``name``, which it needs because of ``node``."""
     folder = Path(node.span.file).parent
     if not (folder / name).is_file():
-        hint = f"{page} says what it holds"
+        hint = f"{page} describes the contents of this file"
         diagnostics.error("file-not-found", node.span, f"'{folder.name}' has no {name}", hint=hint)

@@ -36,7 +36,7 @@ def check_board(node: YamlNode, diagnostics: Diagnostics) -> None:
         groups += [(section, name, node[section].key_span(name)) for name in map_of(node, section)]
     for section, name, span in groups:
         if name in seen:
-            first = Note("first here", seen[name][1])
+            first = Note("first written here", seen[name][1])
             message = f"pin {name} is in '{seen[name][0]}' and in '{section}'"
             diagnostics.error("wrong-value", span, message, hint="keep one of the two", notes=[first])
         seen.setdefault(name, (section, span))
@@ -53,7 +53,7 @@ def _layout(layout: YamlNode, pins: set[str], diagnostics: Diagnostics) -> None:
         if name not in pins and name not in supplies:
             _unknown("contact", contact, [*supplies, *sorted(pins)], diagnostics)
         elif name in pins and name in seen:
-            first = Note("first here", seen[name])
+            first = Note("first written here", seen[name])
             diagnostics.error("wrong-value", contact.span, f"pin {name} has two contacts", notes=[first])
         seen.setdefault(name, contact.span)
 
@@ -64,10 +64,10 @@ def check_platform(node: YamlNode, diagnostics: Diagnostics) -> None:
     It must name families of chips, one board, or ``by_family``.  Its tick must be one of its resource classes.
     """
     if sum(key in node for key in ("board", "families", "by_family")) != 1:
-        message = "a platform states either 'families', 'board' or 'by_family'"
+        message = "a platform must set exactly one of 'families', 'board', 'by_family'"
         hint = (
-            "'families' lists the chips it runs on; 'board' is for a port layer that has one board; "
-            "'by_family' leaves the port layer to the folders in families/"
+            "'families' lists the families of chips that it supports; 'board' is for a port layer with one board; "
+            "with 'by_family', the folders in families/ have the port layer"
         )
         diagnostics.error("exactly-one", node["platform"].span, message, hint=hint)
     if "by_family" in node:
@@ -86,7 +86,7 @@ def _left_to_families(node: YamlNode, diagnostics: Diagnostics) -> None:
     """Reports keys of a platform with ``by_family`` that must be in the files of the families instead."""
     for key in ("classes", "middlewares", "usb_names", "templates", "shared", "sdk", "products"):
         if key in node:
-            message = f"'{key}' depends on the family of chips, so a platform with 'by_family' cannot state it"
+            message = f"a platform with 'by_family' must not set '{key}': it depends on the family of chips"
             diagnostics.error("only-with", node.key_span(key), message, hint="move it to families/<name>/family.yaml")
 
 
@@ -128,14 +128,14 @@ def check_target(target: Target, diagnostics: Diagnostics) -> None:
     if tick is not None and target.tick is not None:
         resource_class = soc.classes.get(str(tick.value))
         if resource_class is None:
-            message = f"{soc.title} implements no class '{tick.value}'"
+            message = f"{soc.title} does not implement a class '{tick.value}'"
             hint = did_you_mean(str(tick.value), soc.classes, "it implements")
-            diagnostics.error("unknown-class", tick.span, message, hint=hint, notes=[Note("this chip", soc.span)])
+            diagnostics.error("unknown-class", tick.span, message, hint=hint, notes=[Note("the chip", soc.span)])
         elif resource_class.divider_from != "period" or resource_class.signals:
-            message = f"class '{tick.value}' of {soc.title} is no timer of the control loop"
-            hint = "such a class has 'divider: {from: period}' and no signals"
+            message = f"class '{tick.value}' of {soc.title} is not a timer for the control loop"
+            hint = "a class for it has 'divider: {from: period}' and no signals"
             diagnostics.error(
-                "wrong-value", tick.span, message, hint=hint, notes=[Note("this class", resource_class.span)]
+                "wrong-value", tick.span, message, hint=hint, notes=[Note("the class", resource_class.span)]
             )
 
 
@@ -147,7 +147,7 @@ def _peripheral(name: str, node: YamlNode, pins: Sequence[str], diagnostics: Dia
         count, names = node.get("slots", "count"), node.get("slots", "names")
         stated = [part for part in (count, names) if part is not None]
         if len(stated) != 1:
-            message = f"slots of '{name}' state either 'count' or 'names'"
+            message = f"slots of '{name}' must set either 'count' or 'names'"
             diagnostics.error("exactly-one", node.key_span("slots"), message)
             return
         slots = _listed(stated[0])
@@ -166,7 +166,7 @@ def _peripheral(name: str, node: YamlNode, pins: Sequence[str], diagnostics: Dia
                 diagnostics.error("unknown-name", reached.key_span(slot), f"'{name}' has no slot '{slot}'", hint=hint)
             for pin in listed.elements():
                 if str(pin.value) not in pins:
-                    hint = f"it has {pin_list(pins)}" if pins else ""
+                    hint = f"it has the pins {pin_list(pins)}" if pins else ""
                     diagnostics.error("unknown-name", pin.span, f"this chip has no pin '{pin.value}'", hint=hint)
     if "frequency" in _listed(node.get("agree")) and "divider" not in node:
         diagnostics.error("unknown-name", node.key_span("agree"), f"'{name}' has no divider that sets a frequency")
@@ -191,7 +191,7 @@ def _resource_class(name: str, node: YamlNode, peripherals: dict[str, YamlNode],
         if how.value not in possible:
             _unknown("way to reach a pin", how, possible, diagnostics)
     if peripheral is None and list(signals) == []:
-        diagnostics.error("wrong-value", node.span, f"class '{name}' has neither a peripheral nor signals")
+        diagnostics.error("wrong-value", node.span, f"class '{name}' must have a peripheral or signals")
     for element in node["neighbours"].elements() if "neighbours" in node else ():
         if element.value not in signals:
             _unknown("signal", element, signals, diagnostics)
@@ -238,13 +238,13 @@ def _range(node: YamlNode | None, diagnostics: Diagnostics) -> None:
         return
     first, last = integer_range(node)
     if not 1 <= first <= last <= 0x1_0000:
-        message = f"'{node.value}' is no range within 1-65536"
+        message = f"'{node.value}' is not a range within 1-65536"
         diagnostics.error("out-of-range", node.span, message, hint="write the lower end first, such as 2-65536")
 
 
 def _no_pin(name: str, span: Span, target: Target, diagnostics: Diagnostics) -> None:
-    hint = f"it has {pin_list(target.soc.pins)}"
-    notes = [Note("this chip", target.soc.span)]
+    hint = f"it has the pins {pin_list(target.soc.pins)}"
+    notes = [Note("the chip", target.soc.span)]
     diagnostics.error("unknown-name", span, f"{target.soc.title} has no pin '{name}'", hint=hint, notes=notes)
 
 

@@ -39,7 +39,7 @@ def check_kind(node: YamlNode, diagnostics: Diagnostics) -> None:
             message = f"'{name}' is a key that every component has"
             diagnostics.error("invalid-name", span, message, hint="choose another name")
         elif name in parameters:
-            message = f"'{name}' is a parameter already"
+            message = f"'{name}' is already the name of a parameter"
             notes = [Note("the parameter", node["parameters"].key_span(name))]
             diagnostics.error("invalid-name", span, message, hint="choose another name", notes=notes)
     _relations(node, {**parameters, **uses}, uses, diagnostics)
@@ -56,7 +56,7 @@ def _communication(node: YamlNode, parameters: Mapping[str, YamlNode], diagnosti
     topics = {"from": "type: string", "to": "type: string"} if direction == "echo" else {"topic": "type: string"}
     for name in (*topics, "qos"):
         if name not in parameters:
-            message = f"a kind with 'communication: {direction}' has a parameter '{name}'"
+            message = f"a kind with 'communication: {direction}' must have a parameter '{name}'"
             diagnostics.error("missing-key", node.key_span("communication"), message)
     wanted = {**topics, "qos": "type: string", "depth": "type: integer"}
     wanted |= {"subscribe": _SETPOINT_PARAMETERS, "publish": _PUBLICATION_PARAMETERS}.get(direction, {})
@@ -67,18 +67,18 @@ def _communication(node: YamlNode, parameters: Mapping[str, YamlNode], diagnosti
         span = node["parameters"].key_span(name)
         key, _, value = described.partition(": ")
         if key not in parameter or parameter[key].value != value:
-            message = f"parameter '{name}' of a kind with 'communication' has '{described}'"
+            message = f"parameter '{name}' of a kind with 'communication' must have '{described}'"
             diagnostics.error("wrong-value", span, message)
         if name in topics and not flag_of(parameter, "required"):
-            message = f"parameter '{name}' of a kind with 'communication' is required"
+            message = f"parameter '{name}' of a kind with 'communication' must be required"
             diagnostics.error("wrong-value", span, message, hint="add 'required: true'")
         if name == "qos" and "default" not in parameter and not flag_of(parameter, "required"):
-            message = "parameter 'qos' of a kind with 'communication' is required or has a default"
+            message = "parameter 'qos' of a kind with 'communication' must be required or have a default"
             diagnostics.error("wrong-value", span, message, hint="add 'default: reliable'")
         possible = texts_of(parameter, "enum")
         known = _CHOICES.get(name)
         if known and not (possible and set(possible) <= set(known)):
-            message = f"parameter '{name}' of a kind with 'communication' is one of {', '.join(known)}"
+            message = f"parameter '{name}' of a kind with 'communication' must be one of {', '.join(known)}"
             diagnostics.error("wrong-value", span, message, hint=f"write 'enum: [{', '.join(known)}]'")
 
 
@@ -117,15 +117,15 @@ def _ports(node: YamlNode, parameters: Mapping[str, YamlNode], diagnostics: Diag
                 diagnostics.error("unknown-name", key_span, f"this kind has no parameter '{key}'", hint=hint)
         if "actuator" in port and port["actuator"].value is True and direction != "sink":
             diagnostics.error(
-                "wrong-value", port["actuator"].span, "an actuator is a sink", hint="write 'direction: sink'"
+                "wrong-value", port["actuator"].span, "an actuator must be a sink", hint="write 'direction: sink'"
             )
         if "drive" in port and port["drive"].value is True and direction != "sink":
-            message = "what drives a motor is a sink"
+            message = "a port that drives a motor must be a sink"
             diagnostics.error("wrong-value", port["drive"].span, message, hint="write 'direction: sink'")
         if "default" in port and port["default"].value is True:
             other, other_span = defaults.setdefault(direction, (name, span))
             if other != name:
-                message = f"'{other}' is the default {direction} already"
+                message = f"'{other}' is already the default {direction}"
                 diagnostics.error("wrong-value", span, message, notes=[Note("the other one", other_span)])
 
 
@@ -135,13 +135,13 @@ def _each(port: YamlNode, parameters: Mapping[str, YamlNode], diagnostics: Diagn
     _known("parameter", named, parameters, diagnostics)
     parameter = parameters.get(str(named.value))
     if parameter is not None and ("type" not in parameter or parameter["type"].value != "names"):
-        message = f"'each' names a list, and parameter '{named.value}' is none"
+        message = f"'each' must name a list, and parameter '{named.value}' is not a list"
         diagnostics.error("wrong-value", named.span, message, hint="give the parameter 'type: names'")
     elif parameter is not None and not flag_of(parameter, "required"):
-        message = f"parameter '{named.value}' is required: without it there are no ports"
+        message = f"parameter '{named.value}' must be required: without it there are no ports"
         diagnostics.error("wrong-value", named.span, message, hint="add 'required: true' to the parameter")
     if flag_of(port, "default"):
-        diagnostics.error("wrong-value", port["default"].span, "one of several ports is not meant by a name alone")
+        diagnostics.error("wrong-value", port["default"].span, "a port with 'each' cannot be the default port")
 
 
 def _claims(node: YamlNode, parameters: Mapping[str, YamlNode], diagnostics: Diagnostics) -> None:
@@ -154,14 +154,14 @@ def _claims(node: YamlNode, parameters: Mapping[str, YamlNode], diagnostics: Dia
             first = used.setdefault(str(pin.value), pin.span)
             if first != pin.span:
                 message = f"pin '{pin.value}' is claimed twice"
-                diagnostics.error("wrong-value", pin.span, message, notes=[Note("first here", first)])
+                diagnostics.error("wrong-value", pin.span, message, notes=[Note("first written here", first)])
         for attribute, parameter in map_of(claim, "attributes").items():
             _known("parameter", parameter, parameters, diagnostics)
             _attribute(attribute, parameter, parameters.get(str(parameter.value)), diagnostics)
     for pin in node["pins"].elements() if "pins" in node else ():
         if pin.value not in used:
             hint = "name it in the signals of a claim"
-            diagnostics.error("wrong-value", pin.span, f"pin '{pin.value}' is in no claim", hint=hint)
+            diagnostics.error("wrong-value", pin.span, f"no claim uses pin '{pin.value}'", hint=hint)
 
 
 def _safe_states(node: YamlNode, diagnostics: Diagnostics) -> None:
@@ -171,7 +171,7 @@ def _safe_states(node: YamlNode, diagnostics: Diagnostics) -> None:
     """
     outputs = [name for name, claim in map_of(node, "claims").items() if claim["class"].value in OUTPUT_CLASSES]
     if len(outputs) > _OUTPUTS:
-        message = f"a kind can claim {_OUTPUTS} outputs at most, not {len(outputs)}"
+        message = f"a kind can claim at most {_OUTPUTS} outputs, not {len(outputs)}"
         diagnostics.error("wrong-value", node["claims"].span, message)
     for state in node["safe_states"].elements() if "safe_states" in node else ():
         for name, _ in state.items():
@@ -193,7 +193,7 @@ def _attribute(attribute: str, named: YamlNode, parameter: YamlNode | None, diag
     if wanted == "frequency" and "type" in parameter and parameter["type"].value == "integer":
         return
     if wanted is not None and ("quantity" not in parameter or parameter["quantity"].value != wanted):
-        message = f"attribute '{attribute}' comes from a parameter with 'quantity: {wanted}'"
+        message = f"attribute '{attribute}' must come from a parameter with 'quantity: {wanted}'"
         diagnostics.error("wrong-value", named.span, message)
     elif "type" in parameter and parameter["type"].value == "object":
         diagnostics.error("wrong-value", named.span, f"attribute '{attribute}' cannot come from an object")

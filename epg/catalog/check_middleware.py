@@ -27,12 +27,12 @@ def check_middleware(node: YamlNode, diagnostics: Diagnostics) -> None:
     if "capture" in texts_of(node, "uses"):
         size = options.get("capture")
         if size is None or "type" not in size or size["type"].value != "integer" or "default" not in size:
-            message = "a middleware that uses 'capture' has an option 'capture'"
-            hint = "capture: {type: integer, minimum: 0, default: 2048, description: numbers a recording can hold}"
+            message = "a middleware that uses 'capture' must have an option 'capture'"
+            hint = "add 'capture: {type: integer, minimum: 0, default: 2048, description: size of a recording}'"
             diagnostics.error("missing-key", node.key_span("uses"), message, hint=hint)
     if node["connection"].value != "none" and "driver" not in node and not _unfinished(node):
-        message = "a middleware that connects to something has a 'driver'"
-        hint = "name its epg_middleware_t: 'driver: {symbol: ...}'; or write 'builds: false'"
+        message = "a middleware that connects to something must have a 'driver'"
+        hint = "write 'driver: {symbol: ...}' with the name of its epg_middleware_t, or 'builds: false'"
         diagnostics.error("missing-key", node["middleware"].span, message, hint=hint)
 
 

@@ -28,7 +28,7 @@ _NAME = {
     "type": "string",
     "pattern": "^[A-Za-z_][A-Za-z0-9_]*$",
     "maxLength": 63,
-    "x-message": "is no name: use letters, digits and '_', at most 63, no digit first",
+    "x-message": "is not a valid name: use at most 63 letters, digits and '_', and do not begin with a digit",
 }
 MOST_NAMES = 32
 """The largest number of names in a list.  epg/message.h has room for as many joints."""
@@ -38,12 +38,14 @@ def parameter_problems(name: str, node: YamlNode, span: Span, diagnostics: Diagn
     """Reports mistakes in the description of a parameter: in its type, bounds, aliases and default."""
     if ("type" in node) == ("quantity" in node):
         hint = "'quantity' is for numbers with a unit"
-        diagnostics.error("exactly-one", span, f"parameter '{name}' states either 'type' or 'quantity'", hint=hint)
+        diagnostics.error("exactly-one", span, f"parameter '{name}' must set either 'type' or 'quantity'", hint=hint)
         return
     nested = "type" in node and node["type"].value == "object"
     if nested != ("properties" in node):
         message = (
-            f"parameter '{name}' is an object without 'properties'" if nested else "only an object has 'properties'"
+            f"parameter '{name}' is an object and must have 'properties'"
+            if nested
+            else "only an object can have 'properties'"
         )
         diagnostics.error("wrong-value", span, message)
         return
@@ -62,7 +64,7 @@ def parameter_problems(name: str, node: YamlNode, span: Span, diagnostics: Diagn
             diagnostics.error("wrong-value", bound.span, str(problem), hint=problem.hint)
     if parameter.default is not None and diagnostics.error_count == errors:
         if parameter.required:
-            diagnostics.error("wrong-value", parameter.default.span, "a parameter with a default is not required")
+            diagnostics.error("wrong-value", parameter.default.span, "a parameter with a default must not be required")
         if validate(parameter.default, parameter_schema(parameter), diagnostics):
             typed_value(parameter, parameter.default, diagnostics)
 
@@ -72,10 +74,10 @@ def _alias_problems(node: YamlNode, diagnostics: Diagnostics) -> None:
     values = texts_of(node, "enum") if "type" in node and node["type"].value == "string" else ()
     for alias, meant in map_of(node, "aliases").items():
         if alias in values:
-            message = f"'{alias}' is a value of 'enum' itself"
+            message = f"'{alias}' is already a value of 'enum'"
             diagnostics.error("wrong-value", node["aliases"].key_span(alias), message)
         if meant.value not in values:
-            message = f"'enum' has no text '{meant.value}'"
+            message = f"'enum' has no value '{meant.value}'"
             diagnostics.error("unknown-name", meant.span, message, hint=did_you_mean(str(meant.value), values))
 
 
@@ -136,7 +138,7 @@ def typed_value(parameter: KindParameter, node: YamlNode | None, diagnostics: Di
         diagnostics.error(id, stated.span, str(problem), hint=problem.hint, notes=extended_from(stated))
         return None
     if isinstance(value, float) and not math.isfinite(value):
-        diagnostics.error("wrong-value", stated.span, "this number is not finite", notes=extended_from(stated))
+        diagnostics.error("wrong-value", stated.span, "this number must be finite", notes=extended_from(stated))
     elif parameter.type in ("quantity", "ratio"):
         _check_bounds(parameter, value, stated, diagnostics)
     return value

@@ -69,7 +69,9 @@ def load_bindings(
         return None
     if not node.is_mapping:
         span = Span(str(path), 1, 1, 2)
-        diagnostics.error("wrong-type", span, "bindings are a map (key: value)", hint="'epg bind' writes such a file")
+        diagnostics.error(
+            "wrong-type", span, "bindings must be a map (key: value)", hint="'epg bind' writes such a file"
+        )
         return None
     if not validate(node, load_schema("bindings"), diagnostics):
         return None
@@ -100,13 +102,16 @@ def conversion_of(node: YamlNode, diagnostics: Diagnostics) -> Conversion:
             diagnostics.error("wrong-value", scale.span, "a scale of 0 makes every value the same")
     for number in (offset, *(limits.elements() if limits else ())):
         if number is not None and isinstance(number.value, float) and not math.isfinite(number.value):
-            diagnostics.error("wrong-value", number.span, "this number is not finite")
+            diagnostics.error("wrong-value", number.span, "this number must be finite")
     pair: tuple[float, float] | None = None
     if limits is not None:
         low, high = (_float(element) for element in limits.elements())
         if low >= high:
             diagnostics.error(
-                "wrong-value", limits.span, f"limits [{low:g}, {high:g}] leave no range", hint="write [lowest, highest]"
+                "wrong-value",
+                limits.span,
+                f"limits [{low:g}, {high:g}] are not a range",
+                hint="write [lowest, highest]",
             )
         pair = (low, high)
     span = next((part.span for part in (scale, offset, limits, unit) if part is not None), None)
@@ -151,7 +156,7 @@ def _parameters(node: YamlNode, diagnostics: Diagnostics) -> list[tuple[str, tup
         return []
     for _, value in section.items():
         if not math.isfinite(_float(value)):
-            diagnostics.error("wrong-value", value.span, "a parameter must be finite")
+            diagnostics.error("wrong-value", value.span, "this number must be finite")
     return [(name, (section.key_span(name), _float(value), value.span)) for name, value in section.items()]
 
 

@@ -36,7 +36,7 @@ class _Range(NamedTuple):
 
 
 _PERIODS = _Range(Fraction(1, 1000), Fraction(3600), False, "1 ms to 3600 s")
-_DIAGNOSTICS = _Range(Fraction(1, 100), Fraction(3600), True, "10 ms to 3600 s, or 0 s for none")
+_DIAGNOSTICS = _Range(Fraction(1, 100), Fraction(3600), True, "10 ms to 3600 s, or 0 s to send none")
 
 
 @dataclass(frozen=True)
@@ -132,7 +132,9 @@ def _check_transport(
     known = [*own, *(name for name, able in carries.items() if able)] if own else []
     if node.value not in known:
         message = f"'{middleware}' on {target.platform.name} has no transport '{node.value}'"
-        hint = did_you_mean(str(node.value), known, "it has") if known else "remove it: there is nothing to choose"
+        hint = (
+            did_you_mean(str(node.value), known, "it has") if known else "remove it: this middleware has no transport"
+        )
         diagnostics.error("unknown-transport", node.span, message, hint=hint, notes=extended_from(node))
 
 
@@ -146,8 +148,8 @@ def _usb(node: YamlNode | None, target: Target, diagnostics: Diagnostics) -> Map
         return {}
     platform = target.platform
     if not platform.has_usb_names and any("usb" in transports for transports in platform.middlewares.values()):
-        message = f"on {platform.name} a target configuration cannot say what the USB device is called"
-        hint = f"remove 'usb'; the documentation of {platform.name} says which settings of its build do that"
+        message = f"a target configuration cannot set the names of the USB device on {platform.name}"
+        hint = f"remove 'usb', and set the names in the build: the documentation of {platform.name} lists the settings"
         diagnostics.error("not-on-platform", node.span, message, hint=hint, notes=extended_from(node))
     return {key: node[key].value for key in sorted(node.keys)}
 
@@ -193,7 +195,7 @@ def _seconds(node: YamlNode | None, default: Fraction, allowed: _Range, diagnost
     if node is not None and seconds is not None:
         possible = allowed.low <= seconds <= allowed.high or (allowed.zero and seconds == 0)
         if not possible:
-            diagnostics.error("out-of-range", node.span, f"must be from {allowed.words}")
+            diagnostics.error("out-of-range", node.span, f"this time must be from {allowed.words}")
     return default if seconds is None else seconds
 
 

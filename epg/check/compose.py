@@ -20,7 +20,7 @@ from epg.source import YamlNode
 _NODE = {
     "type": "string",
     "pattern": "^[A-Za-z_][A-Za-z0-9_]*$",
-    "x-message": "is no label of a devicetree node: use letters, digits and '_', no digit first",
+    "x-message": "is not a label of a devicetree node: use letters, digits and '_', and do not begin with a digit",
     "description": "label of a devicetree node that is used instead of pins (Zephyr)",
     "examples": ["qdec0"],
 }
@@ -34,7 +34,7 @@ def component_schema(kind: Kind, with_pins: bool) -> dict[str, Any]:
     if kind.pins:
         properties["pins"] = {
             "type": "object",
-            "description": "where it is wired to",
+            "description": "the pins to which it is wired",
             "properties": {pin: dict(_PIN) for pin in kind.pins},
             "required": list(kind.pins) if with_pins else [],
             "additionalProperties": False,
@@ -115,34 +115,32 @@ def _relations(kind: Kind, node: YamlNode, diagnostics: Diagnostics) -> None:
     for names in kind.exactly_one:
         stated = [name for name in names if name in node]
         if not stated:
-            message = f"a {kind.name} states {_alternatives(names)}"
+            message = f"a {kind.name} must set {_alternatives(names)}"
             hint = _descriptions(kind, names)
             diagnostics.error("exactly-one", span, message, hint=hint, notes=extended_from(node["kind"]))
         elif len(stated) > 1:
             first = Note("the other one", node.key_span(stated[0]))
-            message = f"a {kind.name} states {_alternatives(names)}, not several of them"
+            message = f"a {kind.name} must set {_alternatives(names)}, not more than one of them"
             notes = [first, *extended_from(node[stated[1]])]
-            hint = (
-                "remove one of the two; '" + stated[0] + ": null' removes one that a file this one extends has written"
-            )
+            hint = "remove one of the two ('" + stated[0] + ": null' if an extended file has set it)"
             diagnostics.error("exactly-one", node.key_span(stated[1]), message, hint=hint, notes=notes)
     for names in kind.at_least_one:
         if not any(name in node for name in names):
-            message = f"a {kind.name} states at least one of {', '.join(repr(name) for name in names)}"
+            message = f"a {kind.name} must set at least one of {', '.join(repr(name) for name in names)}"
             hint = _descriptions(kind, names)
             diagnostics.error("at-least-one", span, message, hint=hint, notes=extended_from(node["kind"]))
     for names in kind.at_most_one:
         stated = [name for name in names if name in node]
         if len(stated) > 1:
             first = Note("the other one", node.key_span(stated[0]))
-            message = f"a {kind.name} states at most one of {', '.join(repr(name) for name in names)}"
+            message = f"a {kind.name} must set at most one of {', '.join(repr(name) for name in names)}"
             notes = [first, *extended_from(node[stated[1]])]
-            hint = f"remove one of the two; '{stated[0]}: null' removes one that a file this one extends has written"
+            hint = f"remove one of the two ('{stated[0]}: null' if an extended file has set it)"
             diagnostics.error("at-most-one", node.key_span(stated[1]), message, hint=hint, notes=notes)
     for key, needed in kind.only_with:
         if key in node and needed not in node:
-            message = f"'{key}' means something only together with '{needed}'"
-            hint = f"remove '{key}', or state '{needed}'"
+            message = f"'{key}' has an effect only together with '{needed}'"
+            hint = f"remove '{key}', or set '{needed}'"
             diagnostics.error("only-with", node.key_span(key), message, hint=hint, notes=extended_from(node[key]))
 
 

@@ -142,7 +142,7 @@ def _components(
         if other != name:
             first = Note("the other one", section.key_span(other))
             diagnostics.error(
-                "invalid-name", span, f"'{name}' and '{other}' differ in upper and lower case only", notes=[first]
+                "invalid-name", span, f"'{name}' and '{other}' differ only in upper and lower case", notes=[first]
             )
         kind_node = node.get("kind")
         if kind_node is None:

@@ -19,17 +19,17 @@ def check_node(
     ignore the key, as they ignore ``pins``.
     """
     notes = extended_from(node)
-    instead = "write 'pins' instead ('node: null' if another file has written it)"
+    instead = "write 'pins' instead ('node: null' if an extended file has set it)"
     span = component.key_span("node")
     if not kind.claims:
         return  # The schema of such a kind has no key ``node``, so the key is reported there.
     if len(kind.claims) > 1:
-        message = f"'node' stands for one peripheral, and a {kind.name} has {len(kind.claims)}"
+        message = f"'node' names one peripheral, and a {kind.name} claims {len(kind.claims)}"
         diagnostics.error("node-not-possible", span, message, hint=instead, notes=notes)
     elif target is not None and target.has_pins and not target.platform.has_nodes:
-        message = f"'node' names a node of a devicetree, which {target.name} has not"
+        message = f"'node' names a devicetree node, and {target.name} has no devicetree"
         diagnostics.error("node-not-possible", span, message, hint=instead, notes=notes)
     elif "pins" in component:
-        message = "a component has either 'pins' or 'node'"
-        hint = "remove one of them ('pins: null' if another file has written it)"
+        message = "a component must set either 'pins' or 'node', not both"
+        hint = "remove one of the two ('pins: null' if an extended file has set it)"
         diagnostics.error("exactly-one", span, message, hint=hint, notes=notes)

@@ -43,7 +43,7 @@ def check_fail_safe(
     if name in able:
         _check_open_wire(name, components[name], diagnostics)
     elif name in components:
-        message = f"'{name}' is a {components[name].kind.name}, which is not on or off"
+        message = f"'{name}' is a {components[name].kind.name}, which cannot be on or off"
         diagnostics.error("wrong-port-type", node.span, message, hint="name a digital_input")
     elif name not in section:  # Else the component has mistakes, which are reported already.
         hint = did_you_mean(name, able, "digital inputs")
@@ -58,14 +58,14 @@ def _check_open_wire(name: str, component: Input, diagnostics: Diagnostics) -> N
     written = component.node.get("pull")
     span = component.node.key_span("kind") if written is None else written.span
     if pull == "none":
-        message = f"nothing holds '{name}' off when its wire breaks: its pin is open, and the target may stay enabled"
+        message = f"if its wire breaks, '{name}' can be on or off: the target may stay enabled"
     else:
-        message = f"'{name}' is on when its wire breaks ('pull: {pull}'): the target stays enabled"
+        message = f"if its wire breaks, '{name}' is on ('pull: {pull}'): the target stays enabled"
     diagnostics.warning(
         "open-fail-safe",
         span,
         message,
-        hint="let a normally-closed contact connect the pin to ground, and write 'pull: up, invert: true': "
+        hint="connect the pin to ground by a normally-closed contact, and write 'pull: up, invert: true'; see "
         "docs/emergency-stop.md",
         notes=extended_from(written) if written is not None else (),
     )

@@ -39,8 +39,8 @@ def check_offer(target: Target, middleware: Middleware, diagnostics: Diagnostics
     if transports is None:
         transports = middleware.node["platforms"][target.platform.name]
     if middleware.connection != "stream" and transports.elements():
-        message = f"middleware '{middleware.name}' uses no transport"
-        notes = [Note("this middleware", middleware.span)]
+        message = f"middleware '{middleware.name}' does not use a transport"
+        notes = [Note("the middleware", middleware.span)]
         hint = f"write '{middleware.name}: []'"
         diagnostics.error("wrong-value", transports.span, message, hint=hint, notes=notes)
 

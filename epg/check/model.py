@@ -15,7 +15,7 @@ def check_model_names(model: Model, library: str, diagnostics: Diagnostics) -> N
     macros |= {f"{library.rpartition('_')[0]}_{word}".upper() for word in ("epg_version", "hash")}
     for port in (*model.inputs, *model.outputs):
         if port.identifier in macros:
-            message = f"{port.direction} '{port.name}' is called like a macro of the generated header"
+            message = f"{port.direction} '{port.name}' has the name of a macro in the generated header"
             diagnostics.error("invalid-name", port.span, message, hint="rename the port or the target")
 
 
@@ -25,14 +25,14 @@ def check_instances(model: Model, instances: int, span: Span, diagnostics: Diagn
     A model can have several only if it does not keep its state in global variables.
     """
     if instances < 1 or instances > 255:
-        diagnostics.error("out-of-range", span, f"{instances} instances: must be from 1 to 255")
+        diagnostics.error("out-of-range", span, f"the number of instances must be from 1 to 255, not {instances}")
     elif instances > 1 and not model.instantiable:
         is_fmu = isinstance(model.details, FmuExport)
-        why = "can be instantiated once only" if is_fmu else "keeps its state in global variables"
-        other = ": each has its own copy of its code" if is_fmu else ", or export it as a C++ class"
+        why = "cannot be instantiated more than once" if is_fmu else "keeps its state in global variables"
+        other = ": each call makes its own copy of the code" if is_fmu else ", or export it as a C++ class"
         diagnostics.error(
             "single-instance",
             model.span,
-            f"{model.name} ({model.origin}) {why}: there can be one instance",
-            hint="call epg_add_model once for each, with different names" + other,
+            f"{model.name} ({model.origin}) {why}: it can have only one instance",
+            hint="call epg_add_model once for each instance, with different names" + other,
         )

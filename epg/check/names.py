@@ -69,13 +69,17 @@ _NOT_IN_PROJECTS = re.compile("[#<>?]" if os.name == "nt" else r'[#<>?:;"\\]')
 def identifier_problem(name: str) -> str | None:
     """The reason why ``name`` cannot be a C identifier of a user, or None."""
     if not _IDENTIFIER.fullmatch(name):
-        return "is not a C identifier: use letters, digits and '_', at most 63, no digit first"
+        return "is not a C identifier: use at most 63 letters, digits and '_', and do not begin with a digit"
     if name in RESERVED:
         return "is a reserved word of C or C++"
     if name.startswith("__") or re.match("_[A-Z]", name):
         return "is reserved for the compiler: begin with a letter"
     if name.casefold().startswith("epg_") or name.casefold() == "epg":
-        return "begins with 'epg_', which EPG's own symbols do" if len(name) > 3 else "is EPG's own prefix"
+        return (
+            "begins with 'epg_', which is reserved for EPG's own symbols"
+            if len(name) > 3
+            else "is the prefix of EPG's own symbols"
+        )
     return None
 
 
@@ -98,7 +102,7 @@ def node_name_problem(name: str) -> str | None:
         return f"begins with the serial number, which may begin with a digit: write 'robot_{SERIAL}'"
     name = name.replace(SERIAL, _SERIAL_NUMBER)
     if not _ROS_TOKEN.fullmatch(name):
-        return "is no name of a ROS 2 node: use letters, digits and '_', no digit first"
+        return "is not the name of a ROS 2 node: use letters, digits and '_', and do not begin with a digit"
     return f"is too long for a ROS 2 node: at most {_NODE_SIZE} characters" if len(name) > _NODE_SIZE else None
 
 
@@ -125,7 +129,7 @@ def topic_problem(name: str) -> str | None:
     """The reason why ``name`` cannot be the name of a topic, or None.  A private topic begins with ``~/``."""
     if name.startswith("~"):
         if not name.startswith("~/"):
-            return "is no topic: '~' is followed by '/'"
+            return "is not a topic: '~' must be followed by '/'"
         return _path_problem(name.removeprefix("~/"), "topic", _PRIVATE_SIZE)
     return _path_problem(name.removeprefix("/"), "topic", _TOPIC_SIZE)
 
@@ -149,10 +153,10 @@ def cmake_path_problem(path: str) -> str | None:
     In a list of CMake, a ``;`` after an open bracket does not separate elements.  ``]]`` ends a bracket argument.
     """
     if not path.isprintable():
-        return "it is no printable UTF-8 text"
+        return "it is not printable UTF-8 text"
     found = _NOT_IN_CMAKE.search(path)
     if found:
-        return f"'{found[0]}' in it means something to CMake or the build program"
+        return f"'{found[0]}' has a special meaning in CMake or the build program"
     return "brackets in it must be balanced" if path.count("[") != path.count("]") else None
 
 
@@ -169,12 +173,12 @@ def project_folder_problem(path: str) -> str | None:
 
 def _path_problem(path: str, what: str, longest: int) -> str | None:
     if not path:
-        return f"is no {what}: it is empty"
+        return f"is not a {what}: it is empty"
     if "__" in path:
-        return f"is no {what}: '__' is not allowed"
+        return f"is not a {what}: it must not contain '__'"
     for token in path.split("/"):
         if not token:
-            return f"is no {what}: '//' or a trailing '/'"
+            return f"is not a {what}: it must not contain '//' or end with '/'"
         if not _ROS_TOKEN.fullmatch(token):
-            return f"is no {what}: '{token}' must be letters, digits and '_', no digit first"
+            return f"is not a {what}: '{token}' must have only letters, digits and '_', and must not begin with a digit"
     return f"is too long for a {what}: at most {longest} characters" if len(path) > longest else None

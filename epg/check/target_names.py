@@ -27,13 +27,13 @@ def check_name(name: str, span: Span, diagnostics: Diagnostics) -> None:
     """Checks a target's name, which becomes the prefix of C symbols, and the name of a header and of a CMake target."""
     problem = identifier_problem(name)
     if problem is None and name in STANDARD_HEADERS:
-        problem = f"would make a header '{name}.h', which hides the C library's: choose another name"
+        problem = f"would generate a header '{name}.h', which hides the one of the C library: choose another name"
     elif problem is None and name in SYSTEM_LIBRARIES:
         problem = (
-            "is the name of a system library: CMake would link this target wherever that is meant; choose another name"
+            "has the name of a system library: CMake would link the target instead of the library; choose another name"
         )
     elif problem is None and {f"{name}_inputs", f"{name}_outputs"} & STATIC_NAMES:
-        problem = f"would make a symbol '{name}_outputs', which generated code has inside: choose another name"
+        problem = f"would generate a symbol '{name}_outputs', which the generated code already has: choose another name"
     if problem:
         diagnostics.error("invalid-name", span, f"target '{name}' {problem}")
 
@@ -42,14 +42,14 @@ def check_library_name(name: str, span: Span, diagnostics: Diagnostics) -> None:
     """Checks the name of a model's library, which also becomes the name of a type ``<name>_t``."""
     check_name(name, span, diagnostics)
     if f"{name}_t" in STANDARD_TYPES:
-        message = f"target '{name}' would make a type '{name}_t', which is one of the C library's"
+        message = f"target '{name}' would generate a type '{name}_t', which the C library already has"
         diagnostics.error("invalid-name", span, message, hint=f"choose another name, such as {name}_model")
 
 
 def check_sdk_headers(name: str, target: Target, span: Span, diagnostics: Diagnostics) -> None:
     """Reports a generated header that would hide a header of the SDK."""
     for header in sorted(_generated_headers(name).intersection(target.platform.headers)):
-        message = f"target '{name}' makes a header '{header}', which would hide one that {target.name} needs"
+        message = f"target '{name}' would generate a header '{header}', which hides one that {target.name} needs"
         diagnostics.error("invalid-name", span, message, hint=f"choose another name, such as {name}_robot")
 
 
@@ -63,21 +63,21 @@ def check_driver_headers(name: str, configuration: Configuration, diagnostics: D
     generated = _generated_headers(name)
     for component in configuration.components.values():
         for header in sorted(generated.intersection(component.kind.headers)):
-            message = f"component '{component.name}' needs a header '{header}', and target '{name}' makes one"
+            message = f"component '{component.name}' needs a header '{header}', which target '{name}' also generates"
             diagnostics.error("invalid-name", component.span, message, hint="choose another name for the target")
     communication = configuration.communication
     for middleware in communication.middlewares:
         for header in sorted(generated.intersection(middleware.headers)):
-            message = f"middleware '{middleware.name}' needs a header '{header}', and target '{name}' makes one"
+            message = f"middleware '{middleware.name}' needs a header '{header}', which target '{name}' also generates"
             diagnostics.error("invalid-name", communication.span, message, hint="choose another name for the target")
 
 
 def check_paths(paths: Iterable[Path], diagnostics: Diagnostics) -> None:
-    """Reports the first path that cannot be named in CMake's files, or in those that it writes for Ninja and Make."""
+    """Reports the first path that cannot be used in CMake's files, or in those that it writes for Ninja and Make."""
     for path in sorted(paths):
         text = str(path.absolute())
         problem = cmake_path_problem(text)
         if problem:
-            message = f"'{text}' cannot be named in CMake: {problem}"
+            message = f"'{text}' cannot be used in CMake: {problem}"
             diagnostics.error("invalid-name", Span(str(path)), message, hint="rename the file or its folder")
             return

@@ -30,9 +30,9 @@ def check_names(node: YamlNode, namespace: YamlNode | None, topics: Iterable[Use
         full = absolute_topic(topic, prefix, str(node.value))
         other = users.setdefault(full, (user, span))
         if other[0] != user or other[1] != span:
-            message = f"topic '{topic}' is used by '{other[0]}' already"
+            message = f"topic '{topic}' is already used by '{other[0]}'"
             notes = [Note("used here", other[1])]
-            hint = "give each its own topic; one component can feed several model ports"
+            hint = "give each its own topic; one component can be bound to several model ports"
             diagnostics.error("duplicate-topic", span, message, hint=hint, notes=notes)
 
 

@@ -61,7 +61,7 @@ def _used(
         return None
     if (use.topic and (not other.topic_ports or port_name)) or (not use.topic and port is None):
         what = f"a port of a {other.name}" if port_name else f"a {other.name}"
-        message = f"'{text}' is {what}; '{use.name}' of a {kind.name} is {use.description}"
+        message = f"'{text}' is {what}, which cannot be the '{use.name}' of a {kind.name} ({use.description})"
         hint = did_you_mean(text, possible, "possible")
         diagnostics.error("wrong-component", node.span, message, hint=hint, notes=notes)
         return None

@@ -55,7 +55,7 @@ def pin_names(node: YamlNode | None) -> tuple[str, ...]:
             continue
         prefix, first, other, last = match[1], int(match[2]), match[3], int(match[4])
         if other != prefix or last < first or last - first > 255:
-            raise ValueError(f"'{text}' is no range of pins")
+            raise ValueError(f"'{text}' is not a range of pins")
         names.extend(f"{prefix}{number}" for number in range(first, last + 1))
     return tuple(names)
 

@@ -86,7 +86,7 @@ def _quantity_id(problem: QuantityError) -> str:
 
 def extended_from(node: YamlNode) -> list[Note]:
     """A note for each ``extends`` that leads to the file in which ``node`` is written."""
-    return [Note("extended from here", span) for span in node.origins]
+    return [Note("extended here", span) for span in node.origins]
 
 
 def _report(error: Any, root: YamlNode, diagnostics: Diagnostics) -> None:
@@ -102,7 +102,7 @@ def _report(error: Any, root: YamlNode, diagnostics: Diagnostics) -> None:
             message = f"unknown key '{error.instance}'{_where(path)}"
             diagnostics.error("unknown-key", node.key_span(str(error.instance)), message, hint=hint, notes=notes)
             return
-        message = f"'{error.instance}' {schema.get('x-message', 'is no valid name')}"
+        message = f"'{error.instance}' {schema.get('x-message', 'is not a valid name')}"
         hint = str(schema.get("x-hint", ""))
         diagnostics.error("invalid-name", node.key_span(str(error.instance)), message, hint=hint, notes=notes)
         return
@@ -150,11 +150,11 @@ def _explain(keyword: str, error: Any, schema: Mapping[str, Any]) -> tuple[str, 
         if problem is not None:
             return _quantity_id(problem), str(problem), problem.hint
         if keyword == "pattern":
-            return "out-of-range", f"{_shown(value)} has a sign", "write the number without a sign"
+            return "out-of-range", f"{_shown(value)} must not have a sign", "write the number without a sign"
     if "x-message" in schema and keyword in ("pattern", "anyOf", "oneOf", "not"):
         return "wrong-value", f"{_shown(value)} {schema['x-message']}", str(schema.get("x-hint", ""))
     if keyword == "pattern":
-        return "wrong-value", f"{_shown(value)} does not have the form that this needs", _form(schema)
+        return "wrong-value", f"{_shown(value)} does not have the required form", _form(schema)
     if keyword == "type":
         wanted = [limit] if isinstance(limit, str) else list(limit)
         names = " or ".join(_TYPE_NAMES.get(name, name) for name in wanted)
@@ -186,14 +186,14 @@ def _explain_limit(keyword: str, value: object, limit: Any) -> tuple[str, str, s
     if keyword in _BOUNDS:
         return "out-of-range", f"{_shown(value)} is out of range: must be {_BOUNDS[keyword]} {limit}", ""
     if keyword == "uniqueItems":
-        return "wrong-value", "something stands twice in this list", "remove one of the two"
+        return "wrong-value", "this list has the same value twice", "remove one of the two"
     if keyword in ("minItems", "maxItems") and isinstance(value, list) and value:
         bound = "at least" if keyword == "minItems" else "at most"
         comma = keyword == "maxItems" and all(isinstance(item, (int, float)) for item in value)
-        hint = "write 1.5 for one and a half: a comma begins the next number" if comma else ""
+        hint = "write 1.5 instead of 1,5: a comma begins the next number" if comma else ""
         return "wrong-value", f"expected {bound} {limit} values, found {len(value)}", hint
     if keyword in ("minProperties", "minItems", "minLength"):
-        return "wrong-value", "this is empty", ""
+        return "wrong-value", "this must not be empty", ""
     return "wrong-value", f"{_shown(value)} is not possible here ({keyword} {limit})", ""
 
 
@@ -217,7 +217,7 @@ def _form(schema: Mapping[str, Any]) -> str:
 def _type_hint(value: object, wanted: list[str]) -> str:
     if "boolean" in wanted and isinstance(value, str) and value.casefold() in ("on", "off", "yes", "no", "y", "n"):
         return (
-            f"YAML 1.2 has only true and false: write {'true' if value.casefold() in ('on', 'yes', 'y') else 'false'}"
+            f"write {'true' if value.casefold() in ('on', 'yes', 'y') else 'false'}: YAML 1.2 has only true and false"
         )
     if isinstance(value, str) and {"number", "integer"} & set(wanted):
         return number_hint(value)
@@ -261,7 +261,7 @@ def _key_hint(key: str, schema: Mapping[str, Any]) -> str:
     described = schema.get("properties", {}).get(key, {})
     examples = described.get("examples")
     if examples:
-        return f"for example: {key}: {examples[0] if isinstance(examples[0], str) else json.dumps(examples[0])}"
+        return f"write for example '{key}: {examples[0] if isinstance(examples[0], str) else json.dumps(examples[0])}'"
     return str(described.get("description", ""))
 
 

@@ -96,12 +96,12 @@ def load_tcf_chain(
             path = find_tcf(name, beside / "nowhere", roots) or path
         if path.resolve() in read:
             assert wanted_by is not None
-            message = f"'{path.name}' is extended by itself"
+            message = f"'{path.name}' extends itself"
             diagnostics.error("extends-loop", wanted_by, message, hint="remove this 'extends'")
             return ()
         if len(chain) == _MAX_CHAIN:
             assert wanted_by is not None
-            diagnostics.error("extends-depth", wanted_by, f"more than {_MAX_CHAIN} files extend each other")
+            diagnostics.error("extends-depth", wanted_by, f"this chain of 'extends' has more than {_MAX_CHAIN} files")
             return ()
         node = _load(path, diagnostics, wanted_by, drafts)
         if node is None:
@@ -125,14 +125,17 @@ def _load(path: Path, diagnostics: Diagnostics, wanted_by: Span | None, drafts: 
         diagnostics.error(
             "tcf-is-20-sim-4c",
             Span(str(path), 1, 1, 2),
-            f"this is {kind}, not of EPG",
-            hint="both are called .tcf; EPG's are YAML: 'epg targets' lists those it brings",
+            f"this is {kind}, not a target configuration of EPG",
+            hint="EPG's .tcf files are YAML: 'epg targets' lists the ones that EPG provides",
         )
         return None
     node = parse_yaml(text, str(path), diagnostics)
     if node is not None and not node.is_mapping:
         diagnostics.error(
-            "wrong-type", Span(str(path), 1, 1, 2), "a .tcf is a map (key: value)", hint="it begins with 'version: 1'"
+            "wrong-type",
+            Span(str(path), 1, 1, 2),
+            "a .tcf must be a map (key: value)",
+            hint="begin the file with 'version: 1'",
         )
         return None
     return node
@@ -153,8 +156,8 @@ def settings_node(
             diagnostics.error(
                 "wrong-setting",
                 span,
-                f"'{text}' is no setting",
-                hint="write KEY.KEY=VALUE, such as control.period=2 ms",
+                f"'{text}' is not a setting",
+                hint="write KEY.KEY=VALUE, for example 'control.period=2 ms'",
             )
             continue
         problems = Diagnostics()

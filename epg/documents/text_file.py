@@ -66,7 +66,9 @@ def read_text(
     if bad:
         line, column = _position(text[: bad.start()])
         span = Span(str(path), line, column, column + 1)
-        diagnostics.error("control-character", span, f"control character U+{ord(bad[0]):04X}", hint="remove it")
+        diagnostics.error(
+            "control-character", span, f"the file has the control character U+{ord(bad[0]):04X}", hint="remove it"
+        )
         return None
     return text
 
@@ -107,4 +109,4 @@ def _neighbours(path: Path) -> str:
         names = sorted(entry.name for entry in path.parent.iterdir() if entry.suffix == path.suffix)
     except OSError:
         return f"there is no folder '{path.parent.name}' either"
-    return f"in that folder: {', '.join(names[:12])}" if names else ""
+    return f"files in that folder: {', '.join(names[:12])}" if names else ""

@@ -18,7 +18,7 @@ from epg.source import Span
 MAX_DEPTH = 64
 MAX_ELEMENTS = 250_000
 _ENDS = ("no element found", "unclosed token", "unclosed CDATA section", "partial character")  # Messages of expat.
-_IGNORED = "it is ignored; export the model again"
+_IGNORED = "EPG ignores it; export the model again"
 
 
 @dataclass
@@ -145,4 +145,4 @@ class _Builder:
             self.texts[-1].append(data)
 
     def _doctype(self, *_arguments: object) -> None:
-        raise _Refused("XML: document type declarations are not read")
+        raise _Refused("XML: EPG does not read document type declarations")

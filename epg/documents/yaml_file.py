@@ -53,7 +53,7 @@ def newer_version(node: YamlNode, key: str, diagnostics: Diagnostics) -> bool:
     stated = node.get(key)
     if stated is None or type(stated.value) is not int or stated.value <= VERSION:
         return False
-    message = f"file format {stated.value} is newer than this EPG, which reads up to {VERSION}"
+    message = f"file format {stated.value} is newer than this EPG, which reads formats up to {VERSION}"
     diagnostics.error("newer-version", stated.span, message, hint="update EPG")
     return True
 
@@ -133,10 +133,12 @@ class _Builder:
         if isinstance(event, yaml.DocumentStartEvent):
             self.documents += 1
             if self.documents > 1:
-                return self._refuse(event, "yaml-documents", "a second document in one file", "keep one; remove '---'")
+                return self._refuse(
+                    event, "yaml-documents", "the file has a second document", "keep one document and remove '---'"
+                )
         if isinstance(event, yaml.AliasEvent) or getattr(event, "anchor", None):
             return self._refuse(
-                event, "yaml-alias", "anchors and aliases are not supported", "write the value out, or use 'extends'"
+                event, "yaml-alias", "anchors and aliases are not supported", "write the value again, or use 'extends'"
             )
         tag = getattr(event, "tag", None)
         if tag not in (None, "!"):
@@ -144,12 +146,15 @@ class _Builder:
         if isinstance(event, (yaml.MappingStartEvent, yaml.SequenceStartEvent)):
             if len(self.stack) >= MAX_DEPTH:
                 return self._refuse(
-                    event, "yaml-depth", f"nested deeper than {MAX_DEPTH} levels", "is this the right file?"
+                    event, "yaml-depth", f"this is nested deeper than {MAX_DEPTH} levels", "is this the right file?"
                 )
             mapping = isinstance(event, yaml.MappingStartEvent)
             if self.stack and self.stack[-1].mapping and self.stack[-1].key is None:
                 return self._refuse(
-                    event, "yaml-key", "a key must be a word, not a list or a map", "quote it if it is text"
+                    event,
+                    "yaml-key",
+                    "a key must be a word, not a list or a map",
+                    "put it in quotes if it is meant as text",
                 )
             self.stack.append(_Collection(self._span(event), mapping, bool(event.flow_style)))
         elif isinstance(event, (yaml.MappingEndEvent, yaml.SequenceEndEvent)):
@@ -174,7 +179,9 @@ class _Builder:
                 top.skip = self.failed = True
                 first = Note("first written here", top.keys[event.value])
                 hint = "remove one of the two"
-                self.diagnostics.error("duplicate-key", span, f"key '{event.value}' twice", hint=hint, notes=[first])
+                self.diagnostics.error(
+                    "duplicate-key", span, f"key '{event.value}' is set twice", hint=hint, notes=[first]
+                )
             else:
                 top.keys[event.value] = span
             return

@@ -44,7 +44,7 @@ def missing_colon(text: str) -> tuple[str, str] | None:
         return None
     meant = f"{match['key']}: {match['value']}".rstrip()
     if "=" in match["between"]:
-        return f"'{_short(text)}' has a '=' where ':' must be", f"write '{_short(meant)}'"
+        return f"'{_short(text)}' has '=' instead of ':'", f"write '{_short(meant)}'"
     if ":" in match["between"]:
         return f"'{_short(text)}' has no space after ':'", f"write '{_short(meant)}'"
     return f"'{_short(text)}' has no ':'", f"write '{_short(meant)}'"
@@ -233,9 +233,7 @@ class _Reader:
             return Mistake(number, column, len(line) + 1, *comment[1:])
         if rest.startswith(":"):
             return None
-        return Mistake(
-            number, column, len(line) + 1, f"'{_short(rest)}' stands after the end of the value", "remove it"
-        )
+        return Mistake(number, column, len(line) + 1, f"'{_short(rest)}' is after the end of the value", "remove it")
 
     def _plain(self, number: int, line: str, start: int) -> Mistake | None:
         """Reads a value without quotes and brackets, which ends with its line."""
@@ -250,7 +248,7 @@ class _Reader:
         if colon and self.levels and self.levels[-1].kind == "map":
             column = start + colon.start() + 1
             return Mistake(
-                number, column, column + 1, "a second ':' in this line", "quote the text, or begin a new line"
+                number, column, column + 1, "this line has a second ':'", "put the text in quotes, or begin a new line"
             )
         return None
 

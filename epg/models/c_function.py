@@ -156,7 +156,7 @@ class _Importer(ExportReader):
         if settings and not self._exists(array):
             _, line = settings[0]
             message = f"'{line.array}' is set, but no file of the export defines it"
-            hint = "are all files there, and renamed in the same way? else export again"
+            hint = "check that all files are there and renamed in the same way, or export the model again"
             self.diagnostics.error("model-incomplete", line.span, message, hint=hint)
             return None
         return settings
@@ -343,7 +343,7 @@ class _Importer(ExportReader):
         return [file for file in files if file is not None]
 
     def _step(self) -> Fraction | None:
-        hint = f"the sources set it as '{self._step_name()} = 0.001;'"
+        hint = f"the sources must set it, for example '{self._step_name()} = 0.001;'"
         return self.checked_step(self._scalar_place("step_size"), hint)
 
     def _stated_count(self, word: str) -> int | None:
@@ -400,8 +400,8 @@ class _Importer(ExportReader):
                 self.diagnostics.error(
                     "model-ports",
                     self.whole,
-                    "these are the C sources of an FMU, and nothing beside them names its ports",
-                    hint="copy tokens.xml, ModelConfiguration.xml or modelDescription.xml into the folder too",
+                    "these are the C sources of an FMU, but there is no file with the names of its ports",
+                    hint="copy tokens.xml, ModelConfiguration.xml or modelDescription.xml into the folder",
                 )
                 return [], []
             return found

@@ -17,7 +17,7 @@ from epg.source import Span
 
 _EXTERN = re.compile(r"\bextern\s[^;(){}]{0,300};")
 _VIRTUAL = re.compile(r"\bvirtual\s[^;(){}]{0,200}?(~?\w{1,255})\s{0,80}\(", re.ASCII)
-_HINT = "are all files there, as 20-sim exported them? else export again"
+_HINT = "check that all files are there as 20-sim exported them, or export the model again"
 
 
 def check_variables(linked: Linked, prefix: str, diagnostics: Diagnostics) -> None:

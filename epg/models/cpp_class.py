@@ -124,7 +124,7 @@ class _Importer(ExportReader):
         return (self.file.span(match.start(), match.end()), match[1].strip()) if match else None
 
     def _step(self) -> Fraction | None:
-        hint = f"{self.class_name}::Reset() sets it as 'm_step_size = 0.001;'"
+        hint = f"{self.class_name}::Reset() must set it, for example 'm_step_size = 0.001;'"
         return self.checked_step(self._place_of("step_size"), hint)
 
     def _count(self, what: str) -> int:

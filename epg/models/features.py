@@ -90,11 +90,11 @@ def check_tokens(tokens: Tokens, diagnostics: Diagnostics) -> None:
     ):
         count = tokens.count(name)
         if count:
-            message = f"the model has {what} ({name} is {count}), which exported code does not solve"
+            message = f"the model has {what} ({name} is {count}), which exported code cannot solve"
             diagnostics.error(id, tokens.span(name), message, hint=hint)
 
 
-_DEPENDENT_HINT = "remove the dependency in 20-sim, for example by merging masses that are coupled rigidly"
+_DEPENDENT_HINT = "remove the dependency in 20-sim, for example by merging masses that are rigidly coupled"
 _LOOP_HINT = "break the loop in 20-sim, for example with a delay or a state"
 _CONSTRAINT_HINT = "replace constraint() by an explicit equation in 20-sim"
 
@@ -144,7 +144,7 @@ def check_features(
         if function.owner and not _may_allocate(function):
             for match in re.finditer(r"\bnew\b", code.body(function)):
                 start = function.body_start + match.start()
-                message = "memory is allocated while the model runs"
+                message = "the model allocates memory while it runs"
                 diagnostics.error("model-heap", code.file.span(start, start + 3), message, hint=_HEAP_HINT)
     causes.report(diagnostics)
     for code in linked.headers:
@@ -152,8 +152,8 @@ def check_features(
             diagnostics.warning(
                 "model-single-precision",
                 code.file.span(match.start(1), match.end(1)),
-                "XXDouble is float: the model computes in single precision, and its results differ from 20-sim's",
-                hint="make it double",
+                "XXDouble is float: the model computes in single precision, so results differ from those of 20-sim",
+                hint="change it to double",
             )
 
 
@@ -199,7 +199,10 @@ def _check_declared(
     span = code.file.span(start, start + len(name))
     message = f"'{name}' is called, but no header declares it"
     diagnostics.error(
-        "model-undeclared", span, message, hint="include the header that declares it, as 20-sim exports it"
+        "model-undeclared",
+        span,
+        message,
+        hint="include the header that declares it, as in the files that 20-sim exports",
     )
 
 
@@ -232,9 +235,9 @@ class _Causes:
         """Reports one error for the uses of files, and one for the uses of the heap."""
         hint = "replace tables in files by equations or parameters in 20-sim"
         if self._foreign or any(text.startswith("uses") for text, _ in self._files):
-            hint = "let the model have what it reads as parameters, or as constants in its code"
+            hint = "give the model these values as parameters, or as constants in its code"
         for found, id, why, how in (
-            (self._files, "model-file-use", ": there are no files on a target", hint),
+            (self._files, "model-file-use", ": a target has no files", hint),
             (self._heap, "model-heap", "", _HEAP_HINT),
         ):
             if found:
@@ -245,7 +248,7 @@ class _Causes:
                 diagnostics.error(id, span, f"the model {text}{also}{why}", hint=how)
 
 
-_HEAP_HINT = "targets have no heap after start: use arrays of fixed size"
+_HEAP_HINT = "use arrays of fixed size: a target has no heap after it has started"
 
 
 def _may_allocate(function: Function) -> bool:
@@ -270,23 +273,25 @@ def _check_call(
         holder, stub = stubs[name]
         match = _STUB_NAME.match(name)
         what = STUBS[match[1]] if match else name
-        note = Note("it does nothing and returns 0 here", holder.file.span(stub.start, stub.start + len(name)))
+        note = Note("this function does nothing and returns 0", holder.file.span(stub.start, stub.start + len(name)))
         hint = f"write the body of '{name}', or avoid {what} in the model"
         diagnostics.error(
-            "model-stub", span, f"the model uses {what}, which exports leave empty", hint=hint, notes=[note]
+            "model-stub", span, f"the model uses {what}, which is empty in exports", hint=hint, notes=[note]
         )
         return
     if name in known or name in told:
         return
     if name in _PRINTS or name in _FILES:
-        message = f"the model calls {name}(): its output goes nowhere on a target"
-        diagnostics.warning("model-prints", span, message, hint="remove it, or bind an output port to a topic")
+        message = f"the model calls {name}(): a target does not show its output"
+        diagnostics.warning(
+            "model-prints", span, message, hint="remove the call, or bind an output of the model to a topic"
+        )
     elif name in ("rand", "srand"):
         diagnostics.warning(
             "model-random",
             span,
-            f"the model uses {name}(), whose numbers differ from one C library to the next",
-            hint="feed noise in through an input port if results shall be the same on host and target",
+            f"the model uses {name}(), whose numbers depend on the C library",
+            hint="use an input port for the noise if results must be the same on host and target",
         )
     elif name in _CLOCKS:
         message = f"the model reads the computer's clock ({name}()), which targets do not have"
@@ -297,7 +302,7 @@ def _check_call(
         if re.match(r"XX|YY", name) or name.endswith("Submodel") or name in declared:
             _undefined(name, span, linked, diagnostics)
         else:
-            message = f"'{name}' is called, but it is not part of the export: dll() functions run inside 20-sim only"
+            message = f"'{name}' is called, but it is not part of the export: dll() functions run only inside 20-sim"
             diagnostics.error(
                 "model-dll", span, message, hint="put a source file that defines it into the model's folder"
             )
@@ -309,7 +314,7 @@ def _undefined(name: str, span: Span, linked: Linked, diagnostics: Diagnostics) 
     All such functions that one file calls share one error, because they are missing for the same reason.
     """
     message = "is called, but no file of the export defines it"
-    hint = "are all files there, and renamed in the same way? else export again"
+    hint = "check that all files are there and renamed in the same way, or export the model again"
     hint = f"{linked.looked}; {hint}" if linked.looked else hint
     other = linked.elsewhere.get(name)
     notes = [Note("it is defined here, in the folder of another model", other)] if other else []
@@ -374,12 +379,12 @@ def _check_directives(linked: Linked, reachable: Iterable[tuple[Code, Function]]
             elif "constraint" in folded:
                 diagnostics.error("model-constraint", span, _solver("constraints"), hint=_CONSTRAINT_HINT)
             elif "not yet implemented" not in folded and match[1] == "warning" and text:
-                hint = "the code generator or a developer left this remark: see whether it matters, then remove it"
-                diagnostics.warning("model-warning", span, f"the export warns: {text[:200]}", hint=hint)
+                hint = "the code generator or a developer has written this warning: check if it matters, then remove it"
+                diagnostics.warning("model-warning", span, f"the export has a warning: {text[:200]}", hint=hint)
 
 
 def _solver(what: str) -> str:
-    return f"the model has {what}, which exported code does not solve"
+    return f"the model has {what}, which exported code cannot solve"
 
 
 _SOLVER_ARRAYS = (

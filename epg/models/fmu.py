@@ -157,7 +157,9 @@ def _check_method(sources: FmuSources, diagnostics: Diagnostics) -> None:
         for name, start in code.calls(function) if function.name.endswith("CalculateSubmodel") else ():
             method = name.removeprefix("XX").removesuffix("Step")
             if name == f"XX{method}Step" and method not in FIXED_STEP_METHODS:
-                message = f"integration method '{method}' takes as many steps as it needs: no cycle has a longest time"
+                message = (
+                    f"integration method '{method}' has a variable number of steps: the time of a cycle has no limit"
+                )
                 hint = (
                     "for a target in real time, choose Discrete, Euler, Runge Kutta 2 or 4 in 20-sim and export again"
                 )
@@ -176,22 +178,26 @@ def _step(
     if step is None:
         if any(item.id == "fmu-step" for item in diagnostics):
             return None  # the FMU has a step that is not a number, which is already reported
-        message = "the FMU does not say its step: there is no stepSize in its DefaultExperiment"
-        hint = "write a model.yaml with 'version: 1', 'fmu: <its file or folder>' and 'step: 1 ms', and name that"
+        message = "the FMU does not set its step: there is no stepSize in its DefaultExperiment"
+        hint = (
+            "write a model.yaml with 'version: 1', 'fmu: <its file or folder>' and 'step: 1 ms', "
+            "and name this file as the model"
+        )
         diagnostics.error("fmu-step", description.step_span, message, hint=hint)
         return None
     base = description.internal_step or own_step
     if base is not None and (step / base).denominator != 1:
         message = f"the step {float(step):g} s is not a multiple of the FMU's internal step, {float(base):g} s"
         span = wanted_span or description.step_span
-        diagnostics.error("fmu-step", span, message, hint="export it with the step that the target has")
+        diagnostics.error("fmu-step", span, message, hint="export the FMU with the step of the target")
         return None
     if own_step is not None and step / own_step > _MOST_CALLS:
         message = (
-            f"the step {float(step):g} s takes more than {_MOST_CALLS} of the FMU's own, {float(own_step):g} s each"
+            f"the step {float(step):g} s needs more than {_MOST_CALLS} internal steps of the FMU, "
+            f"{float(own_step):g} s each"
         )
         span = wanted_span or description.step_span
-        diagnostics.error("fmu-step", span, message, hint="export it with the step that the target has")
+        diagnostics.error("fmu-step", span, message, hint="export the FMU with the step of the target")
         return None
     return step
 

@@ -50,18 +50,18 @@ def read_description(root: Element, diagnostics: Diagnostics) -> Description | N
     if root.name != "fmiModelDescription" or match is None:
         message = "this is not a description of an FMU"
         if root.name == "fmiModelDescription":
-            message = f"this FMU is of FMI {one_line(version)[:20] or 'unknown'}: EPG reads FMI 2.0 and 3.0"
+            message = f"this FMU has FMI version {one_line(version)[:20] or 'unknown'}: EPG reads FMI 2.0 and 3.0"
         diagnostics.error("fmu-version", root.span, message, hint="export it as FMI 2.0 or 3.0 for co-simulation")
         return None
     standard = int(match[1])
     interface = root.find("CoSimulation")
     if interface is None:
         others = [name for name in ("ModelExchange", "ScheduledExecution") if root.find(name) is not None]
-        message = f"this FMU is for {' and '.join(others) or 'nothing'} only: it takes no steps by itself"
+        message = f"this FMU is for {' and '.join(others) or 'nothing'} only: EPG needs CoSimulation"
         diagnostics.error("fmu-interface", root.span, message, hint="export it for co-simulation")
         return None
     if _flag(interface, "needsExecutionTool"):
-        message = "this FMU runs inside the program that made it (needsExecutionTool)"
+        message = "this FMU runs only inside the program that exported it (needsExecutionTool)"
         diagnostics.error("fmu-needs-tool", interface.span, message, hint="export it stand-alone, with sources")
         return None
     identifier = interface.attributes.get("modelIdentifier", "")
@@ -99,7 +99,7 @@ def _time(element: Element | None, name: str, diagnostics: Diagnostics) -> Fract
     if value is None or not is_step(value):
         message = f"{name} is '{one_line(text)[:40]}', which is not a step in seconds"
         comma = re.fullmatch(r"\s*\d+,\d+\s*", text)
-        hint = "write it with a decimal point" if comma else "steps are from 1 ns to 1000000 s"
+        hint = "write it with a decimal point" if comma else "a step must be from 1 ns to 1000000 s"
         diagnostics.error("fmu-step", element.span, message, hint=hint)
         return None
     return value

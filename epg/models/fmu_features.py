@@ -46,9 +46,9 @@ def check_fmu(linked: Linked, standard: int, diagnostics: Diagnostics) -> None:
             taking.append((function.name, code.file.span(start, start + len(taken[1]))))
     if taking:
         name, span = taking[0]
-        others = f" (nor do {', '.join(other for other, _ in taking[1:5])})" if taking[1:] else ""
-        message = f"'{name}' takes memory while the model runs, and does not give it back{others}"
-        hint = f"take it in fmi{standard}Instantiate{'CoSimulation' if standard == 3 else ''}, or use an array"
+        others = f" (also {', '.join(other for other, _ in taking[1:5])})" if taking[1:] else ""
+        message = f"'{name}' allocates memory while the model runs, and does not free it{others}"
+        hint = f"allocate it in fmi{standard}Instantiate{'CoSimulation' if standard == 3 else ''}, or use an array"
         diagnostics.error("model-heap", span, message, hint=hint)
 
 
@@ -73,9 +73,9 @@ def check_guid(codes: Collection[Code], guid: str, span: Span, standard: int, di
     word = "guid" if standard == 2 else "instantiationToken"
     text, place = found[0]
     message = (
-        f"the {word} is '{one_line(guid)[:60]}', but the sources have '{one_line(text)[:60]}': they would not start"
+        f"the {word} is '{one_line(guid)[:60]}', but the sources have '{one_line(text)[:60]}': the FMU would not start"
     )
-    hint = "the description and the sources are of two exports: export the FMU again"
+    hint = "the description and the sources come from two exports: export the FMU again"
     diagnostics.error("fmu-guid", span, message, hint=hint, notes=[Note("the sources", place)])
 
 

@@ -108,7 +108,7 @@ def _folder(root: Path) -> FmuFiles:
         folders[:] = sorted(name for name in folders if not name.startswith(".") and len(inside.parts) <= MAX_DEPTH)
         names += [(inside / name).as_posix() for name in sorted(files) if not name.startswith(".")]
         if len(names) > MAX_ENTRIES:
-            raise _Refused(f"there are more than {MAX_ENTRIES} files in '{SOURCES}'", "is this the right folder?")
+            raise _Refused(f"'{SOURCES}' has more than {MAX_ENTRIES} files", "is this the right folder?")
     contents: dict[str, bytes] = {}
     total = 0
     for name in names:
@@ -118,7 +118,7 @@ def _folder(root: Path) -> FmuFiles:
         contents[name] = path.read_bytes()
         total += len(contents[name])
         if total > MAX_UNPACKED:
-            raise _Refused(f"'{SOURCES}' holds more than {MAX_UNPACKED >> 20} MiB", "is this the right folder?")
+            raise _Refused(f"'{SOURCES}' is larger than {MAX_UNPACKED >> 20} MiB", "is this the right folder?")
     if DESCRIPTION not in contents:
         raise _Refused(too_large(DESCRIPTION, MAX_BYTES), ANOTHER_FILE)
     binaries = root / "binaries"
@@ -145,22 +145,20 @@ def _archive(path: Path) -> FmuFiles:
                     raise _Refused(too_large(name, MAX_BYTES), ANOTHER_FILE)
                 left -= entry.file_size
                 if left < 0:
-                    raise _Refused(f"its sources are larger than {MAX_UNPACKED >> 20} MiB", ANOTHER_FILE)
+                    raise _Refused(f"the FMU's sources are larger than {MAX_UNPACKED >> 20} MiB", ANOTHER_FILE)
                 with archive.open(entry) as file:
                     data = file.read(entry.file_size + 1)  # the size that the entry states can be wrong
                 if len(data) != entry.file_size:
-                    raise _Refused(f"'{name}' in it does not have the size that the archive says")
+                    raise _Refused(f"the size of '{name}' in the FMU is wrong")
                 contents[name] = data
     except (zipfile.BadZipFile, zlib.error, EOFError, struct.error, OverflowError, ValueError) as error:
         text = str(error).split("\n", 1)[0][:120]
         raise _Refused(f"'{path.name}' is damaged: {text or 'it ends too early'}") from error
     except (NotImplementedError, RuntimeError) as error:
-        raise _Refused(
-            f"'{path.name}' is packed in a way that FMUs are not", "pack it with the method deflate"
-        ) from error
+        raise _Refused(f"'{path.name}' has a compression that FMUs must not use", "compress it with deflate") from error
     if DESCRIPTION not in contents:
         raise _Refused(
-            f"there is no '{DESCRIPTION}' at the top of '{path.name}'", "an FMU is a zip file with that file"
+            f"there is no '{DESCRIPTION}' in the top folder of '{path.name}'", "an FMU is a zip file with this file"
         )
     return FmuFiles(path, True, contents, tuple(sorted(platforms)))
 
@@ -180,7 +178,7 @@ def _check_directory(path: Path) -> None:
         raise _Refused(f"'{path.name}' is not a zip archive", "an FMU is a zip file with 'modelDescription.xml' in it")
     _, _, _, _, count, directory, _, _ = _END.unpack_from(tail, at)
     if tail[max(0, at - 20) : at][:4] == _END64_LOCATOR or count > MAX_ENTRIES or directory > MAX_DIRECTORY:
-        raise _Refused(f"'{path.name}' holds more than {MAX_ENTRIES} files", ANOTHER_FILE)
+        raise _Refused(f"'{path.name}' has more than {MAX_ENTRIES} files", ANOTHER_FILE)
 
 
 def _entries(archive: zipfile.ZipFile) -> tuple[dict[str, zipfile.ZipInfo], set[str]]:
@@ -189,7 +187,7 @@ def _entries(archive: zipfile.ZipFile) -> tuple[dict[str, zipfile.ZipInfo], set[
     platforms: set[str] = set()
     seen: dict[str, str] = {}
     if len(archive.infolist()) > MAX_ENTRIES:  # the number that the end of the archive states can be wrong
-        raise _Refused(f"it holds more than {MAX_ENTRIES} files", ANOTHER_FILE)
+        raise _Refused(f"the FMU has more than {MAX_ENTRIES} files", ANOTHER_FILE)
     for entry in archive.infolist():
         name = entry.orig_filename
         parts = name.rstrip("/").split("/")
@@ -199,22 +197,24 @@ def _entries(archive: zipfile.ZipFile) -> tuple[dict[str, zipfile.ZipInfo], set[
             continue  # not a part of the model: it is never read
         shown = "".join(char if char.isprintable() else "?" for char in name[:80])
         if not _may_be_unpacked(name, parts):
-            raise _Refused(f"it holds a file called '{shown}', which cannot be unpacked")
+            raise _Refused(f"the FMU has a file '{shown}', which EPG does not unpack")
         if stat.S_ISLNK(entry.external_attr >> 16):
-            raise _Refused(f"'{shown}' in it is a link")
+            raise _Refused(f"'{shown}' in the FMU is a link")
         if seen.setdefault(name.casefold(), name) != name or name in wanted:
-            raise _Refused(f"it holds '{shown}' twice")
+            raise _Refused(f"the FMU has '{shown}' twice")
         if entry.flag_bits & 0x1:
-            raise _Refused(f"'{shown}' in it is encrypted", "pack it without a password")
+            raise _Refused(f"'{shown}' in the FMU is encrypted", "compress it without a password")
         if entry.compress_type not in (_STORED, _DEFLATED):
             # Other methods can compress a thousand times more, or are not part of every Python.
             method = _METHODS.get(entry.compress_type, f"method {entry.compress_type}")
-            raise _Refused(f"'{shown}' in it is packed with {method}, which FMUs must not use", "pack it with deflate")
+            raise _Refused(
+                f"'{shown}' in the FMU is compressed with {method}, which FMUs must not use", "compress it with deflate"
+            )
         wanted[name] = entry
     folders = {"/".join(name.split("/")[:depth]) for name in wanted for depth in range(1, name.count("/") + 1)}
     for name in sorted(wanted):
         if name in folders:
-            raise _Refused(f"'{name}' in it is a file and a folder")
+            raise _Refused(f"'{name}' in the FMU is both a file and a folder")
     return wanted, platforms
 
 

@@ -36,7 +36,7 @@ def load_fmu_settings(path: Path, node: YamlNode, diagnostics: Diagnostics) -> M
     name = str(node["fmu"].value)
     fmu = path.parent / name
     if not (is_file(fmu) and fmu.suffix.lower() == SUFFIX) and not is_fmu_folder(fmu):
-        message = f"'{name}' is neither an .fmu nor the folder of one"
+        message = f"'{name}' is not an .fmu file or the folder of an FMU"
         hint = "name the file, or the folder with its modelDescription.xml, relative to this file"
         diagnostics.error("file-not-found", node["fmu"].span, message, hint=hint)
     if diagnostics.error_count > before:
@@ -59,7 +59,7 @@ def _definitions(node: YamlNode | None, diagnostics: Diagnostics) -> tuple[tuple
         found[name] = "" if value.value is None else str(value.value)
         if not is_definition(found[name]):
             message = f"'{name}' cannot have this value"
-            diagnostics.error("wrong-value", value.span, message, hint="it stands on one line of C")
+            diagnostics.error("wrong-value", value.span, message, hint="the value must fit in one line of C")
     return tuple(found.items())
 
 

@@ -90,7 +90,7 @@ def find_sources(files: FmuFiles, description: Description, diagnostics: Diagnos
     for name, span in listed.files:
         place = _inside(name)
         if place not in files.contents:
-            message = f"'{one_line(name)[:80]}' is named as a source, but the FMU does not hold it"
+            message = f"'{one_line(name)[:80]}' is listed as a source, but the FMU does not contain it"
             diagnostics.error("fmu-file-missing", span, message, hint="export the FMU again, with its sources")
         elif place.lower().endswith(".h"):
             continue  # some tools also list the headers; the files that include them find them
@@ -101,7 +101,9 @@ def find_sources(files: FmuFiles, description: Description, diagnostics: Diagnos
     if foreign:
         names = ", ".join(f"'{one_line(name)[:80]}'" for name, _ in foreign[:4])
         more = f" and {len(foreign) - 4} more" if foreign[4:] else ""
-        message = f"{names}{more} {'are not C files' if foreign[1:] else 'is not a C file'}: EPG compiles FMUs in C"
+        message = (
+            f"{names}{more} {'are not C files' if foreign[1:] else 'is not a C file'}: EPG supports only FMUs in C"
+        )
         diagnostics.error("fmu-language", foreign[0][1], message, hint="export the FMU as C code")
     if diagnostics.error_count > before:
         return None
@@ -125,7 +127,7 @@ def find_sources(files: FmuFiles, description: Description, diagnostics: Diagnos
 def _no_sources(files: FmuFiles, present: list[str], description: Description, diagnostics: Diagnostics) -> None:
     hint = "export it as a source code FMU, with C code in 'sources'"
     if any(Path(name).suffix.lower() in (".cpp", ".cc", ".cxx") for name in present):
-        message = "the FMU's sources are C++: EPG compiles FMUs in C"
+        message = "the FMU's sources are C++: EPG supports only FMUs in C"
         diagnostics.error("fmu-language", description.span, message, hint=hint)
         return
     compiled = f": it is compiled for {', '.join(files.binaries[:6])} only" if files.binaries else ""
@@ -152,7 +154,7 @@ def _configuration(root: Element, description: Description, diagnostics: Diagnos
     if not fitting and len({child.attributes.get("modelIdentifier") for child in found}) == 1:
         fitting = found  # if an FMU was made from the files of another one, that one's name can be left here
         other = one_line(found[0].attributes.get("modelIdentifier", ""))[:60]
-        message = f"the build configuration is for '{other}', but the FMU is {wanted}: it is used nevertheless"
+        message = f"the build configuration is for '{other}', but the FMU is {wanted}: EPG uses it anyway"
         diagnostics.warning("fmu-other-name", found[0].span, message, hint="check that these are the FMU's sources")
     fitting.sort(key=lambda child: "platform" in child.attributes)
     if not fitting:
@@ -166,12 +168,12 @@ def _configuration(root: Element, description: Description, diagnostics: Diagnos
     for part in chosen.children:
         if part.name == "Library" and part.attributes.get("name") != "m":
             message = f"the FMU needs the library '{one_line(part.attributes.get('name', ''))[:60]}'"
-            diagnostics.error("fmu-library", part.span, message, hint="export it with the sources of all it needs")
+            diagnostics.error("fmu-library", part.span, message, hint="export the FMU with the sources of this library")
         if part.name != "SourceFileSet":
             continue
         language = part.attributes.get("language", "C")
         if re.match(r"(?i)c\+\+|cpp|fortran|ada", language):
-            message = f"a part of the FMU is written in {one_line(language)[:20]}: EPG compiles FMUs in C"
+            message = f"a part of the FMU is written in {one_line(language)[:20]}: EPG supports only FMUs in C"
             diagnostics.error("fmu-language", part.span, message, hint="export the FMU as C code")
         for item in part.children:
             name = item.attributes.get("name", "")
@@ -188,11 +190,13 @@ def _define(name: str, item: Element, definitions: dict[str, str], diagnostics: 
     """Adds a definition.  All files of the FMU get the same definitions, so that one name cannot have two values."""
     value = item.attributes.get("value", "")
     if not is_identifier(name) or not is_definition(value):
-        message = f"'{one_line(name)[:40]}={one_line(value)[:40]}' is not a definition of C"
+        message = f"'{one_line(name)[:40]}={one_line(value)[:40]}' is not the definition of a macro in C"
         diagnostics.error("fmu-definition", item.span, message, hint="export the FMU again")
     elif definitions.setdefault(name, value) != value:
         message = f"'{name}' has two values, '{definitions[name][:40]}' and '{value[:40]}'"
-        diagnostics.error("fmu-definition", item.span, message, hint="EPG compiles all files of an FMU alike")
+        diagnostics.error(
+            "fmu-definition", item.span, message, hint="EPG compiles all files of an FMU with the same macros"
+        )
 
 
 def is_identifier(name: str) -> bool:
@@ -304,14 +308,14 @@ class _Reader:
             self.told.add(name)
             message, hint = f"'{name}' is not among the FMU's sources", "export the FMU again, with all its sources"
             if places:
-                message = f"'{name}' is in {len(places)} folders of the FMU, and EPG cannot know which one is meant"
-                hint = f"write the folder into the #include: {', '.join(one_line(place) for place in places[:4])}"
+                message = f"'{name}' is in {len(places)} folders of the FMU, and it is not clear which of them is meant"
+                hint = f"write the folder in the #include: {', '.join(one_line(place) for place in places[:4])}"
             self.diagnostics.error("fmu-file-missing", span, message, hint=hint)
         return None
 
     def report_taken(self) -> None:
         """Reports, as notes, the headers that were found in folders that neither the FMU nor an include names."""
         for folder, names in sorted(self.taken.items()):
-            message = f"found in '{one_line(folder)}', which the FMU does not name as a folder of headers: "
+            message = f"these headers are in '{one_line(folder)}', which the FMU does not list as a folder of headers: "
             shown = ", ".join(one_line(name) for name in sorted(set(names))[:12])
             self.diagnostics.note("model-neighbour", Span(str(self.files.path(folder))), message + shown)

@@ -192,15 +192,17 @@ def _variable(
     is_port = causality in ("input", "output")
     reference = attributes.get("valueReference", "")
     if typed is not None and is_port and (typed.name in _TEXT or (typed.name, causality) == ("Clock", "output")):
-        what = "keeps its start value" if causality == "input" else "goes nowhere"
-        message = f"{causality} '{name}' is of type {typed.name}: it is not a port, and {what}"
-        diagnostics.warning("fmu-no-port", element.span, message, hint="ports are numbers: make it one if it is needed")
+        what = "keeps its start value" if causality == "input" else "is not used"
+        message = f"{causality} '{name}' is of type {typed.name}, which a port cannot have: it {what}"
+        diagnostics.warning(
+            "fmu-no-port", element.span, message, hint="a port is a number: change the type if you need this port"
+        )
         return None
     if typed is None or typed.name in _NO_NUMBERS:
         if is_port:
             what = typed.name if typed is not None else "no type"
-            message = f"{causality} '{name}' is of type {what}: ports are numbers"
-            diagnostics.error("fmu-variable", element.span, message, hint="export it without this variable")
+            message = f"{causality} '{name}' is of type {what}, which a port cannot have: a port is a number"
+            diagnostics.error("fmu-variable", element.span, message, hint="export the FMU without this variable")
         return None
     if not name or not re.fullmatch(r"\d{1,10}", reference) or int(reference) >= 1 << 32:
         if is_port:

@@ -123,7 +123,7 @@ class _Reader:
         if style == "arrays":
             if node is not None:
                 span = self.node.key_span("types")
-                self._error("unknown-key", span, "'types' has no meaning with 'style: arrays'", "remove it")
+                self._error("unknown-key", span, "'types' has no effect with 'style: arrays'", "remove it")
             return {}
         if node is None:
             hint = "with 'style: struct', write for example 'types: {inputs: pid_inputs_t, outputs: pid_outputs_t}'"
@@ -141,7 +141,9 @@ class _Reader:
         for index, name in enumerate(self._names(section)):
             span = self.node[section].key_span(name)
             if is_reserved(name):
-                self._error("invalid-name", span, f"'{name}' is not a C identifier", "it names a member of the struct")
+                self._error(
+                    "invalid-name", span, f"'{name}' is not a C identifier", "write the name of a member of the struct"
+                )
             unit, type, description = (self._text(section, name, key) for key in ("unit", "type", "description"))
             direction = section.removesuffix("s")
             ports.append(Port(name, to_identifier(name), direction, unit, type or "real", index, span, description))
@@ -168,7 +170,7 @@ class _Reader:
                 self._error("invalid-name", span, f"'{member}' is not a {what}", "set 'member'")
             identifier = to_identifier(name)
             if identifier in taken:
-                message = f"'{name}' becomes the C identifier of another parameter"
+                message = f"'{name}' has the same C identifier as another parameter"
                 self._error("invalid-name", span, message, "rename it")
             taken.add(identifier)
             unit = self._text("parameters", name, "unit")
@@ -207,13 +209,13 @@ class _Reader:
             name = str(element.value)
             path = self.path.parent / name
             if suffixes and path.suffix.lower() not in suffixes:
-                hint = f"sources of this language end in {', '.join(suffixes)}; 'language' is c or c++"
-                self._error("wrong-value", element.span, f"'{name}' has another suffix", hint)
+                hint = f"the sources of this language must end in {', '.join(suffixes)}; 'language' can be c or c++"
+                self._error("wrong-value", element.span, f"'{name}' has the wrong suffix", hint)
             elif not (is_file(path) if suffixes else is_folder(path)):
                 folder = path.parent if is_folder(path.parent) else self.path.parent
                 known = [entry.name for entry in sorted(folder.iterdir()) if not suffixes or entry.suffix in suffixes]
                 message = f"there is no {'file' if suffixes else 'folder'} '{name}'"
-                self._error("file-not-found", element.span, message, did_you_mean(name, known, "in that folder"))
+                self._error("file-not-found", element.span, message, did_you_mean(name, known, "files in that folder"))
             elif suffixes and suffixes != _SUFFIXES["c"] and not is_includable(name):
                 message = f"'{name}' cannot be included"
                 self._error("invalid-name", element.span, message, "rename the file; use '/' in paths")
@@ -231,7 +233,7 @@ class _Reader:
             )
         if not is_includable(name):
             self._error(
-                "invalid-name", self.node["header"].span, f"'{name}' is no name of a header", "use '/' in paths"
+                "invalid-name", self.node["header"].span, f"'{name}' is not the name of a header", "use '/' in paths"
             )
         return name
 

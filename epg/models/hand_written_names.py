@@ -145,7 +145,7 @@ class Names:
                 self._undefined(name, span, diagnostics)
             return
         message = f"there is no variable '{name}' in '{self.header}'"
-        hint = "'member' names the variable, 'instance' the type that has it"
+        hint = "'member' must name the variable, and 'instance' the type that has it"
         if diagnostics.wants_hints:
             declared = {other for code in self.seen for other in declared_names(code)}
             known = self._variables & (declared | {v.name for code in self.seen for v in code.variables})

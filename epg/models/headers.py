@@ -130,8 +130,8 @@ class Headers:
         self.diagnostics.error(
             "model-ambiguous-definition",
             file.span(include.start, include.start + len(include.name)),
-            f"'{include.name}' is not in the model's folder, and beside it lie {len(candidates)} that differ",
-            hint="copy the one that is meant into the model's folder",
+            f"'{include.name}' is not in the model's folder, but {len(candidates)} different ones are beside it",
+            hint="copy the right one into the model's folder",
             notes=[Note("one of them", Span(str(path))) for path in candidates[:8]],
         )
 
@@ -143,7 +143,7 @@ class Headers:
                 "model-file-missing",
                 span,
                 f"'{include.name}' is not in the model's folder",
-                hint="it is not needed unless the model uses its functions; export again to have it",
+                hint="the file is needed only if the model uses its functions; to get it, export the model again",
             )
             return
         self.good = False
@@ -151,7 +151,7 @@ class Headers:
             return
         self._told.add(include.name)
         notes = self.near.notes(_base(include.name))
-        mend = "copy the one that is meant into the model's folder" if notes else "copy all files that 20-sim exported"
+        mend = "copy the right one into the model's folder" if notes else "copy all files that 20-sim exported"
         self.diagnostics.error(
             "model-file-missing",
             span,

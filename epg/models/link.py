@@ -174,8 +174,8 @@ class _Linker:
         self.diagnostics.error(
             "model-ambiguous-definition",
             self.main.file.span(0),
-            f"'{name}' is defined in {len(holders)} files, so it is open which of them belong to this model",
-            hint="keep each model in a folder of its own",
+            f"'{name}' is defined in {len(holders)} files, so it is not clear which of them belongs to this model",
+            hint="put each model into a separate folder",
             notes=places,
         )
 

@@ -109,23 +109,23 @@ def cross_check(model: Model, prefix: str, metadata: Metadata, diagnostics: Diag
         same = _check_names(model, tokens, diagnostics)
         method = tokens.trimmed("INTEGRATION_METHOD_NAME")
         if method and method != model.method:
-            text = f"integration method '{method}', the sources '{model.method}'"
+            text = f"integration method '{method}', but the sources have '{model.method}'"
             same &= _differs(tokens.path, tokens.span("INTEGRATION_METHOD_NAME"), text, model.span, diagnostics)
         step = tokens.trimmed("TIME_STEP_SIZE")
         if step and exact_number(step) != model.step:
-            text = f"step size {step} s, the sources {float(model.step)!r} s"
+            text = f"step size {step} s, but the sources have {float(model.step)!r} s"
             same &= _differs(tokens.path, tokens.span("TIME_STEP_SIZE"), text, model.span, diagnostics)
         if same:
             _check_values(model, tokens, diagnostics)
         if "VARPREFIX" in tokens.values and tokens.trimmed("VARPREFIX") != prefix:
-            text = f"prefix '{tokens.trimmed('VARPREFIX')}', the sources '{prefix}'"
+            text = f"prefix '{tokens.trimmed('VARPREFIX')}', but the sources have '{prefix}'"
             _differs(tokens.path, tokens.span("VARPREFIX"), text, model.span, diagnostics)
         if tokens.trimmed("SUBMODEL_NAME") not in ("", model.name):
-            text = f"submodel '{tokens.trimmed('SUBMODEL_NAME')}', the sources '{model.name}'"
+            text = f"submodel '{tokens.trimmed('SUBMODEL_NAME')}', but the sources have '{model.name}'"
             _differs(tokens.path, tokens.span("SUBMODEL_NAME"), text, model.span, diagnostics)
     if configuration:
         if exact_number(configuration.step) not in (None, model.step):
-            text = f"step size {configuration.step} s, the sources {float(model.step)!r} s"
+            text = f"step size {configuration.step} s, but the sources have {float(model.step)!r} s"
             _differs(configuration.path, configuration.step_span, text, model.span, diagnostics)
         for direction, ports in (("input", model.inputs), ("output", model.outputs)):
             _check_configured(configuration, direction, ports, model.span, diagnostics)
@@ -146,9 +146,9 @@ def _check_names(model: Model, tokens: Tokens, diagnostics: Diagnostics) -> bool
             continue
         word = f"{kind.lower()}s"
         if sorted(told) == sorted(names):
-            text = f"{word} in the order {_listed(told)}, the sources in the order {_listed(names)}"
+            text = f"{word} in the order {_listed(told)}, but the sources have the order {_listed(names)}"
         else:
-            text = f"{word} {_listed(told)}, the sources {_listed(names)}"
+            text = f"{word} {_listed(told)}, but the sources have {_listed(names)}"
         token = f"{kind}_NAMES3" if f"{kind}_NAMES3" in tokens.values else f"{kind}_NAMES"
         same &= _differs(tokens.path, tokens.span(token), text, model.span, diagnostics)
     told = [name for name in tokens.names("PARAMETER") if name]
@@ -190,10 +190,10 @@ def warn_of_values(
     span, there, here, name, place = different[0]
     notes = [Note("the sources", place)]
     for _, other, own, title, where in different[1:_MOST_NOTES]:
-        notes.append(Note(f"'{title}' is {other!r} there, {own!r} here", where))
+        notes.append(Note(f"'{title}' is {other!r} there, but {own!r} here", where))
     more = len(different) - 1
     rest = f", and {more} more {'differ' if more > 1 else 'differs'}" if more else ""
-    text = f"parameter '{name}' = {there!r}, the sources {here!r}{rest}"
+    text = f"parameter '{name}' = {there!r}, but the sources have {here!r}{rest}"
     _differs(Path(file), span, text, place, diagnostics, notes)
 
 
@@ -205,10 +205,14 @@ def _check_configured(
     names = {port.name for port in ports}
     for name in sorted(names - told.keys()):
         span = Span(str(configuration.path), 1, 1, 2)
-        _differs(configuration.path, span, f"no {direction} '{name}', the sources do", sources, diagnostics)
+        _differs(configuration.path, span, f"no {direction} '{name}', but the sources have one", sources, diagnostics)
     for name in sorted(told.keys() - names):
         _differs(
-            configuration.path, told[name].span, f"the {direction} '{name}', the sources do not", sources, diagnostics
+            configuration.path,
+            told[name].span,
+            f"the {direction} '{name}', but the sources do not have it",
+            sources,
+            diagnostics,
         )
 
 
@@ -219,7 +223,7 @@ def _differs(
         "stale-metadata",
         span,
         f"'{file.name}' has {text}",
-        hint="the sources are used; export the model again to make both agree",
+        hint="EPG uses the sources; export the model again so that both agree",
         notes=notes or [Note("the sources", sources)],
     )
     return False

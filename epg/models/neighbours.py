@@ -128,21 +128,23 @@ class Neighbours:
         other = {os.path.realpath(folder) for folder in self.models}
         return [
             Note(
-                "a file of that name" + (", of another model" if os.path.realpath(path.parent) in other else ""),
+                "a file of this name" + (", of another model" if os.path.realpath(path.parent) in other else ""),
                 Span(str(path)),
             )
             for path in self.elsewhere(name)
         ]
 
     def description(self) -> str:
-        """The places that were searched, as text: ``looked in 'pan' and below it, and beside it in 'common'``."""
+        """The places that were searched, as text: ``EPG has searched 'pan' and its subfolders``."""
         names = [os.path.relpath(folder, above(self.directory)) for folder in self.folders]
         names = [f"'{Path(name).as_posix()}'" for name in names if name not in (".", "..")]
-        text = f"looked in '{os.path.basename(os.path.abspath(self.directory))}' and below it"
+        text = f"EPG has searched '{os.path.basename(os.path.abspath(self.directory))}' and its subfolders"
         if self._found[2]:
-            return f"{text}, but not beside it: {self._found[2]}"
+            return f"{text}, but not the folders beside it: {self._found[2]}"
         return text + (
-            f", and beside it in {', '.join([*names[:6], *(['...'] if len(names) > 6 else [])])}" if names else ""
+            f", and the folders beside it: {', '.join([*names[:6], *(['...'] if len(names) > 6 else [])])}"
+            if names
+            else ""
         )
 
 
@@ -155,8 +157,8 @@ def report_taken(paths: Iterable[Path], main: Path, near: Neighbours, diagnostic
         names.sort()
         place = Path(os.path.relpath(folder, near.directory)).as_posix()
         shown = ", ".join(names[:12]) + (f" and {len(names) - 12} more" if len(names) > 12 else "")
-        message = f"taken from '{place}', as the model's folder lacks them: {shown}"
-        hint = "a file of the same name in the model's folder counts first"
+        message = f"these files are from '{place}', because the model's folder does not have them: {shown}"
+        hint = "EPG first uses a file of the same name in the model's folder"
         diagnostics.note("model-neighbour", Span(str(main)), message, hint=hint)
 
 
@@ -224,12 +226,12 @@ def _siblings(parent: Path) -> tuple[list[Path], str]:
     except (OSError, RuntimeError, ValueError):
         return [], "the folder above cannot be read"
     if whole == home or whole in home.parents:
-        return [], "the folder above is a home directory or a system's"
+        return [], "the folder above is a home folder or a system folder"
     if os.name == "posix" and mode & stat.S_IWOTH:
-        return [], "everybody may write to the folder above"
+        return [], "all users can write to the folder above"
     entries = entries_of(parent)
     if entries is None:
-        return [], f"the folder above holds more than {MAX_ENTRIES} entries"
+        return [], f"the folder above has more than {MAX_ENTRIES} entries"
     folders = [entry for entry in entries if _is_nameable(entry.name) and may_hold_sources(entry)]
     return (folders, "") if len(folders) <= MAX_FOLDERS else ([], f"there are more than {MAX_FOLDERS} folders")
 

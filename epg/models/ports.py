@@ -52,12 +52,12 @@ def _are_complete(
     if not missing and not surplus:
         return True
     listed = ", ".join(f"{vector}[{index}]" for index in (missing or surplus)[:8])
-    what = f"no line connects {listed} to the model" if missing else f"there are lines for {listed} beyond that"
+    what = f"no line connects {listed} to the model" if missing else f"there are also lines for {listed}"
     diagnostics.error(
         "model-ports",
         whole,
         f"the model has {count} {direction}{'' if count == 1 else 's'}, but {what}",
-        hint="export the model again, or undo the edit of its generated code",
+        hint="export the model again, or undo the changes in its generated code",
     )
     return False
 
@@ -79,7 +79,7 @@ def _port(
             "model-port-unnamed",
             line.span,
             f"the comment with the name of {vector}[{index}] is missing: the port is called '{name}'",
-            hint="keep the comments 20-sim writes behind these lines, or tokens.xml",
+            hint="keep the comments that 20-sim writes after these lines, or keep tokens.xml",
         )
     configured = configuration.port(direction, name) if configuration else None
     title = one_line(name)

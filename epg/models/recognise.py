@@ -31,7 +31,7 @@ SUBMODEL = "functions ...InitializeSubmodel() and ...CalculateSubmodel()"
 EQUATIONS = "CalculateDynamic"  # part of the name of a function that is in every C export
 EXPORT_AGAIN = (
     "generate the code of the submodel in 20-sim again (Tools > Real Time Toolbox > C-Code Generation, 'C function') "
-    "into a folder of its own, and name that"
+    "into a separate folder, and name this folder"
 )
 _SUBMODEL = re.compile(r"\bvoid\s+\w*(?:Initialize|Calculate)Submodel\w*\s*\(", re.ASCII)
 _MAX_FILES = 400
@@ -77,10 +77,10 @@ def load_model(path: Path, diagnostics: Diagnostics, wanted_by: Span | None = No
             return candidates[0].load(diagnostics)
         if candidates:
             names = ", ".join(sorted(candidate.file.relative_to(path).as_posix() for candidate in candidates)[:8])
-            message = f"the folder '{path.name}' holds {len(candidates)} models"
+            message = f"the folder '{path.name}' has {len(candidates)} models"
             diagnostics.error("model-ambiguous", whole, message, hint=f"name one of them: {names}")
             return None
-    message = f"no model was recognised in the folder '{path.name}'"
+    message = f"EPG does not recognise a model in the folder '{path.name}'"
     part = _part_of_export(source_files(path, c_function.SUFFIXES, 1))
     if part:
         message += f": '{part}' has equations of a 20-sim export, but no file has its {SUBMODEL}"
@@ -221,5 +221,5 @@ def _found(path: Path) -> str:
     names = [entry.name for entry in source_files(path, (".c", ".cpp", ".xml", ".h", ".emx"), 1)]
     if any(name.lower().endswith(".emx") for name in names):
         menu = "Tools > Real Time Toolbox > C-Code Generation"
-        return f"; generate code from the .emx in 20-sim ({menu}) and name that folder"
-    return f"; found were {', '.join(names[:6])}" if names else ""
+        return f"; generate code from the .emx in 20-sim ({menu}) and name this folder"
+    return f"; the folder has {', '.join(names[:6])}" if names else ""

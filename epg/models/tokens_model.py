@@ -94,7 +94,7 @@ def load_tokens_model(tokens: Tokens, diagnostics: Diagnostics) -> Model | None:
     _check_method(tokens, diagnostics)
     helpers = _check_calls(tokens, diagnostics)
     if tokens.count("NUMBER_MATRICES"):
-        message = "the model uses matrices, which EPG does not build from tokens"
+        message = "the model uses matrices, which EPG does not support in tokens"
         diagnostics.error("model-tokens", tokens.span("NUMBER_MATRICES"), message, hint=_EXPORT_HINT)
     if tokens.trimmed("FLOATPOSTFIX") in ("f", "F"):
         message = "the tokens were made for single precision"
@@ -149,7 +149,7 @@ def _is_complete(tokens: Tokens, diagnostics: Diagnostics) -> bool:
         named = ", ".join(f"'{name}'" for name in missing[:6])
         more = f" and {len(missing) - 6} more" if len(missing) > 6 else ""
         word = "tokens are missing" if missing[1:] else "a token is missing"
-        message = f"{word}, without which '{tokens.path.name}' alone is not a model: {named}{more}"
+        message = f"'{tokens.path.name}' alone is not a model, because {word}: {named}{more}"
         diagnostics.error("model-tokens", span, message, hint="export the model again")
         return False
     before = diagnostics.error_count
@@ -164,7 +164,7 @@ def _is_complete(tokens: Tokens, diagnostics: Diagnostics) -> bool:
                 message = f"the equations use {beyond[0]}, but '{count}' is {tokens.count(count)}"
                 note = Note("the count", tokens.span(count))
                 span = file.span(beyond.start(), beyond.end())
-                hint = "export the model again, or undo the edit of its tokens"
+                hint = "export the model again, or undo the changes in its tokens"
                 diagnostics.error("model-tokens", span, message, hint=hint, notes=[note])
                 break
     return diagnostics.error_count == before
@@ -205,7 +205,7 @@ def _check_calls(tokens: Tokens, diagnostics: Diagnostics) -> tuple[str, ...]:
     for token in CODE:
         file = tokens.code(token)
         if "#" in file.without_comments or not _balanced(file.code) or not _comments_closed(file.text):
-            message = f"token '{token}' holds something else than equations"
+            message = f"token '{token}' must have only equations"
             diagnostics.error("model-tokens", tokens.span(token), message, hint="export the model again")
             continue
         for match in re.finditer(r"(?<![\w>.])([A-Za-z_]\w*)\s*\(", file.code):
@@ -218,7 +218,7 @@ def _check_calls(tokens: Tokens, diagnostics: Diagnostics) -> tuple[str, ...]:
             if bare != name and bare in HELPERS:
                 helpers.add(bare)
             elif bare != name and bare in STUBS:
-                message = f"the model uses {STUBS[bare]}, which exports leave empty"
+                message = f"the model uses {STUBS[bare]}, which is empty in exports"
                 diagnostics.error("model-stub", span, message, hint=f"avoid {STUBS[bare]} in the model")
             elif bare == "RealTime":
                 message = "the model reads the computer's clock, which targets do not have"
@@ -226,14 +226,16 @@ def _check_calls(tokens: Tokens, diagnostics: Diagnostics) -> tuple[str, ...]:
             elif bare == "String2Double":
                 continue
             elif bare != name:
-                message = f"'{name}' is not a function that EPG knows for tokens"
+                message = f"EPG does not support the function '{name}' in tokens"
                 diagnostics.error("model-tokens", span, message, hint=did_you_mean(bare, HELPERS) or _EXPORT_HINT)
             else:
-                message = f"'{name}' is called, but is not part of the export: dll() functions run inside 20-sim only"
+                message = (
+                    f"'{name}' is called, but it is not part of the export: dll() functions run only inside 20-sim"
+                )
                 diagnostics.error("model-dll", span, message, hint="avoid dll() in the model")
     if "Random" in helpers:
-        message = "the model uses random numbers: they repeat from start to start, and differ from 20-sim's"
+        message = "the model uses random numbers: they are the same after each start, and differ from those of 20-sim"
         diagnostics.warning(
-            "model-random", tokens.span("SUBMODEL_NAME"), message, hint="feed noise in through an input port"
+            "model-random", tokens.span("SUBMODEL_NAME"), message, hint="use an input port for the noise"
         )
     return tuple(sorted(helpers))

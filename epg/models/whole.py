@@ -17,15 +17,15 @@ def is_whole(file: SourceFile, diagnostics: Diagnostics) -> bool:
     name = file.path.name
     mark = _MARK.search(file.text)
     if mark:
-        message = f"'{name}' has the marks of a merge that was not finished"
-        hint = "take one of the two versions that stand between the marks, or export again"
+        message = f"'{name}' has the conflict markers of a merge that was not finished"
+        hint = "keep one of the two versions between the markers, or export the model again"
         diagnostics.error("model-incomplete", file.span(mark.start(), mark.end()), message, hint=hint)
         return False
     # With #else, each branch can open a brace, and one closing brace can belong to all of them: do not count braces.
     if file.code.count("{") > file.code.count("}") and not _OTHER_BRANCH.search(file.without_comments):
         end = len(file.text.rstrip())
-        message = f"'{name}' ends where a '}}' is still missing: the file is cut off"
-        hint = "copy the whole file, or export again"
+        message = f"a '}}' is missing at the end of '{name}': the file is cut off"
+        hint = "copy the whole file, or export the model again"
         diagnostics.error("model-incomplete", file.span(max(end - 1, 0), end), message, hint=hint)
         return False
     return True

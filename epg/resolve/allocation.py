@@ -129,7 +129,7 @@ def _nodes(claims: Sequence[Claim], target: Target, diagnostics: Diagnostics) ->
         )
         number -= len(signals)
         if number < len(target.soc.pins):
-            message = f"{target.name} has no numbers left for {claim.user} and its node"
+            message = f"{target.name} has too few pin numbers for the node of {claim.user}"
             diagnostics.error("too-many", claim.span, message, hint="remove components that name a 'node'")
             break
     return result
@@ -174,10 +174,10 @@ def _class(claim: Claim, target: Target, diagnostics: Diagnostics) -> ResourceCl
     for signal in unknown:
         hint = did_you_mean(signal, found.signals, "signals")
         message = f"{found.a_title} has no signal '{signal}'"
-        diagnostics.error("unknown-name", claim.stated_in, message, hint=hint, notes=[Note("this class", found.span)])
+        diagnostics.error("unknown-name", claim.stated_in, message, hint=hint, notes=[Note("the class", found.span)])
     for signal in missing:
-        message = f"the claim '{claim.name}' gives signal '{signal}' of {found.a_title} no pin"
-        diagnostics.error("incomplete-claim", claim.stated_in, message, notes=[Note("this class", found.span)])
+        message = f"the claim '{claim.name}' has no pin for signal '{signal}' of {found.a_title}"
+        diagnostics.error("incomplete-claim", claim.stated_in, message, notes=[Note("the class", found.span)])
     return None if unknown or missing else found
 
 
@@ -194,9 +194,9 @@ def _check_support(claim: Claim, resource_class: ResourceClass, target: Target, 
 
 def _incomplete(claim: Claim, resource_class: ResourceClass, diagnostics: Diagnostics) -> None:
     attribute = resource_class.divider_from
-    message = f"the claim '{claim.name}' gives no '{attribute}', which {resource_class.a_title} needs"
+    message = f"the claim '{claim.name}' has no '{attribute}', which {resource_class.a_title} needs"
     hint = f"add 'attributes: {{{attribute}: ...}}' with a parameter that has a value"
-    notes = [Note("this class", resource_class.span)]
+    notes = [Note("the class", resource_class.span)]
     diagnostics.error("incomplete-claim", claim.stated_in, message, hint=hint, notes=notes)
 
 
@@ -230,16 +230,16 @@ def _division(
             message = f"{what} is out of range: the longest possible on {target.name} is {show(high, dimension, -1)}"
         else:
             possible = f"{show(low, dimension, 1)} to {show(high, dimension, -1)}"
-            message = f"{what} is out of range: {resource_class.a_title} on {target.name} does {possible}"
-        hint = f"{peripheral.a_title} counts at most {divider.prescaler[1]} x {divider.counter[1]} clocks of {speed}"
+            message = f"{what} is out of range: {resource_class.a_title} on {target.name} can have {possible}"
+        hint = f"{peripheral.a_title} counts at most {divider.prescaler[1]} x {divider.counter[1]} periods of {speed}"
         diagnostics.error(f"{attribute}-out-of-range", stated.span, message, hint=hint, notes=stated.notes)
         return None
     found = divide(clocks, divider, resource_class.exact)
     if found is None:
         near = sorted(_written(n, attribute, clock) for n in neighbours(clocks, divider, resource_class.exact))
         what = f"{attribute} {show(value, dimension, digits=_MANY)} of {claim.user}"
-        message = f"{what} is not possible: the clock of {speed} does not divide to it"
-        hint = f"nearest: {' and '.join(show(nearest, dimension, digits=_MANY) for nearest in near)}"
+        message = f"{what} is not possible: the clock of {speed} cannot be divided to it"
+        hint = f"nearest possible: {' and '.join(show(nearest, dimension, digits=_MANY) for nearest in near)}"
         diagnostics.error(f"{attribute}-not-possible", stated.span, message, hint=hint, notes=stated.notes)
     return found
 

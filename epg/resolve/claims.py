@@ -31,7 +31,7 @@ class Stated:
 
     @property
     def notes(self) -> list[Note]:
-        return [Note("extended from here", span) for span in self.origins]
+        return [Note("extended here", span) for span in self.origins]
 
 
 @dataclass(frozen=True)

@@ -111,14 +111,14 @@ def _two(first: Candidate, second: Candidate, peripheral: Peripheral, hint: str,
     differing = None if one_slot else _difference(first, second, peripheral)
     if differing is None:
         stated = next(iter(second.claim.signals.values()))
-        message = f"{where} is used by {first.claim.user} already"
+        message = f"{where} is already used by {first.claim.user}"
         notes = [Note("used here", next(iter(first.claim.signals.values())).span), *stated.notes]
         diagnostics.error(f"{peripheral.name}-used-twice", stated.span, message, hint=hint, notes=notes)
         return
     attribute, one, other = differing
     users = f"{first.claim.user} and {second.claim.user}"
-    message = f"{users} share {where}, which has one {attribute}, not {one} and {other}"
-    notes = [Note(f"{one} is asked for here", _attribute_span(first, attribute)), *_extending(second, attribute)]
+    message = f"{users} share {where}, which has only one {attribute}, not {one} and {other}"
+    notes = [Note(f"{one} is set here", _attribute_span(first, attribute)), *_extending(second, attribute)]
     id = f"{peripheral.name}-{attribute}-conflict"
     hint = f"write the same {attribute} for both" + (f", or {hint}" if hint else "")
     diagnostics.error(id, _attribute_span(second, attribute), message, hint=hint, notes=notes)
@@ -130,7 +130,7 @@ def _too_many(
     """Reports more equal claims than there are places."""
     title = alike[0].resource_class.title
     users = ", ".join(candidate.claim.user for candidate in alike)
-    message = f"{len(alike)} {title}s are asked for, {target.name} has {possible} ({_extent(peripheral)})"
+    message = f"{len(alike)} {title}s are needed, but {target.name} has {possible} ({_extent(peripheral)})"
     hint = f"remove {len(alike) - possible} of {users}"
     notes = [Note(f"{candidate.claim.user} is one of them", candidate.claim.span) for candidate in alike[:-1]]
     diagnostics.error("too-many", alike[-1].claim.span, message, hint=hint, notes=notes)
@@ -142,13 +142,13 @@ def _several(core: Sequence[Candidate], peripheral: Peripheral, target: Target, 
     others = ", ".join(candidate.claim.user for candidate in core[:-1])
     needs = f"needs all of {peripheral.a_title}" if last.resource_class.whole else f"is {last.resource_class.a_title}"
     extent = f"{target.name} has {_extent(peripheral)}"
-    message = f"no {peripheral.title} is left for {last.claim.user}, which {needs}: {extent}"
+    message = f"no {peripheral.title} is free for {last.claim.user}, which {needs}: {extent}"
     slots = [candidate for candidate in core if not candidate.resource_class.whole]
     agreed = [name for name in peripheral.agree if len({_shown(candidate, name) for candidate in slots}) > 1]
-    reason = f"; users of one {peripheral.title} have one {' and '.join(agreed)}" if agreed else ""
-    hint = f"the others are {others}{reason}"
+    reason = f"; all users of one {peripheral.title} must have the same {' and '.join(agreed)}" if agreed else ""
+    hint = f"the other users are {others}{reason}"
     notes = [
-        Note(f"{candidate.claim.user} takes one as {candidate.resource_class.title}", candidate.claim.span)
+        Note(f"{candidate.claim.user} uses one as {candidate.resource_class.title}", candidate.claim.span)
         for candidate in core[:-1]
     ]
     diagnostics.error("too-many", last.claim.span, message, hint=hint, notes=notes)

@@ -59,7 +59,7 @@ class Pins:
         result = {signal: self.numbered + number for number, signal in enumerate(resource_class.signals)}
         self.numbered += len(result)
         if self.numbered > soc.automatic_pins:
-            message = f"{self.target.name} has no pin left for {claim.user}: it has {soc.automatic_pins}"
+            message = f"{self.target.name} has no free pin for {claim.user}: it has {soc.automatic_pins} pins"
             self.diagnostics.error("too-many", claim.span, message, hint="remove components")
             return None
         return MappingProxyType(result)
@@ -138,7 +138,7 @@ class Pins:
         """
         onboard = self.target.board.onboard.get(pin)
         if onboard and resource_class.name not in onboard.classes:
-            message = f"pin {pin} is wired to {onboard.title}, it can be no {resource_class.title}"
+            message = f"pin {pin} is wired to {onboard.title} and cannot be used for {resource_class.a_title}"
             hint = self._free_hint(resource_class, signal)
             self.diagnostics.error("pin-cannot-reach", stated.span, message, hint=hint, notes=stated.notes)
             return False
@@ -147,7 +147,7 @@ class Pins:
             self.taken[pin] = PinUser(claim.user, stated.span)
             return True
         whose = "by this component" if other.name == claim.user else f"by {other.name}"
-        message = f"pin {pin} is used {whose} already"
+        message = f"pin {pin} is already used {whose}"
         notes = [Note("used here", other.span), *stated.notes]
         self.diagnostics.error(
             "pin-used-twice", stated.span, message, hint=self._free_hint(resource_class, signal), notes=notes
@@ -157,7 +157,7 @@ class Pins:
     def _free_hint(self, resource_class: ResourceClass, signal: str) -> str:
         free = self.usable(resource_class, signal)
         if not free:
-            return f"no pin is left for {resource_class.a_title}"
+            return f"no pin is free for {resource_class.a_title}"
         return f"free pins for {resource_class.a_title}: {pin_list(free)}"
 
     def _peripheral(self, resource_class: ResourceClass) -> Peripheral | None:
@@ -185,14 +185,14 @@ class Pins:
     def _report_neighbours(self, claim: Claim, resource_class: ResourceClass, pins: Sequence[str]) -> None:
         first, second = (claim.signals[signal] for signal in resource_class.neighbours)
         names = " and ".join(resource_class.neighbours)
-        message = f"pins {pins[0]} and {pins[1]} are no neighbours, as {names} of {resource_class.a_title} must be"
+        message = f"pins {names} of {resource_class.a_title} must be adjacent: {pins[0]} and {pins[1]} are not"
         order = self.target.soc.pins
         free = {*self.usable(resource_class, resource_class.neighbours[0]), *pins}
         pairs = [pair for pair in pairwise(order) if free.issuperset(pair)]
         pairs.sort(key=lambda pair: pins[0] not in pair)  # Pairs with the first pin come first.
         shown = ", ".join(f"{one} and {other}" for one, other in pairs[:8])
-        hint = f"free pairs: {shown}" if pairs else "no pair of neighbours is free"
-        notes = [Note(f"{resource_class.neighbours[0]} is written here", first.span), *second.notes]
+        hint = f"free pairs: {shown}" if pairs else "no pair of adjacent pins is free"
+        notes = [Note(f"pin {resource_class.neighbours[0]} is set here", first.span), *second.notes]
         self.diagnostics.error("pins-not-neighbouring", second.span, message, hint=hint, notes=notes)
 
     def _report_unreachable(

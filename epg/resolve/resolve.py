@@ -67,7 +67,7 @@ def resolve(
             what = "bind one of its ports" if component.kind.ports else "name it in 'communication.transport'"
             hint = f"{what}, or remove it"
             diagnostics.warning(
-                "unused-component", component.span, f"component '{component.name}' is bound to nothing", hint=hint
+                "unused-component", component.span, f"component '{component.name}' is not used", hint=hint
             )
     if diagnostics.error_count > errors or assignments is None:
         return None
@@ -105,13 +105,13 @@ def _bound_ports(components: Mapping[str, Component], outputs: Sequence[Wire], d
             if needed.key not in component.node or used is None or (used.component, needed.port) in driven:
                 continue
             other = components[used.component]
-            hint = f"remove '{needed.key}' ('{needed.key}: null' if another file has written it)"
+            hint = f"remove '{needed.key}' ('{needed.key}: null' if an extended file has set it)"
             if needed.port in [port.name for port in other.kind.ports]:
-                message = f"'{needed.key}' needs '{other.name}.{needed.port}', which no model output is bound to"
-                hint = f"bind one to it, or {hint}"
+                message = f"'{needed.key}' needs '{other.name}.{needed.port}', but no model output is bound to it"
+                hint = f"bind a model output to it, or {hint}"
             else:
                 message = (
-                    f"'{needed.key}' needs a port '{needed.port}', and '{other.name}' ({other.kind.name}) has none"
+                    f"'{needed.key}' needs a port '{needed.port}', but '{other.name}' ({other.kind.name}) has none"
                 )
             span = component.node.key_span(needed.key)
             notes = extended_from(component.node[needed.key])
@@ -120,9 +120,9 @@ def _bound_ports(components: Mapping[str, Component], outputs: Sequence[Wire], d
 
 def _same_model(bindings: Bindings, model: Model, diagnostics: Diagnostics) -> None:
     if bindings.model != model.name:
-        message = f"these bindings are for '{bindings.model}', the model is '{model.name}'"
+        message = f"these bindings are for the model '{bindings.model}', but the model is '{model.name}'"
         notes = [Note("the model", model.span)]
-        hint = f"write 'model: {model.name}', or give the other model"
+        hint = f"write 'model: {model.name}', or name the other model"
         diagnostics.error("wrong-model", bindings.model_span, message, hint=hint, notes=notes)
 
 
@@ -135,7 +135,7 @@ def _period(configuration: Configuration, model: Model, diagnostics: Diagnostics
     if not _SHORTEST <= period <= _LONGEST:
         stated = configuration.control.period is not None
         message = f"a control period of {show(period, 'time')} is out of range: must be from 1 us to 3600 s"
-        notes = [] if stated else [Note("it is the model's step", model.span)]
+        notes = [] if stated else [Note("this is the model's step", model.span)]
         diagnostics.error("out-of-range", configuration.control.period_span, message, notes=notes)
         return Fraction(1, 1000), 1
     delay = configuration.control.output_delay
@@ -149,14 +149,16 @@ def _period(configuration: Configuration, model: Model, diagnostics: Diagnostics
         step, asked = _apart(model.step, period)
         message = f"the model's step of {step} is not a multiple of the control period of {asked}"
         exact = parse_quantity(step, "time") == model.step
-        meant = f"set 'control: {{period: {step}}}'" if exact else "leave out 'control.period'"
+        meant = f"set 'control: {{period: {step}}}'" if exact else "remove 'control.period'"
         hint = f"{meant} or export the model with another step"
         notes = [Note("the model", model.span)]
         diagnostics.error("step-not-multiple", configuration.control.period_span, message, hint=hint, notes=notes)
         return period, 1
     if ratio.numerator > 0xFFFF:
-        message = f"the model would run every {ratio.numerator} control cycles only"
-        diagnostics.error("step-not-multiple", configuration.control.period_span, message, hint="lengthen the period")
+        message = f"the model would run in only one of {ratio.numerator} control cycles"
+        diagnostics.error(
+            "step-not-multiple", configuration.control.period_span, message, hint="use a longer control period"
+        )
     return period, ratio.numerator
 
 
@@ -231,8 +233,8 @@ def _plant(
     platform = configuration.target.platform
     if not platform.simulates_plant:
         span = bindings.model_span
-        message = f"{platform.name} has a real plant"
-        diagnostics.error("plant-not-simulated", span, message, hint="leave PLANT out, or choose target 'host'")
+        message = f"{platform.name} cannot simulate a plant"
+        diagnostics.error("plant-not-simulated", span, message, hint="remove PLANT, or choose the target 'host'")
         return None
     _same_model(bindings, model, diagnostics)
     ratio = period / model.step

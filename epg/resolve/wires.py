@@ -54,13 +54,13 @@ def input_wires(
         whole = port.type == "integer" and _is_stated(component_port.integer_with, component)
         if component_port.type == "real" and port.type != "real" and not whole:
             message = (
-                f"'{component.name}.{component_port.name}' gives any number, '{port.name}' wants {port.type} values"
+                f"'{component.name}.{component_port.name}' gives any number, but '{port.name}' needs {port.type} values"
             )
             hint = "make the model's input real"
             wanted = component_port.boolean_with if port.type == "boolean" else component_port.integer_with
             if wanted:
                 stated = ", ".join(f"{key}: {value}" for key, value in wanted.items())
-                hint = f"state '{stated}' on '{component.name}', or {hint}"
+                hint = f"set '{stated}' in '{component.name}', or {hint}"
             diagnostics.error("wrong-port-type", binding.span, message, hint=hint)
         wires.append(Wire(port, resolved[component.name], component_port, steps, binding.span))
     return tuple(wires)
@@ -108,7 +108,7 @@ def output_wires(
             component, component_port = end
             first = drivers.setdefault((component.name, component_port.name), (port.name, binding.span))
             if first[1] != binding.span:
-                message = f"'{component.name}.{component_port.name}' is driven by '{first[0]}' already"
+                message = f"'{component.name}.{component_port.name}' is already driven by '{first[0]}'"
                 notes = [Note("bound here", first[1])]
                 diagnostics.error("bound-twice", binding.span, message, hint="remove one of the two", notes=notes)
             steps = _output_steps(port, binding, component, component_port, diagnostics, physical=direction == "source")
@@ -214,7 +214,7 @@ def _wrong_direction(
     binding: Binding,
     diagnostics: Diagnostics,
 ) -> None:
-    verb = "gives no value" if direction == "source" else "takes no value"
+    verb = "does not give a value" if direction == "source" else "does not accept a value"
     message = f"'{reference}' ({component.kind.name}) {verb}"
     possible = sorted(_possible(components.values(), direction)) if diagnostics.wants_hints else []
     hint = f"possible: {', '.join(possible)}" if possible else ""
@@ -251,8 +251,8 @@ def _unit_step(source: str, target: str, binding: Binding, names: str, diagnosti
         diagnostics.error(
             "unit-mismatch",
             binding.span,
-            f"{names}: {source} does not convert to {target}",
-            hint="give the wire a 'scale', or correct the unit",
+            f"{names}: {source} cannot be converted to {target}",
+            hint="set 'scale' in the binding, or correct the unit",
         )
         return []
     return [Step(scale=conversion_factor(source, target), reason=f"{source} -> {target}")]
@@ -302,7 +302,7 @@ def _output_steps(
 
 def _check_range(steps: Sequence[Step], binding: Binding, diagnostics: Diagnostics) -> None:
     if not is_computable(steps):
-        message = "the conversion of this wire has a factor or an offset that C's doubles do not hold"
+        message = "the conversion of this wire has a factor or an offset that a double cannot represent"
         hint = "check 'scale' and 'offset' of the wire and of the component"
         diagnostics.error("out-of-range", binding.span, message, hint=hint)
 

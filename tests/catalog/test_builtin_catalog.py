@@ -224,12 +224,12 @@ def test_names_that_do_not_exist() -> None:
     assert catalog.target("rpi_pico_freertoss", span, problems) is None
     assert catalog.target("freertos", span, problems) is None
     assert catalog.target("host_host", span, problems) is None
-    own = "EPG finds your own in the folders that EPG_TARGETS_PATH names"
+    own = "EPG also searches the folders in EPG_TARGETS_PATH"
     assert [(p.id, p.hint) for p in problems][:2] == [
         ("unknown-kind", f"did you mean 'quadrature_encoder'? {own}"),
         (
             "unknown-target",
-            f"did you mean 'rpi_pico_freertos'? {own}; docs/adding-a-board.md says how to describe a board",
+            f"did you mean 'rpi_pico_freertos'? {own}; docs/adding-a-board.md explains how to add a board",
         ),
     ]
     assert len(problems.items) == 4

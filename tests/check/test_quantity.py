@@ -33,13 +33,13 @@ def test_quantities(text: object, dimension: str, value: Fraction | float) -> No
 @pytest.mark.parametrize(
     ("text", "dimension", "message", "hint"),
     [
-        (1, "time", "time without a unit", "'1 s'"),
-        (0.001, "time", "time without a unit", "'0.001 s'"),
-        (1e3, "frequency", "frequency without a unit", "'1000 Hz'"),
+        (1, "time", "this time has no unit", "'1 s'"),
+        (0.001, "time", "this time has no unit", "'0.001 s'"),
+        (1e3, "frequency", "this frequency has no unit", "'1000 Hz'"),
         (math.nan, "frequency", "nan is not a frequency", "write a number and a unit (Hz"),
         ("1,5 ms", "time", "'1,5 ms' is written with a decimal comma", "'1.5 ms'"),
         ("fast", "angle", "'fast' is not an angle", "number"),
-        ("1", "time", "time without a unit", "ms"),
+        ("1", "time", "this time has no unit", "ms"),
         ("1 Ms", "time", "unknown unit 'Ms'", "did you mean 'ms'?"),
         ("1 kHz", "time", "'kHz' is a unit of frequency, not of time", "ms"),
         ("one ms", "time", "'one ms' is not a time", "number"),

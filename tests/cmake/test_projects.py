@@ -79,7 +79,7 @@ def test_a_mistake_stops_the_build_with_its_position_and_mending_it_helps(robot:
 def test_a_mistake_in_the_first_configuration_leaves_nothing_half_written(robot: Project) -> None:
     robot.edit("robot.tcf", "frequency: 20 kHz", "frequency: 20")
     output = robot.fails_to_configure()
-    assert "robot.tcf:8:42: error: frequency without a unit [wrong-unit]" in output
+    assert "robot.tcf:8:42: error: this frequency has no unit [wrong-unit]" in output
     assert output.count("CMake Error") == 1, output
     assert not list((robot.build_folder / "epg").rglob("*.c"))
 
@@ -232,7 +232,7 @@ def test_paths_that_cmake_or_make_would_read_otherwise(robot: Project, name: str
     (robot.source / "bindings.yaml").rename(robot.source / name)
     robot.edit("CMakeLists.txt", "BINDINGS bindings.yaml", f"BINDINGS [=[{name}]=]")
     output = robot.fails_to_configure()
-    assert f"{name}' cannot be named in CMake: " in output and "[invalid-name]" in output
+    assert f"{name}' cannot be used in CMake: " in output and "[invalid-name]" in output
 
 
 def test_a_target_before_project(robot: Project) -> None:

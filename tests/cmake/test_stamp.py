@@ -143,7 +143,9 @@ def test_files_beside_a_models_folder_are_noticed(robot: Watched) -> None:
     )
     for starts in (True, False):
         assert (robot.configure() > 0) == starts
-        assert "taken from '../common', as the model's folder lacks them: xxtypes.h" in robot.output
+        assert (
+            "these files are from '../common', because the model's folder does not have them: xxtypes.h" in robot.output
+        )
     robot.replace("common/xxtypes.h", "double", "long double")
     assert robot.configure() > 0
     assert robot.configure() == 0
@@ -152,10 +154,10 @@ def test_files_beside_a_models_folder_are_noticed(robot: Watched) -> None:
     assert robot.configure() == 0
     robot.replace("include/xxtypes.h", "long double", "float")
     assert robot.configure(check=False) > 0
-    assert "beside it lie 2 that differ" in robot.output
+    assert "2 different ones are beside it" in robot.output
     robot.write(pan / "xxtypes.h", (source / "common" / "xxtypes.h").read_text())
     assert robot.configure() > 0
-    assert "taken from" not in robot.output
+    assert "these files are from" not in robot.output
 
 
 def test_a_template_of_a_users_kind_is_noticed(robot: Watched) -> None:

@@ -154,5 +154,5 @@ def test_objects_and_functions_of_the_library_are_no_missing_functions(tmp_path:
 def test_a_file_is_one_error_however_it_is_used(tmp_path: Path) -> None:
     code = '\t{ FILE *f = fopen ("a", "r"); fscanf (f, "%lf", V); fclose (f); fclose (f); }\n'
     problem = only_problem(Export(dynamic=code).write(tmp_path), "error")
-    assert problem.message == "the model calls fopen() (fclose(), fscanf() too): there are no files on a target"
+    assert problem.message == "the model calls fopen() (fclose(), fscanf() too): a target has no files"
     assert text_at(problem) == "fopen"

@@ -157,7 +157,10 @@ def test_headers_in_folders_that_nothing_names(archive: bool, tmp_path: Path) ->
     model, diagnostics = load(pack(folder, tmp_path / "a.fmu") if archive else folder)
     assert model is not None and isinstance(model.details, FmuExport)
     assert [(item.severity, item.id) for item in diagnostics] == [("note", "model-neighbour")]
-    assert "found in 'sources/lib/control'" in diagnostics.items[0].message and "law.h" in diagnostics.items[0].message
+    assert (
+        "these headers are in 'sources/lib/control'" in diagnostics.items[0].message
+        and "law.h" in diagnostics.items[0].message
+    )
     if HAVE_COMPILER:
         run_wrapper(build(model, "servo", tmp_path / "build"), 3)
 
@@ -179,7 +182,7 @@ def test_memory_that_steps_keep_is_one_error(tmp_path: Path) -> None:
     source = folder / "sources" / "servo.c"
     source.write_text(source.read_text().replace("fmi2Status fmi2DoStep", f"{taking}fmi2Status fmi2DoStep", 1))
     id, message = only_error(folder)
-    assert id == "model-heap" and "'one'" in message and "(nor do two)" in message
+    assert id == "model-heap" and "'one'" in message and "(also two)" in message
 
 
 def test_headers_of_other_systems_may_be_missing(tmp_path: Path) -> None:
@@ -258,7 +261,7 @@ def test_the_step_of_20sims_method_is_read_from_the_sources(tmp_path: Path) -> N
         description.write_text(text.replace("0.002", "0.0007"))
         assert only_error(folder)[0] == "fmu-step"
         description.write_text(text.replace("0.002", "50.0005"))
-        assert "more than 100000 of the FMU's own" in only_error(folder)[1]
+        assert "more than 100000 internal steps of the FMU" in only_error(folder)[1]
     assert loaded(FMU2).details.own_step is None  # type: ignore[union-attr]
 
 
@@ -451,7 +454,7 @@ def test_hostile_archives(kind: str, tmp_path: Path) -> None:
 def test_other_methods_of_compression_are_named(method: int, name: str, tmp_path: Path) -> None:
     path = tmp_path / "servo.fmu"
     path.write_bytes(packed_by(method))
-    assert only_error(path)[1] == f"'sources/x.c' in it is packed with {name}, which FMUs must not use"
+    assert only_error(path)[1] == f"'sources/x.c' in the FMU is compressed with {name}, which FMUs must not use"
 
 
 @pytest.mark.parametrize("folder", [FMU2, FMU3], ids=["fmi2", "fmi3"])

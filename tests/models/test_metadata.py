@@ -16,12 +16,12 @@ from tests.models.harness import load
 @pytest.mark.parametrize(
     ("values", "said"),
     [
-        ({"INPUT_NAMES3": "in\nspeed\n"}, "inputs in, speed, the sources in, position"),
-        ({"OUTPUT_NAMES3": "out\ncorr\n"}, "outputs in the order out, corr, the sources in the order corr, out"),
-        ({"TIME_STEP_SIZE": "0.01"}, "step size 0.01 s, the sources 0.001 s"),
-        ({"INTEGRATION_METHOD_NAME": "Euler"}, "integration method 'Euler', the sources 'Discrete'"),
-        ({"VARPREFIX": "pan_"}, "prefix 'pan_', the sources 'xx_'"),
-        ({"SUBMODEL_NAME": "Tilt"}, "submodel 'Tilt', the sources 'Servo'"),
+        ({"INPUT_NAMES3": "in\nspeed\n"}, "inputs in, speed, but the sources have in, position"),
+        ({"OUTPUT_NAMES3": "out\ncorr\n"}, "outputs in the order out, corr, but the sources have the order corr, out"),
+        ({"TIME_STEP_SIZE": "0.01"}, "step size 0.01 s, but the sources have 0.001 s"),
+        ({"INTEGRATION_METHOD_NAME": "Euler"}, "integration method 'Euler', but the sources have 'Discrete'"),
+        ({"VARPREFIX": "pan_"}, "prefix 'pan_', but the sources have 'xx_'"),
+        ({"SUBMODEL_NAME": "Tilt"}, "submodel 'Tilt', but the sources have 'Servo'"),
         ({"PARAMETER_NAMES3": "PI1\\kp\n"}, "no parameter 'PI1\\tauI', which the sources have"),
     ],
     ids=["names", "order", "step", "method", "prefix", "submodel", "parameters"],
@@ -128,22 +128,22 @@ def test_other_values_of_parameters_are_named(kind: str, tmp_path: Path) -> None
     assert [parameter.value for parameter in model.parameters] == [2.5, 0.8, 0.05, 0.95]
     (problem,) = diagnostics.items
     assert (problem.severity, problem.id) == ("warning", "stale-metadata")
-    assert "has parameter 'Filter\\tau' = 0.5, the sources 0.05, and 1 more differs" in problem.message
-    assert "the sources are used" in problem.hint
+    assert "has parameter 'Filter\\tau' = 0.5, but the sources have 0.05, and 1 more differs" in problem.message
+    assert "EPG uses the sources" in problem.hint
     line = Path(problem.span.file).read_text().splitlines()[problem.span.line - 1]
     assert line.strip().startswith(("xx_P[2] = 0.5;", "m_P[2] = 0.5;"))
     texts = []
     for note in problem.notes:
         texts.append(Path(note.span.file).read_text().splitlines()[note.span.line - 1].strip())
     assert [text.partition("P")[2].partition(";")[0] for text in texts] == ["[2] = 5.0e-2", "[3] = 0.95"]
-    assert problem.notes[1].message == "'Limiter\\maximum' is 1.0 there, 0.95 here"
+    assert problem.notes[1].message == "'Limiter\\maximum' is 1.0 there, but 0.95 here"
 
 
 def test_a_value_that_was_changed_in_one_place_of_the_tokens(tmp_path: Path) -> None:
     values = "2.5\n0.8\n0.050\n0.9\n"
     _, diagnostics = load(Export(token_values={"PARAMETER_VALUES": values}).write(tmp_path))
     (problem,) = diagnostics.items
-    assert "has parameter 'Limiter\\maximum' = 0.9, the sources 0.95" in problem.message
+    assert "has parameter 'Limiter\\maximum' = 0.9, but the sources have 0.95" in problem.message
     assert "more" not in problem.message
     assert (tmp_path / "tokens.xml").read_text().splitlines()[problem.span.line - 1] == "0.9"
 
@@ -160,6 +160,6 @@ def test_other_values_in_the_description_of_an_fmu(archive: bool, tmp_path: Path
     assert {p.name: p.value for p in model.parameters}["PI1.kp"] == 2.5
     (problem,) = diagnostics.items
     assert (problem.severity, problem.id) == ("warning", "stale-metadata")
-    assert "'modelDescription.xml' has parameter 'PI1.kp' = 4.0, the sources 2.5" in problem.message
+    assert "'modelDescription.xml' has parameter 'PI1.kp' = 4.0, but the sources have 2.5" in problem.message
     assert 'start="4.0"' in description.read_text().splitlines()[problem.span.line - 1]
     assert problem.notes[0].span.file.endswith("xxmodel.c")

@@ -81,7 +81,7 @@ def test_a_class_without_its_functions_does_not_reach_the_linker(tmp_path: Path)
     (folder / "common" / "xxinteg.cpp").unlink()
     problem = only(folder)
     assert problem.id == "model-incomplete" and "'Discrete' is declared in 'xxinteg.h'" in problem.message
-    assert Path(problem.span.file).parent == folder and "'pan' and below it" in problem.hint
+    assert Path(problem.span.file).parent == folder and "'pan' and its subfolders" in problem.hint
 
 
 def test_files_in_the_models_folder_count_first(tmp_path: Path) -> None:
@@ -124,8 +124,8 @@ def test_files_of_another_model_are_named_and_not_used(tmp_path: Path) -> None:
     folder = Export().write(tmp_path / "pan")
     (folder / "xxmodel.h").unlink()
     problem = only(folder)
-    assert problem.id == "model-file-missing" and "looked in 'pan' and below it" in problem.hint
-    assert [note.message for note in problem.notes] == ["a file of that name, of another model"]
+    assert problem.id == "model-file-missing" and "EPG has searched 'pan' and its subfolders" in problem.hint
+    assert [note.message for note in problem.notes] == ["a file of this name, of another model"]
     assert problem.notes[0].span.file == str(other / "xxmodel.h")
 
 
@@ -142,12 +142,12 @@ def test_places_that_are_not_searched(tmp_path: Path, monkeypatch: pytest.Monkey
     with monkeypatch.context() as patch:
         patch.setenv("HOME", str(tmp_path))
         patch.setenv("USERPROFILE", str(tmp_path))
-        assert "a home directory" in only(folder).hint
+        assert "a home folder" in only(folder).hint
     with monkeypatch.context() as patch:
         patch.setattr(neighbours, "MAX_ENTRIES", 1)
         assert "more than 1 entries" in only(folder).hint
     tmp_path.chmod(0o777)
-    assert "everybody may write" in only(folder).hint
+    assert "all users can write" in only(folder).hint
     tmp_path.chmod(0o700)
     (tmp_path / "common").rename(tmp_path / "common[")  # CMake cannot have this name in a list
     assert only(folder).id == "model-file-missing"
@@ -174,7 +174,7 @@ def test_sources_in_src_and_shared_ones_beside_the_model(tmp_path: Path) -> None
     share(folder, SHARED_C, tmp_path / "common")
     model, diagnostics = load(tmp_path / "pan")
     assert model is not None
-    assert [item.message.split(",")[0] for item in diagnostics] == ["taken from '../../common'"]
+    assert [item.message.split(",")[0] for item in diagnostics] == ["these files are from '../../common'"]
 
 
 def test_a_header_in_another_spelling(tmp_path: Path) -> None:
@@ -192,7 +192,7 @@ def test_the_common_folder_of_another_class(tmp_path: Path) -> None:
     shutil.rmtree(folder / "common")
     model, diagnostics = load(folder)
     assert model is not None
-    assert [item.message.split(",")[0] for item in diagnostics] == ["taken from '../tilt/common'"]
+    assert [item.message.split(",")[0] for item in diagnostics] == ["these files are from '../tilt/common'"]
     expected = run_wrapper(build(loaded(whole), "whole", tmp_path / "build"), 20)
     assert run_wrapper(build(model, "pan", tmp_path / "build"), 20) == expected
 
@@ -204,5 +204,5 @@ def test_a_function_that_another_model_defines(tmp_path: Path) -> None:
     model, diagnostics = load(folder)
     assert model is None
     problem = next(item for item in diagnostics if "'XXModelInitialize'" in item.message)
-    assert problem.id == "model-incomplete" and problem.hint.startswith("looked in 'pan' and below it;")
+    assert problem.id == "model-incomplete" and problem.hint.startswith("EPG has searched 'pan' and its subfolders;")
     assert [note.span.file for note in problem.notes] == [str(other / "xxmodel.c")]

@@ -68,7 +68,7 @@ def test_empty_and_foreign_folders(tmp_path: Path) -> None:
     assert ".emx" in only_error(tmp_path)[2]
     (tmp_path / "Servo.emx").unlink()
     (tmp_path / "driver.c").write_text("int x;")
-    assert "found were driver.c" in only_error(tmp_path)[2]
+    assert "the folder has driver.c" in only_error(tmp_path)[2]
 
 
 @pytest.mark.parametrize("data", [b"\0\1\2\3" * 100, b"\xff" * 1000, b"\x7fELF\2\1\1" + bytes(200)])

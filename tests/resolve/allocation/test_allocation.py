@@ -180,14 +180,14 @@ def test_named_instances_and_pins(tmp_path: Path) -> None:
         (
             [f"p: {PWM % ('20 kHz', 'PA4')}", "c: {kind: pulses, pins: {value: PA5}}"],
             "timer-frequency-conflict",
-            "'p' and 'c' share timer TIM3, which has one frequency, not 20 kHz and none",
+            "'p' and 'c' share timer TIM3, which has only one frequency, not 20 kHz and none",
             "write the same frequency for both, or move 'c' to a free pin: PA0-PA3, PB0, PB1",
         ),
         (
             [f"e: {ENCODER % ('PA0', 'PA1')}", f"p: {PWM % ('1 kHz', 'PA2')}", f"q: {PWM % ('1 kHz', 'PB1')}"],
             "too-many",
-            "no timer is left for 'q', which is a PWM output: timer_board_loop has 3 timers with 2 channels each",
-            "the others are 'e', 'p'",
+            "no timer is free for 'q', which is a PWM output: timer_board_loop has 3 timers with 2 channels each",
+            "the other users are 'e', 'p'",
         ),
     ],
 )
