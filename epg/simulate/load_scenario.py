@@ -148,7 +148,7 @@ class _Reader:
         duty, homing, unit = node.get("duty"), node.get("homing"), node.get("unit")
         if homing is not None and "duty" in homing and duty is None:
             message = f"'duty' is missing in 'axes.{name}': which signal is limited here?"
-            self.error("missing-key", homing["duty"], message, "for example: duty: outputs.pwm_pan")
+            self.error("missing-key", homing["duty"], message, "write for example 'duty: outputs.pwm_pan'")
         return Axis(
             name=name,
             setpoint=topic,

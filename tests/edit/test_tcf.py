@@ -62,7 +62,7 @@ REFUSED = {
     "no YAML": ("version: 1\nextends: [\n", "robot.tcf:2: this bracket is not closed"),
     "no map": ("- a\n", "robot.tcf:1: this is no map"),
     "nothing": ("", "robot.tcf:1: this is no map"),
-    "twice": ("extends: a\nextends: b\n", "robot.tcf:2: key 'extends' twice"),
+    "twice": ("extends: a\nextends: b\n", "robot.tcf:2: key 'extends' is set twice"),
 }
 
 
