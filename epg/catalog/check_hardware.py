@@ -189,7 +189,7 @@ def _resource_class(name: str, node: YamlNode, peripherals: dict[str, YamlNode],
     possible = ["any", *(slots if whole else ["slot"])] if peripheral else ["any"]
     for how in signals.values():
         if how.value not in possible:
-            _unknown("way to reach a pin", how, possible, diagnostics)
+            _unknown("choice of pins", how, possible, diagnostics)
     if peripheral is None and list(signals) == []:
         diagnostics.error("wrong-value", node.span, f"class '{name}' must have a peripheral or signals")
     for element in node["neighbours"].elements() if "neighbours" in node else ():

@@ -18,7 +18,7 @@ from epg.source import Span
 MAX_DEPTH = 64
 MAX_ELEMENTS = 250_000
 _ENDS = ("no element found", "unclosed token", "unclosed CDATA section", "partial character")  # Messages of expat.
-_IGNORED = "EPG ignores it; export the model again"
+_IGNORED = "EPG ignores the file; export the model again"
 
 
 @dataclass

@@ -167,7 +167,7 @@ class _Reader:
             member = self._text("parameters", name, "member") or name
             if not _MEMBER.fullmatch(member):
                 what = "member of the instance" if instance else "variable of the header"
-                self._error("invalid-name", span, f"'{member}' is not a {what}", "set 'member'")
+                self._error("invalid-name", span, f"'{member}' is not a {what}", "set 'member' to its name in C")
             identifier = to_identifier(name)
             if identifier in taken:
                 message = f"'{name}' has the same C identifier as another parameter"
