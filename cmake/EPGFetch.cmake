@@ -4,13 +4,16 @@
 # contents cannot change.  The library is kept in EPG's cache, where later builds find it.
 # FETCHCONTENT_FULLY_DISCONNECTED forbids the download, as it forbids CMake's own downloads.
 
-# _epg_fetch_sdk(<result> <json>)
+# _epg_fetch_sdk(<result> <tool> <cache>)
 #
 #   <result>  variable that is set to the folder of the library; "" if the tool has no "fetch", downloads are forbidden,
 #             there is no Git, or the download has failed
-#   <json>    the text of targets/tools/<name>.json
-function(_epg_fetch_sdk result json)
+#   <tool>    name of the library: the file tools/<tool>.json
+#   <cache>   EPG's cache
+function(_epg_fetch_sdk result tool cache)
   set(${result} "" PARENT_SCOPE)
+  _epg_tool_files(file "${tool}")
+  file(READ "${file}" json)
   string(JSON commit ERROR_VARIABLE none GET "${json}" fetch commit)
   if(none OR FETCHCONTENT_FULLY_DISCONNECTED)
     return()
@@ -24,7 +27,6 @@ function(_epg_fetch_sdk result json)
   if(NOT EPG_GIT)
     return()
   endif()
-  _epg_cache_folder(cache)
   set(folder "${cache}/${name}")
   file(MAKE_DIRECTORY "${cache}")
   file(LOCK "${cache}/${name}.lock" GUARD FUNCTION TIMEOUT 600 RESULT_VARIABLE locked)

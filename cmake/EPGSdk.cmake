@@ -1,250 +1,115 @@
 # SPDX-License-Identifier: Apache-2.0
-# Finds SDKs and tools.  The files targets/tools/<name>.json describe them, for this file and for `epg doctor`.
-
-# _epg_tool_json(<result> <tool>)
-#
-# Sets <result> to the text of targets/tools/<tool>.json.
-function(_epg_tool_json result tool)
-  _epg_data_folder(data)
-  file(READ "${data}/targets/tools/${tool}.json" json)
-  set(${result} "${json}" PARENT_SCOPE)
-endfunction()
+# Finds SDKs and tools: the files tools/<tool>.json in the folders of targets describe them, and `epg find-tools` searches
+# them.  One start of Python serves a configure run, unless a variable that names a tool changes in between.
 
 # _epg_find_sdk(<result> <tool>)
 #
-# Finds an SDK.  A folder that a variable names is always taken: if it is wrong, that is an error, and the search does
-# not go on in other places.  A library that is not found is downloaded if its file has "fetch".
-#   <result>          variable that is set to the folder of the SDK, or to ""
+# Finds an SDK or a program.  A folder that a variable names is always taken: if it is wrong, that is an error, and the
+# search does not go on in other places.  A library that is not found is downloaded if its file has "fetch".
+#   <result>          variable that is set to the folder of the tool; to "" if there is a problem, or for a program on the
+#                     PATH
 #   <result>_VERSION  is set to its version, or to "" if that is not known
 #   <result>_PROBLEM  is set to "", or to sentences about the problem and the command against it
-#   <tool>            name of the SDK: the file targets/tools/<tool>.json
+#   <result>_REMEDY   is set to "Get it:" and, on the next line, the command that installs the tool
+#   <tool>            name of the tool: the file tools/<tool>.json
 function(_epg_find_sdk result tool)
-  _epg_tool_json(json "${tool}")
-  string(JSON title GET "${json}" title)
-  string(JSON holds GET "${json}" holds)
-  _epg_remedy(remedy "${json}")
-  set(${result} "" PARENT_SCOPE)
-  set(${result}_VERSION "" PARENT_SCOPE)
-  set(${result}_PROBLEM "" PARENT_SCOPE)
-
-  _epg_json_list(variables "${json}" variables)
-  _epg_json_list(environment "${json}" environment)
-  set(found "")
-  set(stated "")
-  foreach(variable IN LISTS variables)
-    if(NOT stated AND ${variable})
-      set(stated "${${variable}}")
-      set(source "variable ${variable}")
-    endif()
-  endforeach()
-  foreach(variable IN LISTS environment)
-    if(NOT stated AND NOT "$ENV{${variable}}" STREQUAL "")
-      file(TO_CMAKE_PATH "$ENV{${variable}}" stated)
-      set(source "environment variable ${variable}")
-    endif()
-  endforeach()
-  if(stated)
-    get_filename_component(stated "${stated}" ABSOLUTE BASE_DIR "${CMAKE_BINARY_DIR}")
-    if(NOT EXISTS "${stated}/${holds}")
-      set(${result}_PROBLEM "The ${source} leads to no ${title}: there is no ${stated}/${holds}. ${remedy}" PARENT_SCOPE)
-      return()
-    endif()
-    set(found "${stated}")
-  else()
-    _epg_candidates(folders ${tool} "${json}")
-    if(folders)
-      list(GET folders 0 found)
+  _epg_search_tools(answer "${tool}")
+  string(JSON status GET "${answer}" tools "${tool}" status)
+  if(status STREQUAL "missing")
+    string(JSON cache GET "${answer}" cache)
+    _epg_fetch_sdk(fetched "${tool}" "${cache}")
+    if(fetched)
+      set_property(GLOBAL PROPERTY EPG_FOUND_TOOLS "")
+      _epg_search_tools(answer "${tool}")
     endif()
   endif()
-  if(NOT found)
-    _epg_fetch_sdk(found "${json}")
-  endif()
-  if(NOT found)
-    string(JSON optional ERROR_VARIABLE none GET "${json}" optional)
-    if(none)
-      set(optional "")
-    else()
-      set(optional " (${optional})")
-    endif()
-    set(${result}_PROBLEM "${title} was not found${optional}. ${remedy}" PARENT_SCOPE)
-    return()
-  endif()
-
-  _epg_sdk_version(version "${json}" "${found}")
-  string(JSON oldest ERROR_VARIABLE none GET "${json}" oldest)
-  if(version AND NOT none AND version VERSION_LESS oldest)
-    set(${result}_PROBLEM "The ${title} in ${found} is ${version}; EPG needs ${oldest} or newer. ${remedy}" PARENT_SCOPE)
-    return()
-  endif()
-  set(${result} "${found}" PARENT_SCOPE)
-  set(${result}_VERSION "${version}" PARENT_SCOPE)
-endfunction()
-
-# _epg_candidates(<result> <tool> <json>)
-#
-# Sets <result> to the folders in which the tool is installed, the best one first: the places of its installers, then
-# those in CMake's package registry, then those in EPG's cache.  epg/tools/find_tool.py does the same steps, and
-# tests/tools compares the answers.
-#   <tool>  name of the tool
-#   <json>  the text of targets/tools/<tool>.json
-function(_epg_candidates result tool json)
-  string(JSON files ERROR_VARIABLE none GET "${json}" holds)
-  if(none)
-    set(files "")
-    _epg_json_list(programs "${json}" programs)
-    foreach(program IN LISTS programs)
-      list(APPEND files "${program}" "${program}.exe" "bin/${program}" "bin/${program}.exe")
-    endforeach()
-  endif()
-  if(CMAKE_HOST_WIN32)
-    file(TO_CMAKE_PATH "$ENV{USERPROFILE}" home)
-  else()
-    set(home "$ENV{HOME}")
-  endif()
-  set(found "")
-  _epg_json_list(places "${json}" places)
-  foreach(place IN LISTS places)
-    string(REGEX REPLACE "^~" "${home}" place "${place}")
-    file(GLOB folders LIST_DIRECTORIES true "${place}")
-    _epg_holding(folders "${folders}" ${files})
-    list(APPEND found ${folders})
+  foreach(key folder version problem remedy)
+    string(JSON ${key} GET "${answer}" tools "${tool}" ${key})
   endforeach()
-  string(JSON registry ERROR_VARIABLE none GET "${json}" registry)
-  if(NOT none)
-    _epg_registered(folders "${home}/.cmake/packages/${registry}" ${files})
-    list(APPEND found ${folders})
-  endif()
-  string(JSON cached ERROR_VARIABLE none GET "${json}" cached)
-  if(none)
-    set(cached "${tool}-*")
-  endif()
-  _epg_cache_folder(cache)
-  file(GLOB folders LIST_DIRECTORIES true "${cache}/${cached}")
-  _epg_holding(folders "${folders}" ${files})
-  set(${result} ${found} ${folders} PARENT_SCOPE)
-endfunction()
-
-# _epg_holding(<result> <folders> <file>...)
-#
-# Sets <result> to the folders of the list <folders> that contain at least one <file>, the newest version first.
-function(_epg_holding result folders)
-  list(SORT folders COMPARE NATURAL ORDER DESCENDING)
-  set(found "")
-  foreach(folder IN LISTS folders)
-    foreach(file IN LISTS ARGN)
-      if(EXISTS "${folder}/${file}" AND NOT IS_DIRECTORY "${folder}/${file}")
-        list(APPEND found "${folder}")
-        break()
-      endif()
-    endforeach()
-  endforeach()
-  set(${result} "${found}" PARENT_SCOPE)
-endfunction()
-
-# _epg_registered(<result> <registry> <file>...)
-#
-# Sets <result> to the folders that are registered in CMake's package registry and contain at least one <file>, the
-# newest version first.  If a registered folder has none, the nearest folder above it with one is taken.
-#   <registry>  folder of the registry for one package; each of its files names a folder
-function(_epg_registered result registry)
-  set(found "")
-  file(GLOB entries "${registry}/*")
-  foreach(entry IN LISTS entries)
-    file(READ "${entry}" folder)
-    string(STRIP "${folder}" folder)
-    set(last "")
-    while(NOT folder STREQUAL last)
-      _epg_holding(good "${folder}" ${ARGN})
-      if(good)
-        list(APPEND found "${folder}")
-        break()
-      endif()
-      set(last "${folder}")
-      get_filename_component(folder "${folder}" DIRECTORY)
-    endwhile()
-  endforeach()
-  _epg_holding(found "${found}" ${ARGN})
-  set(${result} "${found}" PARENT_SCOPE)
-endfunction()
-
-# _epg_sdk_version(<result> <json> <folder>)
-#
-# Sets <result> to the version that the SDK's own files state, or to "".
-#   <json>    the text of targets/tools/<name>.json, whose "version" names a file and patterns
-#   <folder>  folder of the SDK
-function(_epg_sdk_version result json folder)
-  set(${result} "" PARENT_SCOPE)
-  string(JSON name ERROR_VARIABLE none GET "${json}" version file)
-  if(none OR NOT EXISTS "${folder}/${name}")
-    return()
-  endif()
-  file(READ "${folder}/${name}" text)
-  string(JSON count LENGTH "${json}" version patterns)
-  math(EXPR last "${count} - 1")
-  set(parts "")
-  foreach(index RANGE ${last})
-    string(JSON pattern GET "${json}" version patterns ${index})
-    # The patterns are Python's: replace the parts that CMake's regular expressions do not have.
-    string(REPLACE "\\d" "[0-9]" pattern "${pattern}")
-    string(REPLACE "\\s" "[ \t]" pattern "${pattern}")
-    string(REPLACE "(?:" "(" pattern "${pattern}")
-    if(NOT text MATCHES "${pattern}")
-      return()
-    endif()
-    list(APPEND parts "${CMAKE_MATCH_1}")
-  endforeach()
-  list(JOIN parts "." version)
-  set(${result} "${version}" PARENT_SCOPE)
-endfunction()
-
-# _epg_cache_folder(<result>)
-#
-# Sets <result> to the folder of EPG's cache, the same as in epg/bootstrap.py.
-function(_epg_cache_folder result)
-  if(NOT "$ENV{EPG_CACHE}" STREQUAL "")
-    file(TO_CMAKE_PATH "$ENV{EPG_CACHE}" folder)
-  elseif(CMAKE_HOST_WIN32 AND NOT "$ENV{LOCALAPPDATA}" STREQUAL "")
-    file(TO_CMAKE_PATH "$ENV{LOCALAPPDATA}/epg" folder)
-  elseif(NOT "$ENV{XDG_CACHE_HOME}" STREQUAL "")
-    set(folder "$ENV{XDG_CACHE_HOME}/epg")
-  else()
-    set(folder "$ENV{HOME}/.cache/epg")
-  endif()
-  _epg_check_cache("${folder}")
   set(${result} "${folder}" PARENT_SCOPE)
+  set(${result}_VERSION "${version}" PARENT_SCOPE)
+  set(${result}_PROBLEM "${problem}" PARENT_SCOPE)
+  set(${result}_REMEDY "${remedy}" PARENT_SCOPE)
 endfunction()
 
-# _epg_check_cache(<folder>)
+# _epg_search_tools(<result> <tool>...)
 #
-# Stops with an error if other users can change files in EPG's cache <folder>: CMake includes SDKs from there, and
-# builds run programs from there.  epg/bootstrap.py, which runs later, checks the permissions of groups in more detail.
-function(_epg_check_cache folder)
-  get_property(checked GLOBAL PROPERTY EPG_CHECKED_CACHE)
-  if(NOT CMAKE_HOST_UNIX OR checked STREQUAL folder OR NOT IS_DIRECTORY "${folder}")
-    return()
+# Sets <result> to an answer of `epg find-tools` that has these tools, as JSON.  It is an earlier answer if no variable
+# that names one of the tools has changed since.
+function(_epg_search_tools result)
+  get_property(answer GLOBAL PROPERTY EPG_FOUND_TOOLS)
+  set(known TRUE)
+  foreach(tool IN LISTS ARGN)
+    string(JSON searched_with ERROR_VARIABLE unknown GET "${answer}" tools "${tool}" variables)
+    _epg_tool_variables(variables "${tool}")
+    if(unknown OR NOT "${searched_with}" STREQUAL "${variables}")
+      set(known FALSE)
+    endif()
+  endforeach()
+  if(NOT known)
+    _epg_ask_for_tools(answer ${ARGN})
+    set_property(GLOBAL PROPERTY EPG_FOUND_TOOLS "${answer}")
   endif()
-  set_property(GLOBAL PROPERTY EPG_CHECKED_CACHE "${folder}")
-  set(find [=[find "$1"/. -prune \( -perm -0002 -o -perm -0020 ! -group "$(id -g)" -o ! -user "$(id -u)" ! -user 0 ! -user "${SUDO_UID:-0}" \)]=])
-  execute_process(COMMAND sh -c "${find}" sh "${folder}" OUTPUT_VARIABLE found ERROR_QUIET)
-  if(found)
-    message(FATAL_ERROR "EPG does not use its cache, ${folder}: other users of this computer can change what is in it.
-Delete it, or set the environment variable EPG_CACHE to a folder of your own, or, if you know all that is in it:
-  chmod -R go-w ${folder}")
-  endif()
+  set(${result} "${answer}" PARENT_SCOPE)
 endfunction()
 
-# _epg_json_list(<result> <json> <key>)
+# _epg_ask_for_tools(<result> <tool>[=<version>]...)
 #
-# Sets <result> to the elements of the array <key> in the JSON text <json>; empty if there is no such array.
-function(_epg_json_list result json key)
-  set(values "")
-  string(JSON count ERROR_VARIABLE none LENGTH "${json}" ${key})
-  if(NOT none AND count GREATER 0)
-    math(EXPR last "${count} - 1")
-    foreach(index RANGE ${last})
-      string(JSON value GET "${json}" ${key} ${index})
-      list(APPEND values "${value}")
-    endforeach()
+# Sets <result> to the answer of `epg find-tools`, as JSON.  Stops with an error if EPG's cache must not be used, or if a
+# tool's file has a mistake.  The messages of Python go to the terminal directly.
+function(_epg_ask_for_tools result)
+  _epg_find_python(python)
+  _epg_environment(environment)
+  _epg_python_folder(folder)
+  _epg_tool_variables(variables "*")
+  list(TRANSFORM variables PREPEND "--variable=")
+  execute_process(
+    COMMAND "${CMAKE_COMMAND}" -E env ${environment} "${python}" "${folder}/__main__.py" find-tools ${ARGN} ${variables}
+    WORKING_DIRECTORY "${CMAKE_BINARY_DIR}" OUTPUT_VARIABLE answer RESULT_VARIABLE status)
+  if(NOT status STREQUAL "0")
+    message(FATAL_ERROR "EPG: SDKs and tools were not searched; the messages above say why")
   endif()
-  set(${result} "${values}" PARENT_SCOPE)
+  set(${result} "${answer}" PARENT_SCOPE)
+endfunction()
+
+# _epg_tool_variables(<result> <tool>)
+#
+# Sets <result> to the variables that name a tool and have a value: a list of <variable>=<value>.
+#   <tool>  name of the tool, or "*" for all tools
+function(_epg_tool_variables result tool)
+  set(given "")
+  _epg_tool_files(files "${tool}")
+  foreach(file IN LISTS files)
+    file(READ "${file}" json)
+    string(JSON count ERROR_VARIABLE none LENGTH "${json}" variables)
+    if(NOT none)
+      math(EXPR last "${count} - 1")
+      foreach(index RANGE ${last})
+        string(JSON variable GET "${json}" variables ${index})
+        if(${variable})
+          string(REPLACE ";" " " value "${${variable}}")
+          list(APPEND given "${variable}=${value}")
+        endif()
+      endforeach()
+    endif()
+  endforeach()
+  set(${result} "${given}" PARENT_SCOPE)
+endfunction()
+
+# _epg_tool_files(<result> <tool>)
+#
+# Sets <result> to the file tools/<tool>.json, or to the files of all tools.
+#   <tool>  name of the tool, or "*" for all tools
+function(_epg_tool_files result tool)
+  _epg_user_folders(roots)
+  _epg_data_folder(data)
+  set(files "")
+  foreach(root IN LISTS roots ITEMS "${data}/targets")
+    file(GLOB found "${root}/tools/${tool}.json")
+    list(APPEND files ${found})
+  endforeach()
+  if(files AND NOT tool STREQUAL "*")
+    list(GET files 0 files) # the user's description of a tool counts
+  endif()
+  set(${result} "${files}" PARENT_SCOPE)
 endfunction()

@@ -96,7 +96,8 @@ def _is_own_group(group: int) -> bool:
     return user.pw_gid == group and found.gr_name == user.pw_name and set(found.gr_mem) <= {user.pw_name}
 
 
-def _check_cache() -> None:
+def check_cache() -> None:
+    """Raises :class:`MissingPackages` if other users can change what is in EPG's cache."""
     folder = cache_folder()
     problem = cache_problem(folder)
     if problem:
@@ -113,7 +114,7 @@ def ensure(group: str = "generator", *, install: bool | None = None) -> None:
     ``install`` allows this installation.  With None it is allowed unless the environment variable ``EPG_NO_INSTALL``
     is set.  Raises :class:`MissingPackages`.
     """
-    _check_cache()
+    check_cache()
     missing = _missing(group)
     if not missing:
         return

@@ -38,9 +38,13 @@ COMMANDS = {
     "launch": "write a ROS 2 launch file, or systemd units, for the agents of targets",
     "record": "record the topics that a target publishes and receives on ROS 2",
     "plot": "compare a recorded run with another one, or with its simulation",
+    "find-tools": "find SDKs and programs (CMake calls this)",
     "doctor": "list the tools that this computer has and those that are missing",
     "schema": "write the JSON Schemas of EPG's files, for editors",
 }
+
+WITHOUT_PACKAGES = ("doctor", "find-tools")
+"""The commands that must run while Python packages are missing.  They install none."""
 
 EXIT_OK, EXIT_MISTAKES, EXIT_USAGE, EXIT_BUG, EXIT_MISSING = range(5)
 
@@ -52,7 +56,7 @@ class MissingTool(Exception):
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs ``epg`` with ``arguments``, or with those of the process.  Returns the exit status."""
     words = sys.argv[1:] if arguments is None else arguments
-    if _command(words) != "doctor":  # doctor must run without packages: it reports the missing ones
+    if _command(words) not in WITHOUT_PACKAGES:
         try:
             bootstrap.ensure()
         except bootstrap.MissingPackages as problem:

@@ -11,8 +11,7 @@
 If a variable names a tool, the tool must be there: EPG does not search other places.  If one place has several folders,
 the last one in natural order is used, for which numbers in names are compared by value.
 
-cmake/EPGSdk.cmake has the same steps for SDKs, because builds find them without starting Python.
-tests/tools/test_same_answer.py compares the results.
+CMake asks with ``epg find-tools``, so that a build and ``epg doctor`` find the same.
 
 >>> # find_tool(tools["pico_sdk"], Surroundings.here(cache_folder())).path
 """
@@ -79,7 +78,9 @@ class Finding:
 
 
 @dataclass(frozen=True)
-class _Place:
+class Place:
+    """A place in which EPG searches for a tool.  It is one folder or program, or several: the best one first."""
+
     source: str
     folders: list[Path]
     stated: bool = False  # a variable names the place: the tool must be there
@@ -89,14 +90,14 @@ class _Place:
 def find_tool(tool: Tool, where: Surroundings) -> Finding:
     """Searches for ``tool`` in all its places.  The first one found is the result."""
     looked: list[str] = []
-    for place in _places(tool, where):
+    for place in places(tool, where):
         looked.append(place.source)
         for folder in place.folders:
-            path = _in_folder(tool, folder, where)
+            path = tool_in(folder, tool, where)
             if path is not None:
                 asked = where.run or not (place.of_build and tool.programs)
-                version = _version(tool, path) if asked else ""
-                old = bool(tool.oldest and version) and _numbers(version) < _numbers(tool.oldest)
+                version = version_of(tool, path) if asked else ""
+                old = bool(tool.oldest and version) and version_numbers(version) < version_numbers(tool.oldest)
                 return Finding(tool, "old" if old else "found", path, place.source, version, tuple(looked), asked)
         if place.stated:
             return Finding(tool, "wrong", place.folders[0], place.source, looked=tuple(looked))
@@ -110,23 +111,28 @@ def read_cmake_cache(path: Path, diagnostics: Diagnostics) -> dict[str, str]:
     return {name: value for name, value in found if value and not value.endswith("NOTFOUND")}
 
 
-def _places(tool: Tool, where: Surroundings) -> Iterator[_Place]:
+def places(tool: Tool, where: Surroundings) -> Iterator[Place]:
     """The places in which EPG searches for a tool, in the order of the module's docstring."""
     for name in tool.variables:
         if where.cmake.get(name):
-            yield _Place(f"CMake variable {name}", [Path(where.cmake[name])], stated=True, of_build=True)
+            yield Place(f"CMake variable {name}", [_named(tool, where.cmake[name])], stated=True, of_build=True)
     for name in tool.environment:
         if where.environment.get(name):
-            yield _Place(f"environment variable {name}", [Path(where.environment[name])], stated=True)
+            yield Place(f"environment variable {name}", [_named(tool, where.environment[name])], stated=True)
     if tool.programs:
         found = (shutil.which(program, path=where.path) for program in tool.programs)
-        yield _Place("PATH", [Path(program) for program in found if program])
+        yield Place("PATH", [Path(program) for program in found if program])
     for pattern in tool.places:
-        yield _Place(pattern, _matches(pattern, where.home))
+        yield Place(pattern, _matches(pattern, where.home))
     if tool.registry:
-        yield _Place(f"CMake's package registry ({tool.registry})", _registered(tool, where))
+        yield Place(f"CMake's package registry ({tool.registry})", _registered(tool, where))
     if tool.cached:
-        yield _Place("EPG's cache", _newest_first(where.cache.glob(tool.cached)))
+        yield Place("EPG's cache", _newest_first(where.cache.glob(tool.cached)))
+
+
+def _named(tool: Tool, value: str) -> Path:
+    """The folder or the program that the value of a variable names.  A program can be the name of one in PATH."""
+    return Path(os.path.abspath(value)) if tool.holds else Path(value)
 
 
 def _matches(pattern: str, home: Path) -> list[Path]:
@@ -152,7 +158,7 @@ def _registered(tool: Tool, where: Surroundings) -> list[Path]:
     return _newest_first(folders)
 
 
-def _in_folder(tool: Tool, folder: Path, where: Surroundings) -> Path | None:
+def tool_in(folder: Path, tool: Tool, where: Surroundings) -> Path | None:
     """The tool at ``folder``, or None.
 
     For an SDK it is the folder itself.  For a program, it is a program in the folder or in its ``bin``, or the program
@@ -168,7 +174,7 @@ def _in_folder(tool: Tool, folder: Path, where: Surroundings) -> Path | None:
     return next((Path(path) for path in found if path), None)
 
 
-def _version(tool: Tool, path: Path) -> str:
+def version_of(tool: Tool, path: Path) -> str:
     """The version that the tool states, or ""."""
     text = _said(path) if tool.programs else _read(path / tool.version_file)
     parts = [match[1] for pattern in tool.version_patterns if (match := re.search(pattern, text)) is not None]
@@ -207,7 +213,7 @@ def _natural(text: str) -> list[tuple[str, int]]:
     return [("0", int(part)) if part.isdecimal() else (part, 0) for part in re.findall(r"[0-9]+|[^0-9]", text)]
 
 
-def _numbers(version: str) -> tuple[int, ...]:
+def version_numbers(version: str) -> tuple[int, ...]:
     """The numbers of a version without zeros at the end: 2.0 and 2.0.0 are the same version."""
     numbers = [int(digits) for digits in re.findall(r"\d+", version)]
     while numbers and not numbers[-1]:

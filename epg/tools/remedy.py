@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command that installs a tool, with the package manager of this computer."""
+"""The problem of a tool that a build cannot use, and the command that installs the tool on this computer."""
 
 from __future__ import annotations
 
@@ -8,11 +8,34 @@ import re
 import shutil
 from collections.abc import Mapping
 
-from epg.tools.find_tool import Surroundings, find_tool
+from epg.tools.find_tool import Finding, Surroundings, find_tool
 from epg.tools.tools import Tool
 
 MANAGERS = {"apt": "apt-get", "dnf": "dnf", "pacman": "pacman", "brew": "brew", "winget": "winget"}
 """Package manager -> the program that exists on computers with this package manager."""
+
+
+def problem_of(finding: Finding, where: Surroundings, tools: Mapping[str, Tool]) -> str:
+    """Sentences on the problem of a tool and the command against it; empty if the tool is found."""
+    tool = finding.tool
+    if finding.status == "wrong":
+        wanted = f"{finding.path}/{tool.holds}" if tool.holds else f"{' or '.join(tool.programs)} in {finding.path}"
+        problem = f"The {finding.source} leads to no {tool.title}: there is no {wanted}."
+    elif finding.status == "missing":
+        problem = f"{tool.title} was not found{f' ({tool.optional})' if tool.optional else ''}."
+    elif finding.status == "old":
+        problem = f"The {tool.title} in {finding.path} is {finding.version}; EPG needs {tool.oldest} or newer."
+    else:
+        return ""
+    return f"{problem} {get_it(tool, where, tools)}"
+
+
+def get_it(tool: Tool, where: Surroundings, tools: Mapping[str, Tool]) -> str:
+    """The end of a message: "Get it:" and, on the next line, the command that installs ``tool``.
+
+    CMake does not wrap a line of a message that begins with blanks.
+    """
+    return f"Get it:\n  {command_for(tool, where, tools)}"
 
 
 def command_for(tool: Tool, where: Surroundings, tools: Mapping[str, Tool]) -> str:

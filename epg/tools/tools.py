@@ -32,7 +32,8 @@ class Tool:
     recognized.  ``places`` are patterns of folders; ``cached`` is a pattern in EPG's cache.  ``tested`` is the version
     that EPG was tested with, ``oldest`` the oldest version that EPG accepts.  ``get`` maps package managers, or
     ``any``, to the command that installs the tool; ``{cache}`` in it is replaced by EPG's cache.  ``optional`` is the
-    reason why the tool may be missing.
+    reason why the tool may be missing.  ``project_version`` is "required" or "preferred" if ``epg_use_versions()``
+    takes a version of the tool; if it is "required", another version is an error.
     """
 
     name: str
@@ -48,6 +49,7 @@ class Tool:
     cached: str = ""
     oldest: str = ""
     tested: str = ""
+    project_version: str = ""
     version_file: str = ""  # the file with the version of a folder; a program prints it with --version
     version_patterns: tuple[str, ...] = (_NUMBERS,)  # a regular expression for each part of the version
     get: Mapping[str, str] = field(default_factory=dict)
@@ -104,6 +106,7 @@ def _tool(data: Mapping[str, Any]) -> Tool:
         cached=_text(data.get("cached", f"{data['tool']}-*")),
         oldest=_text(data.get("oldest", "")),
         tested=_text(data.get("tested", "")),
+        project_version=_text(data.get("project_version", "")),
         version_file=_text(version.get("file", "")),
         version_patterns=tuple(re.compile(pattern).pattern for pattern in patterns),
         get={_text(key): _text(command) for key, command in data["get"].items()},

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 from pathlib import Path
 
@@ -37,3 +38,10 @@ def test_a_family_of_the_user_brings_a_function_before_project(tmp_path: Path) -
         done = subprocess.run(words, capture_output=True, text=True, env={**os.environ, **environment})
         assert f"found: {tmp_path}/sdk\n" in done.stdout, done.stderr
         assert "EPG's own families are there" in done.stdout
+
+
+def test_the_package_names_no_family() -> None:
+    families = "|".join(path.parent.name for path in (ROOT / "targets/families").glob("*/family.yaml"))
+    named = re.compile(rf"{families}|pico", re.IGNORECASE)
+    assert families
+    assert [path.name for path in CMAKE_DIR.glob("*.cmake") if named.search(path.read_text(encoding="utf-8"))] == []

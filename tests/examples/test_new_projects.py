@@ -109,7 +109,7 @@ def fake_sdk(home: Path, version: str) -> Path:
 def fake_compiler(home: Path, version: str = "14_2_Rel1") -> Path:
     folder = home / ".pico-sdk/toolchain" / version
     (folder / "bin").mkdir(parents=True)
-    (folder / "bin/arm-none-eabi-gcc").touch()
+    (folder / "bin/arm-none-eabi-gcc").touch(0o755)
     return folder
 
 

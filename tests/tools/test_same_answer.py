@@ -7,6 +7,7 @@ import json
 import os
 import shutil
 import subprocess
+import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -21,7 +22,6 @@ from epg.tools.tools import load_tools
 
 ROOT = Path(__file__).resolve().parents[2]
 FILES = [f"cmake/EPG{name}.cmake" for name in ("Python", "Sdk", "Versions", "Missing", "Fetch")]
-FILES.append("targets/families/rp2/sdk.cmake")
 THING = {
     "api": 1,
     "tool": "thing",
@@ -124,11 +124,10 @@ def cmake_says(
     includes = "".join(f'include("{ROOT.as_posix()}/{name}")\n' for name in FILES)
     script = folder / "find.cmake"
     script.write_text(
-        f"{includes}function(_epg_data_folder result)\n"
-        f'  set(${{result}} "{data.as_posix()}" PARENT_SCOPE)\nendfunction()\n{call}\n'
+        f'{includes}set(EPG_TARGETS_PATH "{data.as_posix()}/targets")\n{call}\n'
         'file(WRITE "${CMAKE_CURRENT_LIST_DIR}/answer" "${found}|${found_VERSION}|${found_PROBLEM}")\n'
     )
-    given = [f"-D{name}={value}" for name, value in cmake.items()]
+    given = [f"-D{name}={value}" for name, value in {"Python3_EXECUTABLE": sys.executable, **cmake}.items()]
     subprocess.run(["cmake", *given, "-P", str(script)], env=environment, check=True, capture_output=True)
     path, version, problem = (folder / "answer").read_text().split("|", 2)
     return path, version, problem
@@ -187,7 +186,7 @@ def test_both_find_the_same_compiler(programs: set[str], expected: str, tmp_path
     environment = environment_of(home, Situation())
     found = python_says("arm_gcc", data, environment, {}, home)
     assert (found.path is not None and found.path.is_relative_to(home / expected)) == bool(expected)
-    path, _, problem = cmake_says("_epg_find_compiler(found)", data, environment, {}, tmp_path)
+    path, _, problem = cmake_says("_epg_find_sdk(found arm_gcc)", data, environment, {}, tmp_path)
     assert (path, bool(problem)) == (str(home / expected) if expected else "", not expected)
 
 
@@ -206,10 +205,29 @@ def test_this_computer(tool: str, tmp_path: Path) -> None:
     assert found.status != "found" or version == found.version
 
 
-@pytest.mark.parametrize("tool", [path.stem for path in sorted((ROOT / "targets" / "tools").glob("*.json"))])
-def test_both_name_the_same_command(tool: str, tmp_path: Path) -> None:
-    """The command that installs a missing tool."""
+def test_both_name_the_same_command(tmp_path: Path) -> None:
+    """The commands that install missing tools."""
     tools = load_tools([ROOT / "targets"], Diagnostics())
-    expected = command_for(tools[tool], Surroundings.here(cache_folder()), tools)
-    call = f'_epg_tool_json(json {tool})\n_epg_remedy(found "${{json}}")'
-    assert cmake_says(call, ROOT, os.environ, {}, tmp_path)[0] == f"Get it:\n  {expected}"
+    where = Surroundings.here(cache_folder())
+    expected = [f"Get it:\n  {command_for(tool, where, tools)}" for tool in tools.values()]
+    call = "".join(f'_epg_find_sdk(tool {name})\nstring(APPEND found "${{tool_REMEDY}}#")\n' for name in tools)
+    call = f"set(FETCHCONTENT_FULLY_DISCONNECTED TRUE)\n_epg_search_tools(all {' '.join(tools)})\n{call}"
+    assert cmake_says(call, ROOT, os.environ, {}, tmp_path)[0].split("#")[:-1] == expected
+
+
+def test_one_start_of_python_serves_a_configure_run(tmp_path: Path) -> None:
+    """Another search starts only if a variable of the wanted tool has changed."""
+    data, home = table(tmp_path / "data", THING), tmp_path / "home"
+    home.mkdir()
+    environment = environment_of(home, Situation({"a": "1.5", ".things/1": "1.9"}))
+    starts = tmp_path / "starts"
+    python = tmp_path / "python"
+    python.write_text(f'#!/bin/sh\necho "$@" >> {starts}\nexec {sys.executable} "$@"\n')
+    python.chmod(0o755)
+    steps = ("", "set(PICO_SDK_PATH /x)", f"set(THING_PATH {home}/a)", "")
+    call = f"set(EPG_PYTHON {python})\nset(EPG_PYTHON_WANTED ${{Python3_EXECUTABLE}}||)\n"
+    for step in steps:
+        call += f'{step}\n_epg_find_sdk(thing thing)\nstring(APPEND found "${{thing}} ")\n'
+    found = cmake_says(call, data, environment, {}, tmp_path)[0].split()
+    assert found == [f"{home}/.things/1"] * 2 + [f"{home}/a"] * 2
+    assert len(starts.read_text().splitlines()) == 2
