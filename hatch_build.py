@@ -9,6 +9,7 @@ install ``share/EPG/cmake/EPGConfig.cmake``, where CMake searches for packages.
 from __future__ import annotations
 
 import re
+import runpy
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -31,14 +32,10 @@ class EpgMetadataHook(MetadataHookInterface):
     PLUGIN_NAME = "custom"
 
     def update(self, metadata: dict[str, Any]) -> None:
-        metadata["dependencies"] = self._packages("generator")
-        metadata["optional-dependencies"] = {extra: self._packages(group) for extra, group in EXTRAS.items()}
-
-    def _packages(self, group: str) -> list[str]:
-        packages: list[str] = []
-        for line in (Path(self.root) / f"epg/lock/{group}.in").read_text(encoding="utf-8").splitlines():
-            packages += self._packages(line[3:].removesuffix(".in")) if line.startswith("-r ") else [line]
-        return packages
+        # An import of epg.bootstrap could lead to another EPG, which is installed where the wheel is built.
+        lines = runpy.run_path(str(Path(self.root) / "epg/bootstrap.py"))["requirement_lines"]
+        metadata["dependencies"] = lines("generator")
+        metadata["optional-dependencies"] = {extra: lines(group) for extra, group in EXTRAS.items()}
 
 
 class EpgBuildHook(BuildHookInterface):

@@ -31,19 +31,24 @@ Requirements = dict[str, tuple[str, tuple[int, ...]]]
 
 
 def requirements(group: str) -> Requirements:
-    """The packages of ``epg/lock/<group>.in``.  The lock file and the extras of EPG's wheel are made of the same file.
-
-    A line is ``-r <other>.in`` or ``<distribution>>=<version>``.
-    """
+    """The packages of ``epg/lock/<group>.in``."""
     result: Requirements = {}
-    for line in (LOCKS / f"{group}.in").read_text(encoding="utf-8").splitlines():
-        if line.startswith("-r "):
-            result |= requirements(line[3:].rpartition(".")[0])
-        else:
-            distribution, _, oldest = line.partition(">=")
-            module = "yaml" if distribution == "PyYAML" else distribution.lower().replace("-", "_")
-            result[module] = distribution, version_numbers(oldest)
+    for line in requirement_lines(group):
+        distribution, _, oldest = line.partition(">=")
+        module = "yaml" if distribution == "PyYAML" else distribution.lower().replace("-", "_")
+        result[module] = distribution, version_numbers(oldest)
     return result
+
+
+def requirement_lines(group: str) -> list[str]:
+    """The lines ``<distribution>>=<version>`` of ``epg/lock/<group>.in``, with those of the files that it includes.
+
+    A line ``-r <other>.in`` includes a file.  The lock file and the extras of EPG's wheel are made of the same lines.
+    """
+    lines: list[str] = []
+    for line in (LOCKS / f"{group}.in").read_text(encoding="utf-8").splitlines():
+        lines += requirement_lines(line[3:].removesuffix(".in")) if line.startswith("-r ") else [line]
+    return lines
 
 
 class MissingPackages(Exception):
