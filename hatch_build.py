@@ -17,9 +17,9 @@ from typing import Any
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 from hatchling.metadata.plugin.interface import MetadataHookInterface
 
-PLANTS = tuple(f"examples/{robot}/{name}" for robot in ("jiwy", "relbot") for name in ("plant", "plant.bindings.yaml"))
-"""The simulated robots that `epg new` writes into projects."""
-DATA = ("cmake", "targets", "schemas", "integration", "zephyr", "zephyr_module", "docs/errors.md", *PLANTS)
+EXAMPLES = ("examples/jiwy", "examples/relbot/plant", "examples/relbot/plant.bindings.yaml")
+"""The example of the README, and the simulated robots that `epg new` writes into projects."""
+DATA = ("cmake", "targets", "schemas", "integration", "zephyr", "zephyr_module", "docs/errors.md", *EXAMPLES)
 
 
 EXTRAS = {"zephyr": "zephyr", "plot": "plot", "ros": "ros", "test": "test_all"}

@@ -69,11 +69,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
             _refuse(unknown, getattr(options, "parser", parser))
     except SystemExit as stop:
         return int(stop.code or 0)
-    if options.cmake_dir or options.twenty_sim_dir:
+    if options.cmake_dir or options.examples_dir or options.twenty_sim_dir:
         from epg.data import data_folder
 
-        folder = data_folder("cmake") if options.cmake_dir else data_folder("integration") / "20-sim" / "EPG"
-        print(folder.as_posix() if options.cmake_dir else folder)
+        if options.twenty_sim_dir:
+            print(data_folder("integration") / "20-sim" / "EPG")
+        else:
+            print(data_folder("cmake" if options.cmake_dir else "examples").as_posix())
         return EXIT_OK
     if not options.command:
         parser.print_help()
@@ -91,6 +93,7 @@ def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="epg", description="Turns a controller modelled in 20-sim into firmware.")
     parser.add_argument("--version", action="version", version=f"epg {epg.__version__}")
     parser.add_argument("--cmake-dir", action="store_true", help="print the folder of EPGConfig.cmake and exit")
+    parser.add_argument("--examples-dir", action="store_true", help="print the folder of the example jiwy and exit")
     parser.add_argument(
         "--20-sim-dir", action="store_true", dest="twenty_sim_dir", help="print the folder to add to 20-sim and exit"
     )

@@ -68,9 +68,10 @@ def test_a_folder_that_cannot_be_written_is_status_4(robot: Path, capsys: pytest
     assert "Traceback" not in capsys.readouterr().err
 
 
-def test_the_cmake_folder(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["--cmake-dir"]) == 0
-    assert capsys.readouterr().out == f"{(ROOT / 'cmake').as_posix()}\n"
+@pytest.mark.parametrize("name", ["cmake", "examples"])
+def test_the_folder_of_data(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([f"--{name}-dir"]) == 0
+    assert capsys.readouterr().out == f"{(ROOT / name).as_posix()}\n"
 
 
 def test_check_alone_and_together(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 import tarfile
@@ -21,7 +22,7 @@ TREES = (
     "integration",
     "zephyr",
     "zephyr_module",
-    "examples/jiwy/plant",
+    "examples/jiwy",
     "examples/relbot/plant",
 )
 
@@ -112,6 +113,31 @@ def test_cmake_finds_a_wheel_by_the_command_line(prefix: Path, tmp_path: Path) -
     folder = done.stdout.strip()
     assert folder == (site / "epg/_data/cmake").as_posix()
     Project(tmp_path, "robot").configure(f"-DEPG_DIR={folder}", epg_dir=False)
+
+
+def test_the_readme_without_the_checkout(prefix: Path, tmp_path: Path) -> None:
+    """With the wheel alone: the example up to its plot, and new projects."""
+    (site,) = prefix.glob("lib/*/site-packages")
+    environment = {k: v for k, v in os.environ.items() if not k.startswith(("EPG_", "PYTHON"))}
+
+    def run(*command: str) -> str:
+        done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
+        assert done.returncode == 0, done.stdout + done.stderr
+        return done.stdout
+
+    epg = (sys.executable, str(site / "epg"))
+    examples = run(*epg, "--examples-dir").strip()
+    assert Path(examples).is_relative_to(site)
+    python = f"-DPython3_EXECUTABLE={sys.executable}"
+    run("cmake", "-S", f"{examples}/jiwy", "-B", "build/jiwy", python)
+    assert "limits of the scenario hold" in run("cmake", "--build", "build/jiwy", "--target", "tracking")
+    assert {"tracking.csv", "tracking.png"} <= {path.name for path in (tmp_path / "build/jiwy").iterdir()}
+    for target in ("rpi_pico2_freertos_jiwy", "host_jiwy"):
+        run(*epg, "new", "--target", target, "--model", f"{examples}/jiwy/model", target)
+    folder = run(*epg, "--cmake-dir").strip()
+    run("cmake", "-S", "host_jiwy", "-B", "build/host", python, f"-DEPG_DIR={folder}")
+    run("cmake", "--build", "build/host")
+    assert (Path(run(*epg, "--20-sim-dir").strip()) / "Targets.ini").is_file()
 
 
 def test_an_editable_install_leads_to_the_checkout(tmp_path: Path) -> None:
