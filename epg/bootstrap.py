@@ -80,7 +80,7 @@ def cache_problem(folder: Path) -> str:
     if os.geteuid() == 0 and os.environ.get("SUDO_UID", "").isdecimal():
         own.add(int(os.environ["SUDO_UID"][:10]))
     if found.st_uid not in own:
-        return f"it belongs to another user, number {found.st_uid}"
+        return f"it belongs to another user (number {found.st_uid})"
     if found.st_mode & 0o002 or (found.st_mode & 0o020 and not _is_own_group(found.st_gid)):
         return f"other users can write into it (mode {found.st_mode & 0o7777:o})"
     return ""
@@ -108,8 +108,8 @@ def check_cache() -> None:
     if problem:
         raise MissingPackages(
             f"EPG does not use its cache, {folder}: {problem}, and EPG runs programs that are in it\n"
-            f"hint: delete it, or take the others' rights away (chmod -R go-w {folder}) if you know all that is in it, "
-            "or set EPG_CACHE to a folder of your own"
+            "hint: delete it, or set EPG_CACHE to another folder, or, if you trust all files in it, "
+            f"remove the permissions of other users: chmod -R go-w {folder}"
         )
 
 
@@ -127,13 +127,13 @@ def ensure(group: str = "generator", *, install: bool | None = None) -> None:
     if not folder.is_dir():
         allowed = not os.environ.get("EPG_NO_INSTALL") if install is None else install
         if not allowed:
-            raise MissingPackages(_remedy(missing, "installing them is turned off"))
+            raise MissingPackages(_remedy(missing, "their installation is turned off"))
         _install(group, folder, missing)
     sys.path.insert(0, str(folder))
     importlib.invalidate_caches()
     still = _missing(group)
     if still:
-        raise MissingPackages(_remedy(still, f"{folder} does not hold them; delete it to have it made again"))
+        raise MissingPackages(_remedy(still, f"{folder} does not contain them; delete it, and EPG makes it again"))
 
 
 def main(arguments: list[str]) -> int:
@@ -207,7 +207,7 @@ def _install(group: str, folder: Path, missing: list[str]) -> None:
     Variables of the environment that change Python are not passed on.  Raises :class:`MissingPackages`.
     """
     if importlib.util.find_spec("pip") is None:
-        raise MissingPackages(_remedy(missing, "this Python has no pip to install them with"))
+        raise MissingPackages(_remedy(missing, "this Python has no pip, which must install them"))
     import shutil
     import subprocess
     import tempfile
@@ -266,7 +266,7 @@ def _remedy(missing: list[str], reason: str) -> str:
         f"hint: one of\n"
         f"    {sys.executable} -m pip install {names}\n"
         f"    apt install {debian}          (Debian, Ubuntu)\n"
-        f"    cmake -DPython3_EXECUTABLE=<a Python that has them> ..."
+        f"    cmake -DPython3_EXECUTABLE=<a Python with these packages> ..."
     )
 
 

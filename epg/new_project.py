@@ -133,13 +133,13 @@ def write_project(request: ProjectRequest, diagnostics: Diagnostics) -> NewProje
     assert project is not None
     present = present_files(request.folder, project.files)
     if len(present) == 1:
-        hint = "nothing was written: 'epg new' replaces no file"
+        hint = "no file was written: 'epg new' does not replace files"
         diagnostics.error("file-exists", Span(str(present[0])), "this file exists", hint=hint)
     elif present:
         names = ", ".join(path.relative_to(request.folder).as_posix() for path in present[:_SHOWN])
         more = f" and {len(present) - _SHOWN} more" if len(present) > _SHOWN else ""
-        hint = "nothing was written: 'epg new' replaces no file; name a new folder"
-        message = f"this folder has files that the project would have: {names}{more}"
+        hint = "no file was written: 'epg new' does not replace files; name a new folder"
+        message = f"this folder already has files of the project: {names}{more}"
         diagnostics.error("file-exists", Span(str(request.folder)), message, hint=hint)
     diagnostics.stop_if_errors()
     write_folder(request.folder, project.files)
@@ -185,8 +185,8 @@ def _find_base(request: ProjectRequest, catalog: Catalog, diagnostics: Diagnosti
         return None
     templates = project_folder(target.platform.project_names, request.roots)
     if templates is None:
-        message = f"there are no files of a new project for the platform '{target.platform.name}'"
-        hint = f"there are some for {', '.join(project_names(request.roots))}; docs/cmake.md says what to write instead"
+        message = f"'epg new' cannot make a project for the platform '{target.platform.name}'"
+        hint = f"it supports {', '.join(project_names(request.roots))}; for others, docs/cmake.md describes the files"
         diagnostics.error("no-project", Span.of_argument(name), message, hint=hint)
         return None
     middleware = _choose_middleware(target, configuration, request.middleware, catalog, diagnostics)
@@ -234,8 +234,8 @@ def _model_files(request: ProjectRequest, model: Model, diagnostics: Diagnostics
         if around in path.parents:
             copied[f"{MODEL}/{path.relative_to(around).as_posix()}"] = path.read_bytes()
         else:
-            message = f"the model needs this file, which is not in its folder '{around.name}'"
-            hint = f"put all of it into '{request.folder}' and name it there: then nothing is copied"
+            message = f"the model needs this file, but it is not in the model's folder '{around.name}'"
+            hint = f"put the whole model into '{request.folder}' and name it there: then no file is copied"
             diagnostics.error("model-outside", Span(str(file)), message, hint=hint)
     return (MODEL if place.is_dir() else f"{MODEL}/{place.name}"), copied
 

@@ -78,7 +78,7 @@ def _section_of(root: YamlNode, file: str, model: Model, port: str, ends: Sequen
         node = root.get(section)
         if node is not None and not node.is_mapping and node.value is not None:
             span = root.key_span(section)
-            raise CannotEdit(f"{file}:{span.line}: '{section}' is no map of ports: mend this in an editor first")
+            raise CannotEdit(f"{file}:{span.line}: '{section}' is not a map of ports: correct this in an editor first")
     written = [section for section in (*own, *REFERENCE) if root.get(section, port) is not None]
     if ends is None and written:
         return written[0]
@@ -91,11 +91,11 @@ def _refuse(ends: Sequence[End], file: str, section: str, port: str) -> None:
     texts = [text for end in ends for text in (end.reference, end.scale, end.offset, *(end.limits or ()), end.unit)]
     if any("\ud800" <= character <= "\udfff" for character in "".join((port, *texts))):
         # A surrogate is half of a character beyond U+FFFF.  PyYAML's own parser accepts it, libyaml does not.
-        raise CannotEdit(f"{file}: what '{section}' would say of a port is no text")
+        raise CannotEdit(f"{file}: a name or value for '{section}' is not valid text")
     if section == "inputs" and len(ends) != 1:
-        raise CannotEdit(f"{file}: input '{port}' takes its value from one component, not from {len(ends) or 'none'}")
+        raise CannotEdit(f"{file}: input '{port}' must be bound to one component, not to {len(ends) or 'none'}")
     if section == "outputs" and any(end.reference == UNCONNECTED for end in ends):
-        raise CannotEdit(f"{file}: '{UNCONNECTED}' is no component that output '{port}' could go to")
+        raise CannotEdit(f"{file}: '{UNCONNECTED}' is not a component to which output '{port}' can be bound")
 
 
 def _where(root: YamlNode, file: str, section: str, port: str) -> str:
@@ -115,9 +115,7 @@ def _verify(root: YamlNode, changed: str, file: str, section: str, port: str, sa
         or repr(_others(after, section, port)) != repr(_others(root, section, port))
         or repr(said_ends(after.get(section, port), section)) != repr(said)
     ):
-        raise CannotEdit(
-            _where(root, file, section, port) + "EPG does not understand how it is written: change it in an editor"
-        )
+        raise CannotEdit(_where(root, file, section, port) + "EPG cannot edit this form: change it in an editor")
 
 
 def _others(root: YamlNode, section: str, port: str) -> list[Any]:

@@ -34,7 +34,7 @@ def set_extends(text: str, file: str, value: str) -> str:
     old = root.get(KEY)
     if old is not None and (old.is_mapping or old.is_sequence):
         line = root.key_span(KEY).line
-        raise CannotEdit(f"{file}:{line}: '{KEY}' takes one name, and this is more: mend this in an editor first")
+        raise CannotEdit(f"{file}:{line}: '{KEY}' must be one name: correct this in an editor first")
     if old is not None and old.value == value:
         return text
     try:
@@ -71,4 +71,4 @@ def _verify(root: YamlNode, changed: str, file: str, value: str) -> None:
         or after[KEY].value != value
     ):
         line = root.key_span(KEY).line if KEY in root else 1
-        raise CannotEdit(f"{file}:{line}: EPG does not understand how this is written: change '{KEY}' in an editor")
+        raise CannotEdit(f"{file}:{line}: EPG cannot edit this form: change '{KEY}' in an editor")

@@ -39,9 +39,9 @@ def parse_map(text: str, file: str) -> YamlNode:
     root = yaml_file.parse_yaml(text, file, problems)
     if root is None:
         first = next(iter(problems))
-        raise CannotEdit(f"{file}:{first.span.line}: {first.message}: mend this in an editor first")
+        raise CannotEdit(f"{file}:{first.span.line}: {first.message}: correct this in an editor first")
     if not root.is_mapping:
-        raise CannotEdit(f"{file}:1: this is no map (key: value): mend this in an editor first")
+        raise CannotEdit(f"{file}:1: this is not a map (key: value): correct this in an editor first")
     return root
 
 

@@ -88,7 +88,7 @@ def draw_schedule(app: Application, title: str) -> str:
     _axis(picture, end, period, app, centres)
     _communication(picture, receive, send, communication, app, centres, high)
     picture.text(end / 2, -76, title, "middle", 15, "bold")
-    picture.text(end / 2, -58, "one control cycle; widths are no durations", "middle", 11, "faint")
+    picture.text(end / 2, -58, "one control cycle; widths do not show durations", "middle", 11, "faint")
     return picture.render()
 
 
@@ -131,7 +131,7 @@ def _communication(
         side = 8 if direction < 0 else -8
         anchor = "start" if direction < 0 else "end"
         picture.text(centre + side, high + 28, "newest values,", anchor, _SMALL, "faint")
-        picture.text(centre + side, high + 42, "nobody waits", anchor, _SMALL, "faint")
+        picture.text(centre + side, high + 42, "without waiting", anchor, _SMALL, "faint")
     left, right = centres["commands"], centres["hand over"]
     picture.text((left + right) / 2, top + 18, f"communication: {middleware}, every {period}", "middle", 12, "bold")
 

@@ -64,13 +64,17 @@ def plan_agents(robots: Sequence[Robot], wiring: Wiring, diagnostics: Diagnostic
     for name, count in Counter(robot.name for robot in robots).items():
         if count > 1:
             files = ", ".join(str(robot.file) for robot in robots if robot.name == name)
-            diagnostics.error("duplicate-target-name", Span(files), f"{count} targets are called '{name}'")
+            diagnostics.error("duplicate-target-name", Span(files), f"{count} targets have the name '{name}'")
     diagnostics.stop_if_errors()
     agents: list[Agent] = []
     by_udp: list[Robot] = []
     for robot in robots:
         if robot.middleware not in AGENT_MIDDLEWARES:
-            why = "it speaks DDS itself" if robot.middleware == "dds" else f"its middleware is '{robot.middleware}'"
+            why = (
+                "its middleware 'dds' does not use one"
+                if robot.middleware == "dds"
+                else f"its middleware is '{robot.middleware}'"
+            )
             diagnostics.warning("no-agent-needed", Span(str(robot.file)), f"'{robot.name}' needs no agent: {why}")
         elif robot.name in wiring.devices:
             agents += [_on_device(robot, device, diagnostics) for device in wiring.devices[robot.name]]
@@ -79,8 +83,8 @@ def plan_agents(robots: Sequence[Robot], wiring: Wiring, diagnostics: Diagnostic
         elif robot.transport == "udp":
             by_udp.append(robot)
         else:
-            message = f"'{robot.name}' is behind '{robot.transport}': which tty of this computer is that?"
-            hint = f"for example --device {robot.name}=/dev/ttyAMA0:921600"
+            message = f"'{robot.name}' uses the transport '{robot.transport}': the tty of this computer is not known"
+            hint = f"name it, for example --device {robot.name}=/dev/ttyAMA0:921600"
             diagnostics.error("device-missing", Span(str(robot.file)), message, hint=hint)
     if by_udp:
         port = str(wiring.port)
@@ -95,8 +99,10 @@ def plan_agents(robots: Sequence[Robot], wiring: Wiring, diagnostics: Diagnostic
 def _on_usb(robot: Robot, serials: Sequence[str], diagnostics: Diagnostics) -> list[Agent]:
     """The agents for the boards with these serial numbers, which all run the target ``robot``."""
     if not serials:
-        message = f"'{robot.name}' is on USB: what is the serial number of its board?"
-        hint = f"'ls /dev/serial/by-id' shows it while the board is plugged in; then --board {robot.name}=<number>"
+        message = f"'{robot.name}' uses USB: the serial number of its board is not known"
+        hint = (
+            f"'ls /dev/serial/by-id' shows the number while the board is plugged in; add --board {robot.name}=<number>"
+        )
         diagnostics.error("board-missing", Span(str(robot.file)), message, hint=hint)
     agents = []
     for serial in serials:
@@ -104,7 +110,9 @@ def _on_usb(robot: Robot, serials: Sequence[str], diagnostics: Diagnostics) -> l
         span = Span.of_argument(f"{robot.name}={serial}", "--board")
         if robot.usb_serial is None and not re.fullmatch("[0-9A-F]{16}", number):
             message = f"'{serial}' is not the serial number of a Pico"
-            diagnostics.error("wrong-serial-number", span, message, hint="it has 16 hexadecimal digits")
+            diagnostics.error(
+                "wrong-serial-number", span, message, hint="the serial number of a Pico has 16 hexadecimal digits"
+            )
             continue
         if robot.usb_serial not in (None, serial):
             message = f"'{serial}' is not the serial number of '{robot.name}'"
@@ -129,8 +137,8 @@ def _on_device(robot: Robot, text: str, diagnostics: Diagnostics) -> Agent:
     device, _, rate = text.partition(":")
     if not device.startswith("/dev/") or not device.isprintable() or not re.fullmatch("([1-9][0-9]{2,6})?", rate):
         span = Span.of_argument(f"{robot.name}={text}", "--device")
-        hint = "such as /dev/ttyAMA0 or /dev/ttyAMA0:921600"
-        diagnostics.error("wrong-device", span, f"'{text}' is no tty, or no tty and baud rate", hint=hint)
+        hint = "write for example /dev/ttyAMA0 or /dev/ttyAMA0:921600"
+        diagnostics.error("wrong-device", span, f"'{text}' is not a tty, with or without a baud rate", hint=hint)
     stem = re.sub("[^0-9A-Za-z]+", "_", device.removeprefix("/dev/"))
     arguments = _serial_arguments(device, int(rate or DEFAULT_BAUD_RATE))
     return Agent(f"agent_{robot.name}_{stem}", arguments, device, None, (robot,))
@@ -148,7 +156,9 @@ def _refuse_one_device_twice(agents: Sequence[Agent], diagnostics: Diagnostics) 
     for device, several in users.items():
         if len(several) > 1:
             names = ", ".join(f"'{robot.name}'" for agent in several for robot in agent.serves)
-            diagnostics.error("device-used-twice", Span("command line"), f"{device} is given to {names}")
+            diagnostics.error(
+                "device-used-twice", Span("command line"), f"{device} is used by more than one agent: {names}"
+            )
 
 
 def _warn_of_equal_nodes(agents: Sequence[Agent], diagnostics: Diagnostics) -> None:
@@ -159,6 +169,6 @@ def _warn_of_equal_nodes(agents: Sequence[Agent], diagnostics: Diagnostics) -> N
     nodes = Counter(robot.full_node for agent in agents for robot in agent.serves if not robot.has_serial_in_names)
     for node, count in nodes.items():
         if count > 1:
-            message = f"{count} robots are the node '{node}', with the same topics"
-            hint = "write namespace: robot_$serial in the .tcf, or give each a name on its console"
+            message = f"{count} robots have the same node '{node}' and therefore the same topics"
+            hint = "write namespace: robot_$serial in the .tcf, or set a different name on each console"
             diagnostics.warning("equal-nodes", Span("command line"), message, hint=hint)

@@ -27,8 +27,8 @@ def generate_launch_description():
     verbosity = ["-v", LaunchConfiguration("verbosity")]
     return LaunchDescription(
         [
-            DeclareLaunchArgument("verbosity", default_value="4", description="of the agents: 0 (nothing) to 6"),
-            # Targets that state no domain get the environment's, as all other nodes.
+            DeclareLaunchArgument("verbosity", default_value="4", description="verbosity of the agents: 0 (none) to 6"),
+            # Targets without a domain use that of the environment, like all other nodes.
             SetEnvironmentVariable(
                 "XRCE_DOMAIN_ID_OVERRIDE", EnvironmentVariable("ROS_DOMAIN_ID", default_value="0")
             ),

@@ -49,7 +49,7 @@ def load_recording(path: Path, diagnostics: Diagnostics) -> Recording | None:
     if path.is_dir():
         files = [path / name for name in _FOLDER_FILES if (path / name).is_file()]
         if not files:
-            hint = f"a folder has {' or '.join(_FOLDER_FILES)}"
+            hint = f"the folder of a recording contains {' or '.join(_FOLDER_FILES)}"
             diagnostics.error("no-recording", Span(str(path)), "there is no recording here", hint=hint)
             return None
     columns: dict[str, tuple[array[float], array[float]]] = {}
@@ -81,7 +81,7 @@ def _rows(file: Path, diagnostics: Diagnostics) -> Iterator[tuple[float, str, fl
             rows = csv.reader(text)
             header = next(rows, [])
             if "time" not in header:
-                message = "this is no recording: its first line does not name a column 'time'"
+                message = "this is not a recording: its first line does not name a column 'time'"
                 diagnostics.error("not-a-recording", Span(str(file), 1, 1, 2), message)
                 return
             at = header.index("time")
@@ -93,7 +93,7 @@ def _rows(file: Path, diagnostics: Diagnostics) -> Iterator[tuple[float, str, fl
                     time = float(row[at])
                     pairs = _cells(header, row, at)
                 except (ValueError, IndexError):
-                    message = "this line does not fit the first one"
+                    message = "this line does not match the columns of the first line"
                     diagnostics.error("wrong-recording", Span(str(file), number, 1, 2), message)
                     return
                 if not time >= latest:

@@ -111,8 +111,8 @@ def load_robots(paths: list[Path], diagnostics: Diagnostics) -> list[Robot]:
         elif (robot := _read(path)) is not None:
             robots.append(robot)
         elif path.exists():
-            hint = "it stands in the build folder: epg/<name>/<name>.json"
-            message = "this is no description of a generated target"
+            hint = "the description is in the build folder: epg/<name>/<name>.json"
+            message = "this is not the description of a generated target"
             diagnostics.error("not-a-description", Span(str(path)), message, hint=hint)
         else:
             diagnostics.error("file-not-found", Span(str(path)), f"there is no file '{path}'")

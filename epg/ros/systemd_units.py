@@ -98,7 +98,7 @@ def udev_rules(boards: Sequence[tuple[str, str]]) -> str:
     ModemManager would send commands for modems to any tty.  ``boards`` are the vendor numbers of the USB devices (four
     hexadecimal digits) and the serial numbers.
     """
-    lines = ["# Boards with an EPG target: for the group dialout, and no modems."]
+    lines = ["# Boards with an EPG target belong to the group dialout.  ModemManager must not treat them as modems."]
     for vendor, serial in boards:
         lines.append(
             f'SUBSYSTEM=="tty", ATTRS{{idVendor}}=="{vendor}", ATTRS{{serial}}=="{serial}", '

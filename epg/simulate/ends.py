@@ -24,25 +24,27 @@ def how_it_ended(expected: str, enabled: Sequence[float], statistics: Statistics
     """
     ever = any(enabled)
     if expected == "never_enabled":
-        return Ending("the target was enabled, and the scenario says 'ends: never_enabled'") if ever else Ending()
+        return Ending("the target was enabled, but the scenario has 'ends: never_enabled'") if ever else Ending()
     if not ever:
-        hint = "it starts disabled: write 'events: [{at: 0 s, enable: true}]' into the scenario"
+        hint = "it starts disabled: add 'events: [{at: 0 s, enable: true}]' to the scenario"
         if statistics.fault != "none":
             hint = f"a fault keeps it disabled: {_reason(statistics)}"
-        return Ending("the target was never enabled", hint + "; or expect it by 'ends: never_enabled'")
+        return Ending(
+            "the target was never enabled", hint + "; if the scenario tests this, add 'ends: never_enabled' to it"
+        )
     if expected == "disabled":
         return (
-            Ending("the target ended enabled, and the scenario says 'ends: disabled'")
+            Ending("the target was enabled at the end, but the scenario has 'ends: disabled'")
             if statistics.enabled
             else Ending()
         )
     if not statistics.enabled:
-        problem = f"the target ended disabled ({_reason(statistics)})"
-        return Ending(problem, "if that is what the scenario tests, write 'ends: disabled' into it")
+        problem = f"the target was disabled at the end ({_reason(statistics)})"
+        return Ending(problem, "if the scenario tests this, add 'ends: disabled' to it")
     return Ending()
 
 
 def _reason(statistics: Statistics) -> str:
     if statistics.fault == "none":
-        return "by request"
+        return "by a request"
     return f"{statistics.fault}: {statistics.fault_component}" if statistics.fault_component else statistics.fault

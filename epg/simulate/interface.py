@@ -39,8 +39,8 @@ def read_interface(executable: Path) -> Names:
         kind, _, name = line.partition(",")
         names.setdefault(kind, []).append(name)
     if done.returncode != 0 or not names["signal"]:
-        message = f"'{executable.name}' does not say which topics and signals it has"
-        fail(executable, message, "an earlier EPG made it, or it is not a simulation: build it again")
+        message = f"'{executable.name}' does not list its topics and signals"
+        fail(executable, message, "it was built by an earlier EPG, or it is not a simulation: build it again")
     return names
 
 

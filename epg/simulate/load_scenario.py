@@ -53,7 +53,7 @@ class _Reader:
         setpoints = root["setpoints"]
         if duration / interval * len(setpoints.plain()) > MAX_SETPOINTS:
             node = root.get("interval") or root["duration"]
-            message = f"this makes more than {MAX_SETPOINTS} setpoints"
+            message = f"this scenario sends more than {MAX_SETPOINTS} setpoints"
             self.error("too-many-setpoints", node, message, "use a longer interval")
         self.names += [("topic", topic, setpoints.key_span(topic)) for topic, _ in setpoints.items()]
         profiles = {topic: self.profile(node, duration) for topic, node in setpoints.items()}
@@ -81,9 +81,13 @@ class _Reader:
         for element in listed.elements() if listed else ():
             part = self.part(element)
             if parts and part.start < parts[-1].end:
-                self.error("overlapping-parts", element["start"], f"the part before ends at {parts[-1].end:g} s only")
+                self.error(
+                    "overlapping-parts",
+                    element["start"],
+                    f"this part starts before the previous one ends, at {parts[-1].end:g} s",
+                )
             if part.end > duration:
-                message = f"the part ends at {part.end:g} s, the run at {float(duration):g} s"
+                message = f"this part ends at {part.end:g} s, but the run ends at {float(duration):g} s"
                 self.error("beyond-duration", element["start"], message)
             parts.append(part)
         return Profile(initial, tuple(parts))
@@ -113,8 +117,8 @@ class _Reader:
         at = self.time(node["at"])
         actions = [key for key, _ in node.items() if key in _ACTIONS]
         if len(actions) != 1:
-            message = f"an event does one thing, this one {' and '.join(actions)}"
-            message = message if actions else "this event does nothing"
+            message = f"an event must have one action, and this one has {' and '.join(actions)}"
+            message = message if actions else "this event has no action"
             self.error("wrong-event", node["at"], message, f"write one of {', '.join(_ACTIONS)}")
             return Event(at, "none")
         action = actions[0]
@@ -147,7 +151,7 @@ class _Reader:
             windows = (Window(start, end),)
         duty, homing, unit = node.get("duty"), node.get("homing"), node.get("unit")
         if homing is not None and "duty" in homing and duty is None:
-            message = f"'duty' is missing in 'axes.{name}': which signal is limited here?"
+            message = f"'duty' is missing in 'axes.{name}': it must name the signal that is limited here"
             self.error("missing-key", homing["duty"], message, "write for example 'duty: outputs.pwm_pan'")
         return Axis(
             name=name,
@@ -184,7 +188,7 @@ class _Reader:
         topic = str(node.value)
         if topic not in profiles:
             hint = did_you_mean(topic, profiles, "topics")
-            self.error("unknown-topic", node, f"no setpoints are sent on '{topic}'", hint)
+            self.error("unknown-topic", node, f"the scenario sends no setpoints on '{topic}'", hint)
         return topic
 
     def within(self, node: YamlNode, duration: Fraction) -> float:

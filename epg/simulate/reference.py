@@ -51,6 +51,6 @@ def load_reference(path: Path) -> Reference:
 
 def _fail(path: Path, message: str) -> NoReturn:
     diagnostics = Diagnostics()
-    hint = "it needs: def reference(axis, time, setpoint), which returns a list as long as time"
+    hint = "the file must define reference(axis, time, setpoint), which returns a list as long as time"
     diagnostics.error("wrong-reference", Span(str(path)), message, hint=hint)
     raise UserError(diagnostics)

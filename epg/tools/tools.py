@@ -74,10 +74,10 @@ def _load(path: Path, diagnostics: Diagnostics) -> Tool | None:
         return _tool(json.loads(text))
     except json.JSONDecodeError as error:
         span = Span(str(path), error.lineno, error.colno, error.colno + 1)
-        diagnostics.error("wrong-value", span, f"this is no JSON: {error.msg}")
+        diagnostics.error("wrong-value", span, f"this is not JSON: {error.msg}")
     except (KeyError, TypeError, ValueError, AttributeError, RecursionError, re.error):
         span = Span(str(path), 1, 1, 2)
-        hint = "schemas/tool.schema.json says what such a file holds"
+        hint = "schemas/tool.schema.json describes the contents of such a file"
         diagnostics.error("wrong-value", span, "this does not describe a tool", hint=hint)
     return None
 

@@ -63,7 +63,7 @@ def test_two_at_once_leave_one_complete_folder(bare_python: Path, tmp_path: Path
 def test_turned_off_it_names_what_is_missing(bare_python: Path, tmp_path: Path) -> None:
     done = run(bare_python, tmp_path, *EPG, EPG_NO_INSTALL="1")
     assert done.returncode == 4
-    assert f"EPG needs Jinja2, PyYAML, jsonschema for {bare_python}: installing them is turned off" in done.stderr
+    assert f"EPG needs Jinja2, PyYAML, jsonschema for {bare_python}: their installation is turned off" in done.stderr
     assert f"{bare_python} -m pip install Jinja2 PyYAML jsonschema" in done.stderr
     assert "apt install python3-jinja2 python3-pyyaml python3-jsonschema".replace("pyyaml", "yaml") in done.stderr
     assert list(tmp_path.iterdir()) == []
@@ -75,7 +75,7 @@ def test_without_pip_it_names_what_is_missing(tmp_path: Path) -> None:
     python = folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
     done = run(python, tmp_path / "cache", *EPG)
     assert done.returncode == 4
-    assert "this Python has no pip to install them with" in done.stderr
+    assert "this Python has no pip, which must install them" in done.stderr
     assert "Traceback" not in done.stderr
 
 
@@ -111,7 +111,7 @@ def test_cmake_with_a_bare_python(bare_python: Path, tmp_path: Path) -> None:
     assert "EPG: installing" in output
     off = Project(tmp_path / "off", "robot", {"EPG_CACHE": str(tmp_path / "other"), "PYTHONPATH": ""})
     output = off.fails_to_configure(f"-DPython3_EXECUTABLE={bare_python}", "-DEPG_INSTALL_PYTHON_PACKAGES=OFF")
-    assert "installing them is turned off" in output
+    assert "their installation is turned off" in output
     assert not (tmp_path / "other").exists()
 
 
@@ -186,7 +186,7 @@ def test_a_cache_of_another_user_is_not_used(tmp_path: Path) -> None:
     cache.mkdir(mode=0o755)
     os.chown(cache, 4321, 4321)
     done = run(sys.executable, cache, *EPG)
-    assert done.returncode == 4 and "it belongs to another user, number 4321" in done.stderr
+    assert done.returncode == 4 and "it belongs to another user (number 4321)" in done.stderr
     assert run(sys.executable, cache, *EPG, SUDO_UID="4321").returncode == 0
 
 

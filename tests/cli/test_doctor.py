@@ -221,7 +221,7 @@ def test_a_wrong_table_of_the_user(
     (bare / "mine/tools/x.json").write_text("{")
     monkeypatch.setenv("EPG_TARGETS_PATH", str(bare / "mine"))
     assert main(["doctor"]) == 1
-    assert "this is no JSON" in capsys.readouterr().err
+    assert "this is not JSON" in capsys.readouterr().err
 
 
 def test_the_real_computer(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

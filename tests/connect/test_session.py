@@ -426,7 +426,7 @@ def test_creating_replaces_nothing(tmp_path: Path) -> None:
     with serving(Session([], model=ROOT / "examples/jiwy/model")) as page:
         with pytest.raises(Denied, match=r"CMakeLists\.txt: this file exists") as refusal:
             page.post("create", configuration="host_jiwy", folder=str(tmp_path / "robot"), name="robot")
-        assert "replaces no file" in refusal.value.hint
+        assert "does not replace files" in refusal.value.hint
         assert page.state()["phase"] == "choose"
     assert [path.name for path in (tmp_path / "robot").iterdir()] == ["CMakeLists.txt"]
 

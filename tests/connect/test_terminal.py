@@ -322,7 +322,7 @@ def test_folders_and_names_that_cannot_be_are_asked_for_again(export: Path, proj
     answers = ["host_jiwy", str(project), "robot", str(tmp_path / "new"), "", str(tmp_path / "another"), "", "", "n"]
     status, said = talk(Session([], model=export), *answers)
     assert status == 0, said
-    assert "this folder has files that the project would have" in said, said
+    assert "this folder already has files of the project" in said, said
     assert "error: target 'new' is a reserved word of C or C++" in said
     assert snapshot(project) == before and not (tmp_path / "new").exists()
     assert (tmp_path / "another/another.tcf").is_file(), "called after its folder"

@@ -127,13 +127,18 @@ def test_what_somebody_types_is_reported_as_from_a_file(what: str, tmp_path: Pat
 
 REFUSED: dict[str, tuple[str, str, tuple[End, ...] | None, str]] = {
     "no such port": ("inputs: {}\n", "angel", (End("a"),), "servo.bindings.yaml: Servo has no port 'angel'"),
-    "an input of nothing": ("", "angle", (), "servo.bindings.yaml: input 'angle' takes its value from one component"),
-    "an input of two": ("", "angle", (End("a"), End("b")), "servo.bindings.yaml: input 'angle' takes its value from"),
-    "to be unconnected": ("", "log", (End("unconnected"),), "servo.bindings.yaml: 'unconnected' is no component"),
-    "a section that is none": ("inputs: [a]\n", "angle", (End("a"),), "servo.bindings.yaml:4: 'inputs' is no map"),
+    "an input of nothing": ("", "angle", (), "servo.bindings.yaml: input 'angle' must be bound to one component"),
+    "an input of two": (
+        "",
+        "angle",
+        (End("a"), End("b")),
+        "servo.bindings.yaml: input 'angle' must be bound to one component",
+    ),
+    "to be unconnected": ("", "log", (End("unconnected"),), "servo.bindings.yaml: 'unconnected' is not a component"),
+    "a section that is none": ("inputs: [a]\n", "angle", (End("a"),), "servo.bindings.yaml:4: 'inputs' is not a map"),
     "a mistake": ("inputs: {\n", "angle", (End("a"),), "servo.bindings.yaml:4: this bracket is not closed"),
     "an anchor": ("inputs: {angle: &a b}\n", "angle", (End("a"),), "servo.bindings.yaml:4: anchors and aliases"),
-    "no character": ("", "angle", (End("\ud800"),), "servo.bindings.yaml: what 'inputs' would say"),
+    "no character": ("", "angle", (End("\ud800"),), "servo.bindings.yaml: a name or value for 'inputs' is not"),
     "a key too long for YAML": ("outputs: {}\n", "x" * 1100, (End("a"),), "servo.bindings.yaml:4: 'xxx"),
 }
 

@@ -57,11 +57,11 @@ def test_there_and_back(path: Path) -> None:
 
 
 REFUSED = {
-    "a list": ("version: 1\nextends: [a.tcf, b.tcf]\n", "robot.tcf:2: 'extends' takes one name"),
-    "a map": ("extends: {a: b}\n", "robot.tcf:1: 'extends' takes one name"),
+    "a list": ("version: 1\nextends: [a.tcf, b.tcf]\n", "robot.tcf:2: 'extends' must be one name"),
+    "a map": ("extends: {a: b}\n", "robot.tcf:1: 'extends' must be one name"),
     "no YAML": ("version: 1\nextends: [\n", "robot.tcf:2: this bracket is not closed"),
-    "no map": ("- a\n", "robot.tcf:1: this is no map"),
-    "nothing": ("", "robot.tcf:1: this is no map"),
+    "no map": ("- a\n", "robot.tcf:1: this is not a map"),
+    "nothing": ("", "robot.tcf:1: this is not a map"),
     "twice": ("extends: a\nextends: b\n", "robot.tcf:2: key 'extends' is set twice"),
 }
 

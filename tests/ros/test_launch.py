@@ -238,7 +238,7 @@ def test_names_that_epg_would_not_write_are_not_read(
     place[key] = text
     file.write_text(json.dumps(data), encoding="utf-8")
     assert main(["launch", "relbot.json", "--board", f"relbot={FIRST}", "--systemd"]) == 1
-    assert "this is no description of a generated target [not-a-description]" in capsys.readouterr().err
+    assert "this is not the description of a generated target [not-a-description]" in capsys.readouterr().err
     assert not list(robots.rglob("*.service")) and not list(robots.glob("*.py"))
 
 

@@ -200,17 +200,17 @@ def test_a_forced_component_wins_over_the_plant(held_motor: Path, tmp_path: Path
 @pytest.mark.parametrize(
     ("text", "problem", "hint"),
     [
-        ("", "the target was never enabled", "write 'events: [{at: 0 s, enable: true}]' into the scenario"),
-        (ENABLE, "the target ended disabled (fail-safe: emergency_stop)", "write 'ends: disabled' into it"),
+        ("", "the target was never enabled", "add 'events: [{at: 0 s, enable: true}]' to the scenario"),
+        (ENABLE, "the target was disabled at the end (fail-safe: emergency_stop)", "add 'ends: disabled' to it"),
         ("ends: disabled\n", "the target was never enabled", "it starts disabled"),
         (
             "ends: disabled\nevents: [{at: 0 s, enable: true}]\n",
-            "the target ended enabled, and the scenario says 'ends: disabled'",
+            "the target was enabled at the end, but the scenario has 'ends: disabled'",
             "",
         ),
         (
             "ends: never_enabled\nevents: [{at: 1 s, enable: true}]\n",
-            "the target was enabled, and the scenario says 'ends: never_enabled'",
+            "the target was enabled, but the scenario has 'ends: never_enabled'",
             "",
         ),
         (
@@ -249,7 +249,7 @@ def test_an_executable_of_an_earlier_version(tmp_path: Path) -> None:
     program = script(tmp_path, "import sys; sys.exit(\"error: unknown option '--interface'\")\n")
     with pytest.raises(UserError) as error:
         simulate(program, scenario(tmp_path), tmp_path / "out")
-    assert problems(error) == ["simulation-failed: 'program' does not say which topics and signals it has"]
+    assert problems(error) == ["simulation-failed: 'program' does not list its topics and signals"]
 
 
 def script(folder: Path, text: str) -> Path:

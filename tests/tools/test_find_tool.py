@@ -221,7 +221,7 @@ def test_a_user_s_table_comes_first(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "line", "message"),
     [
-        ('{"api": 1,\n "tool" "x"}', 2, "this is no JSON"),
+        ('{"api": 1,\n "tool" "x"}', 2, "this is not JSON"),
         ("[]", 1, "this does not describe a tool"),
         ('{"api": 1}', 1, "this does not describe a tool"),
         ('{"api": 2, "tool": "x", "title": "x", "needed_for": "x", "programs": ["x"], "get": {}}', 1, "not describe"),

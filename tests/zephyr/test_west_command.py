@@ -106,7 +106,7 @@ def test_packages_that_the_python_of_west_lacks_are_asked_for(folder: Path, tmp_
     complete = subprocess.run(needs, capture_output=True, check=False, env=here.environment()).returncode == 0
     said = west(folder, "epg", "targets", EPG_CACHE=str(tmp_path), EPG_NO_INSTALL="1")
     assert said.returncode == (0 if complete else 4)
-    assert complete or f"for {here.python}: installing them is turned off" in said.stderr
+    assert complete or f"for {here.python}: their installation is turned off" in said.stderr
 
 
 class Terminal:
