@@ -109,7 +109,7 @@ def check_cache() -> None:
         raise MissingPackages(
             f"EPG does not use its cache, {folder}: {problem}, and EPG runs programs that are in it\n"
             "hint: delete it, or set EPG_CACHE to another folder, or, if you trust all files in it, "
-            f"remove the permissions of other users: chmod -R go-w {folder}"
+            f"remove the permissions of other users (chmod -R go-w {folder})"
         )
 
 

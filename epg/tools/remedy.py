@@ -20,7 +20,7 @@ def problem_of(finding: Finding, where: Surroundings, tools: Mapping[str, Tool])
     tool = finding.tool
     if finding.status == "wrong":
         wanted = f"{finding.path}/{tool.holds}" if tool.holds else f"{' or '.join(tool.programs)} in {finding.path}"
-        problem = f"The {finding.source} leads to no {tool.title}: there is no {wanted}."
+        problem = f"The {finding.source} does not lead to the {tool.title}: there is no {wanted}."
     elif finding.status == "missing":
         problem = f"{tool.title} was not found{f' ({tool.optional})' if tool.optional else ''}."
     elif finding.status == "old":

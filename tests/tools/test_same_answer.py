@@ -159,7 +159,12 @@ def test_both_find_the_same(name: str, tmp_path: Path) -> None:
         home / place if place else None,
     )
     path, version, problem = cmake_says("_epg_find_sdk(found thing)", data, environment, cmake, tmp_path)
-    words = {"missing": "was not found", "wrong": "leads to no Thing", "old": "EPG needs 1.2.0 or newer", "found": ""}
+    words = {
+        "missing": "was not found",
+        "wrong": "does not lead to the Thing",
+        "old": "EPG needs 1.2.0 or newer",
+        "found": "",
+    }
     assert words[status] in problem and bool(problem) == (status != "found")
     if status == "found":
         assert (Path(path), version) == (found.path, found.version)

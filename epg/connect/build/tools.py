@@ -65,7 +65,7 @@ def missing(
     for finding in findings:
         tool = finding.tool
         if finding.status == "wrong":
-            message = f"the {finding.source} leads to no {tool.title}: {finding.path}"
+            message = f"the {finding.source} does not lead to the {tool.title}: {finding.path}"
             problems.append(MissingTool(tool.name, tool.title, message, f"correct or unset the {finding.source}"))
         elif finding.status in ("old", "missing"):
             message = f"{tool.title} was not found"

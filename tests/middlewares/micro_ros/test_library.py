@@ -57,4 +57,4 @@ def test_pools_that_are_too_small(tmp_path: Path, name: str, value: str, message
 def test_a_folder_without_the_library(tmp_path: Path) -> None:
     done = configure(tmp_path / "build", f"-DMICRO_ROS_PATH={tmp_path}")
     assert done.returncode != 0
-    assert "leads to no micro-ROS client library" in " ".join(done.stderr.split())
+    assert "does not lead to the micro-ROS client library" in " ".join(done.stderr.split())

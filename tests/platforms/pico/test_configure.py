@@ -78,7 +78,7 @@ def test_no_sdk_anywhere(tmp_path: Path) -> None:
 def test_a_variable_that_leads_elsewhere(tmp_path: Path) -> None:
     skip_if_missing(arm_gcc)
     said = configure(tmp_path, SDK, PICO_SDK_PATH=str(tmp_path))
-    assert "The environment variable PICO_SDK_PATH leads to no Raspberry Pi Pico SDK" in said
+    assert "The environment variable PICO_SDK_PATH does not lead to the Raspberry Pi Pico SDK" in said
 
 
 def test_an_sdk_that_is_too_old(tmp_path: Path) -> None:
