@@ -17,8 +17,10 @@ from typing import Any
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 from hatchling.metadata.plugin.interface import MetadataHookInterface
 
-EXAMPLES = ("examples/jiwy", "examples/relbot/plant", "examples/relbot/plant.bindings.yaml")
-"""The example of the README, and the simulated robots that `epg new` writes into projects."""
+JIWY = ("CMakeLists.txt", "README.md", "ideal_loop.py", "jiwy.bindings.yaml", "model", "tracking.yaml")
+PLANTS = ("plant", "plant.bindings.yaml")
+EXAMPLES = (*(f"examples/jiwy/{name}" for name in JIWY + PLANTS), *(f"examples/relbot/{name}" for name in PLANTS))
+"""The example of the README, without a build folder in it, and the simulated robots that `epg new` writes."""
 DATA = ("cmake", "targets", "schemas", "integration", "zephyr", "zephyr_module", "docs/errors.md", *EXAMPLES)
 
 

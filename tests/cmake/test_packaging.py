@@ -67,6 +67,9 @@ def test_the_wheel_holds_the_same_files_as_the_checkout(wheel: Path) -> None:
             for name in files:
                 assert archive.read(f"epg/_data/{name}") == (ROOT / name).read_bytes()
         assert archive.read("epg/_data/docs/errors.md") == (ROOT / "docs/errors.md").read_bytes()
+    assert {name.split("/")[2] for name in names if "epg/_data/" in name} == {*(t.split("/")[0] for t in TREES), "docs"}
+    assert [name for name in names if not name.startswith(("epg/", "epg-")) or "__pycache__" in name] == []
+    assert [name for name in names if name.startswith(("epg/lock/test", "epg/lock/dev"))] == []
     assert {"epg/__main__.py", "epg/emit/templates/app.c.j2", "epg/lock/generator.txt"} <= names
     assert any(name.endswith(".data/data/share/EPG/cmake/EPGConfig.cmake") for name in names)
 
