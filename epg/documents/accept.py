@@ -8,6 +8,7 @@ values fit.  :func:`accepts` implements the keywords of EPG's own schemas, with 
 
 from __future__ import annotations
 
+import operator
 import re
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -18,6 +19,22 @@ Schema = Mapping[str, Any]
 _ANNOTATIONS = frozenset(
     ("$schema", "$id", "$defs", "$comment", "title", "description", "default", "examples", "deprecated", "then", "else")
 )
+_TYPES: Mapping[str, type] = {"object": dict, "array": list, "string": str, "boolean": bool, "null": type(None)}
+_BOUNDS: Mapping[str, Callable[[Any, Any], bool]] = {
+    "minimum": operator.ge,
+    "maximum": operator.le,
+    "exclusiveMinimum": operator.gt,
+    "exclusiveMaximum": operator.lt,
+}
+_LENGTHS: Mapping[str, tuple[type[Any], Callable[[int, Any], bool]]] = {
+    "minLength": (str, operator.ge),
+    "maxLength": (str, operator.le),
+    "minItems": (list, operator.ge),
+    "maxItems": (list, operator.le),
+    "minProperties": (dict, operator.ge),
+    "maxProperties": (dict, operator.le),
+}
+_OF_ONE_TYPE = ("pattern", "uniqueItems", "items", "properties", "additionalProperties", "propertyNames", "required")
 
 
 class _Unknown(Exception):
@@ -30,48 +47,19 @@ def accepts(value: object, schema: Schema, *, partial: bool = False) -> bool:
     With ``partial``, keys may be missing, and every value may be None.
     """
     try:
-        return _fits(value, schema, schema, partial)
+        return _Check(schema, partial).fits(value, schema)
     except _Unknown:
         return False
 
 
-def _fits(value: object, schema: Any, root: Schema, partial: bool) -> bool:
-    """True if ``value`` fits ``schema``, a part of the schema ``root``.  Raises :class:`_Unknown`."""
-    if isinstance(schema, bool):
-        return schema
-    if partial and value is None:
-        return True
-    for keyword, wanted in schema.items():
-        if keyword in _ANNOTATIONS or keyword.startswith("x-"):
-            continue
-        if partial and keyword in ("required", "dependentRequired"):
-            continue
-        check = _KEYWORDS.get(keyword)
-        if check is None:
-            raise _Unknown(keyword)
-        if not check(value, wanted, schema, root, partial):
-            return False
-    return True
-
-
-def _is_type(value: object, name: str) -> bool:
+def _is_type(value: Any, name: str) -> bool:
     if name == "integer":
-        return not isinstance(value, bool) and (
-            isinstance(value, int) or (isinstance(value, float) and value.is_integer())
-        )
+        return _is_type(value, "number") and value % 1 == 0
     if name == "number":
         return not isinstance(value, bool) and isinstance(value, (int, float))
     if name not in _TYPES:
         raise _Unknown(name)
     return isinstance(value, _TYPES[name])
-
-
-_TYPES: Mapping[str, type] = {"object": dict, "array": list, "string": str, "boolean": bool, "null": type(None)}
-
-
-def _type(value: object, wanted: Any, schema: Schema, root: Schema, partial: bool) -> bool:
-    names = [wanted] if isinstance(wanted, str) else wanted
-    return any(_is_type(value, name) for name in names)
 
 
 def _same(one: object, other: object) -> bool:
@@ -82,108 +70,71 @@ def _same(one: object, other: object) -> bool:
     return not any(structures) and isinstance(one, bool) == isinstance(other, bool) and one == other
 
 
-def _enum(value: object, wanted: Any, schema: Schema, root: Schema, partial: bool) -> bool:
-    return any(_same(value, option) for option in wanted)
+class _Check:
+    """A check with the definitions of the schema ``root``.  All its methods raise :class:`_Unknown`."""
 
+    def __init__(self, root: Schema, partial: bool) -> None:
+        self._definitions = root.get("$defs", {})
+        self._partial = partial
+        self._whole = _Check(root, partial=False) if partial else self
 
-def _const(value: object, wanted: Any, schema: Schema, root: Schema, partial: bool) -> bool:
-    return _same(value, wanted)
+    def fits(self, value: object, schema: Any) -> bool:
+        """True if ``value`` fits ``schema``, which is a part of the root."""
+        if isinstance(schema, bool):
+            return schema
+        if self._partial and value is None:
+            return True
+        return all(
+            self._fits_keyword(value, keyword, wanted, schema)
+            for keyword, wanted in schema.items()
+            if keyword not in _ANNOTATIONS and not keyword.startswith("x-")
+        )
 
-
-def _pattern(value: object, wanted: Any, schema: Schema, root: Schema, partial: bool) -> bool:
-    return not isinstance(value, str) or re.search(wanted, value) is not None
-
-
-def _bound(compare: Callable[[Any, Any], bool]) -> Callable[..., bool]:
-    def check(value: object, wanted: Any, schema: Schema, root: Schema, partial: bool) -> bool:
-        return not _is_type(value, "number") or compare(value, wanted)
-
-    return check
-
-
-def _length(kind: type[Any], compare: Callable[[int, Any], bool]) -> Callable[..., bool]:
-    def check(value: Any, wanted: Any, schema: Schema, root: Schema, partial: bool) -> bool:
-        return not isinstance(value, kind) or compare(len(value), wanted)
-
-    return check
-
-
-def _unique(value: object, wanted: Any, schema: Schema, root: Schema, partial: bool) -> bool:
-    if not wanted or not isinstance(value, list):
+    def _fits_keyword(self, value: Any, keyword: str, wanted: Any, schema: Schema) -> bool:
+        """True if ``value`` fits one keyword.  It is one function so that every keyword is one case of a list."""
+        if keyword in _BOUNDS:
+            return not _is_type(value, "number") or _BOUNDS[keyword](value, wanted)
+        if keyword in _LENGTHS:
+            kind, compare = _LENGTHS[keyword]
+            return not isinstance(value, kind) or compare(len(value), wanted)
+        match keyword, value:
+            case "type", _:
+                names = [wanted] if isinstance(wanted, str) else wanted
+                return any(_is_type(value, name) for name in names)
+            case "enum", _:
+                return any(_same(value, option) for option in wanted)
+            case "const", _:
+                return _same(value, wanted)
+            case "anyOf", _:
+                return any(self._whole.fits(value, option) for option in wanted)
+            case "oneOf", _:
+                return sum(self._whole.fits(value, option) for option in wanted) == 1
+            case "if", _:
+                return self.fits(value, schema.get("then" if self._whole.fits(value, wanted) else "else", True))
+            case "$ref", _:
+                name = str(wanted).removeprefix("#/$defs/")
+                if "/" in name or name not in self._definitions:
+                    raise _Unknown(wanted)
+                return self.fits(value, self._definitions[name])
+            case "pattern", str():
+                return re.search(wanted, value) is not None
+            case "uniqueItems", list():
+                if wanted and not all(isinstance(item, str) for item in value):
+                    raise _Unknown("uniqueItems of other things than texts")
+                return not wanted or len(set(value)) == len(value)
+            case "items", list():
+                return all(self.fits(item, wanted) for item in value)
+            case "properties", dict():
+                return all(self.fits(value[key], sub) for key, sub in wanted.items() if key in value)
+            case "additionalProperties", dict():
+                known = schema.get("properties", {})
+                return all(self.fits(child, wanted) for key, child in value.items() if key not in known)
+            case "propertyNames", dict():
+                return all(self.fits(key, wanted) for key in value)
+            case "required", dict():
+                return self._partial or all(key in value for key in wanted)
+            case "dependentRequired", _ if self._partial:
+                return True
+        if keyword not in _OF_ONE_TYPE:
+            raise _Unknown(keyword)
         return True
-    if not all(isinstance(item, str) for item in value):
-        raise _Unknown("uniqueItems of other things than texts")
-    return len(set(value)) == len(value)
-
-
-def _properties(value: object, wanted: Any, schema: Schema, root: Schema, partial: bool) -> bool:
-    if not isinstance(value, dict):
-        return True
-    return all(_fits(value[key], sub, root, partial) for key, sub in wanted.items() if key in value)
-
-
-def _additional(value: object, wanted: Any, schema: Schema, root: Schema, partial: bool) -> bool:
-    if not isinstance(value, dict):
-        return True
-    known = schema.get("properties", {})
-    return all(_fits(child, wanted, root, partial) for key, child in value.items() if key not in known)
-
-
-def _names(value: object, wanted: Any, schema: Schema, root: Schema, partial: bool) -> bool:
-    return not isinstance(value, dict) or all(_fits(key, wanted, root, partial) for key in value)
-
-
-def _required(value: object, wanted: Any, schema: Schema, root: Schema, partial: bool) -> bool:
-    return not isinstance(value, dict) or all(key in value for key in wanted)
-
-
-def _items(value: object, wanted: Any, schema: Schema, root: Schema, partial: bool) -> bool:
-    return not isinstance(value, list) or all(_fits(item, wanted, root, partial) for item in value)
-
-
-def _any_of(value: object, wanted: Any, schema: Schema, root: Schema, partial: bool) -> bool:
-    return any(_fits(value, option, root, False) for option in wanted)
-
-
-def _one_of(value: object, wanted: Any, schema: Schema, root: Schema, partial: bool) -> bool:
-    return sum(_fits(value, option, root, False) for option in wanted) == 1
-
-
-def _if(value: object, wanted: Any, schema: Schema, root: Schema, partial: bool) -> bool:
-    branch = "then" if _fits(value, wanted, root, False) else "else"
-    return _fits(value, schema.get(branch, True), root, partial)
-
-
-def _reference(value: object, wanted: Any, schema: Schema, root: Schema, partial: bool) -> bool:
-    name = str(wanted).removeprefix("#/$defs/")
-    if "/" in name or name not in root.get("$defs", {}):
-        raise _Unknown(wanted)
-    return _fits(value, root["$defs"][name], root, partial)
-
-
-_KEYWORDS: Mapping[str, Callable[..., bool]] = {
-    "type": _type,
-    "enum": _enum,
-    "const": _const,
-    "pattern": _pattern,
-    "minimum": _bound(lambda value, limit: value >= limit),
-    "maximum": _bound(lambda value, limit: value <= limit),
-    "exclusiveMinimum": _bound(lambda value, limit: value > limit),
-    "exclusiveMaximum": _bound(lambda value, limit: value < limit),
-    "minLength": _length(str, lambda length, limit: length >= limit),
-    "maxLength": _length(str, lambda length, limit: length <= limit),
-    "minItems": _length(list, lambda length, limit: length >= limit),
-    "maxItems": _length(list, lambda length, limit: length <= limit),
-    "minProperties": _length(dict, lambda length, limit: length >= limit),
-    "maxProperties": _length(dict, lambda length, limit: length <= limit),
-    "uniqueItems": _unique,
-    "properties": _properties,
-    "additionalProperties": _additional,
-    "propertyNames": _names,
-    "required": _required,
-    "items": _items,
-    "anyOf": _any_of,
-    "oneOf": _one_of,
-    "if": _if,
-    "$ref": _reference,
-}
