@@ -63,8 +63,8 @@ _LIBRARY = words(
     rand srand qsort bsearch exit abort assert defined offsetof va_start va_end va_arg static_assert
     """
 )
-_CPP_LIBRARY = words("min max swap move forward clamp fill copy begin end size")
 _LIBRARY_ALL = _LIBRARY | {f"{name}f" for name in _LIBRARY} | HEAP | _FILES | _PRINTS | _CLOCKS
+_LIBRARY_ALL_CPP = _LIBRARY_ALL | words("min max swap move forward clamp fill copy begin end size")
 
 
 def check_method(method: str, diagnostics: Diagnostics, code: Code, start: int) -> None:
@@ -115,32 +115,18 @@ def check_features(
     reachable = linked.reachable(roots)
     _check_directives(linked, reachable, diagnostics)
     _check_solver_arrays(linked, diagnostics)
-    known = _known_names(linked) | allowed
-    stubs = {
-        function.name: (code, function)
-        for code, function in reachable
-        if _STUB_NAME.match(function.name)
-        and _TRIVIAL_BODY.fullmatch(code.body(function))
-        and function.result != "void"
-    }
-    told: set[str] = set()
-    declarations = _Declarations(linked)
+    calls = _Calls(linked, reachable, diagnostics, foreign, allowed)
     causes = _Causes(foreign)
-    declared = frozenset(name for header in linked.headers for name in header.identifiers)
     for code, function in reachable:
         of_files = causes.look_at_types(code, function)
         for name, start in code.calls(function):
             if name not in _LIBRARY_ALL and (is_declaration(code, start) or is_of_std(code, start)):
                 continue
-            if causes.look_at_call(name, start, code, known):
+            if causes.look_at_call(name, start, code, calls.known):
                 continue
-            if of_files and name not in known:
+            if of_files and name not in calls.known:
                 continue  # an operation on the file, which is already reported
-            if not foreign:
-                _check_declared(name, start, code, declarations, told, diagnostics)
-            elif name not in _LIBRARY_ALL and name not in stubs:
-                continue
-            _check_call(name, start, code, stubs, known, told, diagnostics, foreign, declared, linked)
+            calls.check(name, code, code.file.span(start, start + len(name)))
         if function.owner and not _may_allocate(function):
             for match in re.finditer(r"\bnew\b", code.body(function)):
                 start = function.body_start + match.start()
@@ -175,35 +161,20 @@ class _Declarations:
         """True if a file other than ``code`` defines the function ``name``, and not as static."""
         return bool(self._defined.get(name, set()) - {code.file.path})
 
+    def in_header(self, name: str) -> bool:
+        """True if a header mentions the function ``name``."""
+        return any(name in header for header in self._headers)
+
     def visible(self, name: str, code: Code) -> bool:
         """True if ``code`` defines or declares the function ``name``, or if a header mentions it."""
         path = code.file.path
-        if name in self._own.get(path, ()) or any(name in header for header in self._headers):
+        if name in self._own.get(path, ()) or self.in_header(name):
             return True
         if path not in self._prototypes:
             statements = (s for outside in outside_bodies(code) for s in re.split(r"[{}]|(?<=;)", outside))
             declared = (s for s in statements if s.rstrip("; \t\n").endswith(")") and s.endswith(";"))
             self._prototypes[path] = {match[1] for s in declared for match in _CALLED.finditer(s)}
         return name in self._prototypes[path]
-
-
-def _check_declared(
-    name: str, start: int, code: Code, declarations: _Declarations, told: set[str], diagnostics: Diagnostics
-) -> None:
-    """Reports a call of a function in another C file that no header declares: C assumes that it returns int."""
-    if code.file.path.suffix != ".c" or name in told or not declarations.elsewhere(name, code):
-        return
-    if declarations.visible(name, code):
-        return
-    told.add(name)
-    span = code.file.span(start, start + len(name))
-    message = f"'{name}' is called, but no header declares it"
-    diagnostics.error(
-        "model-undeclared",
-        span,
-        message,
-        hint="include the header that declares it, as in the files that 20-sim exports",
-    )
 
 
 class _Causes:
@@ -255,57 +226,81 @@ def _may_allocate(function: Function) -> bool:
     return function.name.lstrip("~") == function.owner or function.name == "Initialize"
 
 
-def _check_call(
-    name: str,
-    start: int,
-    code: Code,
-    stubs: dict[str, tuple[Code, Function]],
-    known: set[str],
-    told: set[str],
-    diagnostics: Diagnostics,
-    foreign: bool,
-    declared: frozenset[str],
-    linked: Linked,
-) -> None:
-    """Reports one call of a function that a target does not have, or whose effect differs there."""
-    span = code.file.span(start, start + len(name))
-    if name in stubs:
-        holder, stub = stubs[name]
+class _Calls:
+    """Checks the calls in the functions ``reachable``."""
+
+    def __init__(
+        self,
+        linked: Linked,
+        reachable: Sequence[tuple[Code, Function]],
+        diagnostics: Diagnostics,
+        foreign: bool,
+        allowed: frozenset[str],
+    ) -> None:
+        self.known = _known_names(linked) | allowed
+        self._linked = linked
+        self._diagnostics = diagnostics
+        self._foreign = foreign
+        self._stubs = {
+            function.name: (code, function)
+            for code, function in reachable
+            if _STUB_NAME.match(function.name)
+            and _TRIVIAL_BODY.fullmatch(code.body(function))
+            and function.result != "void"
+        }
+        self._declarations = _Declarations(linked)
+        self._told: set[str] = set()  # the functions reported as undefined or undeclared
+
+    def check(self, name: str, code: Code, span: Span) -> None:
+        """Reports a call of a function that a target does not have, or whose effect differs there."""
+        if not self._foreign:
+            self._check_declared(name, code, span)
+        if name in self._stubs:
+            self._report_stub(name, span)
+        elif name in self.known or name in self._told:
+            return
+        elif name in _PRINTS or name in _FILES:
+            message = f"the model calls {name}(): a target does not show its output"
+            hint = "remove the call, or bind an output of the model to a topic"
+            self._diagnostics.warning("model-prints", span, message, hint=hint)
+        elif name in ("rand", "srand"):
+            message = f"the model uses {name}(), whose numbers depend on the C library"
+            hint = "use an input port for the noise if results must be the same on host and target"
+            self._diagnostics.warning("model-random", span, message, hint=hint)
+        elif name in _CLOCKS:
+            message = f"the model reads the computer's clock ({name}()), which targets do not have"
+            hint = "use the time of the simulation" if self._foreign else "use 'time' instead of 'realtime' in 20-sim"
+            self._diagnostics.warning("model-real-time", span, message, hint=hint)
+        elif not self._foreign and name not in (_LIBRARY_ALL if code.file.path.suffix == ".c" else _LIBRARY_ALL_CPP):
+            self._report_missing(name, span)
+
+    def _check_declared(self, name: str, code: Code, span: Span) -> None:
+        """Reports a call of a function in another C file that no header declares: C assumes that it returns int."""
+        if code.file.path.suffix != ".c" or name in self._told or not self._declarations.elsewhere(name, code):
+            return
+        if not self._declarations.visible(name, code):
+            self._told.add(name)
+            message = f"'{name}' is called, but no header declares it"
+            hint = "include the header that declares it, as in the files that 20-sim exports"
+            self._diagnostics.error("model-undeclared", span, message, hint=hint)
+
+    def _report_stub(self, name: str, span: Span) -> None:
+        holder, stub = self._stubs[name]
         match = _STUB_NAME.match(name)
         what = STUBS[match[1]] if match else name
         note = Note("this function does nothing and returns 0", holder.file.span(stub.start, stub.start + len(name)))
         hint = f"write the body of '{name}', or avoid {what} in the model"
-        diagnostics.error(
-            "model-stub", span, f"the model uses {what}, which is empty in exports", hint=hint, notes=[note]
-        )
-        return
-    if name in known or name in told:
-        return
-    if name in _PRINTS or name in _FILES:
-        message = f"the model calls {name}(): a target does not show its output"
-        diagnostics.warning(
-            "model-prints", span, message, hint="remove the call, or bind an output of the model to a topic"
-        )
-    elif name in ("rand", "srand"):
-        diagnostics.warning(
-            "model-random",
-            span,
-            f"the model uses {name}(), whose numbers depend on the C library",
-            hint="use an input port for the noise if results must be the same on host and target",
-        )
-    elif name in _CLOCKS:
-        message = f"the model reads the computer's clock ({name}()), which targets do not have"
-        hint = "use the time of the simulation" if foreign else "use 'time' instead of 'realtime' in 20-sim"
-        diagnostics.warning("model-real-time", span, message, hint=hint)
-    elif name not in _LIBRARY_ALL and not (name in _CPP_LIBRARY and code.file.path.suffix != ".c"):
-        told.add(name)
-        if re.match(r"XX|YY", name) or name.endswith("Submodel") or name in declared:
-            _undefined(name, span, linked, diagnostics)
-        else:
-            message = f"'{name}' is called, but it is not part of the export: dll() functions run only inside 20-sim"
-            diagnostics.error(
-                "model-dll", span, message, hint="put a source file that defines it into the model's folder"
-            )
+        message = f"the model uses {what}, which is empty in exports"
+        self._diagnostics.error("model-stub", span, message, hint=hint, notes=[note])
+
+    def _report_missing(self, name: str, span: Span) -> None:
+        self._told.add(name)
+        if re.match(r"XX|YY", name) or name.endswith("Submodel") or self._declarations.in_header(name):
+            _undefined(name, span, self._linked, self._diagnostics)
+            return
+        message = f"'{name}' is called, but it is not part of the export: dll() functions run only inside 20-sim"
+        hint = "put a source file that defines it into the model's folder"
+        self._diagnostics.error("model-dll", span, message, hint=hint)
 
 
 def _undefined(name: str, span: Span, linked: Linked, diagnostics: Diagnostics) -> None:
