@@ -140,6 +140,10 @@ class Kind:
         found = [port for port in self.ports if port.direction == direction and (port.default or len(self.ports) == 1)]
         return found[0] if found else None
 
+    def reference(self, component: str, port: KindPort) -> str:
+        """The text for a port of ``component`` in bindings.  The component's name alone means its main port."""
+        return component if port == self.main_port(port.direction) else f"{component}.{port.name}"
+
     def of_component(self, parameters: Mapping[str, object]) -> Kind:
         """The kind with the ports of a component that has these ``parameters``.
 

@@ -64,14 +64,9 @@ def component_schema(kind: Kind, with_pins: bool) -> dict[str, Any]:
 
 def communication_schema(middleware: Middleware) -> dict[str, Any]:
     """The JSON Schema of ``communication`` with ``middleware``: the keys of all middlewares, and its own options."""
-    common = load_schema("tcf")["properties"]["communication"]
-    options = {option.name: parameter_schema(option) for option in middleware.options}
-    return {
-        "type": "object",
-        "properties": {**common["properties"], **options},
-        "required": [option.name for option in middleware.options if option.required],
-        "additionalProperties": False,
-    }
+    options = options_schema(middleware)
+    common = load_schema("tcf")["properties"]["communication"]["properties"]
+    return {**options, "properties": {**common, **options["properties"]}}
 
 
 def options_schema(middleware: Middleware) -> dict[str, Any]:
@@ -111,32 +106,13 @@ def typed_parameters(kind: Kind, node: YamlNode, diagnostics: Diagnostics) -> Ma
 
 def _relations(kind: Kind, node: YamlNode, diagnostics: Diagnostics) -> None:
     """Reports keys of a component that its kind does not allow together, and keys that it requires together."""
-    span = node["kind"].span
     for names in kind.exactly_one:
-        stated = [name for name in names if name in node]
-        if not stated:
-            message = f"a {kind.name} must set {_alternatives(names)}"
-            hint = _descriptions(kind, names)
-            diagnostics.error("exactly-one", span, message, hint=hint, notes=extended_from(node["kind"]))
-        elif len(stated) > 1:
-            first = Note("the other one", node.key_span(stated[0]))
-            message = f"a {kind.name} must set {_alternatives(names)}, not more than one of them"
-            notes = [first, *extended_from(node[stated[1]])]
-            hint = "remove one of the two ('" + stated[0] + ": null' if an extended file has set it)"
-            diagnostics.error("exactly-one", node.key_span(stated[1]), message, hint=hint, notes=notes)
+        _at_least_one("exactly-one", _alternatives(names), names, kind, node, diagnostics)
+        _at_most_one("exactly-one", f"{_alternatives(names)}, not more than one of them", names, node, diagnostics)
     for names in kind.at_least_one:
-        if not any(name in node for name in names):
-            message = f"a {kind.name} must set at least one of {', '.join(repr(name) for name in names)}"
-            hint = _descriptions(kind, names)
-            diagnostics.error("at-least-one", span, message, hint=hint, notes=extended_from(node["kind"]))
+        _at_least_one("at-least-one", f"at least one of {_quoted(names)}", names, kind, node, diagnostics)
     for names in kind.at_most_one:
-        stated = [name for name in names if name in node]
-        if len(stated) > 1:
-            first = Note("the other one", node.key_span(stated[0]))
-            message = f"a {kind.name} must set at most one of {', '.join(repr(name) for name in names)}"
-            notes = [first, *extended_from(node[stated[1]])]
-            hint = f"remove one of the two ('{stated[0]}: null' if an extended file has set it)"
-            diagnostics.error("at-most-one", node.key_span(stated[1]), message, hint=hint, notes=notes)
+        _at_most_one("at-most-one", f"at most one of {_quoted(names)}", names, node, diagnostics)
     for key, needed in kind.only_with:
         if key in node and needed not in node:
             message = f"'{key}' has an effect only together with '{needed}'"
@@ -144,13 +120,29 @@ def _relations(kind: Kind, node: YamlNode, diagnostics: Diagnostics) -> None:
             diagnostics.error("only-with", node.key_span(key), message, hint=hint, notes=extended_from(node[key]))
 
 
-def _descriptions(kind: Kind, names: tuple[str, ...]) -> str:
-    described = [(parameter.name, parameter.description) for parameter in kind.parameters]
-    described += [(use.name, use.description) for use in kind.uses]
-    return "; ".join(f"{name}: {description}" for name, description in described if name in names)
+def _at_least_one(
+    id: str, what: str, names: tuple[str, ...], kind: Kind, node: YamlNode, diagnostics: Diagnostics
+) -> None:
+    if not any(name in node for name in names):
+        described = [(parameter.name, parameter.description) for parameter in kind.parameters]
+        described += [(use.name, use.description) for use in kind.uses]
+        hint = "; ".join(f"{name}: {description}" for name, description in described if name in names)
+        message = f"a {kind.name} must set {what}"
+        diagnostics.error(id, node["kind"].span, message, hint=hint, notes=extended_from(node["kind"]))
+
+
+def _at_most_one(id: str, what: str, names: tuple[str, ...], node: YamlNode, diagnostics: Diagnostics) -> None:
+    stated = [name for name in names if name in node]
+    if len(stated) > 1:
+        notes = [Note("the other one", node.key_span(stated[0])), *extended_from(node[stated[1]])]
+        message = f"a {node['kind'].value} must set {what}"
+        hint = f"remove one of the two ('{stated[0]}: null' if an extended file has set it)"
+        diagnostics.error(id, node.key_span(stated[1]), message, hint=hint, notes=notes)
 
 
 def _alternatives(names: tuple[str, ...]) -> str:
-    quoted = [f"'{name}'" for name in names]
-    start = "either " if len(names) == 2 else "exactly one of "
-    return start + (" or ".join(quoted) if len(names) == 2 else ", ".join(quoted))
+    return "either " + " or ".join(map(repr, names)) if len(names) == 2 else f"exactly one of {_quoted(names)}"
+
+
+def _quoted(names: tuple[str, ...]) -> str:
+    return ", ".join(map(repr, names))

@@ -97,7 +97,7 @@ def _component(component: Component, configuration: Configuration, claims: dict[
             {
                 "name": port.name,
                 "direction": port.direction,
-                "reference": _reference(component, port),
+                "reference": component.kind.reference(component.name, port),
                 "unit": component_steps(component, port)[1],
                 "type": port.type,
                 "summary": port.description,
@@ -105,11 +105,6 @@ def _component(component: Component, configuration: Configuration, claims: dict[
             for port in kind.ports
         ],
     }
-
-
-def _reference(component: Component, port: KindPort) -> str:
-    """The text for a component port in bindings.  The component's name alone is enough for its main port."""
-    return component.name if port == component.kind.main_port(port.direction) else f"{component.name}.{port.name}"
 
 
 def _wires(loaded: Loaded) -> dict[str, list[Data]]:

@@ -72,8 +72,7 @@ def _line(port: Port, wire: Wire | None, types: dict[str, str], app: Application
     if wire is None:
         return _Line(port, None, ("", ""), ("", ""), "unconnected")
     component = wire.component
-    main = component.kind.main_port(wire.component_port.direction)
-    name = component.name if wire.component_port == main else f"{component.name}.{wire.component_port.name}"
+    name = component.kind.reference(component.name, wire.component_port)
     reaches = port.direction == "input" or not any(p.direction == "source" for p in component.kind.ports)
     beyond = outside(component, types, app) if reaches else ("", "")  # an output that resets a sensor does not use pins
     return _Line(port, wire, (name, component.kind.name), beyond, conversion(wire.steps))

@@ -6,12 +6,11 @@ The boxes are in the order of time.  Their widths do not show durations, because
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 from epg.graph.svg import Picture, width
 from epg.quantity import show
-from epg.resolve.application import Application, Topic, Wire
+from epg.resolve.application import Application, Wire
 
 _SMALL = 10.5
 _LINE = 15.0
@@ -55,8 +54,7 @@ def control_stages(app: Application) -> tuple[Stage, ...]:
 
 
 def _source(wire: Wire) -> str:
-    main = wire.component.kind.main_port(wire.component_port.direction)
-    return wire.component.name if wire.component_port == main else f"{wire.component.name}.{wire.component_port.name}"
+    return wire.component.kind.reference(wire.component.name, wire.component_port)
 
 
 def draw_schedule(app: Application, title: str) -> str:
@@ -64,7 +62,7 @@ def draw_schedule(app: Application, title: str) -> str:
     stages = control_stages(app)
     period = show(app.period, "time")
     words = "; then ".join(f"{stage.name}: {', '.join(stage.lines)}" for stage in stages)
-    receive, send = _topics(app.subscriptions), _topics(app.publications)
+    receive, send = (tuple(topic.name for topic in topics) for topics in (app.subscriptions, app.publications))
     communication = show(app.communication.period, "time")
     description = (
         f"Every {period}: {words}. Beside it, every {communication}: receive {', '.join(receive) or 'nothing'}; "
@@ -75,66 +73,57 @@ def draw_schedule(app: Application, title: str) -> str:
     x = 0.0
     centres: dict[str, float] = {}
     for number, stage in enumerate(stages):
-        wide = 2 * _PAD + max(width(stage.name, 12), *(width(line, _SMALL) for line in stage.lines))
-        picture.box(x, 0, wide, high, stage.style)
-        picture.text(x + wide / 2, 18, stage.name, "middle", 12, "bold")
-        for index, line in enumerate(stage.lines):
-            picture.text(x + wide / 2, 36 + index * _LINE, line, "middle", _SMALL)
+        centre = x + _wide(stage) / 2
+        _box(picture, centre, 0, high, stage)
         if number:
             picture.arrow([(x - _GAP, high / 2), (x, high / 2)])
-        centres[stage.name] = x + wide / 2
-        x += wide + _GAP
-    end = x
-    _axis(picture, end, period, app, centres)
-    _communication(picture, receive, send, communication, app, centres, high)
-    picture.text(end / 2, -76, title, "middle", 15, "bold")
-    picture.text(end / 2, -58, "one control cycle; widths do not show durations", "middle", 11, "faint")
+        centres[stage.name] = centre
+        x += _wide(stage) + _GAP
+    timer = app.tick.resource if app.tick else "the system's timer"
+    _axis(picture, x, period, timer)
+    what = f"communication: {app.communication.middleware.name}, every {communication}"
+    boxes = Stage("receive", receive or ("nothing",)), Stage("send", send or ("nothing",))
+    _communication(picture, *boxes, what, centres, high)
+    picture.text(x / 2, -76, title, "middle", 15, "bold")
+    picture.text(x / 2, -58, "one control cycle; widths do not show durations", "middle", 11, "faint")
     return picture.render()
 
 
-def _axis(picture: Picture, end: float, period: str, app: Application, centres: dict[str, float]) -> None:
+def _wide(stage: Stage) -> float:
+    return 2 * _PAD + max(width(stage.name, 12), *(width(line, _SMALL) for line in stage.lines))
+
+
+def _box(picture: Picture, centre: float, top: float, high: float, stage: Stage) -> None:
+    picture.box(centre - _wide(stage) / 2, top, _wide(stage), high, stage.style)
+    picture.text(centre, top + 18, stage.name, "middle", 12, "bold")
+    for index, line in enumerate(stage.lines):
+        picture.text(centre, top + 36 + index * _LINE, line, "middle", _SMALL)
+
+
+def _axis(picture: Picture, end: float, period: str, timer: str) -> None:
     picture.arrow([(-10, -16), (end, -16)])
     picture.line([(0, -22), (0, -10)])
     picture.text(0, -28, "tick", "start", 11, "bold")
     picture.line([(end - 12, -22), (end - 12, -10)])
     picture.text(end, -28, f"next tick, {period} later", "end", 11, "bold")
-    timer = app.tick.resource if app.tick else "the system's timer"
     picture.text(width("tick", 11) + 10, -28, f"by {timer}", "start", _SMALL, "faint")
 
 
 def _communication(
-    picture: Picture,
-    receive: Sequence[str],
-    send: Sequence[str],
-    period: str,
-    app: Application,
-    centres: dict[str, float],
-    high: float,
+    picture: Picture, receive: Stage, send: Stage, title: str, centres: dict[str, float], high: float
 ) -> None:
     """Draws the communication side, which runs on the other core or in a context of lower priority.
 
     The two sides exchange complete sets of values.  Neither side waits for the other.
     """
     top = high + 60
-    middleware = app.communication.middleware.name
-    lines = (("receive", receive, "commands", -1), ("send", send, "hand over", 1))
-    for name, topics, stage, direction in lines:
-        texts = list(topics) or ["nothing"]
-        wide = 2 * _PAD + max(width(name, 12), *(width(text, _SMALL) for text in texts))
-        centre = centres[stage]
-        picture.box(centre - wide / 2, top, wide, 34 + _LINE * len(texts), "box")
-        picture.text(centre, top + 18, name, "middle", 12, "bold")
-        for index, text in enumerate(texts):
-            picture.text(centre, top + 36 + index * _LINE, text, "middle", _SMALL)
-        points = [(centre, top), (centre, high)] if direction < 0 else [(centre, high), (centre, top)]
-        picture.arrow(points, "line", "the newest values, all at once")
-        side = 8 if direction < 0 else -8
-        anchor = "start" if direction < 0 else "end"
+    left, right = centres["commands"], centres["hand over"]
+    for stage, centre, ends, side, anchor in (
+        (receive, left, (top, high), 8, "start"),
+        (send, right, (high, top), -8, "end"),
+    ):
+        _box(picture, centre, top, 34 + _LINE * len(stage.lines), stage)
+        picture.arrow([(centre, end) for end in ends], "line", "the newest values, all at once")
         picture.text(centre + side, high + 28, "newest values,", anchor, _SMALL, "faint")
         picture.text(centre + side, high + 42, "without waiting", anchor, _SMALL, "faint")
-    left, right = centres["commands"], centres["hand over"]
-    picture.text((left + right) / 2, top + 18, f"communication: {middleware}, every {period}", "middle", 12, "bold")
-
-
-def _topics(topics: Sequence[Topic]) -> list[str]:
-    return [topic.name for topic in topics]
+    picture.text((left + right) / 2, top + 18, title, "middle", 12, "bold")

@@ -7,7 +7,7 @@ of a grid, and terminals of components are between these lines.  Wires therefore
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from epg.catalog.hardware import Target
@@ -64,20 +64,28 @@ def terminals(
     sides: dict[str, list[Terminal]] = {"left": [], "right": []}
     with_pins = [name for name, component in components.items() if component.kind.pins]
     for name in with_pins:
-        for claim in components[name].kind.claims:
-            found = assignments.get((name, claim.name))
-            if found is None or not found.pins_are_real:
-                continue
-            for signal, pin in claim.signals.items():
-                if signal not in found.pins:
-                    continue
-                chip_pin = target.soc.pins[found.pins[signal]]
-                for side, contacts in places.items():
-                    for place, contact in contacts.items():
-                        if contact.pin == chip_pin:
-                            colour = with_pins.index(name) % WIRES
-                            sides[side].append(Terminal(name, pin, contact, place, found.resource, colour))
+        for signal, pin, found in _signals(target, components[name].kind, _claims(name, assignments)):
+            for side, contacts in places.items():
+                for place, contact in contacts.items():
+                    if contact.pin == pin:
+                        colour = with_pins.index(name) % WIRES
+                        sides[side].append(Terminal(name, signal, contact, place, found.resource, colour))
     return {side: sorted(found, key=lambda terminal: terminal.place) for side, found in sides.items()}
+
+
+def _claims(component: str, assignments: Mapping[ClaimKey, Assignment]) -> dict[str, Assignment]:
+    return {claim: found for (name, claim), found in assignments.items() if name == component}
+
+
+def _signals(target: Target, kind: Kind, claims: Mapping[str, Assignment]) -> Iterator[tuple[str, str, Assignment]]:
+    """The signals of a component with these ``claims``, each with the pin of the SoC that carries it."""
+    for claim in kind.claims:
+        found = claims.get(claim.name)
+        if found is None or not found.pins_are_real:
+            continue
+        for signal, pin in claim.signals.items():
+            if signal in found.pins:
+                yield pin, target.soc.pins[found.pins[signal]], found
 
 
 def elsewhere(
@@ -89,14 +97,11 @@ def elsewhere(
     shown = {contact.pin for row in layout.rows for contact in row.contacts}
     result = []
     for name, component in components.items():
-        for claim in component.kind.claims:
-            found = assignments.get((name, claim.name))
-            for signal, pin in claim.signals.items() if found is not None and found.pins_are_real else ():
-                chip_pin = target.soc.pins[found.pins[signal]] if found is not None and signal in found.pins else ""
-                if chip_pin and chip_pin not in shown:
-                    onboard = target.board.onboard.get(chip_pin)
-                    what = onboard.title if onboard is not None else "see the board's pinout"
-                    result.append(f"{name} {pin}: {pin_title(target, chip_pin)}, {what}")
+        for signal, pin, _ in _signals(target, component.kind, _claims(name, assignments)):
+            if pin not in shown:
+                onboard = target.board.onboard.get(pin)
+                what = onboard.title if onboard is not None else "see the board's pinout"
+                result.append(f"{name} {signal}: {pin_title(target, pin)}, {what}")
     return result
 
 
@@ -108,14 +113,7 @@ def pin_title(target: Target, pin: str) -> str:
 
 def wire_texts(kind: Kind, claims: Mapping[str, Assignment], target: Target) -> list[str]:
     """The pin of each signal, such as ``a GP10``, of a component with these ``claims``.  Empty if there are no pins."""
-    texts = []
-    for claim in kind.claims:
-        found = claims.get(claim.name)
-        for signal, pin in claim.signals.items() if found is not None and found.pins_are_real else ():
-            assert found is not None
-            if signal in found.pins:
-                texts.append(f"{pin} {pin_title(target, target.soc.pins[found.pins[signal]])}")
-    return texts
+    return [f"{signal} {pin_title(target, pin)}" for signal, pin, _ in _signals(target, kind, claims)]
 
 
 def _places(layout: Layout, side: str) -> dict[int, Contact]:
