@@ -17,6 +17,7 @@ from dataclasses import dataclass
 
 from epg.documents.source_file import SourceFile
 from epg.models.identifiers import words
+from epg.source import Span
 
 KEYWORDS = words(
     """
@@ -119,6 +120,17 @@ class Code:
         for match in _CALL.finditer(self.file.code, function.body_start, function.body_end):
             if match[1] not in KEYWORDS:
                 yield match[1], match.start(1)
+
+    def global_names(self) -> set[str]:
+        """The functions, the classes of methods, and the variables that the file defines, except static ones."""
+        names = {function.owner or function.name for function in self.functions if not function.static}
+        return names | {variable.name for variable in self.variables if not variable.static}
+
+    def definition(self, name: str) -> Span | None:
+        """The position of the function or variable ``name``; None if the file does not define it."""
+        starts = [function.start for function in self.functions if function.name == name]
+        starts += [variable.start for variable in self.variables if variable.name == name]
+        return self.file.span(starts[0], starts[0] + len(name)) if starts else None
 
 
 def parse_code(file: SourceFile) -> Code:

@@ -67,35 +67,26 @@ def read_variables(root: Element, standard: int, diagnostics: Diagnostics) -> tu
     return _variables_2(root, diagnostics) if standard == 2 else _variables_3(root, diagnostics)
 
 
-def _units_of_types(root: Element, standard: int) -> dict[str, str]:
-    """The units of the types in ``<TypeDefinitions>``, by the names with which variables refer to them."""
+def _types(root: Element, standard: int) -> tuple[dict[str, str], dict[str, tuple[int, int]]]:
+    """The units, and the lowest and highest items of enumerations, of the types in ``<TypeDefinitions>`` by name."""
     definitions = root.find("TypeDefinitions")
     units: dict[str, str] = {}
-    for item in definitions.children if definitions is not None else ():
-        holder = item.find("Real") if standard == 2 else item
-        if holder is not None:
-            units[item.attributes.get("name", "")] = holder.attributes.get("unit", "")
-    return units
-
-
-def _limits_of_types(root: Element, standard: int) -> dict[str, tuple[int, int]]:
-    """The lowest and the highest item of each enumeration in ``<TypeDefinitions>``, by its name."""
-    definitions = root.find("TypeDefinitions")
     limits: dict[str, tuple[int, int]] = {}
     for item in definitions.children if definitions is not None else ():
-        holder = item.find("Enumeration") if standard == 2 else item
-        values = [
-            int(child.attributes["value"])
-            for child in (holder.children if holder is not None else ())
-            if child.name == "Item" and re.fullmatch(r"-?\d{1,9}", child.attributes.get("value", ""))
-        ]
+        name = item.attributes.get("name", "")
+        real, enumeration = (item.find("Real"), item.find("Enumeration")) if standard == 2 else (item, item)
+        if real is not None:
+            units[name] = real.attributes.get("unit", "")
+        items = [child for child in enumeration.children if child.name == "Item"] if enumeration is not None else []
+        texts = [child.attributes.get("value", "") for child in items]
+        values = [int(text) for text in texts if re.fullmatch(r"-?\d{1,9}", text)]
         if values:
-            limits[item.attributes.get("name", "")] = min(values), max(values)
-    return limits
+            limits[name] = min(values), max(values)
+    return units, limits
 
 
 def _variables_2(root: Element, diagnostics: Diagnostics) -> tuple[Variable, ...]:
-    units, limits = _units_of_types(root, 2), _limits_of_types(root, 2)
+    units, limits = _types(root, 2)
     elements = _listed(root, diagnostics)
     states: set[int] = set()  # positions in the list, from 0
     for element in elements:
@@ -113,7 +104,7 @@ def _variables_2(root: Element, diagnostics: Diagnostics) -> tuple[Variable, ...
 
 
 def _variables_3(root: Element, diagnostics: Diagnostics) -> tuple[Variable, ...]:
-    units, limits = _units_of_types(root, 3), _limits_of_types(root, 3)
+    units, limits = _types(root, 3)
     elements = _listed(root, diagnostics)
     states = {element.attributes["derivative"] for element in elements if "derivative" in element.attributes}
     sizes = _sizes(elements)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics, did_you_mean
@@ -17,7 +17,7 @@ from epg.documents.source_file import is_includable, read_source
 from epg.documents.text_file import is_file, is_folder, one_line
 from epg.documents.yaml_file import load_yaml, newer_version
 from epg.models import details
-from epg.models.c_code import parse_code
+from epg.models.c_code import Code, parse_code
 from epg.models.folders import source_files
 from epg.models.hand_written_names import Names
 from epg.models.identifiers import is_reserved, to_identifier
@@ -237,24 +237,16 @@ class _Reader:
             )
         return name
 
-    def _renames(self, sources: tuple[Path, ...]) -> tuple[str, ...]:
-        """The global symbols of C sources, which generated macros rename."""
-        names: set[str] = set()
-        macros: set[str] = set()
-        for path in sources:
-            file = read_source(path, self.diagnostics)
-            if file is None:
-                continue
-            code = parse_code(file)
-            names |= {function.name for function in code.functions if not function.static}
-            names |= {variable.name for variable in code.variables if not variable.static}
-            macros |= {macro.name for macro in code.macros}
-        return tuple(sorted(names - macros))
+    def _parse(self, paths: Iterable[Path]) -> list[Code]:
+        files = [read_source(path, self.diagnostics) for path in paths]
+        return [parse_code(file) for file in files if file is not None]
 
-    def _system_headers(self, files: list[Path]) -> tuple[str, ...]:
-        names: set[str] = set()
-        for path in files:
-            file = read_source(path, self.diagnostics)
-            if file is not None:
-                names |= {include.name for include in parse_code(file).includes if include.system}
-        return tuple(sorted(names))
+    def _renames(self, sources: Iterable[Path]) -> tuple[str, ...]:
+        """The global symbols of C sources, which generated macros rename."""
+        codes = self._parse(sources)
+        names = {name for code in codes for name in code.global_names()}
+        return tuple(sorted(names - {macro.name for code in codes for macro in code.macros}))
+
+    def _system_headers(self, files: Iterable[Path]) -> tuple[str, ...]:
+        codes = self._parse(files)
+        return tuple(sorted({include.name for code in codes for include in code.includes if include.system}))

@@ -186,10 +186,8 @@ class Names:
             file = read_source(path, Diagnostics())
             if file is None or name not in file.text:
                 continue
-            code = parse_code(file)
-            items = [function.start for function in code.functions if function.name == name]
-            items += [variable.start for variable in code.variables if variable.name == name]
-            notes += [Note("it is defined here", code.file.span(at, at + len(name))) for at in items[:1]]
+            span = parse_code(file).definition(name)
+            notes += [Note("it is defined here", span)] if span else []
         return notes[:3]
 
     @cached_property

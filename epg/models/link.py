@@ -170,7 +170,7 @@ class _Linker:
             self.units.append(chosen)
             return
         self.good = False
-        places = [Note("defined here", _definition_span(code, name)) for code in holders]
+        places = [Note("defined here", code.definition(name) or code.file.span(0)) for code in holders]
         self.diagnostics.error(
             "model-ambiguous-definition",
             self.main.file.span(0),
@@ -214,7 +214,7 @@ class _Linker:
                 code = parse_code(file)
                 for name, holders in _definitions([code]).items():
                     if name in names:
-                        found.setdefault(name, _definition_span(holders[0], name))
+                        found.setdefault(name, holders[0].definition(name) or holders[0].file.span(0))
         return found
 
     def _missing(self) -> set[str]:
@@ -277,17 +277,9 @@ def _definitions(pool: Iterable[Code]) -> Mapping[str, list[Code]]:
     """The files that define each function, class and variable that is not static."""
     result: dict[str, list[Code]] = {}
     for code in pool:
-        names = {function.owner or function.name for function in code.functions if not function.static}
-        names |= {variable.name for variable in code.variables if not variable.static}
-        for name in sorted(names):
+        for name in sorted(code.global_names()):
             result.setdefault(name, []).append(code)
     return result
-
-
-def _definition_span(code: Code, name: str) -> Span:
-    places = [function.start for function in code.functions if function.name == name]
-    places += [variable.start for variable in code.variables if variable.name == name]
-    return code.file.span(places[0], places[0] + len(name)) if places else code.file.span(0)
 
 
 def _choose(holders: list[Code], main: Path) -> Code | None:
