@@ -11,7 +11,7 @@ from epg.check.configuration import Component
 from epg.data import data_folder
 from epg.diagnostics import Diagnostics
 from epg.documents.yaml_file import load_yaml
-from epg.emit.project import Axis
+from epg.emit.project import MovedAxis
 from epg.models import Model
 from epg.quantity import dimension_of, normal_unit
 
@@ -48,7 +48,7 @@ def plant_files(folder: Path) -> dict[str, bytes]:
     return {**files, BINDINGS: text.encode()}
 
 
-def robot_axes(folder: Path, components: Mapping[str, Component], used: Collection[str]) -> list[Axis]:
+def robot_axes(folder: Path, components: Mapping[str, Component], used: Collection[str]) -> list[MovedAxis]:
     """An axis for each subscriber among ``used`` that moves a plant output.
 
     The signal that follows is the plant output, and the signal that drives the plant input, whose names share the most
@@ -69,11 +69,11 @@ def robot_axes(folder: Path, components: Mapping[str, Component], used: Collecti
         duty = _nearest(component.name, ports["inputs"])
         if position:
             duty = f"plant.inputs.{duty}" if duty else ""
-            axes.append(Axis(component.name, str(topic), f"plant.outputs.{position}", duty))
+            axes.append(MovedAxis(component.name, str(topic), f"plant.outputs.{position}", duty))
     return axes
 
 
-def model_axes(model: Model, topics: Mapping[str, str]) -> list[Axis]:
+def model_axes(model: Model, topics: Mapping[str, str]) -> list[MovedAxis]:
     """An axis for each real input to which ``topics`` (port -> topic) gives a topic.
 
     The signal that follows is the input itself; the signal that drives is the first output of the model.
@@ -82,7 +82,7 @@ def model_axes(model: Model, topics: Mapping[str, str]) -> list[Axis]:
     duty = f"outputs.{outputs[0]}" if outputs else ""
     real = [port for port in model.inputs if port.type == "real" and port.name in topics]
     return [
-        Axis(topics[port.name], topics[port.name], f"inputs.{port.name}", duty, _unit(port.unit))
+        MovedAxis(topics[port.name], topics[port.name], f"inputs.{port.name}", duty, _unit(port.unit))
         for port in real
         if _SIGNAL_PART.fullmatch(port.name)
     ]

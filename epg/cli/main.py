@@ -49,7 +49,7 @@ WITHOUT_PACKAGES = ("doctor", "find-tools")
 EXIT_OK, EXIT_MISTAKES, EXIT_USAGE, EXIT_BUG, EXIT_MISSING = range(5)
 
 
-class MissingTool(Exception):
+class MissingProgram(Exception):
     """Something is missing on the computer.  The message says how to install it."""
 
 
@@ -132,7 +132,7 @@ def _run(options: argparse.Namespace) -> int:
     except UserError as problem:
         if problem.diagnostics is not diagnostics:
             diagnostics.items.extend(problem.diagnostics)
-    except (MissingTool, bootstrap.MissingPackages) as problem:
+    except (MissingProgram, bootstrap.MissingPackages) as problem:
         sys.stderr.write(f"epg: {problem}\n")
         return EXIT_MISSING
     except BrokenPipeError:

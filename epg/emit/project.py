@@ -33,7 +33,7 @@ class StandIn:
 
 
 @dataclass(frozen=True)
-class Axis:
+class MovedAxis:
     """An axis that a scenario moves.
 
     ``setpoint`` is the topic with its setpoint, ``position`` the signal that follows the setpoint, and ``duty`` the
@@ -76,7 +76,7 @@ class ProjectPlan:
     actuators: Sequence[str]
     versions: Mapping[str, str]
     plant: bool = False
-    axes: Sequence[Axis] = ()
+    axes: Sequence[MovedAxis] = ()
 
     activate: ClassVar[str] = ACTIVATE
     install: ClassVar[str] = install_command()

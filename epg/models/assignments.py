@@ -31,7 +31,7 @@ _LIST_END = re.compile(r"\bNULL\b|\}")
 
 
 @dataclass(frozen=True)
-class Assignment:
+class ArrayAssignment:
     """A line ``array[index] = value;  /* name {unit} */``.  ``name`` and ``unit`` are empty if there is no comment.
 
     ``start``, ``value_start`` and ``value_end`` are offsets into the text of the file.
@@ -60,7 +60,7 @@ class PortLine:
     span: Span
 
 
-def assignments(file: SourceFile, start: int = 0, end: int | None = None) -> Iterator[Assignment]:
+def assignments(file: SourceFile, start: int = 0, end: int | None = None) -> Iterator[ArrayAssignment]:
     """All assignments to an array element with a literal index, in the order of the code."""
     code = file.code
     statement = start
@@ -72,7 +72,7 @@ def assignments(file: SourceFile, start: int = 0, end: int | None = None) -> Ite
         value_end = match.end() + len(code[match.end() : mark.start()].rstrip())
         comment = _COMMENT.match(file.text, mark.end())
         name, unit = split_name((comment[1] or comment[2] or "") if comment else "")
-        yield Assignment(
+        yield ArrayAssignment(
             match[1],
             int(match[2]),
             file.text[match.end() : value_end],

@@ -17,7 +17,7 @@ from epg.documents.source_file import SourceFile, read_source
 from epg.documents.text_file import one_line
 from epg.models import details
 from epg.models.assignments import (
-    Assignment,
+    ArrayAssignment,
     PortLine,
     assignments,
     exact_number,
@@ -144,7 +144,7 @@ class _Importer(ExportReader):
         expected = self._stated_count(f"number_of_{kind}s")
         return make_ports(lines, kind, names, self.metadata.configuration, self.diagnostics, self.whole, expected)
 
-    def _settings(self, roots: list[Function]) -> list[tuple[Code, Assignment]] | None:
+    def _settings(self, roots: list[Function]) -> list[tuple[Code, ArrayAssignment]] | None:
         """The lines that set parameters, with their files.  None, after an error, if no file defines the array."""
         array = self._array("P")
         settings = [
@@ -161,18 +161,18 @@ class _Importer(ExportReader):
             return None
         return settings
 
-    def _elements(self, lines: list[PortLine]) -> tuple[details.Element, ...]:
+    def _elements(self, lines: list[PortLine]) -> tuple[details.PortElement, ...]:
         """The array element of each port, for an export without vectors of inputs and outputs; else empty."""
         if not self._vectorless():
             return ()
         ordered = sorted(lines, key=lambda line: line.index)
-        return tuple(details.Element(self._member(line.array), line.array_index) for line in ordered)
+        return tuple(details.PortElement(self._member(line.array), line.array_index) for line in ordered)
 
     def _details(
         self,
         initialize: Function | None,
-        inputs: tuple[details.Element, ...],
-        outputs: tuple[details.Element, ...],
+        inputs: tuple[details.PortElement, ...],
+        outputs: tuple[details.PortElement, ...],
         places: tuple[tuple[details.Place, ...], ...],
     ) -> details.CFunctionExport:
         """The details of the export that the emitter needs."""

@@ -34,7 +34,7 @@ class ConfiguredPort:
 
 
 @dataclass(frozen=True)
-class Configuration:
+class ExportConfiguration:
     """The data of one file.  ``step`` is a text in seconds, or empty."""
 
     path: Path
@@ -67,7 +67,7 @@ def find_configuration(directory: Path) -> Path | None:
     return None
 
 
-def load_configuration(path: Path, diagnostics: Diagnostics) -> Configuration | None:
+def load_configuration(path: Path, diagnostics: Diagnostics) -> ExportConfiguration | None:
     """The configuration in ``path``.  None if it cannot be used; an unreadable file is reported as a warning."""
     root = load_xml(path, diagnostics, required=False)
     if root is None or root.name != "modelConfiguration":
@@ -75,7 +75,7 @@ def load_configuration(path: Path, diagnostics: Diagnostics) -> Configuration | 
     variables = root.find("modelVariables")
     ports = [_port(element) for element in (variables.children if variables else [])]
     step = root.find("run", "stepSize")
-    return Configuration(
+    return ExportConfiguration(
         path,
         root.text_of("run", "stepSize"),
         step.span if step else root.span,
@@ -83,7 +83,7 @@ def load_configuration(path: Path, diagnostics: Diagnostics) -> Configuration | 
     )
 
 
-def load_model_description(path: Path, diagnostics: Diagnostics) -> Configuration | None:
+def load_model_description(path: Path, diagnostics: Diagnostics) -> ExportConfiguration | None:
     """The ports of an FMU 1.0 or 2.0.  None if ``path`` cannot be used; an unreadable file is reported as a warning."""
     root = load_xml(path, diagnostics, required=False)
     if root is None or root.name != "fmiModelDescription":
@@ -102,7 +102,7 @@ def load_model_description(path: Path, diagnostics: Diagnostics) -> Configuratio
         description = element.attributes.get("description", "")
         ports.append(ConfiguredPort(name, direction, _type(kind), unit, description, "", int(reference), element.span))
     attributes = experiment.attributes if experiment else {}
-    return Configuration(
+    return ExportConfiguration(
         path,
         attributes.get("stepSize", ""),
         experiment.span if experiment else root.span,

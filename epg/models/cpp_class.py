@@ -10,7 +10,7 @@ from epg.diagnostics import Diagnostics
 from epg.documents.source_file import is_includable
 from epg.models import details
 from epg.models.assignments import (
-    Assignment,
+    ArrayAssignment,
     assignments,
 )
 from epg.models.c_code import Code, integer_value, typedefs
@@ -111,7 +111,7 @@ class _Importer(ExportReader):
         )
         return model if self.agrees(model, self._prefix()) else None
 
-    def _place(self, line: Assignment) -> details.Place:
+    def _place(self, line: ArrayAssignment) -> details.Place:
         return details.Place(self.file.path, line.value_start, line.value_end)
 
     def _prefix(self) -> str:

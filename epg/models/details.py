@@ -25,7 +25,7 @@ class EntryPoint:
 
 
 @dataclass(frozen=True)
-class Element:
+class PortElement:
     """The array element that holds a port, in exports without ``u[]`` and ``y[]``: sources of FMUs."""
 
     array: str
@@ -65,8 +65,8 @@ class CFunctionExport:
     terminate: EntryPoint
     calculate_static: EntryPoint | None
     model_initialize: EntryPoint | None  # None if Initialize calls it; it does not in FMUs of 20-sim 4.6 and later
-    inputs: tuple[Element, ...]  # empty if the entry points take vectors of ports
-    outputs: tuple[Element, ...]
+    inputs: tuple[PortElement, ...]  # empty if the entry points take vectors of ports
+    outputs: tuple[PortElement, ...]
     parameters: str  # names of arrays
     states: str
     rates: str

@@ -24,7 +24,7 @@ from epg.models.fmu_description import Description, read_description
 from epg.models.fmu_features import check_fmu, check_guid, uses_heap
 from epg.models.fmu_files import DESCRIPTION, FmuFiles, read_fmu_files
 from epg.models.fmu_sources import FMI_HEADERS, FmuSources, find_sources
-from epg.models.fmu_variables import TYPES_2, TYPES_3, Variable
+from epg.models.fmu_variables import TYPES_2, TYPES_3, FmuVariable
 from epg.models.global_variables import global_variables
 from epg.models.identifiers import to_identifier, unique_identifiers, unique_titles
 from epg.models.link import Linked
@@ -242,7 +242,7 @@ def _groups(description: Description, direction: str) -> tuple[FmuPorts, ...]:
 
 def _parameters(description: Description) -> tuple[tuple[Parameter, ...], tuple[FmuParameter, ...]]:
     """The scalar parameters whose start value is a number, tunable ones first.  Others keep their start values."""
-    chosen: list[tuple[Variable, float]] = []
+    chosen: list[tuple[FmuVariable, float]] = []
     for variable in description.variables:
         if variable.causality == "parameter" and not variable.dimensions:
             value = number(variable.start)

@@ -11,7 +11,7 @@ from epg.diagnostics import Diagnostics
 from epg.documents.text_file import one_line
 from epg.documents.xml_file import Element
 from epg.models.assignments import exact_number, is_step
-from epg.models.fmu_variables import Variable, read_variables
+from epg.models.fmu_variables import FmuVariable, read_variables
 from epg.source import Span
 
 
@@ -34,7 +34,7 @@ class Description:
     step: Fraction | None
     step_span: Span
     internal_step: Fraction | None
-    variables: tuple[Variable, ...]
+    variables: tuple[FmuVariable, ...]
     sources: tuple[tuple[str, Span], ...] | None
     span: Span
 

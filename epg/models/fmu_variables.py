@@ -30,7 +30,7 @@ _LARGEST_VARIABLES = 100_000
 
 
 @dataclass(frozen=True)
-class Variable:
+class FmuVariable:
     """A scalar, or an array of FMI 3.0.  Its ``dimensions`` are constant, because EPG never changes them.
 
     ``type`` is the name in the standard: "Real", "Float64", ...  ``state`` is True for a continuous state, which the
@@ -62,7 +62,7 @@ class Variable:
         return [f"{self.name}[{name}]" for name in names] if self.dimensions else [self.name]
 
 
-def read_variables(root: Element, standard: int, diagnostics: Diagnostics) -> tuple[Variable, ...]:
+def read_variables(root: Element, standard: int, diagnostics: Diagnostics) -> tuple[FmuVariable, ...]:
     """All variables that are numbers.  Reports inputs and outputs that cannot be ports."""
     return _variables_2(root, diagnostics) if standard == 2 else _variables_3(root, diagnostics)
 
@@ -85,7 +85,7 @@ def _types(root: Element, standard: int) -> tuple[dict[str, str], dict[str, tupl
     return units, limits
 
 
-def _variables_2(root: Element, diagnostics: Diagnostics) -> tuple[Variable, ...]:
+def _variables_2(root: Element, diagnostics: Diagnostics) -> tuple[FmuVariable, ...]:
     units, limits = _types(root, 2)
     elements = _listed(root, diagnostics)
     states: set[int] = set()  # positions in the list, from 0
@@ -103,7 +103,7 @@ def _variables_2(root: Element, diagnostics: Diagnostics) -> tuple[Variable, ...
     return tuple(found)
 
 
-def _variables_3(root: Element, diagnostics: Diagnostics) -> tuple[Variable, ...]:
+def _variables_3(root: Element, diagnostics: Diagnostics) -> tuple[FmuVariable, ...]:
     units, limits = _types(root, 3)
     elements = _listed(root, diagnostics)
     states = {element.attributes["derivative"] for element in elements if "derivative" in element.attributes}
@@ -175,7 +175,7 @@ def _variable(
     limits: Mapping[str, tuple[int, int]],
     state: bool,
     diagnostics: Diagnostics,
-) -> Variable | None:
+) -> FmuVariable | None:
     """A variable that is a number.  None for other variables; if they are inputs or outputs, this is reported."""
     attributes = element.attributes
     name = one_line(attributes.get("name", ""))
@@ -202,7 +202,7 @@ def _variable(
         return None
     declared = typed.attributes.get("declaredType", "")
     unit = typed.attributes.get("unit", "") or units.get(declared, "")
-    return Variable(
+    return FmuVariable(
         name=name,
         reference=int(reference),
         causality=causality,

@@ -14,7 +14,7 @@ from pathlib import Path
 from epg.diagnostics import Diagnostics, Note
 from epg.models.assignments import PortLine, assignments, exact_number, number, port_lines
 from epg.models.configuration import (
-    Configuration,
+    ExportConfiguration,
     find_configuration,
     load_configuration,
     load_model_description,
@@ -34,8 +34,8 @@ class Metadata:
     """The metadata that was found beside a model's sources."""
 
     tokens: Tokens | None
-    configuration: Configuration | None
-    description: Configuration | None
+    configuration: ExportConfiguration | None
+    description: ExportConfiguration | None
 
     @property
     def files(self) -> tuple[Path, ...]:
@@ -198,7 +198,7 @@ def warn_of_values(
 
 
 def _check_configured(
-    configuration: Configuration, direction: str, ports: Sequence[Port], sources: Span, diagnostics: Diagnostics
+    configuration: ExportConfiguration, direction: str, ports: Sequence[Port], sources: Span, diagnostics: Diagnostics
 ) -> None:
     """Warns of ports that are only in the configuration or only in the sources."""
     told = {port.name: port for port in configuration.ports if port.direction == direction}

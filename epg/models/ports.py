@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from epg.diagnostics import Diagnostics, Note
 from epg.documents.text_file import one_line
-from epg.models.assignments import Assignment, PortLine, number
-from epg.models.configuration import Configuration
+from epg.models.assignments import ArrayAssignment, PortLine, number
+from epg.models.configuration import ExportConfiguration
 from epg.models.identifiers import to_identifier, unique_identifiers, unique_titles
 from epg.models.model import Parameter, Port
 from epg.source import Span
@@ -21,7 +21,7 @@ def make_ports(
     lines: Iterable[PortLine],
     direction: str,
     names: Sequence[tuple[str, Span]],
-    configuration: Configuration | None,
+    configuration: ExportConfiguration | None,
     diagnostics: Diagnostics,
     whole: Span,
     expected: int | None = None,
@@ -67,7 +67,7 @@ def _port(
     index: int,
     direction: str,
     given: str,
-    configuration: Configuration | None,
+    configuration: ExportConfiguration | None,
     diagnostics: Diagnostics,
 ) -> Port:
     """The port of one line.  ``given`` is the name of a line without a comment."""
@@ -115,13 +115,13 @@ def check_identifiers(ports: Sequence[Port], diagnostics: Diagnostics) -> None:
 
 
 def make_parameters(
-    lines: Sequence[Assignment], names: Sequence[str], units: Sequence[str]
-) -> tuple[tuple[Parameter, ...], tuple[tuple[Assignment, ...], ...]]:
+    lines: Sequence[ArrayAssignment], names: Sequence[str], units: Sequence[str]
+) -> tuple[tuple[Parameter, ...], tuple[tuple[ArrayAssignment, ...], ...]]:
     """The parameters in the order of their indices, and for each parameter all lines that set it.
 
     Parameters that hold a string, such as the name of a file or of a dynamic library, are left out.
     """
-    by_index: dict[int, list[Assignment]] = {}
+    by_index: dict[int, list[ArrayAssignment]] = {}
     for line in lines:
         if number(line.value) is not None:
             by_index.setdefault(line.index, []).append(line)
@@ -137,7 +137,7 @@ def make_parameters(
     return tuple(parameters), tuple(tuple(by_index[line.index]) for line in chosen)
 
 
-def _title(line: Assignment, names: Sequence[str]) -> str:
+def _title(line: ArrayAssignment, names: Sequence[str]) -> str:
     if line.name:
         return line.name
     return names[line.index] if line.index < len(names) and names[line.index] else f"P{line.index}"

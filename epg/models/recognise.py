@@ -39,7 +39,7 @@ _Loader = Callable[[Diagnostics], "Model | None"]
 
 
 @dataclass(frozen=True)
-class Candidate:
+class FoundModel:
     """A model that was found.  The user can name ``file`` to choose it among several."""
 
     file: Path
@@ -94,7 +94,7 @@ def _is_searched(entry: Path) -> bool:
     )
 
 
-def _candidates(folders: list[Path]) -> list[Candidate]:
+def _candidates(folders: list[Path]) -> list[FoundModel]:
     """The models in ``folders`` of one kind: the first of written by hand, FMU, sources, tokens that exists there."""
     for find in (_hand_written, _fmus, _sources, _tokens):
         found = [candidate for folder in folders for candidate in find(folder)]
@@ -103,15 +103,15 @@ def _candidates(folders: list[Path]) -> list[Candidate]:
     return []
 
 
-def _hand_written(folder: Path) -> list[Candidate]:
+def _hand_written(folder: Path) -> list[FoundModel]:
     path = folder / FILE_NAME
-    return [Candidate(path, partial(hand_written.load_hand_written, path))] if path.is_file() else []
+    return [FoundModel(path, partial(hand_written.load_hand_written, path))] if path.is_file() else []
 
 
-def _fmus(folder: Path) -> list[Candidate]:
+def _fmus(folder: Path) -> list[FoundModel]:
     if is_fmu_folder(folder):
-        return [Candidate(folder / DESCRIPTION, partial(_load_fmu, folder))]
-    return [Candidate(file, partial(_load_fmu, file)) for file in source_files(folder, (SUFFIX,), 0)]
+        return [FoundModel(folder / DESCRIPTION, partial(_load_fmu, folder))]
+    return [FoundModel(file, partial(_load_fmu, file)) for file in source_files(folder, (SUFFIX,), 0)]
 
 
 def _load_fmu(path: Path, diagnostics: Diagnostics) -> Model | None:
@@ -120,7 +120,7 @@ def _load_fmu(path: Path, diagnostics: Diagnostics) -> Model | None:
     return load_fmu(path, diagnostics)
 
 
-def _sources(folder: Path) -> list[Candidate]:
+def _sources(folder: Path) -> list[FoundModel]:
     files = [f for f in source_files(folder, (*c_function.SUFFIXES, *cpp_class.SUFFIXES), 0) if not is_program(f)]
     found = []
     for file in files[:_MAX_FILES]:
@@ -130,7 +130,7 @@ def _sources(folder: Path) -> list[Candidate]:
     return found
 
 
-def _source_candidate(path: Path, diagnostics: Diagnostics) -> Candidate | None:
+def _source_candidate(path: Path, diagnostics: Diagnostics) -> FoundModel | None:
     """The model whose entry points or class a source file defines, also if the file is not whole.  Else None."""
     file = read_source(path, diagnostics)
     if file is None or "Calculate" not in file.text:
@@ -138,14 +138,14 @@ def _source_candidate(path: Path, diagnostics: Diagnostics) -> Candidate | None:
     code = parse_code(file)
     if path.suffix.lower() in c_function.SUFFIXES:
         if c_function.is_c_function(code):
-            return Candidate(path, partial(c_function.load_c_function, code))
+            return FoundModel(path, partial(c_function.load_c_function, code))
         return _broken(file) if _SUBMODEL.search(file.code) else None
     if cpp_class.submodel_classes(code):
-        return Candidate(path, partial(cpp_class.load_cpp_class, code))
+        return FoundModel(path, partial(cpp_class.load_cpp_class, code))
     return _broken(file) if "::CopyInputsToVariables" in file.code else None
 
 
-def _broken(file: SourceFile) -> Candidate | None:
+def _broken(file: SourceFile) -> FoundModel | None:
     """A candidate for the file of a submodel that is not whole, which reports that when it is loaded.
 
     Without this candidate, EPG would silently use a ``tokens.xml`` beside the file instead.
@@ -154,12 +154,12 @@ def _broken(file: SourceFile) -> Candidate | None:
     def load(diagnostics: Diagnostics) -> None:
         is_whole(file, diagnostics)
 
-    return None if is_whole(file, Diagnostics()) else Candidate(file.path, load)
+    return None if is_whole(file, Diagnostics()) else FoundModel(file.path, load)
 
 
-def _tokens(folder: Path) -> list[Candidate]:
+def _tokens(folder: Path) -> list[FoundModel]:
     files = [f for f in source_files(folder, (".xml",), 0) if is_tokens_file(f)]
-    return [Candidate(file, partial(_load_tokens, file)) for file in files]
+    return [FoundModel(file, partial(_load_tokens, file)) for file in files]
 
 
 def _load_tokens(path: Path, diagnostics: Diagnostics) -> Model | None:

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from epg.ros.robot import Topic
+from epg.ros.robot import RobotTopic
 
 SCALARS = ("std_msgs/msg/Float64", "std_msgs/msg/Float32", "std_msgs/msg/Int32", "std_msgs/msg/Bool")
 TYPES = (
@@ -26,7 +26,7 @@ TYPES = (
 """The types of messages that can be recorded."""
 
 
-def numbers(topic: Topic, message: Any) -> list[float | None]:
+def numbers(topic: RobotTopic, message: Any) -> list[float | None]:
     """One number for each item of ``topic.values``; None if the message does not contain that value."""
     if topic.type in SCALARS:
         return [float(message.data)]
@@ -39,7 +39,7 @@ def numbers(topic: Topic, message: Any) -> list[float | None]:
     return [_component(twist, field) for field in fields]
 
 
-def fields_of(topic: Topic) -> list[str]:
+def fields_of(topic: RobotTopic) -> list[str]:
     """The names of ``topic.values`` inside the message: ``pan.position`` for ``joints/pan.position``."""
     return [value.removeprefix(topic.name).removeprefix("/") for value in topic.values]
 

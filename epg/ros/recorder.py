@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import TextIO
 
 from epg.ros.messages import TYPES, numbers
-from epg.ros.robot import Robot, Topic
+from epg.ros.robot import Robot, RobotTopic
 from epg.ros.source import Sample, Source, Subscription
 
 SETPOINTS, TOPICS = "setpoints.csv", "topics.csv"
@@ -27,7 +27,7 @@ _TURN = 0.1  # seconds between two checks whether the recording must end
 class Channel:
     """A topic to record, its full name, and the file for its values."""
 
-    topic: Topic
+    topic: RobotTopic
     name: str
     file: str
 
@@ -60,7 +60,7 @@ class Heard:
         return (self.messages - 1) / self.span if self.messages > 1 and self.span > 0.0 else 0.0
 
 
-def channels_of(robot: Robot) -> tuple[list[Channel], list[Topic]]:
+def channels_of(robot: Robot) -> tuple[list[Channel], list[RobotTopic]]:
     """The channels that can be recorded of a target, and its topics whose type EPG does not know."""
     channels, unknown = [], []
     for topics, file in ((robot.subscriptions, SETPOINTS), (robot.publications, TOPICS)):

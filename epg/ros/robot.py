@@ -30,7 +30,7 @@ USB_NAMES = {"manufacturer": "Raspberry Pi", "product": "Pico"}
 
 
 @dataclass(frozen=True)
-class Topic:
+class RobotTopic:
     """A topic.  ``name`` is the name in the ``.tcf``.
 
     ``values`` are the names of its values in CSV files.  ``elements`` are the names of all elements of its message.
@@ -63,8 +63,8 @@ class Robot:
     """The vendor number of its USB device: four hexadecimal digits in lower case, as in sysfs."""
     usb_serial: str | None
     """The serial number that its ``.tcf`` gives to its USB device.  None if the device has the number of the board."""
-    subscriptions: tuple[Topic, ...]
-    publications: tuple[Topic, ...]
+    subscriptions: tuple[RobotTopic, ...]
+    publications: tuple[RobotTopic, ...]
 
     def with_serial(self, serial: str) -> Robot:
         """The same target, with the board's serial number in the names of its node and namespace."""
@@ -74,7 +74,7 @@ class Robot:
     def has_serial_in_names(self) -> bool:
         return SERIAL in self.node + self.namespace
 
-    def topic(self, topic: Topic) -> str:
+    def topic(self, topic: RobotTopic) -> str:
         """The full name in ROS of one of its topics."""
         return full_name(topic.name, self.namespace, self.node)
 
@@ -171,9 +171,9 @@ def udev_name(text: str) -> str:
     return re.sub(r"[^A-Za-z0-9#+\-.:=@_]", "_", "_".join(text.split()))
 
 
-def _topic(data: dict[str, Any]) -> Topic:
+def _topic(data: dict[str, Any]) -> RobotTopic:
     name = _checked(data["topic"], topic_problem)
-    return Topic(name, data["type"], data["qos"], data["role"], tuple(data["values"]), tuple(data["elements"]))
+    return RobotTopic(name, data["type"], data["qos"], data["role"], tuple(data["values"]), tuple(data["elements"]))
 
 
 def _checked(text: object, problem: Callable[[str], str | None]) -> str:

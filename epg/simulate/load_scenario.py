@@ -12,7 +12,7 @@ from epg.documents.schema import load_schema, validate
 from epg.documents.text_file import is_file
 from epg.documents.yaml_file import load_yaml
 from epg.quantity import QuantityError, dimension_of, normal_unit, parse_quantity
-from epg.simulate.scenario import Axis, Event, Homing, Part, Profile, Scenario, Window
+from epg.simulate.scenario import Axis, Event, Homing, Profile, ProfilePart, Scenario, Window
 from epg.source import Span, YamlNode
 
 #: the keys that each shape needs, beside ``shape`` and ``start``
@@ -77,7 +77,7 @@ class _Reader:
     def profile(self, node: YamlNode, duration: Fraction) -> Profile:
         initial = self.value(node["initial"]) if "initial" in node else 0.0
         listed = node.get("profile")
-        parts: list[Part] = []
+        parts: list[ProfilePart] = []
         for element in listed.elements() if listed else ():
             part = self.part(element)
             if parts and part.start < parts[-1].end:
@@ -92,7 +92,7 @@ class _Reader:
             parts.append(part)
         return Profile(initial, tuple(parts))
 
-    def part(self, node: YamlNode) -> Part:
+    def part(self, node: YamlNode) -> ProfilePart:
         shape = str(node["shape"].value)
         needed = _SHAPES[shape]
         for key in needed:
@@ -104,7 +104,7 @@ class _Reader:
                     "unknown-key", node.key_span(key), f"a {shape} has no '{key}'", hint=f"it needs {', '.join(needed)}"
                 )
         target = node.get("to") or node.get("height")
-        return Part(
+        return ProfilePart(
             shape,
             float(self.time(node["start"])),
             float(self.time(node["duration"], positive=True)) if "duration" in node else 0.0,

@@ -19,7 +19,7 @@ from epg.source import Span
 
 
 @dataclass(frozen=True)
-class Part:
+class ProfilePart:
     """One part of a profile.
 
     ``target`` is an absolute value for move, ramp and step.  It is relative to the value before the part for
@@ -54,7 +54,7 @@ class Profile:
     """A setpoint over time.  The parts are in order; between them the setpoint keeps its value."""
 
     initial: float
-    parts: tuple[Part, ...]
+    parts: tuple[ProfilePart, ...]
 
     @property
     def span(self) -> tuple[float, float] | None:

@@ -10,16 +10,16 @@ import pytest
 
 pytest.importorskip("cyclonedds", reason="CycloneDDS for Python is not installed: python -m pip install cyclonedds")
 
-from epg.simulate.scenario import Part, Profile
+from epg.simulate.scenario import Profile, ProfilePart
 from tests.ros2.build import Build
 from tests.ros2.correlation import errors, fine_lag, lag
 from tests.ros2.network import Network
 from tests.ros2.situations import JIWY, PERIOD, RELBOT, SITUATIONS, Follower, Logs, run
 
 HOMED = 4.5  # s: until then JIWY's axes search their end stops
-JIWY_PROFILE = Profile(0.0, (Part("raised_cosine", HOMED, 3.0, 1.0),))
-OTHER_PROFILE = Profile(0.0, (Part("raised_cosine", HOMED + 0.4, 2.6, 0.7),))
-RELBOT_PROFILE = Profile(0.0, (Part("move", 0.5, 2.0, 3.0), Part("move", 2.6, 1.5, 0.0)))
+JIWY_PROFILE = Profile(0.0, (ProfilePart("raised_cosine", HOMED, 3.0, 1.0),))
+OTHER_PROFILE = Profile(0.0, (ProfilePart("raised_cosine", HOMED + 0.4, 2.6, 0.7),))
+RELBOT_PROFILE = Profile(0.0, (ProfilePart("move", 0.5, 2.0, 3.0), ProfilePart("move", 2.6, 1.5, 0.0)))
 
 SHARE_OF_THE_NETWORK = 1.25
 """Largest factor by which the network's delay of setpoints may increase the errors of a robot."""

@@ -26,7 +26,7 @@ NINJA = "Ninja"
 
 
 @dataclass(frozen=True)
-class Step:
+class Command:
     """One command.  ``name`` is "configure" or "build"."""
 
     name: str
@@ -44,7 +44,7 @@ class Plan:
 
     source: Path
     build: Path
-    steps: tuple[Step, ...]
+    steps: tuple[Command, ...]
     environment: Mapping[str, str]
     cache: Mapping[str, str]
     missing: tuple[MissingTool, ...] = ()
@@ -72,12 +72,13 @@ def make_plan(job: Job, target: Target | None, roots: Sequence[Path], *, run: bo
     programs = {finding.tool.name: str(finding.path) for finding in findings}
     if cache:
         home = cache.get("CMAKE_HOME_DIRECTORY", "") if west else ""  # with sysbuild: its folder, not the application's
-        configure = Step("configure", (programs["cmake"], "-S", home or str(source), "-B", str(build)), source)
+        configure = Command("configure", (programs["cmake"], "-S", home or str(source), "-B", str(build)), source)
     elif west:
         configure = _by_west(job, target, source, build, programs)
     else:
-        configure = Step("configure", _first(job, source, build, programs), source)
-    steps = (configure, Step("build", (programs["cmake"], "--build", str(build), *_parallel(cache, programs)), source))
+        configure = Command("configure", _first(job, source, build, programs), source)
+    build_command = (programs["cmake"], "--build", str(build), *_parallel(cache, programs))
+    steps = (configure, Command("build", build_command, source))
     environment = _environment(os.environ, cache, west=west)
     build_program = cache.get("CMAKE_MAKE_PROGRAM") or programs["build_program"]
     return Plan(source, build, steps, environment, cache, build_program=build_program)
@@ -95,7 +96,7 @@ def _first(job: Job, source: Path, build: Path, programs: Mapping[str, str]) -> 
     return (programs["cmake"], *preset, "-B", str(build), *generator)
 
 
-def _by_west(job: Job, target: Target | None, source: Path, build: Path, programs: Mapping[str, str]) -> Step:
+def _by_west(job: Job, target: Target | None, source: Path, build: Path, programs: Mapping[str, str]) -> Command:
     """The step that configures with ``west build``, which finds Zephyr.
 
     west must run in a workspace.  If the project is not in one, it runs in Zephyr's folder.
@@ -104,7 +105,7 @@ def _by_west(job: Job, target: Target | None, source: Path, build: Path, program
     around = [folder for folder in (source, *source.parents) if (folder / ".west").is_dir()]
     folder = source if around else Path(programs["zephyr"])
     command = [programs["west"], "build", "--cmake-only", "-d", str(build)]
-    return Step("configure", (*command, *(("-b", board) if board else ()), str(source)), folder)
+    return Command("configure", (*command, *(("-b", board) if board else ()), str(source)), folder)
 
 
 def _parallel(cache: Mapping[str, str], programs: Mapping[str, str]) -> tuple[str, ...]:

@@ -9,7 +9,7 @@ from typing import Any
 from epg.connect.terminal.talk import Talk
 from epg.connect.terminal.text import (
     UNCONNECTED,
-    Port,
+    ModelPort,
     candidate_rows,
     is_open,
     ports_of,
@@ -34,7 +34,7 @@ class Ports:
 
     def __init__(self, talk: Talk) -> None:
         self._talk, self._console = talk, talk.console
-        self._commands: dict[str, Callable[[Port], bool]] = {
+        self._commands: dict[str, Callable[[ModelPort], bool]] = {
             "?": self._explain,
             "s": self.show,
             "u": self.undo,
@@ -43,7 +43,7 @@ class Ports:
             "h": self._help,
         }
 
-    def ask(self, wanted: Sequence[Port], ports: Sequence[Port]) -> None:
+    def ask(self, wanted: Sequence[ModelPort], ports: Sequence[ModelPort]) -> None:
         """Asks about each port of ``wanted``.  The answer ``b`` goes back to the previous one of all ``ports``."""
         queue = list(wanted)
         while queue:
@@ -62,7 +62,7 @@ class Ports:
             elif self._answered(port, answer):
                 queue.pop(0)
 
-    def _answer(self, port: Port) -> str:
+    def _answer(self, port: ModelPort) -> str:
         """Asks about one port, and returns the answer.
 
         Enter returns the proposal of an open port.  It returns "" if there is none, or if the port is connected.
@@ -81,7 +81,7 @@ class Ports:
         answer = self._console.ask(f"{port.name} {port.arrow}", default)
         return "" if answer == default and not is_open(self._talk.state, port) else answer
 
-    def _answered(self, port: Port, answer: str) -> bool:
+    def _answered(self, port: ModelPort, answer: str) -> bool:
         """Does what the answer says.  Returns True if the next port follows."""
         if not answer:
             return True  # the port stays as it is
@@ -95,7 +95,7 @@ class Ports:
         names = self._references(port, answer)
         return names is not None and self._connect(port, [{"reference": name} for name in names])
 
-    def _references(self, port: Port, answer: str) -> list[str] | None:
+    def _references(self, port: ModelPort, answer: str) -> list[str] | None:
         """The component ports that a list of numbers and names means; None after a message about a wrong one."""
         candidates = list(self._talk.state["candidates"].get(port.name, ()))
         every = [offered["reference"] for component in self._talk.state["components"] for offered in component["ports"]]
@@ -112,22 +112,22 @@ class Ports:
             names.append(name)
         return names
 
-    def _connect(self, port: Port, ends: list[dict[str, Any]]) -> bool:
+    def _connect(self, port: ModelPort, ends: list[dict[str, Any]]) -> bool:
         return self._talk.act("connect", {"port": port.name, "ends": ends}, port)
 
-    def _help(self, port: Port) -> bool:
+    def _help(self, port: ModelPort) -> bool:
         self._console.say(HELP)
         return False
 
-    def _explain(self, port: Port) -> bool:
+    def _explain(self, port: ModelPort) -> bool:
         self._console.table(("", "component", "what it is"), candidate_rows(self._talk.state, port))
         return False
 
-    def show(self, port: Port | None) -> bool:
+    def show(self, port: ModelPort | None) -> bool:
         self._console.table(("port", "", "component", "where"), wire_rows(self._talk.state))
         return False
 
-    def undo(self, port: Port | None) -> bool:
+    def undo(self, port: ModelPort | None) -> bool:
         before = self._talk.state["wires"]
         if self._talk.act("undo", {}):
             after = self._talk.state["wires"]
@@ -136,14 +136,14 @@ class Ports:
                 self._console.say(f"undone: {other.name} {other.arrow} {wire_text(self._talk.state, other)}")
         return False
 
-    def _disconnect(self, port: Port) -> bool:
+    def _disconnect(self, port: ModelPort) -> bool:
         if is_open(self._talk.state, port):
             self._console.say(f"{port.name} is open already")
         else:
             self._talk.act("disconnect", {"port": port.name}, port)
         return False
 
-    def _convert(self, port: Port) -> bool:
+    def _convert(self, port: ModelPort) -> bool:
         """Asks for a component and the conversion of its values."""
         ends = self._talk.state["wires"].get(port.name) or []
         now = ends[0] if len(ends) == 1 else {}

@@ -10,7 +10,7 @@ from epg.connect.session import Refused, Session, State
 from epg.connect.terminal.console import Console
 from epg.connect.terminal.create import Left
 from epg.connect.terminal.message import say_message
-from epg.connect.terminal.text import Port
+from epg.connect.terminal.text import ModelPort
 
 OF_OPEN_PORTS = frozenset(("unbound-input", "unbound-output", "needs-bound", "unused-component"))
 """Ids of messages that are not shown while the user still connects ports."""
@@ -24,7 +24,7 @@ class Talk:
         self.state: State = session.state()
         self._told = ""  # the last note about an edit by another program
 
-    def act(self, action: str, body: dict[str, Any], port: Port | None = None) -> bool:
+    def act(self, action: str, body: dict[str, Any], port: ModelPort | None = None) -> bool:
         """Does ``action``, and prints the new messages, and those about ``port``.  Returns False if it was refused."""
         self.look()
         before = {_key(problem) for problem in self.state["diagnostics"]}

@@ -12,7 +12,7 @@ OPEN, UNCONNECTED = "(open)", "(unconnected)"
 
 
 @dataclass(frozen=True)
-class Port:
+class ModelPort:
     """A port of the model."""
 
     name: str
@@ -32,21 +32,21 @@ class Port:
         return "<-" if self.direction == "input" else "->"
 
 
-def ports_of(state: State) -> list[Port]:
+def ports_of(state: State) -> list[ModelPort]:
     """The ports, inputs first; none if the model cannot be read."""
     model = state["model"]
     return [
-        Port(port["name"], direction, port["unit"], port["type"], port["description"])
+        ModelPort(port["name"], direction, port["unit"], port["type"], port["description"])
         for direction, key in (("input", "inputs"), ("output", "outputs"))
         for port in (model[key] if model is not None else ())
     ]
 
 
-def is_open(state: State, port: Port) -> bool:
+def is_open(state: State, port: ModelPort) -> bool:
     return port.name not in state["wires"]
 
 
-def wire_text(state: State, port: Port) -> str:
+def wire_text(state: State, port: ModelPort) -> str:
     """The component ports that a port is connected with, and the conversions."""
     if is_open(state, port):
         return OPEN
@@ -63,7 +63,7 @@ def wire_rows(state: State) -> Iterator[tuple[str, str, str, str]]:
         yield port.name, port.arrow, wire_text(state, port), "; ".join(text for text in where if text)
 
 
-def candidate_rows(state: State, port: Port) -> Iterator[tuple[str, str, str]]:
+def candidate_rows(state: State, port: ModelPort) -> Iterator[tuple[str, str, str]]:
     """A row for each component port that may be connected: number, reference, and a description with its place."""
     found = {
         offered["reference"]: (component, offered)
