@@ -28,7 +28,7 @@ from epg.diagnostics import Diagnostics, did_you_mean
 from epg.documents.tcf import predefined_tcf_names
 from epg.emit.bindings import new_bindings
 from epg.emit.folder import present_files, write_folder
-from epg.emit.project import ProjectPlan, StandIn, project_files, project_folder, project_names
+from epg.emit.project_files import ProjectPlan, StandIn, project_files, project_folder, project_names
 from epg.models import Model, load_model
 from epg.new_simulation import model_axes, plant_files, robot_axes, robot_folder
 from epg.project import Request, load_application, load_configuration

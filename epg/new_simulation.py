@@ -11,7 +11,7 @@ from epg.check.configuration import Component
 from epg.data import data_folder
 from epg.diagnostics import Diagnostics
 from epg.documents.yaml_file import load_yaml
-from epg.emit.project import MovedAxis
+from epg.emit.project_files import MovedAxis
 from epg.models import Model
 from epg.quantity import dimension_of, normal_unit
 

@@ -19,7 +19,7 @@ from epg.catalog.catalog import Catalog, Target, load_catalog
 from epg.check.configuration import Configuration
 from epg.diagnostics import Diagnostics
 from epg.documents.tcf import load_tcf_chain, predefined_tcf_names
-from epg.emit.project import project_folder
+from epg.emit.project_files import project_folder
 from epg.graph.wiring import draw_wiring
 from epg.models.model import Model
 from epg.project import Request, load_configuration

@@ -22,11 +22,11 @@ from epg.connect.configurations import Configurations
 from epg.connect.creation import create
 from epg.connect.draft import SetEnds, SetExtends
 from epg.connect.editor import Editor
+from epg.connect.excerpt import excerpt
 from epg.connect.files import Unsavable
 from epg.connect.pictures import draw
 from epg.connect.projects import Job
 from epg.connect.runs import Runs
-from epg.connect.source import excerpt
 from epg.connect.start import Start
 from epg.connect.targets import Targets
 from epg.edit.bindings import CannotEdit, End

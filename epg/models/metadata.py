@@ -13,7 +13,7 @@ from pathlib import Path
 
 from epg.diagnostics import Diagnostics, Note
 from epg.models.assignments import PortLine, assignments, exact_number, number, port_lines
-from epg.models.configuration import (
+from epg.models.export_configuration import (
     ExportConfiguration,
     find_configuration,
     load_configuration,

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from epg.diagnostics import Diagnostics, Note
 from epg.documents.text_file import one_line
 from epg.models.assignments import ArrayAssignment, PortLine, number
-from epg.models.configuration import ExportConfiguration
+from epg.models.export_configuration import ExportConfiguration
 from epg.models.identifiers import to_identifier, unique_identifiers, unique_titles
 from epg.models.model import Parameter, Port
 from epg.source import Span

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics
-from epg.simulate.ends import Ending
+from epg.simulate.ending import Ending
 from epg.simulate.executable import Statistics
 from epg.simulate.tracking import Check, WindowResult
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics
-from epg.simulate.ends import how_it_ended
+from epg.simulate.ending import how_it_ended
 from epg.simulate.executable import read_statistics, read_trace, run_executable
 from epg.simulate.interface import check_names, read_interface
 from epg.simulate.load_scenario import load_scenario
