@@ -76,7 +76,7 @@ function(_epg_same_epg wanted)
   set(PACKAGE_FIND_VERSION "${wanted}")
   include("${CMAKE_CURRENT_FUNCTION_LIST_DIR}/EPGConfigVersion.cmake")
   if(NOT PACKAGE_VERSION VERSION_EQUAL wanted)
-    message(FATAL_ERROR "This project is written for EPG ${wanted}, and the EPG in ${CMAKE_CURRENT_FUNCTION_LIST_DIR} is ${PACKAGE_VERSION}.
+    message(FATAL_ERROR "This project is written for EPG ${wanted}, but the EPG in ${CMAKE_CURRENT_FUNCTION_LIST_DIR} is ${PACKAGE_VERSION}.
 Install EPG ${wanted} from its folder (docs/installing.md), or name that folder: -DEPG_PATH=<folder of EPG>.
 Or write ${PACKAGE_VERSION} in place of ${wanted} in CMakeLists.txt.")
   endif()

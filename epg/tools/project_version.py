@@ -83,7 +83,7 @@ def _other_version(
     folder, version = others[0]
     remedy = get_it(tool, where, tools)
     return Choice(
-        problem=f"This project is written for version {wanted} of the {tool.title}, and the one in {folder} is "
+        problem=f"This project is written for version {wanted} of the {tool.title}, but the one in {folder} is "
         f"{version}. {remedy.replace(tool.tested, wanted) if tool.tested else remedy}\n"
         f"Or write {version} in place of {wanted} in CMakeLists.txt."
     )

@@ -109,7 +109,8 @@ def test_builds_at_the_same_time_fetch_it_once(world: World) -> None:
 def test_what_has_another_hash_is_not_taken(world: World) -> None:
     world.tool("0123456789012345678901234567890123456789")
     output = world.find()
-    assert "that has failed" in output and "found '' '' 'Thing was not found. Get it:\n  get the thing'" in output
+    assert "the download has failed" in output
+    assert "found '' '' 'Thing was not found. Get it:\n  get the thing'" in output
     assert [path.name for path in world.cache.iterdir()] == ["Thing-1.2.3.lock"]
 
 

@@ -154,8 +154,8 @@ def test_a_wrong_setting_names_the_cmakelists(tmp_path: Path) -> None:
     [
         ("TCF robot.tcf ", "", "epg_add_target(robot): TCF is missing"),
         ("MODEL model", "MODEL model PINS x", "epg_add_target(robot): unknown argument: PINS"),
-        ("BINDINGS bindings.yaml", "BINDINGS", "a keyword without a value: BINDINGS"),
-        ("MODEL model", "MODLE model", "It takes: epg_add_target(<name> TCF <file> MODEL <folder> BINDINGS <file>"),
+        ("BINDINGS bindings.yaml", "BINDINGS", "this keyword has no value: BINDINGS"),
+        ("MODEL model", "MODLE model", "Usage: epg_add_target(<name> TCF <file> MODEL <folder> BINDINGS <file>"),
         ("robot TCF", "TCF", "epg_add_target(TCF ...): the first argument must be a name."),
         ("BINDINGS bindings.yaml", "BINDINGS bindings.yaml PLANT plant", "PLANT needs PLANT_BINDINGS"),
         ("LANGUAGES C", "LANGUAGES NONE", "EPG needs C: write project(robot LANGUAGES"),
@@ -163,7 +163,7 @@ def test_a_wrong_setting_names_the_cmakelists(tmp_path: Path) -> None:
         (
             "epg_add_executable",
             "add_library(a INTERFACE)\nepg_add_target(a TCF x MODEL y BINDINGS z)\n#",
-            "a target of this name exists",
+            "a target with this name exists already",
         ),
     ],
 )

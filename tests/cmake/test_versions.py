@@ -64,5 +64,5 @@ def test_the_checkout_of_an_editable_install_has_gone(tmp_path: Path) -> None:
     command = ["cmake", "-S", str(tmp_path), "-B", str(tmp_path / "build"), f"-DEPG_DIR={tmp_path}"]
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode != 0
-    expected = "the checkout of an editable install is gone: there is no /gone/cmake/EPGConfig.cmake"
+    expected = "the checkout of an editable installation was moved or deleted: there is no /gone/cmake/EPGConfig.cmake"
     assert expected in " ".join(done.stderr.split())

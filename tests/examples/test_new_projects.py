@@ -168,7 +168,7 @@ def test_another_sdk(user: User) -> None:
     folder = fake_sdk(user.home, "2.1.1")
     output = user.configure()
     assert (
-        "This project is written for version 2.2.0 of the Raspberry Pi Pico SDK, and the one in"
+        "This project is written for version 2.2.0 of the Raspberry Pi Pico SDK, but the one in"
         f" {folder} is 2.1.1. Get it: git clone --depth 1 --branch 2.2.0 "
     ) in output
     assert "Or write 2.1.1 in place of 2.2.0 in CMakeLists.txt." in output
@@ -177,7 +177,7 @@ def test_another_sdk(user: User) -> None:
         shutil.rmtree(user.project / "build")
         output = user.configure(*options, **variables)
         assert (
-            f"This project is written for version 2.2.0 of the Raspberry Pi Pico SDK, and the one in {folder}" in output
+            f"This project is written for version 2.2.0 of the Raspberry Pi Pico SDK, but the one in {folder}" in output
         )
 
 
@@ -244,7 +244,7 @@ def test_another_kernel(user: User) -> None:
     (kernel / "include/task.h").write_text('#define tskKERNEL_VERSION_NUMBER       "V10.6.2"\n')
     fake_sdk(user.home, "2.2.0")
     output = user.configure()
-    assert f"version 11.3.0 of the FreeRTOS kernel, and the one in {kernel} is 10.6.2. Get it: git clone" in output
+    assert f"version 11.3.0 of the FreeRTOS kernel, but the one in {kernel} is 10.6.2. Get it: git clone" in output
     assert errors(output) == 1
 
 
@@ -263,6 +263,6 @@ def test_another_epg(target: str, tmp_path: Path) -> None:
     file = project / "CMakeLists.txt"
     file.write_text(file.read_text().replace(f"set(epgVersion {epg.__version__})", "set(epgVersion 9.8.7)"))
     output = " ".join(configure(project, check=False).split())
-    assert f"This project is written for EPG 9.8.7, and the EPG in {ROOT}/cmake is {epg.__version__}. " in output
+    assert f"This project is written for EPG 9.8.7, but the EPG in {ROOT}/cmake is {epg.__version__}. " in output
     assert "Install EPG 9.8.7 from its folder (docs/installing.md), or name that folder: -DEPG_PATH=" in output
     assert errors(output) == 1

@@ -14,21 +14,21 @@ from .workspace import BuildError, build, workspace
 
 EXPECTED = {
     "rpi_pico2/rp2350a/m33": {
-        "A and B of an epg,pico-pio-qdec must be neighbouring pins",
-        "a PIO block has four state machines, for as many decoders",
+        "A and B of an epg,pico-pio-qdec must be adjacent pins",
+        "a PIO block has four state machines, for at most four decoders",
         "counts-per-revolution must be 1 or more",
-        "no bias-pull-down for inputs of RP2350 (erratum RP2350-E9)",
+        "inputs of RP2350 must not have bias-pull-down (erratum RP2350-E9)",
         "the function of pins in ab_pins must be that of the decoder's PIO block",
         "the group ab_pins must have two pins: A, then B",
-        "the group ab_pins needs input-enable",
+        "the group ab_pins must have input-enable",
     },
     "nucleo_h743zi": {
         "epg,stm32-qdec must be a child of a timer (st,stm32-timers)",
-        "the timer of an epg,stm32-qdec can have no other function",
+        "the timer of an epg,stm32-qdec must not have another function",
         "the timer of an epg,stm32-qdec has no encoder mode",
         "the timer of an epg,stm32-qdec has no interrupts",
         "the timer of an epg,stm32-qdec is not enabled: status = okay",
-        "the timer of an epg,stm32-qdec needs four channels",
+        "the timer of an epg,stm32-qdec must have four channels",
     },
 }
 

@@ -23,8 +23,8 @@ class Epg(WestCommand):
     def __init__(self):
         super().__init__(
             "epg",
-            "check and explain targets of EPG, write new ones",
-            "The command line of EPG: 'west epg --help' lists its commands.",
+            "check, explain and create targets of EPG",
+            "Runs the command line of EPG: 'west epg --help' lists its commands.",
         )
 
     def do_add_parser(self, parser_adder):

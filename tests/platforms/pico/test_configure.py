@@ -155,7 +155,7 @@ def test_no_kernel(tmp_path: Path) -> None:
     said = configure(
         tmp_path, SDK + target("freertos") + EXECUTABLE, f"-DPICO_SDK_PATH={pico_sdk()}", *picotool(), bare=True
     )
-    assert "epg_add_target(jiwy): this computer lacks parts that the target is built with." in said
+    assert "epg_add_target(jiwy): this computer lacks tools that the target needs." in said
     assert "FreeRTOS kernel was not found. Get it: git clone" in said
     assert said.count("CMake Error") == 1
 

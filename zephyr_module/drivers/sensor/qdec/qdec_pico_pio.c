@@ -191,7 +191,7 @@ static int qdec_pico_pio_load(const struct device *dev, PIO pio)
 
 	if (!pio_can_add_program_at_offset(pio, &qdec_pico_pio_program,
 					   EPG_PICO_QUADRATURE_ORIGIN)) {
-		LOG_ERR("%s: another program is in the way (needs instructions 0 to %u)", dev->name,
+		LOG_ERR("%s: another program is in instructions 0 to %u of the PIO block", dev->name,
 			EPG_PICO_QUADRATURE_COUNT_LENGTH - 1U);
 		return -EBUSY;
 	}
@@ -224,7 +224,7 @@ static int qdec_pico_pio_init(const struct device *dev)
 
 	ret = pio_rpi_pico_allocate_sm(config->piodev, &data->sm);
 	if (ret < 0) {
-		LOG_ERR("%s: no state machine is left", dev->name);
+		LOG_ERR("%s: all state machines are in use", dev->name);
 		return ret;
 	}
 
@@ -252,20 +252,20 @@ static int qdec_pico_pio_init(const struct device *dev)
 	BUILD_ASSERT(DT_NODE_HAS_COMPAT(DT_INST_PARENT(n), raspberrypi_pico_pio),                  \
 		     "epg,pico-pio-qdec must be a child of a PIO block (raspberrypi,pico-pio)");   \
 	BUILD_ASSERT(DT_CHILD_NUM_STATUS_OKAY(DT_INST_PARENT(n)) <= NUM_PIO_STATE_MACHINES,        \
-		     "a PIO block has four state machines, for as many decoders");                 \
+		     "a PIO block has four state machines, for at most four decoders");            \
 	BUILD_ASSERT(DT_NODE_EXISTS(QDEC_PICO_PIO_PINS(n)),                                        \
 		     "the pins of an epg,pico-pio-qdec must be in a group ab_pins");               \
 	BUILD_ASSERT(DT_PROP_LEN(QDEC_PICO_PIO_PINS(n), pinmux) == 2,                              \
 		     "the group ab_pins must have two pins: A, then B");                           \
 	BUILD_ASSERT(QDEC_PICO_PIO_UPPER(n) - QDEC_PICO_PIO_LOWER(n) == 1,                         \
-		     "A and B of an epg,pico-pio-qdec must be neighbouring pins");                 \
+		     "A and B of an epg,pico-pio-qdec must be adjacent pins");                     \
 	BUILD_ASSERT(QDEC_PICO_PIO_FUNC_IS_OF_BLOCK(n, 0) && QDEC_PICO_PIO_FUNC_IS_OF_BLOCK(n, 1), \
 		     "the function of pins in ab_pins must be that of the decoder's PIO block");   \
 	BUILD_ASSERT(DT_PROP(QDEC_PICO_PIO_PINS(n), input_enable),                                 \
-		     "the group ab_pins needs input-enable");                                      \
+		     "the group ab_pins must have input-enable");                                  \
 	BUILD_ASSERT(!IS_ENABLED(CONFIG_SOC_SERIES_RP2350) ||                                      \
 			     !DT_PROP(QDEC_PICO_PIO_PINS(n), bias_pull_down),                      \
-		     "no bias-pull-down for inputs of RP2350 (erratum RP2350-E9)")
+		     "inputs of RP2350 must not have bias-pull-down (erratum RP2350-E9)")
 
 #define QDEC_PICO_PIO_INIT(n)                                                                      \
 	QDEC_PICO_PIO_ASSERT(n);                                                                   \

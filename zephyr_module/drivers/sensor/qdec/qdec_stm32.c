@@ -226,13 +226,13 @@ static int qdec_stm32_init(const struct device *dev)
 	BUILD_ASSERT(DT_NODE_HAS_STATUS_OKAY(DT_INST_PARENT(n)),                                   \
 		     "the timer of an epg,stm32-qdec is not enabled: status = \"okay\"");          \
 	BUILD_ASSERT(DT_CHILD_NUM_STATUS_OKAY(DT_INST_PARENT(n)) == 1,                             \
-		     "the timer of an epg,stm32-qdec can have no other function");                 \
+		     "the timer of an epg,stm32-qdec must not have another function");             \
 	BUILD_ASSERT(DT_IRQ_HAS_IDX(DT_INST_PARENT(n), 0),                                         \
 		     "the timer of an epg,stm32-qdec has no interrupts");                          \
 	BUILD_ASSERT(IS_TIM_ENCODER_INTERFACE_INSTANCE(QDEC_STM32_TIMER(n)),                       \
 		     "the timer of an epg,stm32-qdec has no encoder mode");                        \
 	BUILD_ASSERT(IS_TIM_CC4_INSTANCE(QDEC_STM32_TIMER(n)),                                     \
-		     "the timer of an epg,stm32-qdec needs four channels")
+		     "the timer of an epg,stm32-qdec must have four channels")
 
 #define QDEC_STM32_INIT(n)                                                                         \
 	QDEC_STM32_ASSERT(n);                                                                      \
