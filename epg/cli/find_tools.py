@@ -55,12 +55,13 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
 def _answer(finding: Finding, where: Surroundings, tools: Mapping[str, Tool]) -> dict[str, str]:
     """The answer for one tool.  ``variables`` are the variables of CMake that were given for it."""
     tool = finding.tool
+    problem, remedy = problem_of(finding), get_it(tool, where, tools)
     return {
         "status": finding.status,
         "folder": _folder(finding).as_posix() if finding.status == "found" and finding.source != "PATH" else "",
         "version": finding.version,
-        "problem": problem_of(finding, where, tools),
-        "remedy": get_it(tool, where, tools),
+        "problem": f"{problem}. {remedy}" if problem else "",
+        "remedy": remedy,
         "variables": ";".join(f"{name}={where.cmake[name]}" for name in tool.variables if name in where.cmake),
     }
 

@@ -15,19 +15,17 @@ MANAGERS = {"apt": "apt-get", "dnf": "dnf", "pacman": "pacman", "brew": "brew", 
 """Package manager -> the program that exists on computers with this package manager."""
 
 
-def problem_of(finding: Finding, where: Surroundings, tools: Mapping[str, Tool]) -> str:
-    """Sentences on the problem of a tool and the command against it; empty if the tool is found."""
+def problem_of(finding: Finding) -> str:
+    """The problem of a tool that a build cannot use, without a full stop; empty if the tool is found."""
     tool = finding.tool
     if finding.status == "wrong":
         wanted = f"{finding.path}/{tool.holds}" if tool.holds else f"{' or '.join(tool.programs)} in {finding.path}"
-        problem = f"The {finding.source} does not lead to the {tool.title}: there is no {wanted}."
-    elif finding.status == "missing":
-        problem = f"{tool.title} was not found{f' ({tool.optional})' if tool.optional else ''}."
-    elif finding.status == "old":
-        problem = f"The {tool.title} in {finding.path} is {finding.version}; EPG needs {tool.oldest} or newer."
-    else:
-        return ""
-    return f"{problem} {get_it(tool, where, tools)}"
+        return f"The {finding.source} does not lead to the {tool.title}: there is no {wanted}"
+    if finding.status == "missing":
+        return f"{tool.title} was not found{f' ({tool.optional})' if tool.optional else ''}"
+    if finding.status == "old":
+        return f"The {tool.title} in {finding.path} is {finding.version}; EPG needs {tool.oldest} or newer"
+    return ""
 
 
 def get_it(tool: Tool, where: Surroundings, tools: Mapping[str, Tool]) -> str:

@@ -17,7 +17,7 @@ from epg.connect.projects import find_jobs
 from epg.diagnostics import Diagnostics
 from epg.project import load_configuration
 from epg.tools.find_tool import Finding, Surroundings, find_tool
-from epg.tools.remedy import command_for
+from epg.tools.remedy import command_for, problem_of
 from epg.tools.tools import load_tools
 
 ALWAYS = ("cmake", "build_program")
@@ -65,14 +65,12 @@ def missing(
     for finding in findings:
         tool = finding.tool
         if finding.status == "wrong":
-            message = f"the {finding.source} does not lead to the {tool.title}: {finding.path}"
-            problems.append(MissingTool(tool.name, tool.title, message, f"correct or unset the {finding.source}"))
+            hint = f"correct or unset the {finding.source}"
         elif finding.status in ("old", "missing"):
-            message = f"{tool.title} was not found"
-            if finding.status == "old":
-                message = f"{tool.title} {finding.version} is too old: {tool.oldest} or newer is needed"
-            get = f"get it: {command_for(tool, where, tools)}"
-            problems.append(MissingTool(tool.name, tool.title, message, get))
+            hint = f"get it: {command_for(tool, where, tools)}"
+        else:
+            continue
+        problems.append(MissingTool(tool.name, tool.title, problem_of(finding), hint))
     return problems
 
 
