@@ -113,6 +113,7 @@ def _read(app: Application) -> tuple[list[Path], set[Path], list[Path]]:
     parts: list[Kind | Middleware] = [*_kinds(app), *app.communication.middlewares]
     for part in parts:
         files += part.files
+        files += (part.folder.parent / "common").glob("*.j2")  # a kind's template can extend one of these
         folders.add(part.folder)
     absent = list(app.absent)
     for model in [app.model] if app.plant is None else [app.model, app.plant.model]:
