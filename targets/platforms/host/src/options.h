@@ -9,6 +9,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/** Exit status of the program. */
+enum { DONE = 0, FAILED = 1, WRONG_INPUT = 2, INTERRUPTED = 130 };
+
 typedef struct epg_host_options {
     bool help;
     bool interface; /**< prints the names that setpoint files may use, and does not run the target */

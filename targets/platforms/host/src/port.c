@@ -16,11 +16,6 @@
 
 enum { UNITS = UINT8_MAX + 1, PINS = UINT8_MAX + 1 };
 
-/** The driver of an input pin, set by the plant.  At the start no pin is driven. */
-enum { UNDRIVEN, DRIVEN_LOW, DRIVEN_HIGH };
-/** The driver of an input pin, set by a setpoint file in place of the plant. */
-enum { NOT_FORCED, FORCED_OPEN, FORCED_LOW, FORCED_HIGH };
-
 static struct {
     _Atomic int64_t signal; /* position of the shaft in counts, set by the plant */
     _Atomic int64_t origin; /* value of `signal` when the decoder was started */
@@ -32,9 +27,10 @@ static struct {
     _Atomic uint32_t level;
 } pwms[UNITS];
 
+/* The drivers of the input pins, of type epg_plant_force_t: `forced` replaces `driven`.  At the start both are 0. */
 static _Atomic uint8_t driven[PINS];
-static _Atomic uint8_t pulls[PINS];
 static _Atomic uint8_t forced[PINS];
+static _Atomic uint8_t pulls[PINS];
 static atomic_bool outputs[PINS];
 
 #define GET(object) atomic_load_explicit(&(object), memory_order_relaxed)
@@ -115,20 +111,16 @@ void epg_port_input_start(uint8_t pin, epg_port_pull_t pull)
 bool epg_port_input_read(uint8_t pin)
 {
     const uint8_t force = GET(forced[pin]);
-    const uint8_t driver = force == NOT_FORCED ? GET(driven[pin]) : (uint8_t)(force - FORCED_OPEN);
-    return driver == UNDRIVEN ? GET(pulls[pin]) == EPG_PULL_UP : driver == DRIVEN_HIGH;
+    const uint8_t driver = force == EPG_PLANT_FORCE_NONE ? GET(driven[pin]) : force;
+    return driver == EPG_PLANT_FORCE_HIGH || (driver != EPG_PLANT_FORCE_LOW && GET(pulls[pin]) == EPG_PULL_UP);
 }
 
 void epg_plant_input_set(uint8_t pin, bool level)
 {
-    SET(driven[pin], level ? DRIVEN_HIGH : DRIVEN_LOW);
+    SET(driven[pin], level ? EPG_PLANT_FORCE_HIGH : EPG_PLANT_FORCE_LOW);
 }
 
 void epg_plant_input_force(uint8_t pin, epg_plant_force_t force)
 {
-    static const uint8_t states[] = {[EPG_PLANT_FORCE_LOW] = FORCED_LOW,
-                                     [EPG_PLANT_FORCE_HIGH] = FORCED_HIGH,
-                                     [EPG_PLANT_FORCE_OPEN] = FORCED_OPEN,
-                                     [EPG_PLANT_FORCE_NONE] = NOT_FORCED};
-    SET(forced[pin], states[force]);
+    SET(forced[pin], (uint8_t)force);
 }

@@ -227,7 +227,6 @@ static struct {
     bool running;
     epg_host_run_t run;
     control_thread_t control;
-    epg_host_link_t link;
     pthread_t communication;
     bool communicates;
     atomic_bool stop;
@@ -249,15 +248,12 @@ static void *communication_main(void *argument)
 /** Starts the communication thread if the target's middleware has a connection.  Returns false if this fails. */
 static bool start_communication(const epg_host_target_t *host)
 {
-    own.run.services.target = host->target;
+    static const epg_host_options_t options = {.realtime = true, .quiet = true};
+    if (epg_host_services_open(&own.run.services, host, &options) != DONE) {
+        return false;
+    }
     if (!epg_host_is_connected(host)) {
         return true;
-    }
-    if (host->agent != NULL) {
-        if (!epg_host_link_open(&own.link, host->agent, host->baud_rate)) {
-            return false;
-        }
-        own.run.services.link = &own.link;
     }
     atomic_init(&own.stop, false);
     own.communicates = pthread_create(&own.communication, NULL, communication_main, NULL) == 0;
@@ -271,9 +267,7 @@ static void stop_communication(void)
         pthread_join(own.communication, NULL);
         own.communicates = false;
     }
-    if (own.run.services.link != NULL) {
-        epg_host_link_close(own.run.services.link);
-    }
+    epg_host_services_close(&own.run.services);
 }
 
 bool epg_host_start(const epg_host_target_t *host)

@@ -9,9 +9,6 @@
 
 #include "services.h"
 
-#include <stdio.h>
-#include <string.h>
-
 #include "clock.h"
 #include "epg/port.h"
 
@@ -81,21 +78,6 @@ static void wait_for_files(const epg_host_services_t *services, uint64_t time_ns
 
 #endif
 
-/** Reports on stderr that the connection to the agent was made or lost. */
-static void tell_state(epg_host_services_t *services, const epg_middleware_t *middleware)
-{
-    if (services->agent == NULL || middleware == NULL || middleware->state == NULL) {
-        return;
-    }
-    const char *state = middleware->state();
-    const bool running = strcmp(state, "running") == 0;
-    if (running != (services->state != NULL)) {
-        fprintf(stderr, running ? "%s: connected to the agent at %s\n" : "%s: lost the agent at %s\n",
-                services->target->application->name, services->agent);
-        services->state = running ? state : NULL;
-    }
-}
-
 void epg_host_services_serve(epg_host_services_t *services, uint64_t time_ns)
 {
     const epg_middleware_t *middleware = connected(services);
@@ -109,7 +91,7 @@ void epg_host_services_serve(epg_host_services_t *services, uint64_t time_ns)
     }
     if (middleware != NULL) {
         middleware->poll(epg_port_time_ns());
-        tell_state(services, middleware);
+        epg_host_services_tell(services);
     }
     if (console != NULL) {
         console->poll(epg_port_time_ns());

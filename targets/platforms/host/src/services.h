@@ -13,6 +13,7 @@
 #include <stdint.h>
 
 #include "link.h"
+#include "options.h"
 #include "terminal.h"
 
 #include "epg/host.h"
@@ -34,6 +35,18 @@ bool epg_host_is_connected(const epg_host_target_t *host);
 
 /** The middleware that would use a terminal; NULL if none would. */
 const epg_middleware_t *epg_host_console(const epg_host_target_t *host);
+
+/**
+ * Opens the link to the agent, if the target has an agent and the run is in real time, and the terminal of the console,
+ * if `options` request one.  Returns DONE, or after a message the exit status.  Only one object can be open.
+ */
+int epg_host_services_open(epg_host_services_t *services, const epg_host_target_t *host,
+                           const epg_host_options_t *options);
+
+void epg_host_services_close(epg_host_services_t *services);
+
+/** Reports on stderr that the connection to the agent was made or lost. */
+void epg_host_services_tell(epg_host_services_t *services);
 
 /** True if at least one middleware runs. */
 bool epg_host_services_run(const epg_host_services_t *services);

@@ -12,9 +12,6 @@
 #include "options.h"
 #include "run.h"
 
-/** Exit status of the program, the same as that of a host executable. */
-enum { DONE = 0, FAILED = 1, WRONG_INPUT = 2, INTERRUPTED = 130 };
-
 /* options.c ------------------------------------------------------------------------------------------------------ */
 
 /** The options of the command line.  `realtime` is true, too, if no duration was given. */

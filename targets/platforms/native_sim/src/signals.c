@@ -18,15 +18,11 @@
 
 enum { UNITS = UINT8_MAX + 1, PINS = UINT8_MAX + 1 };
 
-/** The driver of an input pin, set by the plant.  At the start no pin is driven. */
-enum { UNDRIVEN, DRIVEN_LOW, DRIVEN_HIGH };
-/** The driver of an input pin, set by a setpoint file in place of the plant. */
-enum { NOT_FORCED, FORCED_OPEN, FORCED_LOW, FORCED_HIGH };
-
 static bool turning;          /* a change of a shaft's position produces counts */
 static int64_t counts[UNITS]; /* positions of the shafts, in counts */
-static uint8_t driven[PINS];
-static uint8_t forced[PINS];
+/* The drivers of the input pins: `forced` replaces `driven`.  At the start both are 0. */
+static epg_plant_force_t driven[PINS];
+static epg_plant_force_t forced[PINS];
 
 /* Devices -------------------------------------------------------------------------------------------------------- */
 
@@ -168,34 +164,31 @@ bool epg_plant_output(uint8_t pin)
 static void drive(uint8_t pin)
 {
     const struct gpio_dt_spec *gpio = gpio_of(pin);
-    const uint8_t driver = forced[pin] == NOT_FORCED ? driven[pin] : (uint8_t)(forced[pin] - FORCED_OPEN);
+    const epg_plant_force_t driver = forced[pin] == EPG_PLANT_FORCE_NONE ? driven[pin] : forced[pin];
     gpio_flags_t flags = 0;
     if (is_configured(gpio, GPIO_INPUT) && gpio_emul_flags_get(gpio->port, gpio->pin, &flags) == 0) {
-        const bool high = driver == UNDRIVEN ? (flags & GPIO_PULL_UP) != 0 : driver == DRIVEN_HIGH;
+        const bool pulled_up = driver != EPG_PLANT_FORCE_LOW && (flags & GPIO_PULL_UP) != 0;
+        const bool high = driver == EPG_PLANT_FORCE_HIGH || pulled_up;
         (void)gpio_emul_input_set(gpio->port, gpio->pin, high ? 1 : 0);
     }
 }
 
 void epg_plant_input_set(uint8_t pin, bool level)
 {
-    driven[pin] = level ? DRIVEN_HIGH : DRIVEN_LOW;
+    driven[pin] = level ? EPG_PLANT_FORCE_HIGH : EPG_PLANT_FORCE_LOW;
     drive(pin);
 }
 
 void epg_plant_input_force(uint8_t pin, epg_plant_force_t force)
 {
-    static const uint8_t states[] = {[EPG_PLANT_FORCE_LOW] = FORCED_LOW,
-                                     [EPG_PLANT_FORCE_HIGH] = FORCED_HIGH,
-                                     [EPG_PLANT_FORCE_OPEN] = FORCED_OPEN,
-                                     [EPG_PLANT_FORCE_NONE] = NOT_FORCED};
-    forced[pin] = states[force];
+    forced[pin] = force;
     drive(pin);
 }
 
 void epg_native_sim_drive_pins(void)
 {
     for (unsigned int pin = 0; pin < PINS; pin++) {
-        if (driven[pin] != UNDRIVEN || forced[pin] != NOT_FORCED) {
+        if (driven[pin] != EPG_PLANT_FORCE_NONE || forced[pin] != EPG_PLANT_FORCE_NONE) {
             drive((uint8_t)pin);
         }
     }

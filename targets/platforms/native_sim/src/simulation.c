@@ -7,10 +7,6 @@
  * Zephyr's clock does not advance while the image computes.  A cycle therefore takes no simulated time, except after a
  * `$stall` event.  In real time the native simulator waits between two ticks of the system clock.
  */
-#include <errno.h>
-#include <stdio.h>
-#include <string.h>
-
 #include <posix_board_if.h>
 #include <posix_native_task.h>
 #include <zephyr/kernel.h>
@@ -18,6 +14,7 @@
 #include "clock.h"
 #include "epg/plant.h"
 #include "epg/port.h"
+#include "files.h"
 #include "parts.h"
 #include "report.h"
 #include "run.h"
@@ -29,9 +26,7 @@ static epg_host_run_t run;
 static struct {
     epg_application_t application; /* that of Zephyr's port layer, with read_and_stall() in place of read() */
     void (*read)(void);            /* its read(), which read_and_stall() calls */
-    FILE *topics;
-    FILE *trace;
-    FILE *statistics;
+    epg_host_files_t files;
     bool prepared;
     bool begun;           /* the first cycle has begun */
     bool written;         /* the files are complete */
@@ -51,44 +46,14 @@ static uint64_t now_ns(void)
 
 /* Files ---------------------------------------------------------------------------------------------------------- */
 
-/** Opens `path` for writing.  Returns NULL if `path` is NULL.  Ends the program, after a message, if it cannot. */
-static FILE *open_output(const char *path)
-{
-    FILE *file = path == NULL ? NULL : fopen(path, "wb");
-    if (path != NULL && file == NULL) {
-        fprintf(stderr, "%s: error: cannot write this file: %s\n", path, strerror(errno));
-        posix_exit(FAILED);
-    }
-    return file;
-}
-
-static bool close_output(const char *path, FILE **file)
-{
-    if (*file == NULL) {
-        return true;
-    }
-    const bool failed = ferror(*file) != 0;
-    const bool closed = fclose(*file) == 0;
-    *file = NULL;
-    if (failed || !closed) {
-        fprintf(stderr, "%s: error: cannot write this file: %s\n", path, errno != 0 ? strerror(errno) : "failed");
-    }
-    return !failed && closed;
-}
-
 /** Writes the rest of the recorded values and closes the files.  False, with a message, if a file cannot be written. */
-static bool close_outputs(void)
+static bool close_files(void)
 {
-    const epg_host_options_t *options = &epg_native_sim_options;
     epg_host_trace_end(&run.trace);
     epg_host_communication_end(&run.communication);
     epg_native_sim_close_transports();
     simulation.written = true;
-    errno = 0;
-    const bool topics = close_output(options->topics, &simulation.topics);
-    const bool trace = close_output(options->trace, &simulation.trace);
-    const bool statistics = close_output(options->statistics, &simulation.statistics);
-    return topics && trace && statistics;
+    return epg_host_files_close(&simulation.files, &epg_native_sim_options);
 }
 
 /**
@@ -98,7 +63,7 @@ static bool close_outputs(void)
 static void on_exit(void)
 {
     if (simulation.prepared && !simulation.written) {
-        (void)close_outputs();
+        (void)close_files();
     }
 }
 
@@ -111,17 +76,14 @@ static void prepare(void)
     const epg_host_options_t *options = &epg_native_sim_options;
     const epg_host_target_t *host = epg_native_sim_target;
     const uint64_t period_ns = host->target->application->period_ns;
-    if (!epg_native_sim_all_emulated()) {
+    if (!epg_native_sim_all_emulated() || !epg_host_files_open(&simulation.files, options)) {
         posix_exit(FAILED);
     }
-    simulation.topics = open_output(options->topics);
-    simulation.trace = open_output(options->trace);
-    simulation.statistics = open_output(options->statistics);
     run = (epg_host_run_t){
         .host = host, .end_ns = options->duration_ns, .scheduler = options->realtime ? "native_sim" : "simulated"};
     if (!epg_host_communication_start(&run.communication, host->target, &epg_native_sim_events, run.end_ns,
-                                      simulation.topics) ||
-        !epg_host_trace_start(&run.trace, host, simulation.trace, false, (run.end_ns - 1) / period_ns + 1)) {
+                                      simulation.files.topics) ||
+        !epg_host_trace_start(&run.trace, host, simulation.files.trace, false, (run.end_ns - 1) / period_ns + 1)) {
         posix_exit(FAILED);
     }
     epg_native_sim_catch_interrupts(&simulation.stopped);
@@ -136,10 +98,10 @@ static void finish(uint64_t next_ns)
     epg_host_run_end(&run, simulation.tick_ns, next_ns);
     epg_host_communicate_simulated(&run.communication, run.ran_ns);
     run.wall_time_ns = epg_host_monotonic_ns() - simulation.wall_ns;
-    if (simulation.statistics != NULL) {
-        epg_host_write_statistics(simulation.statistics, &run);
+    if (simulation.files.statistics != NULL) {
+        epg_host_write_statistics(simulation.files.statistics, &run);
     }
-    const bool written = close_outputs();
+    const bool written = close_files();
     if (!options->quiet && !options->console && run.diverged == NULL) {
         epg_host_print_summary(&run);
     }

@@ -39,10 +39,10 @@ void epg_plant_input_set(uint8_t pin, bool level);
 
 /** A fault of an input pin, which a test injects.  It has priority over the plant. */
 typedef enum epg_plant_force {
-    EPG_PLANT_FORCE_LOW,
-    EPG_PLANT_FORCE_HIGH,
+    EPG_PLANT_FORCE_NONE, /**< the plant drives the pin again */
     EPG_PLANT_FORCE_OPEN, /**< the wire is broken: the pin has the level of its pull resistor */
-    EPG_PLANT_FORCE_NONE  /**< the plant drives the pin again */
+    EPG_PLANT_FORCE_LOW,
+    EPG_PLANT_FORCE_HIGH
 } epg_plant_force_t;
 
 /** Forces input `pin` until the next call.  Meanwhile epg_plant_input_set() has no visible effect on it. */
