@@ -58,10 +58,8 @@ static void begin_session(bool connected)
     session.connected_before = true;
     epg_console_begin(&session.output, "ready");
     epg_console_node(&session);
-    epg_console_key(&session.output, "epg");
-    epg_console_text(&session.output, session.target->version);
-    epg_console_key(&session.output, "hash");
-    epg_console_text(&session.output, session.target->hash);
+    epg_console_word(&session.output, "epg", session.target->version);
+    epg_console_word(&session.output, "hash", session.target->hash);
     epg_console_end_or_drop(&session.output);
 }
 

@@ -98,7 +98,7 @@ void epg_console_assignment(char *word, const char **value)
 
 bool epg_console_number(const char *text, double *value)
 {
-    return epg_decimal_read(text, strlen(text), value);
+    return epg_decimal_read(text, value);
 }
 
 bool epg_console_whole(const char *text, uint32_t largest, uint32_t *value)

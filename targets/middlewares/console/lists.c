@@ -61,16 +61,12 @@ void epg_console_version(epg_console_session_t *session, const epg_console_comma
     const epg_target_t *target = session->target;
     (void)command;
     epg_console_ok(session, "version");
-    epg_console_key(&session->output, "name");
-    epg_console_text(&session->output, target->application->name);
+    epg_console_word(&session->output, "name", target->application->name);
     epg_console_node(session);
-    epg_console_key(&session->output, "epg");
-    epg_console_text(&session->output, target->version);
-    epg_console_key(&session->output, "hash");
-    epg_console_text(&session->output, target->hash);
+    epg_console_word(&session->output, "epg", target->version);
+    epg_console_word(&session->output, "hash", target->hash);
     if (target->application->parameters != NULL) {
-        epg_console_key(&session->output, "stored");
-        epg_console_text(&session->output, stored_name(target->application->parameters));
+        epg_console_word(&session->output, "stored", stored_name(target->application->parameters));
     }
     epg_console_end_or_drop(&session->output);
 }
@@ -139,8 +135,7 @@ static bool stats_line(epg_console_session_t *session, size_t index)
     } else if (index == COUNTERS + 4U) {
         epg_console_count(output, "malformed", node->malformed);
     } else {
-        epg_console_key(output, "connection");
-        epg_console_text(output, connected);
+        epg_console_word(output, "connection", connected);
     }
     return true;
 }
@@ -161,10 +156,7 @@ static void port(epg_console_session_t *session, const char *category, const cha
     epg_console_text(&session->output, category);
     epg_console_text(&session->output, " ");
     epg_console_text(&session->output, name);
-    if (unit[0] != '\0') {
-        epg_console_key(&session->output, "unit");
-        epg_console_text(&session->output, unit);
-    }
+    epg_console_unit(&session->output, unit);
 }
 
 /** Writes line `*index` of the values of `topics`.  Returns false if there are fewer; subtracts their number then. */

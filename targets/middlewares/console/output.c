@@ -72,6 +72,25 @@ void epg_console_key(epg_console_output_t *output, const char *name)
     epg_console_text(output, "=");
 }
 
+void epg_console_word(epg_console_output_t *output, const char *name, const char *word)
+{
+    epg_console_key(output, name);
+    epg_console_text(output, word);
+}
+
+void epg_console_unit(epg_console_output_t *output, const char *unit)
+{
+    if (unit[0] != '\0') {
+        epg_console_word(output, "unit", unit);
+    }
+}
+
+void epg_console_value(epg_console_output_t *output, const char *name, double value)
+{
+    epg_console_key(output, name);
+    epg_console_double(output, value);
+}
+
 void epg_console_count(epg_console_output_t *output, const char *name, uint32_t value)
 {
     epg_console_key(output, name);

@@ -43,6 +43,15 @@ void epg_console_seconds(epg_console_output_t *output, uint64_t time_ns);
 /** Appends " name=", the start of a value. */
 void epg_console_key(epg_console_output_t *output, const char *name);
 
+/** Appends " name=word". */
+void epg_console_word(epg_console_output_t *output, const char *name, const char *word);
+
+/** Appends " unit=" and the unit; nothing if the unit is empty. */
+void epg_console_unit(epg_console_output_t *output, const char *unit);
+
+/** Appends " name=value". */
+void epg_console_value(epg_console_output_t *output, const char *name, double value);
+
 /** Appends " name=value" for a whole number. */
 void epg_console_count(epg_console_output_t *output, const char *name, uint32_t value);
 

@@ -42,15 +42,10 @@ static bool parameter_line(epg_console_session_t *session, size_t index)
     const epg_parameter_t *parameter = &parameters->table[number];
     const double value = epg_parameters_value(parameters, number);
     epg_console_begin(output, "parameter");
-    epg_console_key(output, parameter->name);
-    epg_console_double(output, value);
-    if (parameter->unit[0] != '\0') {
-        epg_console_key(output, "unit");
-        epg_console_text(output, parameter->unit);
-    }
+    epg_console_value(output, parameter->name, value);
+    epg_console_unit(output, parameter->unit);
     if (memcmp(&value, &parameter->value, sizeof value) != 0) {
-        epg_console_key(output, "generated");
-        epg_console_double(output, parameter->value);
+        epg_console_value(output, "generated", parameter->value);
     }
     return true;
 }
@@ -71,10 +66,8 @@ static void tell_name(epg_console_session_t *session, const char *word)
     char name[EPG_STORE_NAME_SIZE];
     (void)epg_names_expand(pattern, name, sizeof name);
     epg_console_ok(session, "get");
-    epg_console_key(&session->output, word);
-    epg_console_text(&session->output, pattern);
-    epg_console_key(&session->output, "name");
-    epg_console_text(&session->output, name);
+    epg_console_word(&session->output, word, pattern);
+    epg_console_word(&session->output, "name", name);
     epg_console_end_or_drop(&session->output);
 }
 
@@ -89,8 +82,7 @@ static void set_name(epg_console_session_t *session, const char *word, const cha
         epg_console_error(session, "set", node ? "this is no name of a node:" : "this is no namespace:", text);
     } else {
         epg_console_ok(session, "set");
-        epg_console_key(&session->output, "acts");
-        epg_console_text(&session->output, "at_next_start_if_saved");
+        epg_console_word(&session->output, "acts", "at_next_start_if_saved");
         epg_console_end_or_drop(&session->output);
     }
 }

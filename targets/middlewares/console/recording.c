@@ -161,8 +161,7 @@ static void tell(epg_console_session_t *session, const char *first, epg_capture_
 {
     const bool idle = epg_capture_idle(capture);
     epg_console_begin(&session->output, first);
-    epg_console_key(&session->output, "state");
-    epg_console_text(&session->output, idle ? "ready" : "recording");
+    epg_console_word(&session->output, "state", idle ? "ready" : "recording");
     epg_console_count(&session->output, "rows", (uint32_t)epg_capture_recorded(capture));
     if (idle && capture->triggered) {
         epg_console_count(&session->output, "trigger", (uint32_t)epg_capture_trigger_row(capture));
@@ -180,8 +179,7 @@ void epg_console_capture(epg_console_session_t *session, const epg_console_comma
         tell(session, "ok capture", capture);
     } else if (strcmp(word, "stop") == 0) {
         epg_capture_stop(capture);
-        epg_console_ok(session, "capture");
-        epg_console_end_or_drop(&session->output);
+        epg_console_done(session, "capture");
     } else if (strcmp(word, "read") != 0) {
         start(session, command, capture);
     } else if (!epg_capture_idle(capture)) {

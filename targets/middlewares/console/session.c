@@ -14,6 +14,12 @@ void epg_console_ok(epg_console_session_t *self, const char *command)
     epg_console_text(&self->output, command);
 }
 
+void epg_console_done(epg_console_session_t *self, const char *command)
+{
+    epg_console_ok(self, command);
+    epg_console_end_or_drop(&self->output);
+}
+
 void epg_console_error(epg_console_session_t *self, const char *command, const char *message, const char *about)
 {
     epg_console_begin(&self->output, "error ");
@@ -52,8 +58,7 @@ void epg_console_fault(epg_console_session_t *self, const epg_status_t *status)
     }
     const char *component = epg_target_component(self->target, status->fault_component);
     if (status->fault != EPG_FAULT_NONE && component[0] != '\0') {
-        epg_console_key(&self->output, "component");
-        epg_console_text(&self->output, component);
+        epg_console_word(&self->output, "component", component);
     }
 }
 
@@ -66,6 +71,5 @@ void epg_console_node(epg_console_session_t *self)
 {
     char name[EPG_STORE_NAME_SIZE];
     (void)epg_names_expand(epg_names_node(self->target), name, sizeof name);
-    epg_console_key(&self->output, "node");
-    epg_console_text(&self->output, name);
+    epg_console_word(&self->output, "node", name);
 }

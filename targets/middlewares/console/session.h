@@ -93,6 +93,9 @@ struct epg_console_session {
 /** Begins the line "ok <command>".  The caller may append to it, and must call epg_console_end_or_drop(). */
 void epg_console_ok(epg_console_session_t *session, const char *command);
 
+/** Writes the line "ok <command>". */
+void epg_console_done(epg_console_session_t *session, const char *command);
+
 /** Writes the line "error <command> <message>".  `about`, if not NULL, follows in quotes. */
 void epg_console_error(epg_console_session_t *session, const char *command, const char *message, const char *about);
 

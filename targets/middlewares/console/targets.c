@@ -41,8 +41,7 @@ void epg_console_echo(epg_console_session_t *session, const epg_console_command_
         return;
     }
     session->input.echo = on;
-    epg_console_ok(session, "echo");
-    epg_console_end_or_drop(&session->output);
+    epg_console_done(session, "echo");
 }
 
 /* Setpoints ---------------------------------------------------------------------------------------------------- */
@@ -79,8 +78,7 @@ void epg_console_setpoints(epg_console_session_t *session, const epg_console_com
     for (size_t i = 0; i < command->count; i++) {
         epg_control_receive(session->target->control, indices[i], values[i], session->now_ns, i + 1 == command->count);
     }
-    epg_console_ok(session, "setpoint");
-    epg_console_end_or_drop(&session->output);
+    epg_console_done(session, "setpoint");
 }
 
 /* Jog ---------------------------------------------------------------------------------------------------------- */
@@ -164,10 +162,7 @@ static bool moved_line(epg_console_session_t *session, size_t index)
     epg_console_text(&session->output, jog->encoders[index].name);
     put_signed(&session->output, "count", (double)(last->count - first->count), true);
     put_signed(&session->output, "position", last->position - first->position, false);
-    if (jog->encoders[index].unit[0] != '\0') {
-        epg_console_key(&session->output, "unit");
-        epg_console_text(&session->output, jog->encoders[index].unit);
-    }
+    epg_console_unit(&session->output, jog->encoders[index].unit);
     return true;
 }
 

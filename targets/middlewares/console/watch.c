@@ -84,8 +84,7 @@ void epg_console_watch(epg_console_session_t *session, const epg_console_command
     session->watching = !off;
     session->watch_next_ns = session->now_ns;
     session->watch_shown_ns = UINT64_MAX;
-    epg_console_ok(session, "watch");
-    epg_console_end_or_drop(&session->output);
+    epg_console_done(session, "watch");
 }
 
 void epg_console_poll_watch(epg_console_session_t *session)
@@ -115,8 +114,7 @@ void epg_console_poll_watch(epg_console_session_t *session)
         if (publication != SIZE_MAX) {
             epg_target_publishing(target, publication);
         }
-        epg_console_key(&session->output, name);
-        epg_console_double(&session->output, values[session->watched[i]]);
+        epg_console_value(&session->output, name, values[session->watched[i]]);
     }
     epg_console_end_or_drop(&session->output);
 }
