@@ -55,29 +55,13 @@ static size_t put_whole(char *text, size_t length, uint64_t value)
     return length;
 }
 
-/** The number words * 2^exponent; the least significant word is the first. */
+/** The number words * 2^exponent, which is above zero.  The least significant word is the first; the last is not 0. */
 typedef struct wide {
     uint32_t words[WORDS];
     int exponent;
 } wide_t;
 
-/** value = value * factor + summand; unless the summand is 0, the exponent must be 0. */
-static void multiply(wide_t *value, uint32_t factor, uint32_t summand)
-{
-    uint64_t carry = summand;
-    for (size_t i = 0; i < WORDS; i++) {
-        carry += (uint64_t)value->words[i] * factor;
-        value->words[i] = (uint32_t)(carry & 0xFFFFFFFFU);
-        carry >>= 32;
-    }
-    if (carry != 0) {
-        memmove(&value->words[0], &value->words[1], (WORDS - 1) * sizeof value->words[0]);
-        value->words[WORDS - 1] = (uint32_t)carry;
-        value->exponent += 32;
-    }
-}
-
-/** Shifts a value above zero until its last word is not 0, so that at least 161 bits remain after a division. */
+/** Shifts the words until the last one is not 0. */
 static void fill(wide_t *value)
 {
     while (value->words[WORDS - 1] == 0) {
@@ -87,65 +71,80 @@ static void fill(wide_t *value)
     }
 }
 
-/** value = value / divisor */
-static void divide(wide_t *value, uint32_t divisor)
+static wide_t wide(uint64_t value, int exponent)
 {
-    fill(value);
-    uint64_t rest = value->words[WORDS - 1] % divisor;
-    uint32_t above = value->words[WORDS - 1] / divisor;
-    const bool shifted = above == 0; /* true: the result has room for one more word at its low end */
-    for (size_t i = WORDS - 1; i > 0; i--) {
-        rest = rest << 32 | value->words[i - 1];
-        const uint32_t digit = (uint32_t)(rest / divisor);
-        rest %= divisor;
-        value->words[i] = shifted ? digit : above;
-        above = digit;
+    wide_t result = {{(uint32_t)(value & 0xFFFFFFFFU), (uint32_t)(value >> 32)}, exponent};
+    fill(&result);
+    return result;
+}
+
+/** value = value * factor / divisor; at least 161 bits of the result are kept. */
+static void multiply(wide_t *value, uint32_t factor, uint32_t divisor)
+{
+    uint32_t words[WORDS + 2] = {0}; /* one more word at each end */
+    uint64_t carry = 0;
+    for (size_t i = 0; i < WORDS; i++) {
+        carry += (uint64_t)value->words[i] * factor;
+        words[i + 1] = (uint32_t)(carry & 0xFFFFFFFFU);
+        carry >>= 32;
     }
-    value->words[0] = shifted ? (uint32_t)((rest << 32) / divisor) : above;
-    value->exponent -= shifted ? 32 : 0;
+    words[WORDS + 1] = (uint32_t)carry;
+    uint64_t rest = 0;
+    for (size_t i = WORDS + 2; i > 0; i--) {
+        rest = rest << 32 | words[i - 1];
+        words[i - 1] = (uint32_t)(rest / divisor);
+        rest %= divisor;
+    }
+    size_t first = 2;
+    while (words[first + WORDS - 1] == 0) {
+        first--;
+    }
+    memcpy(value->words, &words[first], sizeof value->words);
+    value->exponent += 32 * ((int)first - 1);
 }
 
 /** value = value * 10^power */
 static void scale(wide_t *value, int power)
 {
     for (; power >= 9; power -= 9) {
-        multiply(value, 1000000000U, 0);
+        multiply(value, 1000000000U, 1);
     }
     for (; power > 0; power--) {
-        multiply(value, 10, 0);
+        multiply(value, 10, 1);
     }
     for (; power <= -9; power += 9) {
-        divide(value, 1000000000U);
+        multiply(value, 1, 1000000000U);
     }
     for (; power < 0; power++) {
-        divide(value, 10);
+        multiply(value, 1, 10);
     }
 }
 
 static unsigned int bit(const wide_t *value, int place)
 {
-    return place >= 0 && place < 32 * WORDS ? value->words[place / 32] >> (place % 32) & 1U : 0U;
+    return value->words[place / 32] >> (place % 32) & 1U;
 }
 
-/** Returns the whole number nearest to value / 2^exponent, which must be below 2^64; a tie goes to the even one. */
+/** Returns the whole number nearest to value / 2^exponent, which must be below 2^62; a tie goes to the even one. */
 static uint64_t rounded(const wide_t *value, int exponent)
 {
-    const int one = exponent - value->exponent; /* index of the bit with weight 1 */
-    uint64_t result = 0;
-    for (int i = 63; i >= 0; i--) {
-        result = result << 1 | bit(value, one + i);
+    const int quarter = exponent - 2 - value->exponent; /* index of the bit with weight 1/4 */
+    uint64_t quarters = 0;
+    bool more = false;
+    for (int i = 32 * WORDS - 1; i >= 0; i--) {
+        if (i >= quarter) {
+            quarters = quarters << 1 | bit(value, i);
+        } else {
+            more = more || bit(value, i) != 0;
+        }
     }
-    bool more = (result & 1U) != 0;
-    for (int i = 0; i < one - 1 && i < 32 * WORDS && !more; i++) {
-        more = bit(value, i) != 0;
-    }
-    return result + (more ? bit(value, one - 1) : 0U);
+    quarters |= more ? 1U : 0U; /* only a remainder of exactly 2 quarters is a tie */
+    return (quarters + 1U + (quarters >> 2 & 1U)) >> 2;
 }
 
-/** Returns the bits of the double nearest to a value above zero; SIGN if the value is too large. */
-static uint64_t nearest(wide_t *value)
+/** Returns the bits of the double nearest to a value; SIGN if the value is too large. */
+static uint64_t nearest(const wide_t *value)
 {
-    fill(value);
     int top = 32 * WORDS - 1;
     while (bit(value, top) == 0) {
         top--;
@@ -158,11 +157,6 @@ static uint64_t nearest(wide_t *value)
     /* An addition, not an OR: the leading 1 increments the biased exponent, and so does a carry into bit 53. */
     const uint64_t biased = (uint64_t)(binary - LEAST);
     return biased >= INFINITE ? SIGN : (biased << FRACTION) + rounded(value, binary);
-}
-
-static wide_t wide(uint64_t value, int exponent)
-{
-    return (wide_t){{(uint32_t)(value & 0xFFFFFFFFU), (uint32_t)(value >> 32)}, exponent};
 }
 
 /** Returns floor(log10(2^exponent)) or one less.  log10(2) is between 1233 / 4096 and 1234 / 4096. */
@@ -219,33 +213,25 @@ static uint64_t shortest(uint64_t bits, int *power)
 /** Writes `digits` with their point, or with an exponent below 1e-4 and from 1e17 on, as C's "%.17g" does. */
 static size_t lay_out(char *text, size_t length, const char *digits, size_t count, int point)
 {
-    if (point < -4 || point >= 17) {
-        const unsigned int size = (unsigned int)(point < 0 ? -point : point);
-        text[length++] = digits[0];
-        if (count > 1) {
-            text[length++] = '.';
-        }
-        for (size_t i = 1; i < count; i++) {
-            text[length++] = digits[i];
-        }
-        text[length++] = 'e';
-        text[length++] = point < 0 ? '-' : '+';
-        if (size < 10) {
-            text[length++] = '0';
-        }
-        return put_whole(text, length, size);
-    }
-    if (point < 0) {
+    const bool scientific = point < -4 || point >= MOST_DIGITS;
+    const int whole = scientific ? 1 : point + 1; /* number of digits before the point; negative: zeros after it */
+    if (whole <= 0) {
         length = put(text, length, "0.");
-        for (int i = -1; i > point; i--) {
-            text[length++] = '0';
-        }
     }
-    for (size_t i = 0; i < count || (int)i <= point; i++) {
-        if (point >= 0 && (int)i == point + 1) {
+    for (int i = whole; i < 0; i++) {
+        text[length++] = '0';
+    }
+    for (int i = 0; i < (int)count || i < whole; i++) {
+        if (i == whole && i > 0) {
             text[length++] = '.';
         }
-        text[length++] = i < count ? digits[i] : '0';
+        text[length++] = i < (int)count ? digits[i] : '0';
+    }
+    if (scientific) {
+        const unsigned int size = (unsigned int)(point < 0 ? -point : point);
+        length = put(text, length, point < 0 ? "e-" : "e+");
+        length = put(text, length, size < 10 ? "0" : "");
+        length = put_whole(text, length, size);
     }
     return length;
 }
@@ -304,88 +290,88 @@ size_t epg_decimal_write_integer(char *text, int64_t value)
     return put_whole(text, length, value < 0 ? 0U - (uint64_t)value : (uint64_t)value);
 }
 
-/** A number that was read: digits * 10^exponent. */
-typedef struct number {
-    wide_t digits;
-    bool negative;
-    int exponent;
-} number_t;
-
-/** Reads the exponent after an "e".  Returns false if it is malformed.  Beyond +-9999 it is limited to +-9999. */
-static bool read_exponent(const char *text, size_t length, int *exponent)
+/** Skips a sign.  Returns true if it is a minus. */
+static bool read_sign(const char **text)
 {
-    size_t i = 0;
-    const bool negative = length > 0 && text[0] == '-';
-    if (length > 0 && (text[0] == '-' || text[0] == '+')) {
-        i++;
-    }
-    if (i == length) {
-        return false;
-    }
+    const bool negative = **text == '-';
+    *text += negative || **text == '+' ? 1 : 0;
+    return negative;
+}
+
+static bool is_digit(char character)
+{
+    return character >= '0' && character <= '9';
+}
+
+/** Adds the exponent after an "e" to `*exponent`.  Returns false if it is malformed.  It is limited to +-9999. */
+static bool read_exponent(const char *text, int *exponent)
+{
+    const bool negative = read_sign(&text);
+    const bool any = is_digit(*text);
     int size = 0;
-    for (; i < length; i++) {
-        if (text[i] < '0' || text[i] > '9') {
-            return false;
-        }
-        size = size * 10 + (text[i] - '0');
+    for (; is_digit(*text); text++) {
+        size = size * 10 + (*text - '0');
         size = size > 9999 ? 9999 : size;
     }
     *exponent += negative ? -size : size;
-    return true;
+    return any && *text == '\0';
 }
 
-static bool read_number(const char *text, size_t length, number_t *number)
+/** Reads a number without its sign, words * 10^power.  Returns false if it is malformed or has too many digits. */
+static bool read_number(const char *text, uint32_t words[WORDS], int *power)
 {
-    size_t i = 0;
     size_t significant = 0;
     bool any = false;
     bool point = false;
-    *number = (number_t){0};
-    number->negative = length > 0 && text[0] == '-';
-    if (length > 0 && (text[0] == '-' || text[0] == '+')) {
-        i++;
-    }
-    for (; i < length; i++) {
-        if (text[i] == '.' && !point) {
+    for (; is_digit(*text) || (*text == '.' && !point); text++) {
+        if (*text == '.') {
             point = true;
-        } else if (text[i] >= '0' && text[i] <= '9') {
-            any = true;
-            significant += significant > 0 || text[i] != '0' ? 1U : 0U;
-            if (significant > EPG_DECIMAL_DIGITS) {
-                return false;
-            }
-            multiply(&number->digits, 10, (uint32_t)(text[i] - '0'));
-            number->exponent -= point ? 1 : 0;
-        } else {
-            return any && (text[i] == 'e' || text[i] == 'E') &&
-                   read_exponent(text + i + 1, length - i - 1, &number->exponent);
+            continue;
         }
+        any = true;
+        significant += significant > 0 || *text != '0' ? 1U : 0U;
+        if (significant > EPG_DECIMAL_DIGITS) {
+            return false;
+        }
+        uint64_t carry = (uint64_t)(*text - '0');
+        for (size_t i = 0; i < WORDS; i++) {
+            carry += (uint64_t)words[i] * 10U;
+            words[i] = (uint32_t)(carry & 0xFFFFFFFFU);
+            carry >>= 32;
+        }
+        *power -= point ? 1 : 0;
     }
-    return any;
+    if (*text == 'e' || *text == 'E') {
+        return any && read_exponent(text + 1, power);
+    }
+    return any && *text == '\0';
 }
 
-bool epg_decimal_read(const char *text, size_t length, double *value)
+bool epg_decimal_read(const char *text, double *value)
 {
-    number_t number;
+    const bool negative = read_sign(&text);
+    wide_t number = {{0}, 0};
+    int power = 0;
     uint64_t bits = 0;
-    if (!read_number(text, length, &number)) {
+    if (!read_number(text, number.words, &power)) {
         return false;
     }
     bool zero = true;
     for (size_t i = 0; i < WORDS; i++) {
-        zero = zero && number.digits.words[i] == 0;
+        zero = zero && number.words[i] == 0;
     }
-    if (!zero && number.exponent > LARGEST_POWER) {
+    if (!zero && power > LARGEST_POWER) {
         return false;
     }
-    if (!zero && number.exponent >= LEAST_POWER) {
-        scale(&number.digits, number.exponent);
-        bits = nearest(&number.digits);
+    if (!zero && power >= LEAST_POWER) {
+        fill(&number);
+        scale(&number, power);
+        bits = nearest(&number);
     }
     if (bits >= (uint64_t)INFINITE << FRACTION) {
         return false;
     }
-    bits |= number.negative ? SIGN : 0U;
+    bits |= negative ? SIGN : 0U;
     memcpy(value, &bits, sizeof bits);
     return true;
 }

@@ -9,23 +9,10 @@
 #include "epg/diagnostics.h"
 
 #include "epg/cdr.h"
+#include "epg/decimal.h"
 #include "epg/port.h"
 
 enum { LEVEL_OK, LEVEL_WARN, LEVEL_ERROR };
-
-enum { DECIMAL_SIZE = 21 }; /* bytes of the largest 64-bit number, with the terminating zero */
-
-/** Writes a whole number to the end of `text`.  Returns its start. */
-static const char *decimal(uint64_t value, char text[DECIMAL_SIZE])
-{
-    char *place = &text[DECIMAL_SIZE - 1];
-    *place = '\0';
-    do {
-        *--place = (char)('0' + value % 10);
-        value /= 10;
-    } while (value > 0);
-    return place;
-}
 
 static void write_pair(epg_cdr_writer_t *writer, const char *key, const char *value)
 {
@@ -57,12 +44,13 @@ static void write_pairs(epg_cdr_writer_t *writer, const epg_node_t *node, const 
         {"malformed", node->malformed},
     };
     const size_t count = sizeof numbers / sizeof numbers[0];
-    char text[DECIMAL_SIZE];
+    char text[EPG_DECIMAL_SIZE + 1];
     epg_cdr_write_u32(writer, (uint32_t)count + 4U);
     write_pair(writer, "fault", epg_fault_name(status->fault));
     write_pair(writer, "component", epg_target_component(node->target, status->fault_component));
     for (size_t i = 0; i < count; i++) {
-        write_pair(writer, numbers[i].key, decimal(numbers[i].value, text));
+        text[epg_decimal_write_integer(text, (int64_t)numbers[i].value)] = '\0';
+        write_pair(writer, numbers[i].key, text);
     }
     write_pair(writer, "epg", node->target->version);
     write_pair(writer, "firmware", node->target->hash);

@@ -47,7 +47,7 @@ static const char *written(double value)
 
 static bool reads(const char *text, double *value)
 {
-    return epg_decimal_read(text, strlen(text), value);
+    return epg_decimal_read(text, value);
 }
 
 /** Number of digits in the shortest text that the C library reads back as `value`. */

@@ -29,11 +29,11 @@ enum { EPG_DECIMAL_DIGITS = 40 };
 size_t epg_decimal_write(char *text, double value);
 
 /**
- * Reads the number in the `length` bytes of `text`: digits, with or without a point, a sign and an exponent
+ * Reads the number in `text`: digits, with or without a point, a sign and an exponent
  * ("-1.5e-3").  The result is the nearest double; if two are equally near, the even one.  Returns false if `text` is
  * not such a number, has more than EPG_DECIMAL_DIGITS digits, or is too large for a double.
  */
-bool epg_decimal_read(const char *text, size_t length, double *value);
+bool epg_decimal_read(const char *text, double *value);
 
 /**
  * Writes a time in nanoseconds as seconds, exactly: 1500000000 is "1.5".  Returns the length, at most EPG_DECIMAL_SIZE.
