@@ -40,7 +40,8 @@ from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
-from tests.ros2.messages import Gid_, NodeEntitiesInfo_, ParticipantEntitiesInfo_, ros_type, type_hash
+from tests.ros2.definitions import ros_type, type_hash
+from tests.ros2.messages import Gid_, NodeEntitiesInfo_, ParticipantEntitiesInfo_
 
 FOREVER = duration(infinite=True)
 ANYTHING = SampleState.Any | ViewState.Any | InstanceState.Any

@@ -24,6 +24,7 @@ import pytest
 pytest.importorskip("cyclonedds", reason="CycloneDDS for Python is not installed: python -m pip install cyclonedds")
 
 from tests.ros2.build import Build
+from tests.ros2.definitions import type_hash
 from tests.ros2.messages import (
     Bool_,
     DiagnosticArray_,
@@ -36,7 +37,6 @@ from tests.ros2.messages import (
     MultiArrayLayout_,
     ShortFloat64_,
     numbers,
-    type_hash,
 )
 from tests.ros2.network import Network, network, running
 from tests.ros2.peer import Endpoint, Peer, Subscription

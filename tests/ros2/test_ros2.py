@@ -17,7 +17,7 @@ from pathlib import Path
 import pytest
 
 from tests.ros2.build import Build
-from tests.ros2.messages import type_hash
+from tests.ros2.definitions import type_hash
 from tests.ros2.network import Network, running
 
 if shutil.which("ros2") is None:

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Definitions of ROS 2 messages, and the hashes by which ROS 2 distinguishes types.
+
+The definitions are those of ROS 2 Jazzy's common_interfaces and rmw_dds_common.  They leave out constants, which are
+not part of a type.  Hashes are computed from the definitions (REP 2016), independently of the constants in EPG's
+runtime.  A hash is the SHA-256 of the descriptions of a type and of all types that it refers to, as JSON text with a
+fixed order of keys.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+
+DEFINITIONS = {
+    "builtin_interfaces/msg/Time": "int32 sec, uint32 nanosec",
+    "std_msgs/msg/Header": "builtin_interfaces/msg/Time stamp, string frame_id",
+    "std_msgs/msg/String": "string data",
+    "std_msgs/msg/Float64": "float64 data",
+    "std_msgs/msg/Float32": "float32 data",
+    "std_msgs/msg/Int32": "int32 data",
+    "std_msgs/msg/Bool": "bool data",
+    "std_msgs/msg/MultiArrayDimension": "string label, uint32 size, uint32 stride",
+    "std_msgs/msg/MultiArrayLayout": "std_msgs/msg/MultiArrayDimension[] dim, uint32 data_offset",
+    "std_msgs/msg/Float64MultiArray": "std_msgs/msg/MultiArrayLayout layout, float64[] data",
+    "geometry_msgs/msg/Vector3": "float64 x, float64 y, float64 z",
+    "geometry_msgs/msg/Twist": "geometry_msgs/msg/Vector3 linear, geometry_msgs/msg/Vector3 angular",
+    "geometry_msgs/msg/TwistStamped": "std_msgs/msg/Header header, geometry_msgs/msg/Twist twist",
+    "sensor_msgs/msg/JointState": "std_msgs/msg/Header header, string[] name, float64[] position, float64[] velocity, "
+    "float64[] effort",
+    "diagnostic_msgs/msg/KeyValue": "string key, string value",
+    "diagnostic_msgs/msg/DiagnosticStatus": "byte level, string name, string message, string hardware_id, "
+    "diagnostic_msgs/msg/KeyValue[] values",
+    "diagnostic_msgs/msg/DiagnosticArray": "std_msgs/msg/Header header, diagnostic_msgs/msg/DiagnosticStatus[] status",
+    "rmw_dds_common/msg/Gid": "uint8[16] data",  # char[16], which is uint8 in IDL
+    "rmw_dds_common/msg/NodeEntitiesInfo": "string<=256 node_namespace, string<=256 node_name, "
+    "rmw_dds_common/msg/Gid[] reader_gid_seq, rmw_dds_common/msg/Gid[] writer_gid_seq",
+    "rmw_dds_common/msg/ParticipantEntitiesInfo": "rmw_dds_common/msg/Gid gid, "
+    "rmw_dds_common/msg/NodeEntitiesInfo[] node_entities_info_seq",
+}
+
+# type_description_interfaces/msg/FieldType
+_NUMBERS = {"int32": 6, "uint32": 7, "float32": 10, "float64": 11, "uint8": 3, "bool": 15, "byte": 16, "string": 17}
+_NESTED, _BOUNDED_STRING, _ARRAY, _SEQUENCE = 1, 21, 48, 144
+
+
+def fields_of(type_: str) -> list[tuple[str, str]]:
+    """The fields of a message: pairs of name and type."""
+    pairs = (field.split(" ") for field in DEFINITIONS[type_].split(", "))
+    return [(name, text) for text, name in pairs]
+
+
+def _field(name: str, type_: str) -> dict[str, object]:
+    string_capacity = capacity = 0
+    nested = ""
+    base, bracket, size = type_.partition("[")
+    if base.startswith("string<="):
+        number, string_capacity = _BOUNDED_STRING, int(base.removeprefix("string<="))
+    elif "/" in base:
+        number, nested = _NESTED, base
+    else:
+        number = _NUMBERS[base]
+    if bracket:
+        capacity = int(size.rstrip("]") or 0)
+        number += _ARRAY if capacity else _SEQUENCE
+    described = {
+        "type_id": number,
+        "capacity": capacity,
+        "string_capacity": string_capacity,
+        "nested_type_name": nested,
+    }
+    return {"name": name, "type": described}
+
+
+def _describe(type_: str) -> dict[str, object]:
+    return {"type_name": type_, "fields": [_field(name, text) for name, text in fields_of(type_)]}
+
+
+def _referenced(type_: str) -> set[str]:
+    direct = {text.partition("[")[0] for _, text in fields_of(type_) if "/" in text}
+    return direct.union(*(_referenced(other) for other in direct)) if direct else set()
+
+
+def type_hash(type_: str) -> str:
+    """The RIHS01 hash of ``std_msgs/msg/Float64``.
+
+    >>> type_hash("std_msgs/msg/String")  # as `ros2 topic info --verbose /chatter` shows it
+    'RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18'
+    """
+    description = {
+        "type_description": _describe(type_),
+        "referenced_type_descriptions": [_describe(other) for other in sorted(_referenced(type_))],
+    }
+    text = json.dumps(description, ensure_ascii=True, separators=(", ", ": "))
+    return "RIHS01_" + hashlib.sha256(text.encode()).hexdigest()
+
+
+def ros_type(dds_type: str) -> str:
+    """``std_msgs/msg/Float64`` for ``std_msgs::msg::dds_::Float64_``, as in ``ros2 topic list -t``."""
+    parts = dds_type.split("::")
+    if len(parts) < 3 or parts[-2] != "dds_" or not parts[-1].endswith("_"):
+        raise ValueError(f"'{dds_type}' is no type of ROS 2")
+    return "/".join((*parts[:-2], parts[-1][:-1]))
