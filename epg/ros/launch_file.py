@@ -70,9 +70,11 @@ def describe(agent: Agent) -> list[str]:
 
 
 def _topics(robot: Robot) -> str:
-    hears = ", ".join(robot.topic(topic) for topic in robot.subscriptions if topic.role == "values")
-    says = ", ".join(robot.topic(topic) for topic in robot.publications if topic.role == "values")
-    return "; ".join(f"{verb} {topics}" for verb, topics in (("hears", hears), ("says", says)) if topics)
+    subscribed = ", ".join(robot.topic(topic) for topic in robot.subscriptions if topic.role == "values")
+    published = ", ".join(robot.topic(topic) for topic in robot.publications if topic.role == "values")
+    return "; ".join(
+        f"{verb} {topics}" for verb, topics in (("subscribes to", subscribed), ("publishes", published)) if topics
+    )
 
 
 def _quoted(text: str) -> str:

@@ -97,7 +97,7 @@ def _rows(file: Path, diagnostics: Diagnostics) -> Iterator[tuple[float, str, fl
                     diagnostics.error("wrong-recording", Span(str(file), number, 1, 2), message)
                     return
                 if not time >= latest:
-                    message = f"time goes back from {latest:g} s to {time:g} s"
+                    message = f"the time decreases from {latest:g} s to {time:g} s"
                     diagnostics.error("wrong-recording", Span(str(file), number, 1, 2), message)
                     return
                 latest = time

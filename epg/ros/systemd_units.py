@@ -143,7 +143,7 @@ Written by `epg launch --systemd`, for the user `{installation.user}`, ROS 2 {in
 {table}
 
 A unit with a board starts when the board is plugged in, stops when it is unplugged, and is started again a second after
-it has failed. Nothing is lost by that: targets reconnect by themselves.
+it has failed. Targets then reconnect without help.
 
 ## Install
 
@@ -160,7 +160,7 @@ sudo systemctl enable {" ".join(units)}
 sudo systemctl start {" ".join(units)}
 ```
 
-## Look
+## Check
 
 ```sh
 ls -l /dev/serial/by-id

@@ -74,7 +74,7 @@ def test_one_agent_for_each_board_and_one_for_all_by_udp(robots: Path, capsys: p
         assert (node["package"], node["executable"]) == ("micro_ros_agent", "micro_ros_agent")
         assert node["respawn"] is True
     assert len({node["name"] for node in nodes(source)}) == 5
-    assert f"# /robot_{FIRST}/JIWY_node: hears /robot_{FIRST}/pan_subscriber" in source
+    assert f"# /robot_{FIRST}/JIWY_node: subscribes to /robot_{FIRST}/pan_subscriber" in source
     compile(source, "agents.launch.py", "exec")
 
 

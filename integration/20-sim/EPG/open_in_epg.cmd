@@ -21,7 +21,7 @@ if not defined epg_command (
     echo EPG is not installed on this computer, or not in the PATH.
     echo Install Python from python.org, then EPG, and start this file again:
     echo "%~f0"
-    if exist "%~dp0ModelConfiguration.xml" echo ModelConfiguration.xml in this folder names your model file and 20-sim license until then.
+    if exist "%~dp0ModelConfiguration.xml" echo Until then, ModelConfiguration.xml in this folder contains the path of your model file and your 20-sim license.
     exit /b 4
 )
 %epg_command% exported "%epg_folder%"%epg_option%
