@@ -171,6 +171,7 @@ def parse_ratio(value: object) -> Fraction:
     raise problem
 
 
+# One function, because each check relies on those before it, and their order decides the message.
 def parse_quantity(value: object, dimension: str) -> Fraction | float:
     """A quantity in the base unit of its dimension (s, Hz, rad, m, V, A, ...).
 

@@ -172,6 +172,7 @@ def _peripheral(name: str, node: YamlNode, pins: Sequence[str], diagnostics: Dia
         diagnostics.error("unknown-name", node.key_span("agree"), f"'{name}' has no divider that sets a frequency")
 
 
+# One function, because it is a list of independent checks of one node.
 def _resource_class(name: str, node: YamlNode, peripherals: dict[str, YamlNode], diagnostics: Diagnostics) -> None:
     """Checks a resource class: its peripheral, instances, slots and signals must exist."""
     stated = node.get("peripheral")

@@ -26,6 +26,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_target_arguments(parser, required=False)
 
 
+# One function, because it is the course of the command: load, check, report and choose the exit status.
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from dataclasses import replace
 

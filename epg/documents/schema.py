@@ -89,6 +89,7 @@ def extended_from(node: YamlNode) -> list[Note]:
     return [Note("extended here", span) for span in node.origins]
 
 
+# One function, because it is a list of cases: one for each keyword that needs a position or hint of its own.
 def _report(error: Any, root: YamlNode, diagnostics: Diagnostics) -> None:
     """Reports one violation that jsonschema has found: at the key for unknown and missing keys, else at the value."""
     path: Path = tuple(error.absolute_path)

@@ -142,6 +142,7 @@ class _Reader:
             return None
         return self._value(number, line, indent + entry.start("value")) if value else None
 
+    # One function, because its branches are the complete cases of one decision: this indentation after that level.
     def _place(self, number: int, indent: int, content: str) -> Mistake | None:
         """Finds the level of a line by its indentation, or begins a new one.  Returns a mistake, if there is one."""
         entry = _ENTRY.match(content)

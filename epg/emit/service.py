@@ -106,6 +106,7 @@ class Service:
     encoders: tuple[EncoderView, ...]
 
 
+# One function, because it fills the fields of one object, and most conditions stand for one field each.
 def service_of(app: Application, macro: Macro) -> Service:
     """The services that the middleware of ``app``, and the console beside it, use."""
     communication = app.communication

@@ -27,6 +27,7 @@ class Stage:
     style: str = "box"
 
 
+# One function, because it lists the stages in the order of the generated loop.
 def control_stages(app: Application) -> tuple[Stage, ...]:
     """The stages of the control loop between two ticks, in order."""
     sampled = [

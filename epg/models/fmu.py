@@ -42,6 +42,7 @@ _STEP_SIZE = re.compile(r"(?<!\w)(\w{1,64}(?:->|_))?step_size\s{0,80}=(?!=)\s{0,
 _TYPES = {**TYPES_2, **TYPES_3}
 
 
+# One function, because it is a list of steps: each needs results of those before it.
 def load_fmu(
     path: Path,
     diagnostics: Diagnostics,

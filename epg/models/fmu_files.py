@@ -181,6 +181,7 @@ def _check_directory(path: Path) -> None:
         raise _Refused(f"'{path.name}' has more than {MAX_ENTRIES} files", ANOTHER_FILE)
 
 
+# One function, because all checks of an entry must be complete before it counts as a part of the model.
 def _entries(archive: zipfile.ZipFile) -> tuple[dict[str, zipfile.ZipInfo], set[str]]:
     """The entries of the description and the sources, and the platforms with binaries.  Checks all names first."""
     wanted: dict[str, zipfile.ZipInfo] = {}

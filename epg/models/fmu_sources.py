@@ -74,6 +74,7 @@ class _Listed:
     definitions: tuple[tuple[str, str], ...] = ()
 
 
+# One function, because it is a list of steps, and each step runs only if the steps before it found no errors.
 def find_sources(files: FmuFiles, description: Description, diagnostics: Diagnostics) -> FmuSources | None:
     """The sources of the FMU.  None if it cannot be compiled; the reasons are reported."""
     before = diagnostics.error_count
