@@ -90,32 +90,42 @@ class _Check:
             if keyword not in _ANNOTATIONS and not keyword.startswith("x-")
         )
 
+    # One function, because it is a list of cases: one for each keyword.
     def _fits_keyword(self, value: Any, keyword: str, wanted: Any, schema: Schema) -> bool:
-        """True if ``value`` fits one keyword.  It is one function so that every keyword is one case of a list."""
+        """True if ``value`` fits one keyword."""
+        if keyword in _OF_ONE_TYPE:
+            return self._fits_keyword_of_one_type(value, keyword, wanted, schema)
         if keyword in _BOUNDS:
             return not _is_type(value, "number") or _BOUNDS[keyword](value, wanted)
         if keyword in _LENGTHS:
             kind, compare = _LENGTHS[keyword]
             return not isinstance(value, kind) or compare(len(value), wanted)
-        match keyword, value:
-            case "type", _:
+        match keyword:
+            case "type":
                 names = [wanted] if isinstance(wanted, str) else wanted
                 return any(_is_type(value, name) for name in names)
-            case "enum", _:
+            case "enum":
                 return any(_same(value, option) for option in wanted)
-            case "const", _:
+            case "const":
                 return _same(value, wanted)
-            case "anyOf", _:
+            case "anyOf":
                 return any(self._whole.fits(value, option) for option in wanted)
-            case "oneOf", _:
+            case "oneOf":
                 return sum(self._whole.fits(value, option) for option in wanted) == 1
-            case "if", _:
+            case "if":
                 return self.fits(value, schema.get("then" if self._whole.fits(value, wanted) else "else", True))
-            case "$ref", _:
+            case "$ref":
                 name = str(wanted).removeprefix("#/$defs/")
                 if "/" in name or name not in self._definitions:
                     raise _Unknown(wanted)
                 return self.fits(value, self._definitions[name])
+            case "dependentRequired" if self._partial:
+                return True
+        raise _Unknown(keyword)
+
+    def _fits_keyword_of_one_type(self, value: Any, keyword: str, wanted: Any, schema: Schema) -> bool:
+        """True if ``value`` fits one keyword, which means nothing for values of other types."""
+        match keyword, value:
             case "pattern", str():
                 return re.search(wanted, value) is not None
             case "uniqueItems", list():
@@ -133,8 +143,4 @@ class _Check:
                 return all(self.fits(key, wanted) for key in value)
             case "required", dict():
                 return self._partial or all(key in value for key in wanted)
-            case "dependentRequired", _ if self._partial:
-                return True
-        if keyword not in _OF_ONE_TYPE:
-            raise _Unknown(keyword)
         return True
