@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+pytest.register_assert_rewrite("tests.middlewares.xrce.checks")  # so that a failure shows the values
+
 HERE = Path(__file__).resolve().parent
 
 

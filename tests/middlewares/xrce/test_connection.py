@@ -14,13 +14,7 @@ from tests.xrce_agent import Agent, Kind, Link, PtyLink, Status, UdpLink
 from tests.xrce_agent.wire import Header, Id, Submessage
 
 from .board import Board
-
-FLOAT64 = "std_msgs::msg::dds_::Float64_"
-
-
-def check_alive(board: Board, value: float) -> None:
-    """Both directions work: a setpoint reaches the model, and the model's answer comes back."""
-    board.agent.wait_until(lambda: board.set("reliable", value) >= 1 and board.values("got_reliable")[-1:] == [value])
+from .checks import check_alive, check_board_before_agent, check_end_of_session, check_topics
 
 
 def test_the_agent_is_there_first(robot: Path, agent: Agent) -> None:
@@ -28,38 +22,15 @@ def test_the_agent_is_there_first(robot: Path, agent: Agent) -> None:
         assert board.running() < 5.0
         (client,) = agent.clients.values()
         assert client.node == "robot_1"
-        ends = {(end.topic, end.type, end.reliable) for end in client.ends.values()}
-        assert {end for end in ends if end[1] == FLOAT64} == {
-            ("rt/lab/reliable", FLOAT64, True),
-            ("rt/lab/quick", FLOAT64, False),
-            ("rt/lab/held", FLOAT64, False),
-            ("rt/lab/zeroed", FLOAT64, False),
-            ("rt/lab/got_reliable", FLOAT64, True),
-            ("rt/lab/got_quick", FLOAT64, False),
-            ("rt/lab/got_held", FLOAT64, False),
-            ("rt/lab/got_zeroed", FLOAT64, False),
-            ("rt/lab/cycles", FLOAT64, True),
-            ("rt/lab/cycles_too", FLOAT64, False),
-        }
-        assert ends - {end for end in ends if end[1] == FLOAT64} == {
-            ("rt/diagnostics", "diagnostic_msgs::msg::dds_::DiagnosticArray_", True),
-            ("rt/lab/robot_1/enable", "std_msgs::msg::dds_::Bool_", True),
-        }
+        check_topics(agent)
         check_alive(board, 0.5)
-        assert board.stop() == ""
-        agent.wait_until(lambda: agent.clients == {})  # the board has closed its session
-        assert agent.malformed == 0
+        check_end_of_session(board)
 
 
 def test_the_board_is_there_first(robot: Path, agent: Agent) -> None:
     agent.kill()
     with Board(robot, agent) as board:
-        time.sleep(1.0)
-        agent.start()
-        assert board.running() < 3.0
-        check_alive(board, 0.5)
-        assert board.next("cycles") > 1000  # the model has run meanwhile
-        assert board.statistic("reconnects") == 0
+        check_board_before_agent(board, longest=3.0)
         assert board.stop() == ""
 
 

@@ -13,31 +13,21 @@ import pytest
 from tests.xrce_agent import Agent
 
 from .board import Board
+from .checks import check_newest_setpoints, check_period, check_stamps, check_wrong_setpoints
 
 
 def test_a_period_is_20_ms_and_of_one_control_cycle(robot: Path, agent: Agent) -> None:
     with Board(robot, agent) as board:
         board.running()
-        began = time.monotonic()
-        time.sleep(2.0)
-        reliable, quick = board.timed("cycles", began), board.timed("cycles_too", began)
-        assert abs(len(quick) - 100) <= 3
-        steps = [after[1] - before[1] for before, after in itertools.pairwise(quick)]
-        assert statistics.mean(steps) == pytest.approx(20, abs=0.3)  # control cycles of 1 ms
+        steps = check_period(board, count=3, error=0.3)
         assert statistics.median(steps) == 20
-        assert {value for _, value in reliable} >= {value for _, value in quick[1:-2]}
         assert board.stop() == ""
 
 
 def test_the_newest_setpoint_counts(robot: Path, agent: Agent) -> None:
     with Board(robot, agent) as board:
         board.running()
-        for topic in ("reliable", "quick"):
-            for number in range(200):
-                assert board.set(topic, 1.0 + number / 256) == 1
-            board.wait_for(f"got_{topic}", 1.0 + 199 / 256)
-            time.sleep(0.1)
-            assert board.values(f"got_{topic}")[-1] == 1.0 + 199 / 256
+        check_newest_setpoints(board)
         assert board.stop() == ""
 
 
@@ -61,18 +51,7 @@ def test_qos_of_peers(robot: Path, agent: Agent) -> None:
 def test_what_is_no_number_is_dropped_and_counted(robot: Path, agent: Agent) -> None:
     with Board(robot, agent) as board:
         board.running()
-        board.set("reliable", 0.5)
-        board.wait_for("got_reliable", 0.5)
-        for value in (float("nan"), float("inf"), float("-inf")):
-            board.set("reliable", value)
-        for data in (b"", b"\0" * 7):
-            board.topics.publish("rt/lab/quick", data)
-        board.set("quick", 0.75)
-        board.wait_for("got_quick", 0.75)
-        agent.wait_until(lambda: board.statistic("setpoints_dropped") == 3)
-        diagnostics = board.diagnostics()
-        assert (diagnostics.values["malformed"], diagnostics.level) == ("2", "OK")
-        assert board.values("got_reliable")[-1] == 0.5
+        check_wrong_setpoints(board, [b"", b"\0" * 7])
         assert board.stop() == ""
 
 
@@ -155,14 +134,7 @@ def test_stamps_are_of_the_agents_clock(robot: Path, agent: Agent) -> None:
     agent.clock_offset = 1000.0
     with Board(robot, agent) as board:
         board.running()
-
-        def error() -> float:
-            return board.diagnostics().stamp - (time.time() + 1000.0)
-
-        agent.wait_until(lambda: abs(error()) < 1.0)
-        errors = [error() for _ in range(5)]
-        # stamps are of the control cycle, so a little earlier
-        assert all(-0.1 < each <= 0.01 for each in errors), errors
+        check_stamps(board, 1000.0, earliest=-0.1, latest=0.01)
         assert board.stop() == ""
 
 

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Checks of a running board, for the middlewares ``xrce`` and ``micro_ros``."""
+
+from __future__ import annotations
+
+import itertools
+import statistics
+import time
+from collections.abc import Sequence
+
+import pytest
+
+from tests.xrce_agent import Agent
+
+from .board import Board
+
+FLOAT64 = "std_msgs::msg::dds_::Float64_"
+
+
+def check_alive(board: Board, value: float) -> None:
+    """Both directions work: a setpoint reaches the model, and the model's answer comes back."""
+    board.agent.wait_until(lambda: board.set("reliable", value) >= 1 and board.values("got_reliable")[-1:] == [value])
+
+
+def check_topics(agent: Agent) -> None:
+    """The agent's only client has the topics of the robot, with their types and quality of service."""
+    (client,) = agent.clients.values()
+    reliable = {"reliable", "got_reliable", "cycles"}
+    others = {"quick", "held", "zeroed", "got_quick", "got_held", "got_zeroed", "cycles_too"}
+    assert {(end.topic, end.type, end.reliable) for end in client.ends.values()} == {
+        *((f"rt/lab/{topic}", FLOAT64, topic in reliable) for topic in reliable | others),
+        ("rt/diagnostics", "diagnostic_msgs::msg::dds_::DiagnosticArray_", True),
+        ("rt/lab/robot_1/enable", "std_msgs::msg::dds_::Bool_", True),
+    }
+
+
+def check_end_of_session(board: Board) -> None:
+    """The board closes its session when it ends, and has sent nothing malformed."""
+    assert board.stop() == ""
+    board.agent.wait_until(lambda: board.agent.clients == {})
+    assert board.agent.malformed == 0
+
+
+def check_period(board: Board, count: int, error: float) -> list[float]:
+    """In 2 s, 100 publications arrive, give or take ``count``; their mean distance is 20 ms, give or take ``error`` ms.
+
+    Publications of one turn are of one control cycle.  Returns the distances in control cycles of 1 ms.
+    """
+    began = time.monotonic()
+    time.sleep(2.0)
+    reliable, quick = board.timed("cycles", began), board.timed("cycles_too", began)
+    assert abs(len(quick) - 100) <= count
+    steps = [after[1] - before[1] for before, after in itertools.pairwise(quick)]
+    assert statistics.mean(steps) == pytest.approx(20, abs=error)
+    assert {value for _, value in reliable} >= {value for _, value in quick[1:-2]}
+    return steps
+
+
+def check_newest_setpoints(board: Board) -> None:
+    for topic in ("reliable", "quick"):
+        for number in range(200):
+            assert board.set(topic, 1.0 + number / 256) == 1
+        board.wait_for(f"got_{topic}", 1.0 + 199 / 256)
+        time.sleep(0.1)
+        assert board.values(f"got_{topic}")[-1] == 1.0 + 199 / 256
+
+
+def check_wrong_setpoints(board: Board, malformed: Sequence[bytes]) -> None:
+    """Numbers that are not finite are dropped, two ``malformed`` messages are counted, and later setpoints arrive."""
+    board.set("reliable", 0.5)
+    board.wait_for("got_reliable", 0.5)
+    for value in (float("nan"), float("inf"), float("-inf")):
+        board.set("reliable", value)
+    for data in malformed:
+        board.topics.publish("rt/lab/quick", data)
+    board.set("quick", 0.75)
+    board.wait_for("got_quick", 0.75)
+    board.agent.wait_until(lambda: board.statistic("setpoints_dropped") == 3)
+    diagnostics = board.diagnostics()
+    assert (diagnostics.values["malformed"], diagnostics.level) == (str(len(malformed)), "OK")
+    assert board.values("got_reliable")[-1] == 0.5
+
+
+def check_stamps(board: Board, offset: float, earliest: float, latest: float) -> None:
+    """Stamps follow the agent's clock, which is ``offset`` s ahead.  They are of the control cycle."""
+
+    def error() -> float:
+        return board.diagnostics().stamp - (time.time() + offset)
+
+    board.agent.wait_until(lambda: abs(error()) < 1.0)
+    errors = [error() for _ in range(5)]
+    assert all(earliest < each <= latest for each in errors), errors
+
+
+def check_board_before_agent(board: Board, longest: float) -> None:
+    """The agent, which is stopped, starts later than the board.  The board publishes after at most ``longest`` s."""
+    time.sleep(1.0)
+    board.agent.start()
+    assert board.running() < longest
+    check_alive(board, 0.5)
+    assert board.next("cycles") > 1000  # the model has run meanwhile
+    assert board.statistic("reconnects") == 0
