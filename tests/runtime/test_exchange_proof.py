@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import platform
 import re
-import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
 
 from .program import RUNTIME, SOURCES, THREAD_SANITIZER, compile_program, run_program
+from .spin import check_search, needs_spin, spin
 
 MODEL = Path(__file__).resolve().parent / "exchange.pml"
 EXCHANGE = RUNTIME / "src" / "exchange.c"
@@ -31,35 +31,16 @@ BROKEN_MODELS = {
     "BROKEN_COUNT_BEFORE_PAIR",
 }
 
-needs_spin = pytest.mark.skipif(shutil.which("spin") is None, reason="spin is not installed: apt install spin")
-
-
-def spin(folder: Path, *defines: str) -> str:
-    """The output of the model's verifier after a search of its whole state space."""
-    options = [f"-D{define}" for define in defines]
-    subprocess.run(["spin", "-a", *options, str(MODEL)], cwd=folder, check=True, capture_output=True)
-    # -DSAFETY: assertions and end states only; the search is exact (no -DBITSTATE).
-    subprocess.run(["gcc", "-O2", "-w", "-DSAFETY", "-o", "pan", "pan.c"], cwd=folder, check=True, capture_output=True)
-    return subprocess.run(["./pan", "-m100000"], cwd=folder, check=False, capture_output=True, text=True).stdout
-
 
 @needs_spin
 def test_spin_finds_nothing_wrong_in_any_interleaving(tmp_path: Path) -> None:
-    report = spin(tmp_path)
-    assert "errors: 0" in report, report
-    assert "max search depth too small" not in report
-    assert "Search not completed" not in report
-    assert re.search(r"assertion violations\s+\+", report)
-    assert re.search(r"invalid end states\s+\+", report)
-    states = re.search(r"(\d+) states, stored", report)
-    assert states is not None
-    assert int(states[1]) > 10_000
+    check_search(spin(MODEL, tmp_path), 10_000)
 
 
 @needs_spin
 @pytest.mark.parametrize("broken", sorted(BROKEN_MODELS))
 def test_spin_refuses_a_broken_model(tmp_path: Path, broken: str) -> None:
-    report = spin(tmp_path, broken)
+    report = spin(MODEL, tmp_path, broken)
     assert "assertion violated" in report, report
 
 
@@ -76,7 +57,7 @@ def test_spin_refuses_a_broken_model(tmp_path: Path, broken: str) -> None:
     ],
 )
 def test_spin_sees_the_wrong_value_itself(tmp_path: Path, broken: str, assertion: str) -> None:
-    assert f"assertion violated ({assertion}" in spin(tmp_path, broken, "WITHOUT_UNSHARED")
+    assert f"assertion violated ({assertion}" in spin(MODEL, tmp_path, broken, "WITHOUT_UNSHARED")
 
 
 def test_all_broken_models_are_tried() -> None:

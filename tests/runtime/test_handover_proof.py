@@ -6,12 +6,12 @@ from __future__ import annotations
 import platform
 import re
 import shutil
-import subprocess
 from pathlib import Path
 
 import pytest
 
 from .program import RUNTIME, SOURCES, THREAD_SANITIZER, compile_program, run_program
+from .spin import check_search, needs_spin, spin
 
 MODEL = Path(__file__).resolve().parent / "handover.pml"
 HANDOVER = RUNTIME / "include" / "epg" / "handover.h"
@@ -43,32 +43,16 @@ MUTATIONS = {
     ),
 }
 
-needs_spin = pytest.mark.skipif(shutil.which("spin") is None, reason="spin is not installed: apt install spin")
-
-
-def spin(folder: Path, *defines: str) -> str:
-    """The output of the model's verifier after a search of its whole state space."""
-    options = [f"-D{define}" for define in defines]
-    subprocess.run(["spin", "-a", *options, str(MODEL)], cwd=folder, check=True, capture_output=True)
-    subprocess.run(["gcc", "-O2", "-w", "-DSAFETY", "-o", "pan", "pan.c"], cwd=folder, check=True, capture_output=True)
-    return subprocess.run(["./pan", "-m100000"], cwd=folder, check=False, capture_output=True, text=True).stdout
-
 
 @needs_spin
 def test_spin_finds_nothing_wrong_in_any_interleaving(tmp_path: Path) -> None:
-    report = spin(tmp_path)
-    assert "errors: 0" in report, report
-    assert "max search depth too small" not in report
-    assert "Search not completed" not in report
-    states = re.search(r"(\d+) states, stored", report)
-    assert states is not None
-    assert int(states[1]) > 100
+    check_search(spin(MODEL, tmp_path), 100)
 
 
 @needs_spin
 @pytest.mark.parametrize("broken", sorted(BROKEN_MODELS))
 def test_spin_refuses_a_broken_model(tmp_path: Path, broken: str) -> None:
-    assert "assertion violated" in spin(tmp_path, broken)
+    assert "assertion violated" in spin(MODEL, tmp_path, broken)
 
 
 def test_all_broken_models_are_tried() -> None:
