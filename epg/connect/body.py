@@ -64,7 +64,7 @@ def _end(value: object) -> End:
     pair = None
     if limits is not None:
         if not isinstance(limits, list) or len(limits) != 2:
-            raise Refused("'limits' are two numbers: [lowest, highest]")
+            raise Refused("'limits' must be two numbers: [lowest, highest]")
         pair = (_number(limits[0], "limits"), _number(limits[1], "limits"))
     return End(
         reference=text(value, "reference").strip(),

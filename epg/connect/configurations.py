@@ -187,7 +187,7 @@ class Project:
         if now is not None and (now.platform.name, now.board.name) != _hardware_of(choice.target):
             return (
                 f"this project is for {now.board.summary} with {now.platform.name}: "
-                f"'epg new DIR --target {choice.name} --model FOLDER' starts one for this"
+                f"'epg new DIR --target {choice.name} --model FOLDER' starts a project for this target"
             )
         return ""
 
@@ -202,9 +202,9 @@ def _new_reason(choice: Choice, roots: Sequence[Path]) -> str:
         return choice.problem
     platform = choice.target.platform
     if not platform.builds:
-        return f"EPG can check files for {platform.name}, but has no code for it"
+        return f"EPG can check files for {platform.name}, but cannot generate code for it"
     if project_folder(platform.project_names, roots) is None:
-        return f"there are no files of a new project for {platform.name}: docs/cmake.md says what to write"
+        return f"EPG has no template of a project for {platform.name}: docs/cmake.md shows the files to write"
     return ""
 
 

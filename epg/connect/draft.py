@@ -124,7 +124,7 @@ class Draft:
         Raises CannotEdit if an operation does not fit the new text any more; the draft is then unchanged.
         """
         if self.changed and (self._diverged or len(self._done) < self._saved):
-            raise CannotEdit("what was saved and then undone cannot be taken out of the new text")
+            raise CannotEdit("a change that was saved and then undone cannot be removed from the new text")
         operations = [done.operation for done in self._done[self._saved :]]
         other = Draft(bindings, tcf, self._fresh)
         for operation in operations:
@@ -167,7 +167,7 @@ class Draft:
                 texts = replace(texts, tcf=set_extends(texts.tcf, self.tcf.path.name, change.name))
             elif texts.bindings is None or model is None:
                 what = "the bindings" if texts.bindings is None else "the model"
-                raise CannotEdit(f"{what} must be right before ports can be connected: see the messages")
+                raise CannotEdit(f"{what} must be correct before ports can be connected: see the messages")
             else:
                 text = set_ends(texts.bindings, self.bindings.path.name, model, change.port, change.ends)
                 texts = replace(texts, bindings=text)

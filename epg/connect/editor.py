@@ -22,7 +22,7 @@ from epg.edit.scalars import scalar_text
 from epg.emit.leftovers import remove_leftovers
 from epg.models import load_model
 
-_CONFLICT_HINT = "reload: your changes go; or save anyway: the others' changes go"
+_CONFLICT_HINT = "reload to discard your changes, or save anyway to overwrite the other program's changes"
 
 
 class Editor:
@@ -90,11 +90,11 @@ class Editor:
         self._seen = bindings, tcf = self._snapshots()
         if (bindings.data, tcf.data) == (self.draft.bindings.data, self.draft.tcf.data):
             self.conflict = None
-            self.external = f"{what} changed and was read again"
+            self.external = f"{what} changed; EPG has read the new text"
         elif not self.draft.changed:
             self.draft = Draft(bindings, tcf, self._fresh(bindings))
             self.conflict = None
-            self.external = f"{what} was edited outside and read again"
+            self.external = f"another program changed {what}; EPG has read the new text"
         else:
             self._rebase(bindings, tcf, what)
         self._load()
@@ -106,14 +106,14 @@ class Editor:
         target = configuration.target if configuration is not None else None
         path = self._tcf_path
         if any(root / "robots" in path.parents for root in self.job.request.roots):
-            hint = f"write a .tcf with 'extends: {path.name}', and name that in CMakeLists.txt"
-            return Project(path.stem, f"this project takes {path.name} as it is: {hint}", target)
+            hint = f"write a .tcf with 'extends: {path.name}', and name your file in CMakeLists.txt"
+            return Project(path.stem, f"this project uses {path.name}, which EPG does not change: {hint}", target)
         extends = chain[0].node.get("extends") if chain else None
         if extends is None or not isinstance(extends.value, str):
-            return Project("", f"{path.name} extends no other file: it says itself what the target is", target)
+            return Project("", f"{path.name} has no 'extends': it describes the whole target itself", target)
         chosen = extends.value.removesuffix(".tcf")
         if "target" in chain[0].node:
-            return Project(chosen, f"{path.name} names its target itself: change or remove 'target' in it", target)
+            return Project(chosen, f"{path.name} sets 'target' itself: change or remove that key", target)
         return Project(chosen, "", target)
 
     def show(self) -> dict[str, Any]:
@@ -142,7 +142,7 @@ class Editor:
             return f"'{name}' cannot be read: see the messages"
         root = parse_yaml(text, name, Diagnostics())
         if root is None or not root.is_mapping:
-            return f"'{name}' has a mistake that must be mended in an editor first: see the messages"
+            return f"'{name}' has an error that must first be corrected in an editor: see the messages"
         if self.loaded.parts.model is None:
             return "the model cannot be read: see the messages"
         return ""
@@ -171,13 +171,13 @@ class Editor:
         try:
             count = self.draft.rebase(bindings, tcf, self.loaded.parts.model)
         except CannotEdit as problem:
-            message = f"{what} was edited outside, and your changes do not fit it any more: {problem}"
+            message = f"another program changed {what}, and your changes do not fit the new text: {problem}"
             self.conflict = {"message": message, "hint": _CONFLICT_HINT}
             self.external = None
         else:
             changes = "your change was" if count == 1 else f"your {count} changes were"
             self.conflict = None
-            self.external = f"{what} was edited outside: {changes} applied to the new text"
+            self.external = f"another program changed {what}: {changes} applied to the new text"
 
     def _load(self) -> None:
         request = replace(self.job.request, drafts=self.draft.drafts())

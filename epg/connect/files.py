@@ -69,7 +69,7 @@ def save(before: Snapshot, after: Snapshot, *, project: Path | None = None, anyw
     target = Path(os.path.realpath(before.path))
     _check_links(before.path, target, project)
     if not anyway and read_snapshot(target).data != before.data:
-        raise Unsavable(f"'{before.path.name}' was changed by somebody else since it was read")
+        raise Unsavable(f"another program changed '{before.path.name}' after EPG had read it")
     assert after.data is not None
     temporary = temporary_beside(target)
     try:

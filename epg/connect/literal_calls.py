@@ -60,7 +60,7 @@ class Unknown:
 
 
 def not_literal(word: Word) -> Unknown:
-    return Unknown(word.span, f"what '{word.written}' stands for is known to CMake only")
+    return Unknown(word.span, f"only CMake can evaluate '{word.written}'")
 
 
 @dataclass
@@ -93,7 +93,7 @@ class LiteralCalls:
             elif block and blocks:
                 blocks.pop()
             elif blocks and name == CALLS[0]:
-                message = f"this call is inside of {blocks[-1]}(): only CMake knows what it makes"
+                message = f"this call is inside {blocks[-1]}(): only CMake can evaluate it"
                 self.unknown.append(Unknown(span, message))
             elif not blocks and words and name == "set" and words[0].text == "EPG_TARGETS_PATH":
                 roots = tuple(root for word in words[1:] for root in (word.text or "").split(";"))
@@ -123,7 +123,7 @@ class LiteralCalls:
             written = match[match.lastgroup or 0] if match else text[at]
             span = Span(str(path), line, column, column + len(written.split("\n")[0] or " "))
             if match is None:
-                self.unknown.append(Unknown(span, "this is not understood: CMake expects a closing quote or bracket"))
+                self.unknown.append(Unknown(span, "the closing quote or bracket is missing"))
                 return
             at = match.end()
             if match["paren"] == "(":
@@ -138,7 +138,7 @@ class LiteralCalls:
             elif not match["space"]:
                 name, opening = written.lower(), span
         if depth:
-            self.unknown.append(Unknown(opening, "this is not understood: its parenthesis is not closed"))
+            self.unknown.append(Unknown(opening, "the closing parenthesis is missing"))
 
     def _text(self, match: re.Match[str], folder: Path) -> str | None:
         """The value of an argument, or None if it is not literal."""

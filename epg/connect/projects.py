@@ -101,9 +101,9 @@ def report_no_target(folder: Path, diagnostics: Diagnostics) -> None:
     if not here.is_file() and not below:
         return
     message = f"there is no epg_add_target() here, and '{folder.name}' is not a model"
-    hint = f"start it for one of the folders below: {', '.join(path.name for path in below)}"
+    hint = f"run 'epg connect' with one of these folders: {', '.join(path.name for path in below)}"
     if not below:
-        hint = "add the call that docs/cmake.md shows, or start it for the folder of a model"
+        hint = "add the call that docs/cmake.md shows, or run 'epg connect' with the folder of a model"
     diagnostics.error("no-target", Span(str(here if here.is_file() else folder)), message, hint=hint)
 
 
@@ -127,7 +127,7 @@ def _requests(read: LiteralCalls, folder: Path) -> tuple[dict[str, Request], lis
         if call.name == "epg_add_target" and call.folder.is_relative_to(folder):
             request = _request(call, unknown)
             if request is not None and request.name in requests:
-                message = f"'{request.name}' is added twice: only CMake knows which of the calls is made"
+                message = f"'{request.name}' is added twice: only CMake can decide which call applies"
                 unknown.append(Unknown(call.span, message))
             elif request is not None:
                 requests[request.name] = request

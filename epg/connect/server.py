@@ -104,7 +104,7 @@ class Server:
         secret = self.keys.exchange(token)
         if secret is None:
             hint = "open the address that 'epg connect' printed last"
-            raise Refused("an address of EPG opens one page, and this one was opened already", hint, 401)
+            raise Refused("each address of EPG opens one page, and this address was already used", hint, 401)
         if self._announce is not None and self._announced.endswith(f"#{token}"):
             self._announce_next(self._announce)
         return secret
@@ -194,7 +194,7 @@ class _Handler(BaseHTTPRequestHandler):
                 path = unquote(parts.path, errors="strict").removeprefix("/")
                 query = {key: values[-1] for key, values in parse_qs(parts.query, errors="strict").items()}
             except ValueError:
-                raise Refused("no such address", status=404) from None
+                raise Refused("there is no such address", status=404) from None
             respond(path, query)
         except Refused as problem:
             self.close_connection = True  # the rest of an unread body would be taken for the next request
@@ -205,7 +205,7 @@ class _Handler(BaseHTTPRequestHandler):
         except Exception:
             traceback.print_exc()
             self.close_connection = True
-            error = {"message": "this is a bug in EPG", "hint": "the terminal says more; please report it"}
+            error = {"message": "this is a bug in EPG", "hint": "the terminal shows the details; please report them"}
             self._send(500, "application/json", json.dumps({"error": error}).encode())
 
     def _check_sender(self) -> None:
@@ -217,12 +217,12 @@ class _Handler(BaseHTTPRequestHandler):
         if name not in NAMES or not (port or "0").isdecimal():
             raise Refused("a request must name 127.0.0.1 or localhost as its host", status=403)
         if any(origin != f"http://{hosts[0]}" for origin in self.headers.get_all("Origin", [])):
-            raise Refused("a request of another page", status=403)
+            raise Refused("the request is from another page", status=403)
 
     def _check_secret(self) -> None:
         given = self.headers.get_all(SECRET, [])
         if len(given) != 1 or not self.server.owner.keys.is_secret(given[0]):
-            raise Refused("this page is not known", "open the address that 'epg connect' printed last", 401)
+            raise Refused("EPG does not know this page", "open the address that 'epg connect' printed last", 401)
 
     def _get(self, path: str, query: Mapping[str, str]) -> None:
         owner = self.server.owner
@@ -242,13 +242,13 @@ class _Handler(BaseHTTPRequestHandler):
             svg = owner.session.picture(name, query.get("configuration", ""))
             self._send(200, TYPES[".svg"], svg.encode())
         else:
-            raise Refused("no such address", status=404)
+            raise Refused("there is no such address", status=404)
 
     def _post(self, path: str, query: Mapping[str, str]) -> None:
         if path != "exchange":
             self._check_secret()
             if not path.startswith("api/"):
-                raise Refused("no such address", status=404)
+                raise Refused("there is no such address", status=404)
         body = self._body()
         if path == "exchange":
             self._json({"secret": self.server.owner.exchange(text(body, "token"))})

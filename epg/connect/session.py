@@ -139,7 +139,7 @@ class Session:
         elif editor is not None:
             svg = draw(editor.loaded, name, editor.job.request.name)
         if svg is None:
-            raise Refused("there is no such picture", "messages say what keeps it from being drawn", 404)
+            raise Refused("there is no such picture", "the messages show the reason", 404)
         return svg
 
     def source(self, file: str, line: int) -> dict[str, Any]:
@@ -172,7 +172,7 @@ class Session:
         port, wires = text(body, "port"), ends(body)
         model = self._opened().loaded.parts.model
         if model is not None and len(wires) != 1 and port in [p.name for p in model.inputs]:
-            raise Refused(f"input '{port}' takes its value from one component", "'disconnect' takes it out")
+            raise Refused(f"input '{port}' must be bound to one component", "to remove its wire, disconnect it")
         self._opened().edit((SetEnds(port, wires),))
 
     def _disconnect(self, body: Body) -> None:
@@ -214,7 +214,7 @@ class Session:
         if name == self._opened().job.request.name:
             return
         if self._opened().draft.changed:
-            raise Refused("there are changes that are not saved", "save them, or reload to throw them away", 409)
+            raise Refused("there are unsaved changes", "save or undo them first", 409)
         self._runs.check_idle()
         self._runs.forget()
         self._editor = Editor(job)
@@ -222,7 +222,7 @@ class Session:
     def _create(self, body: Body) -> None:
         start = self._start
         if start is None:
-            raise Refused("there is a project already", status=409)
+            raise Refused("the project already exists", status=409)
         jobs = create(body, start.path, self._user_roots)
         with self._changed:
             self._targets = Targets(jobs, jobs[0].source_dir)
@@ -234,8 +234,8 @@ class Session:
         self._opened().check_conflict()
         count = sum(problem["severity"] == "error" for problem in self._shown["diagnostics"])
         if count:
-            what = "is still a mistake" if count == 1 else f"are still {count} mistakes"
-            raise Refused(f"there {what}: nothing can be built", "messages say where", 409)
+            what = "is an error" if count == 1 else f"are {count} errors"
+            raise Refused(f"there {what}: the project cannot be built", "correct the errors in the messages", 409)
         if self._ask(text(body, "run", "")) is None:
             self._save({})
             self._runs.start(self._opened().job)
@@ -272,10 +272,10 @@ class Session:
         if editor is None or not self._outdated:
             return
         if editor.draft.changed:
-            editor.external = "CMakeLists.txt was edited outside: save or reload, and it is read again"
+            editor.external = "another program changed CMakeLists.txt: EPG reads it again after you save or reload"
             return
         self._editor = Editor(self._targets.find(editor.job.request.name) or self._targets.jobs[0])
-        self._editor.external = "CMakeLists.txt was edited outside and read again"
+        self._editor.external = "another program changed CMakeLists.txt; EPG has read it again"
         self._outdated = False
 
     def _publish(self) -> None:

@@ -156,7 +156,7 @@ def test_nothing_is_saved_over_anothers_edit(tmp_path: Path) -> None:
     path.write_text("one\n")
     before = read_snapshot(path)
     path.write_text("two\n")
-    with pytest.raises(Unsavable, match=r"'a.yaml' was changed by somebody else"):
+    with pytest.raises(Unsavable, match=r"another program changed 'a.yaml'"):
         save(before, before.with_text("three\n"))
     assert path.read_text() == "two\n"
     save(before, before.with_text("three\n"), anyway=True)

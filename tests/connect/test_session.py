@@ -175,7 +175,7 @@ def test_an_edit_outside_is_noticed(page: Page, bindings: Path) -> None:
     bindings.write_text(bindings.read_text().replace("pwm_pan: pwm_pan", "pwm_pan: {to: pwm_pan, scale: 0.25}"))
     state = page.state(version)
     assert state["wires"]["pwm_pan"][0]["scale"] == "0.25"
-    assert state["draft"]["external"] == "'robot.bindings.yaml' was edited outside and read again"
+    assert state["draft"]["external"] == "another program changed 'robot.bindings.yaml'; EPG has read the new text"
     assert not state["draft"]["changed"]
 
 
@@ -199,7 +199,7 @@ def test_a_conflict_is_the_users_to_solve(page: Page, bindings: Path) -> None:
     broken = bindings.read_text().replace("inputs:", "inputs: {")
     bindings.write_text(broken)
     conflict = page.until(lambda state: state["draft"]["conflict"])["draft"]["conflict"]
-    assert "do not fit it any more" in conflict["message"] and "reload" in conflict["hint"]
+    assert "do not fit the new text" in conflict["message"] and "reload" in conflict["hint"]
     for action in ("save", "generate", "disconnect"):
         with pytest.raises(Denied) as refusal:
             page.post(action, port="pwm_pan")
@@ -417,7 +417,7 @@ def test_a_project_of_topics_is_created_for_a_target(tmp_path: Path) -> None:
         state = page.until(lambda state: state["configurations"])
         assert not any(each["chosen"] for each in state["configurations"])
         reasons = {each["reason"] for each in state["configurations"]}
-        assert reasons == {"robot.tcf extends no other file: it says itself what the target is"}
+        assert reasons == {"robot.tcf has no 'extends': it describes the whole target itself"}
 
 
 def test_creating_replaces_nothing(tmp_path: Path) -> None:

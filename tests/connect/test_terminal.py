@@ -228,14 +228,14 @@ def test_leaving_asks_where_something_would_be_lost(project: Path, bindings: Pat
     text = open_ports(bindings, "pwm_pan")
     assert talk(session_of(project), "q")[0] == 0
     status, said = talk(session_of(project), "", "q", "", "q", "y")
-    assert status == 0 and said.count("leave without them? (y/n) [n]") == 2
+    assert status == 0 and said.count("quit without saving? (y/n) [n]") == 2
     assert bindings.read_text() == text
 
 
 def test_answers_that_end_save_nothing(project: Path, bindings: Path) -> None:
     text = open_ports(bindings, "pwm_pan")
     status, said = talk(session_of(project), "")
-    assert status == 1 and "the answers have ended: nothing was saved" in said
+    assert status == 1 and "the input has ended: nothing was saved" in said
     assert bindings.read_text() == text
     assert talk(session_of(project))[0] == 0, "nothing had been changed"
 
@@ -245,7 +245,7 @@ def test_a_conflict_is_said_at_once_as_the_command_line_says_it(
 ) -> None:
     open_ports(bindings, "pwm_pan")
     status, said = talk(session_of(project), "pwm_tilt", "", "y")
-    assert status == 1 and "there are mistakes: nothing can be built yet" in said
+    assert status == 1 and "there are errors: the project cannot be built" in said
     monkeypatch.chdir(project)
     check = ["check", "--tcf", "robot.tcf", "--model", "model", "--bindings", "robot.bindings.yaml"]
     assert main(check) == 1
@@ -278,7 +278,8 @@ def test_edits_outside_are_noticed_and_never_overwritten_unasked(project: Path, 
         time.sleep(1)  # files are checked twice a second
 
     _, said = talk(session_of(project), "", edit, "", "", "y", "n")
-    assert "was edited outside: your change was applied to the new text" in " ".join(said.split())
+    assert "another program changed" in " ".join(said.split())
+    assert ": your change was applied to the new text" in " ".join(said.split())
     text = bindings.read_text()
     assert text.startswith("# mine\n") and "  pwm_pan: pwm_pan\n" in text and "  pwm_tilt: pwm_tilt\n" in text
 
@@ -292,7 +293,7 @@ def test_a_conflict_with_edits_outside_is_asked_about(project: Path, bindings: P
         time.sleep(1)  # files are checked twice a second
 
     status, said = talk(session_of(project), "", "", edit, "", "y", "")
-    assert status == 1 and "save anyway, over what others have written? (y/n) [n]" in said
+    assert status == 1 and "save anyway, and overwrite the other program's changes? (y/n) [n]" in said
     assert bindings.read_text() == theirs
     bindings.write_text(text)
     status, said = talk(session_of(project), "", "", edit, "", "y", "y", "n")

@@ -121,7 +121,7 @@ class Messages:
             self._more("")
             self._more = None
         if failed and not any(message.severity == "error" for message in self._found.values()):
-            text = "\n".join(self._tail) or "the build has failed, and has not said why"
+            text = "\n".join(self._tail) or "the build failed without a message"
             self._add(Message("error", text, id="build-failed"))
         return self.all
 

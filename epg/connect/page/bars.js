@@ -18,7 +18,7 @@ export function bars(state) {
         h("b", whyLocked()),
         " Open the address that ",
         h("code", "epg connect"),
-        " printed last, where it was started.",
+        " printed last in its terminal.",
       ]),
     );
   } else if (isLost()) {
@@ -26,12 +26,12 @@ export function bars(state) {
     list.push(
       bar("lost", "error", [
         h("b", "The connection to EPG is lost. "),
-        "Start it again",
+        "Start EPG again",
         folder ? [" in ", h("code", folder)] : null,
         " with ",
         h("code", "epg connect"),
-        " and open the address it prints.",
-        state?.draft?.changed ? " What was not saved is gone if EPG has ended; Changes, below, still shows it." : null,
+        ", and open the address that it prints.",
+        state?.draft?.changed ? " If EPG has ended, unsaved changes are lost; the tab Changes still shows them." : null,
       ]),
     );
   }
@@ -44,8 +44,8 @@ export function bars(state) {
         "conflict",
         "error",
         [h("b", draft.conflict.message), draft.conflict.hint ? ` ${draft.conflict.hint}` : null],
-        h("button", { onclick: () => attempt("reload") }, "Take the file, drop my changes"),
-        h("button", { onclick: () => attempt("save", { anyway: true }) }, "Save mine over it"),
+        h("button", { onclick: () => attempt("reload") }, "Load the file, discard my changes"),
+        h("button", { onclick: () => attempt("save", { anyway: true }) }, "Overwrite the file with my changes"),
       ),
     );
   } else if (state.phase === "connect" && draft.external && draft.external !== dismissed) {

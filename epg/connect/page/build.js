@@ -25,7 +25,7 @@ export async function generate() {
   if (ui.dock === "closed") ui.dock = "open";
   forgetLog();
   draw();
-  if ((await attempt("generate")) && current().build.ask) openDialog("run", "What Generate runs", question);
+  if ((await attempt("generate")) && current().build.ask) openDialog("run", "Run these commands?", question);
 }
 
 // The question before the first build in a folder, with the commands that will run. Returns null, which closes the
@@ -34,13 +34,13 @@ function question() {
   const { ask } = current().build;
   if (!ask) return null;
   return [
-    h("p", { key: "folder" }, "These commands build the project, in ", h("code", ask.folder), ":"),
+    h("p", { key: "folder" }, "These commands build the project in ", h("code", ask.folder), ":"),
     h("pre", { key: "commands", tabindex: "0", "aria-label": "Commands" }, ask.commands.join("\n")),
     h(
       "p",
       { key: "programs" },
-      `They start ${ask.programs.join(", ")} and everything that the project's CMake files name, with your rights. `,
-      "Do this for a project that you trust. This is asked once for a folder.",
+      `They start ${ask.programs.join(", ")}, and all programs that the project's CMake files start. `,
+      "They have your rights: run them only for a project that you trust. EPG asks once per folder.",
     ),
     h(
       "button",
@@ -90,7 +90,7 @@ function outcome(state) {
   const { build } = state;
   const errors = build.messages.filter((each) => each.severity === "error").length;
   return {
-    idle: "Nothing was generated yet.",
+    idle: "Nothing has been generated yet.",
     running: build.step === "configure" ? "Configuring" : "Building",
     done: build.products.length ? "Done. The firmware is ready." : "Done.",
     failed: `Failed${errors ? `, with ${errors} error${errors === 1 ? "" : "s"}` : ""}.`,

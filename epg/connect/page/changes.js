@@ -5,7 +5,7 @@ import { h } from "./dom.js";
 
 export function changes(state) {
   const { diff } = state.draft;
-  if (!diff) return h("p.empty", "Nothing has changed since the files were saved.");
+  if (!diff) return h("p.empty", "There are no changes since the files were saved.");
   return h(
     "pre.diff",
     diff

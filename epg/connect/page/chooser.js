@@ -15,7 +15,7 @@ function others(all, toggle) {
   return h(
     "label.check",
     h("input", { type: "checkbox", checked: all, onchange: toggle }),
-    `Also show ${count} that this project cannot take, and why`,
+    `Also show ${count} that this project cannot use, with the reasons`,
   );
 }
 
@@ -31,7 +31,7 @@ export function chooseTarget() {
     configurationCards(current(), "other", (each) => all || each.possible),
     h(
       "div.buttons.sticky",
-      h("p.muted", `Changes 'extends' in ${shortFile(current().project?.files.tcf || "")}, and can be undone.`),
+      h("p.muted", `Changes 'extends' in ${shortFile(current().project?.files.tcf || "")}. You can undo this.`),
       h("span.space"),
       h("button", { type: "button", onclick: () => closeDialog("target") }, "Cancel"),
       h(

@@ -15,7 +15,7 @@ export function componentColumn(state, side, diagnostics, users) {
     "section",
     { class: `components ${side}`, key: side, "aria-labelledby": `title-${side}` },
     h("h2", { id: `title-${side}` }, side === "sources" ? "From the target" : "To the target"),
-    shown.length + without.length === 0 && h("p.empty", "Nothing here."),
+    shown.length + without.length === 0 && h("p.empty", "No components."),
     [...shown, ...without].map((component) => card(state, side, component, direction, diagnostics, users)),
   );
 }

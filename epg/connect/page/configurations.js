@@ -25,7 +25,7 @@ export function configurationCards(state, prefix, only = () => true) {
         : `${shown.length} of ${configurations.length} targets`,
     ),
     state.configurations.length === 0
-      ? h("p.empty", "Looking for targets and for what this computer has…")
+      ? h("p.empty", "Searching for targets, and for tools on this computer…")
       : shown.length === 0
         ? h("p.empty", "No target matches. Clear the search to see all.")
         : null,
@@ -104,7 +104,7 @@ function filters(robots, prefix) {
         checked: ui.filter.fits,
         onchange: (event) => change({ fits: event.target.checked }),
       }),
-      "Only what this computer can build now",
+      "Only targets that this computer can build now",
     ),
   );
 }
@@ -117,7 +117,7 @@ function change(part) {
 function robotGroup({ robot, boards }, prefix) {
   const name = id(prefix, "robot", robot);
   const summary =
-    robot === NO_ROBOT ? "no robot yet: every port becomes a topic, and the .tcf is yours to go on with" : "";
+    robot === NO_ROBOT ? "without a robot: every port becomes a topic; you add the components to the .tcf" : "";
   return h(
     "section.robot",
     { key: robot, "aria-labelledby": name },
@@ -164,7 +164,7 @@ function card(configuration, prefix) {
       more.length && h("span.card-line", more.join(", ")),
       h("span.card-line.name", breakable(name)),
       h("span.card-line", offer(components, matches, ports)),
-      missing.length && h("span.card-line.warning", icon("warning"), `This computer lacks ${missing.join(", ")}`),
+      missing.length && h("span.card-line.warning", icon("warning"), `Missing on this computer: ${missing.join(", ")}`),
       reason && h("span.card-line.warning", icon("warning"), reason),
     ),
   );

@@ -49,9 +49,9 @@ export function editConversion(port, n) {
       h(
         "p.muted",
         "The value is multiplied by the scale, the offset is added, and the result is kept within the limits. ",
-        "Empty fields change nothing.",
+        "An empty field has no effect.",
       ),
-      end.from_tcf && h("p", "The .tcf converts it too: ", h("b", end.from_tcf)),
+      end.from_tcf && h("p", "The .tcf also converts the value: ", h("b", end.from_tcf)),
       h(
         "div.fields",
         text(
@@ -64,7 +64,7 @@ export function editConversion(port, n) {
         text("offset", "Offset", end.offset, "", readonly),
         text("low", "Lowest", end.limits?.[0], "", readonly),
         text("high", "Highest", end.limits?.[1], "", readonly),
-        text("unit", "Unit", end.unit, "of the value in the model, where it is not the port's", readonly),
+        text("unit", "Unit", end.unit, "unit of the value in the model, if it differs from the port's unit", readonly),
       ),
       error && h("p.refusal", { role: "alert" }, error.message, error.hint ? h("span.hint", error.hint) : null),
       h(

@@ -94,7 +94,7 @@ function press(side, name) {
   if (ui.held === null) {
     ui.held = { side, name, by: "keyboard" };
     draw();
-    say(`${name} picked up. Arrow keys choose what it is connected with, Enter connects, Escape puts it back.`);
+    say(`${name} is picked up. Arrow keys choose the other end, Enter connects, Escape cancels.`);
   } else if (OPPOSITE[ui.held.side] === side) {
     const held = ui.held;
     ui.held = null;

@@ -5,7 +5,7 @@
 
 const NAME = "epg-secret";
 let secret = stored();
-let refusal = "This page was opened without the key that an address of EPG has."; // shown while there is no secret
+let refusal = "This page was opened without the key that EPG's address contains."; // shown while there is no secret
 
 export const whyLocked = () => (secret ? null : refusal);
 export const sign = () => (secret ? { "X-EPG-Secret": secret } : {});
@@ -13,7 +13,7 @@ export const sign = () => (secret ? { "X-EPG-Secret": secret } : {});
 // Forgets the secret. EPG does not know it, because EPG was started again.
 export function lock() {
   keep(null);
-  refusal = "EPG was started again.";
+  refusal = "EPG was restarted.";
 }
 
 // Exchanges the token in the address for the secret, if there is one. After a reload there is no token, but a secret.
@@ -33,7 +33,7 @@ export async function unlock() {
     });
     const data = await answer.json();
     if (answer.ok) keep(data.secret);
-    else refusal = "This address was used before, and each opens one page.";
+    else refusal = "This address was already used. Each address opens one page.";
   } catch {
     refusal = "EPG does not answer.";
   }

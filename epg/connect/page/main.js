@@ -46,7 +46,7 @@ function drawPage() {
 
 function diagram(state) {
   if (!state.model) {
-    return [h("p.empty", { key: "none" }, "The model cannot be read. Problems, below, says why.")];
+    return [h("p.empty", { key: "none" }, "The model cannot be read. The tab Problems shows the reason.")];
   }
   const byPort = group(state.diagnostics, "port");
   const byComponent = group(
@@ -67,7 +67,7 @@ function diagram(state) {
       modelPorts(state, "outputs", byPort),
       componentColumn(state, "sinks", byComponent, users),
       h("svg", { id: "wires", key: "wires", keep: true, "aria-hidden": "true" }),
-      h("p.unseen", { id: "handle-help", key: "help" }, "Enter or a click picks the end of a wire up"),
+      h("p.unseen", { id: "handle-help", key: "help" }, "Press Enter or click to pick up the end of a wire"),
     ),
   ];
 }

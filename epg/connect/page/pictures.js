@@ -18,7 +18,7 @@ export function picture(state, name) {
       button("−", () => change(name, step(zoom, -1)), false, "Zoom out"),
       h("span.zoom-value", { role: "status" }, zoom ? `${zoom * 100} %` : "fit"),
       button("+", () => change(name, step(zoom, 1)), false, "Zoom in"),
-      h("a", { href: shown, target: "_blank", rel: "noopener" }, "Open by itself"),
+      h("a", { href: shown, target: "_blank", rel: "noopener" }, "Open in a new tab"),
     ),
     h(
       "div",
@@ -104,12 +104,12 @@ async function fetchWiring(image) {
 
 function description(state, name) {
   if (name === "application")
-    return "The application: topics, components, conversions and ports. The lists of ports say the same.";
-  if (name === "schedule") return "One control cycle: what the target does between two ticks, in order.";
+    return "Topics, components, conversions and ports of the application. The lists of ports contain the same.";
+  if (name === "schedule") return "One control cycle: the work between two ticks, in order.";
   const wires = state.components
     .filter((each) => each.where?.length)
     .map((each) => `${each.name}: ${each.where.join(", ")}`);
-  return `The board seen from above, with what is connected to its contacts. ${wires.join("; ")}.`;
+  return `The board seen from above, with the components at its contacts. ${wires.join("; ")}.`;
 }
 
 function step(zoom, by) {

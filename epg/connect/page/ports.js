@@ -90,7 +90,7 @@ function row(state, side, port, diagnostics) {
           key: "proposal",
           onclick: () => accept(name),
           "aria-label": `Accept ${proposal} for ${name}`,
-          title: "Its name matches",
+          title: "The names match",
           disabled: !state.editable,
         },
         h("span", "Accept "),
@@ -127,8 +127,8 @@ function field(state, side, port, end, n) {
         "button.quiet.icon-button",
         {
           key: "add",
-          "aria-label": `Connect ${name} with one more`,
-          title: "Connect with one more",
+          "aria-label": `Connect ${name} to another component`,
+          title: "Connect to another component",
           disabled: !state.editable,
           onclick: () => {
             ui.adding = name;
@@ -146,7 +146,7 @@ function options(state, side, port, end, n) {
   const { name } = port;
   const more = n > 0 && end === null;
   const list = [
-    h("option", { key: "", value: "" }, more ? "(choose one more)" : n > 0 ? "(remove)" : "(not connected)"),
+    h("option", { key: "", value: "" }, more ? "(choose another)" : n > 0 ? "(remove)" : "(not connected)"),
   ];
   if (side === "outputs" && n === 0) {
     list.push(h("option", { key: "unconnected", value: "unconnected" }, "unconnected on purpose"));
@@ -157,7 +157,7 @@ function options(state, side, port, end, n) {
   const good = references.filter((reference) => fits(state, side, name, reference));
   const others = references.filter((reference) => !good.includes(reference));
   list.push(...good.map(option));
-  if (others.length) list.push(h("optgroup", { key: "others", label: "other unit or type" }, others.map(option)));
+  if (others.length) list.push(h("optgroup", { key: "others", label: "different unit or type" }, others.map(option)));
   return list;
 }
 

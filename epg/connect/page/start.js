@@ -18,7 +18,7 @@ export function startPage(state) {
     h(
       "section.step.step-target",
       { key: "target", "aria-labelledby": "step-target" },
-      heading("step-target", 2, "Target", "The board and robot that the model will control."),
+      heading("step-target", 2, "Target", "The robot that the model controls, and the board on which it runs."),
       configurationCards(state, "start"),
     ),
     projectStep(state),
@@ -80,7 +80,7 @@ function projectStep(state) {
       "step-project",
       3,
       "Project",
-      "A folder with everything the firmware is built from. The model is copied into it.",
+      "A folder with all files that the firmware is built from. EPG copies the model into it.",
     ),
     h(
       "form",
@@ -113,7 +113,7 @@ function projectStep(state) {
       picked?.missing.length &&
         h(
           "p.muted",
-          `Connecting works now; generating needs ${picked.missing.join(", ")}. 'epg doctor' says how to get it.`,
+          `You can connect ports now. To generate, install ${picked.missing.join(", ")}: 'epg doctor' shows how.`,
         ),
       h(
         "button",

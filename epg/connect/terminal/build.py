@@ -18,10 +18,10 @@ def ask_to_build(session: Session, console: Console) -> str | None:
     """
     ask = session.build_question()
     if ask is not None:
-        console.say(f"building runs, in {ask['folder']}:")
+        console.say(f"the build runs these commands in {ask['folder']}:")
         for command in ask["commands"]:
             console.say(f"  {command}")
-        console.say(f"which starts {', '.join(ask['programs'])} and all that the project's CMake files name")
+        console.say(f"they start {', '.join(ask['programs'])}, and all programs that the project's CMake files start")
     if not console.agree("build?"):
         return None
     return ask["key"] if ask is not None else ""

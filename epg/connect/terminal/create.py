@@ -60,11 +60,11 @@ def _choose(configurations: Sequence[Choice], console: Console) -> Choice:
     possible = sorted((choice for choice in configurations if choice["possible"]), key=_relevance)
     shown = possible
     console.say()
-    console.say("What shall it run on?")
+    console.say("Choose a target:")
     _list(shown, possible, console)
     while True:
         only = shown[0]["name"] if len(shown) == 1 else ""
-        answer = console.ask("number, name, a part of it to see fewer, or q", only)
+        answer = console.ask("number, name, part of a name to filter, or q", only)
         named = [choice for choice in possible if choice["name"] == answer]
         if named:
             return named[0]
@@ -76,7 +76,7 @@ def _choose(configurations: Sequence[Choice], console: Console) -> Choice:
         fitting = [choice for choice in possible if all(word in _text(choice) for word in words)]
         if not fitting:
             refused = [choice for choice in configurations if choice["name"] == answer]
-            console.say(f"{answer}: {refused[0]['reason']}" if refused else f"nothing has '{answer}' in it")
+            console.say(f"{answer}: {refused[0]['reason']}" if refused else f"no target matches '{answer}'")
             continue
         shown = fitting
         _list(shown, possible, console)

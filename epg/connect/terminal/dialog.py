@@ -34,7 +34,7 @@ def run(session: Session, input: TextIO, output: TextIO) -> int:
         return 0
     except Ended:
         lost = session.state()["phase"] == "choose" or session.state()["draft"]["changed"]
-        console.say("the answers have ended" + (": nothing was saved" if lost else ""))
+        console.say("the input has ended" + (": nothing was saved" if lost else ""))
         return LEFT_UNSAVED if lost else 0
     except KeyboardInterrupt:
         console.say()
@@ -66,7 +66,7 @@ class _Dialog:
                 self._console.say()
                 self._ports.show(None)
                 self._talk.say_messages(self._talk.state["diagnostics"])
-            answer = self._console.ask("a port to change, u to undo, q to leave, Enter to go on", "")
+            answer = self._console.ask("port to change, u to undo, q to quit, Enter to continue", "")
             if not answer:
                 return self._finish()
             if answer == "q":
@@ -97,7 +97,7 @@ class _Dialog:
         self._console.say(f"{state['project']['name']}: {files['model']} with {files['tcf']}, in {files['bindings']}")
         ports = ports_of(state)
         left = sum(is_open(state, port) for port in ports)
-        self._console.say(f"{len(ports)} ports, {left} of them to connect. h lists what can be answered.")
+        self._console.say(f"{len(ports)} ports, {left} of them to connect. h lists the possible answers.")
 
     def _finish(self) -> int:
         """Saves and builds, if the user agrees.  Returns the exit status."""
@@ -110,7 +110,7 @@ class _Dialog:
                 return LEFT_UNSAVED
             self._console.say(f"saved {self._talk.state['project']['files']['bindings']}")
         if any(problem["severity"] == "error" for problem in self._talk.state["diagnostics"]):
-            self._console.say("there are mistakes: nothing can be built yet")
+            self._console.say("there are errors: the project cannot be built")
             return 1
         agreed = ask_to_build(self._talk.session, self._console)
         if agreed is None:
@@ -126,6 +126,6 @@ class _Dialog:
         if conflict is None:
             return self._talk.act("save", {})
         self._console.say(f"error: {conflict['message']}")
-        if self._console.agree("save anyway, over what others have written?", "n"):
+        if self._console.agree("save anyway, and overwrite the other program's changes?", "n"):
             return self._talk.act("save", {"anyway": True})
         return False

@@ -18,15 +18,15 @@ from epg.connect.terminal.text import (
 )
 
 HELP = """\
-  Enter  take what stands in [ ]; where nothing does, leave the port open
-  2      the component of that number; or its name; or the beginning of it, if
-         no other begins so. An output takes several: 2, pwm_tilt
+  Enter  use the answer in [ ]; without one, leave the port open
+  2      connect the component with this number. You can also type its name, or
+         the start of its name. An output can have several: 2, pwm_tilt
   -      leave an output unconnected on purpose
   ?      explain the candidates         c  connect with a conversion
-  s      all wires so far               u  undo the last change
-  b      back to the port before        d  take the wire away
-  e      enough: to the end             q  leave"""
-NONE_FITS = "no component fits: h lists what can be answered"
+  s      show all wires                 u  undo the last change
+  b      go back to the previous port   d  remove the wire
+  e      end the questions about ports  q  quit"""
+NONE_FITS = "no component fits: h lists the possible answers"
 
 
 class Ports:
@@ -138,7 +138,7 @@ class Ports:
 
     def _disconnect(self, port: ModelPort) -> bool:
         if is_open(self._talk.state, port):
-            self._console.say(f"{port.name} is open already")
+            self._console.say(f"{port.name} is already open")
         else:
             self._talk.act("disconnect", {"port": port.name}, port)
         return False
@@ -153,7 +153,7 @@ class Ports:
         names = self._references(port, answer) if answer else None
         if names is None or len(names) != 1:
             return False
-        self._console.say("Values are multiplied by scale, then offset is added, then limits hold.")
+        self._console.say("A value is multiplied by scale, then offset is added, then limits apply.")
         end: dict[str, Any] = {"reference": names[0]}
         for key, example in (("scale", "0.5 or 1/4"), ("offset", "-1.5"), ("unit", "deg")):
             end[key] = _cleared(self._console.ask(f"{key}, such as {example}", now.get(key, "")))

@@ -76,7 +76,7 @@ class Talk:
         """Raises Left.  If there are unsaved changes, asks first, and returns if the user wants to stay."""
         if not self.state["draft"]["changed"]:
             raise Left
-        if not self.console.agree("there are changes that are not saved: leave without them?", "n"):
+        if not self.console.agree("there are unsaved changes: quit without saving?", "n"):
             return
         raise Left
 

@@ -81,7 +81,7 @@ def _wires(page: Any, epg: Served, folder: Path) -> None:
 
 def _build(page: Any, epg: Served, folder: Path) -> None:
     page.get_by_role("button", name="Generate", exact=True).click()
-    page.get_by_role("dialog", name="What Generate runs").get_by_role("button", name="Run").click()
+    page.get_by_role("dialog", name="Run these commands?").get_by_role("button", name="Run").click()
     page.locator(".outcome.done").wait_for(timeout=600_000)
     page.wait_for_timeout(200)
     _take(page, folder, "build")

@@ -42,7 +42,7 @@ def test_an_address_that_was_used_says_so(jiwy: Project, browser: Any, open_page
     open_page(address)
     site = address.partition("#")[0]
     page = browser.new_context().new_page()
-    for used, reason in ((address, "This address was used before"), (site, "opened without the key")):
+    for used, reason in ((address, "This address was already used"), (site, "opened without the key")):
         page.goto("about:blank")
         page.goto(used)
         locked(page, reason).wait_for()
@@ -65,7 +65,7 @@ def test_a_page_of_an_epg_that_has_ended(browser: Any, tmp_path: Path) -> None:
         page.goto(epg.address)
         field(page, "position_tilt").wait_for()
     with Served(tmp_path / "jiwy", "--port", port) as epg:
-        locked(page, "EPG was started again").wait_for()
+        locked(page, "EPG was restarted").wait_for()
         assert page.evaluate(SECRET) is None
         page.goto(epg.address)
         until(page, "document.querySelectorAll('[role=alert]').length === 0")
@@ -79,7 +79,7 @@ def test_a_picture_by_itself(jiwy: Project, open_page: Open) -> None:
     page.get_by_role("tab", name="Application").click()
     until(page, "document.querySelector('.picture img')?.naturalWidth > 0")
     with page.context.expect_page() as opening:
-        page.get_by_role("link", name="Open by itself").click()
+        page.get_by_role("link", name="Open in a new tab").click()
     alone = opening.value
     alone.wait_for_load_state()
     assert alone.url.startswith("blob:http://127.0.0.1:")

@@ -108,9 +108,9 @@ def test_connects_by_list(jiwy: Project, open_page: Open) -> None:
     page.get_by_text("● Unsaved changes").wait_for()
     field(page, "setpoint_pan").select_option("")
     field(page, "pan_logging").select_option("unconnected on purpose")
-    page.get_by_role("button", name="Connect pwm_pan with one more").click()
+    page.get_by_role("button", name="Connect pwm_pan to another component").click()
     page.get_by_role("combobox", name="pwm_pan, end 2").select_option("pan_publisher")
-    page.get_by_role("button", name="Connect pwm_pan with one more").wait_for()
+    page.get_by_role("button", name="Connect pwm_pan to another component").wait_for()
     save(page)
     text = jiwy.text()
     for line in ("position_tilt: encoder_pan", "pan_logging: unconnected", "pwm_pan: [pwm_pan, pan_publisher]"):
@@ -129,7 +129,7 @@ def test_connects_by_keyboard(jiwy: Project, open_page: Open) -> None:
     page.keyboard.press("ArrowDown")
     assert page.evaluate("document.activeElement.dataset.name") == "pwm_tilt"
     page.keyboard.press("Enter")
-    until(page, "document.getElementById('said').textContent.startsWith('pwm_tilt picked up')")
+    until(page, "document.getElementById('said').textContent.startsWith('pwm_tilt is picked up')")
     page.keyboard.press("ArrowDown")
     while page.evaluate("document.activeElement.dataset.name") != "pwm_tilt":
         page.keyboard.press("ArrowDown")
@@ -356,7 +356,7 @@ def test_edits_outside_are_noticed(jiwy: Project, open_page: Open) -> None:
     assert "  pan_logging: unconnected\n" in jiwy.text() and "  position_tilt: encoder_tilt\n" in jiwy.text()
 
 
-@pytest.mark.parametrize("choice", ["Take the file", "Save mine"])
+@pytest.mark.parametrize("choice", ["Load the file", "Overwrite the file"])
 def test_conflict_with_an_edit_outside(jiwy: Project, open_page: Open, choice: str) -> None:
     page = open_page(jiwy.address)
     field(page, "position_tilt").select_option("encoder_pan")
@@ -369,7 +369,7 @@ def test_conflict_with_an_edit_outside(jiwy: Project, open_page: Open, choice: s
     assert page.get_by_role("alert").get_by_text(conflict["message"]).is_visible()
     button.click()
     button.wait_for(state="detached")
-    if choice == "Save mine":
+    if choice == "Overwrite the file":
         assert "  position_tilt: encoder_pan\n" in jiwy.text()
         assert page.get_by_text("Saved", exact=True).is_visible()
     else:
@@ -425,7 +425,7 @@ def test_a_model_that_cannot_be_read(browser: Any, open_page: Open, tmp_path: Pa
     (folder / "model").rename(folder / "away")
     with Served(folder) as epg:
         page = open_page(epg.address)
-        page.get_by_text("The model cannot be read. Problems, below").wait_for()
+        page.get_by_text("The model cannot be read. The tab Problems").wait_for()
         assert page.locator(".problem-list .message").count() == len(epg.state()["diagnostics"]) >= 1
         (folder / "away").rename(folder / "model")
         page.locator(".ports .port").first.wait_for()

@@ -25,7 +25,7 @@ def test_generates_shows_errors_and_cancels(jiwy: Project, open_page: Open) -> N
     field(page, "setpoint_pan").select_option("")
     page.get_by_text("1 error", exact=True).wait_for()
     generate.click()
-    page.get_by_role("alert").get_by_text("nothing can be built").wait_for()
+    page.get_by_role("alert").get_by_text("the project cannot be built").wait_for()
     assert page.get_by_role("tab", name="Problems").get_attribute("aria-selected") == "true"
     field(page, "setpoint_pan").select_option("pan_subscriber")
     page.get_by_text("No problems", exact=True).wait_for()
@@ -35,7 +35,7 @@ def test_generates_shows_errors_and_cancels(jiwy: Project, open_page: Open) -> N
     line = original.count("\n") + 2
     # Before the first build in a folder, the page shows the commands that will run there.
     generate.click()
-    asked = page.get_by_role("dialog", name="What Generate runs")
+    asked = page.get_by_role("dialog", name="Run these commands?")
     assert f"cmake -S {jiwy.folder} -B {jiwy.folder}/build" in asked.locator("pre").inner_text()
     page.keyboard.press("Escape")
     assert jiwy.epg.state()["build"]["state"] == "idle" and not (jiwy.folder / "build").exists()

@@ -57,7 +57,7 @@ def test_everything_by_keyboard(started: Served, model: Path, open_page: Open) -
 
     tab_to("it.textContent === 'Generate'")
     page.keyboard.press("Enter")
-    page.get_by_role("dialog", name="What Generate runs").wait_for()
+    page.get_by_role("dialog", name="Run these commands?").wait_for()
     tab_to("it.textContent === 'Run'")
     page.keyboard.press("Enter")
     page.locator(".outcome:not(.running)").wait_for(timeout=60_000)
