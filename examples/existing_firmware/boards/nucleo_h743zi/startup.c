@@ -6,7 +6,7 @@ extern const uint32_t board_data_source[];
 int main(void);
 void board_reset(void);
 
-/** What main() returned, for a debugger; the board has nobody else to tell. */
+/** The value that main() returned, for a debugger. */
 volatile int board_result = -1;
 
 static void stop(void)
