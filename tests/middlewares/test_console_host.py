@@ -54,7 +54,7 @@ def test_parameters_are_set_saved_and_back_after_a_restart(jiwy_host: Path, tmp_
     with Host(jiwy_host, "--store", str(store)) as console:
         assert console.ask("get Pan\\PID\\kp") == ["parameter Pan\\PID\\kp=2.6", "ok get"]
         assert console.ask("set Pan\\PID\\kp=0.1 Tilt\\PID\\tauI=12") == ["ok set"]
-        assert console.ask("set Pan\\PID\\kp=nan")[-1] == "error set this is no number: 'nan'"
+        assert console.ask("set Pan\\PID\\kp=nan")[-1] == "error set this is not a number: 'nan'"
         assert console.ask("save")[-1].startswith("error save")
         assert console.ask("disable")[-1] == "ok disable"
         assert console.ask("save") == ["ok save values=2"]
@@ -71,7 +71,7 @@ def test_parameters_are_set_saved_and_back_after_a_restart(jiwy_host: Path, tmp_
         assert "stored=of_another_model" in console.ask("version")[-1]
     with Host(jiwy_host) as console:
         console.ask("disable")
-        assert console.ask("save") == ["error save nothing can be stored here"]
+        assert console.ask("save") == ["error save this target cannot store parameters"]
 
 
 def test_a_parameter_takes_effect(jiwy_host: Path) -> None:
@@ -131,7 +131,7 @@ def test_jog_moves_one_axis_and_tells_count_and_sign(jiwy_host: Path) -> None:
         assert moved(console.ask("jog pwm_pan -0.1 300"))["encoder_pan"] < -20
         tilt = moved(console.ask("jog pwm_tilt 0.1 200"))
         assert tilt["encoder_tilt"] > 5
-        assert console.ask("jog pwm_pan 0.5 100")[-1] == "error jog a duty is at most 0.2 here"
+        assert console.ask("jog pwm_pan 0.5 100")[-1] == "error jog the duty must be at most 0.2 for this target"
         assert stat(console.ask("stats"), "faults") == "0"
         assert console.ask("enable") == ["ok enable"]
         assert console.close() == (0, "")
@@ -231,21 +231,21 @@ def test_an_old_link_is_replaced_and_a_file_is_not(jiwy_host: Path, tmp_path: Pa
     assert not link.is_symlink()
     done = subprocess.run([*command, str(file)], capture_output=True, text=True, check=False)
     assert done.returncode == 1
-    assert "cannot make a terminal of this name: File exists" in done.stderr
+    assert "cannot make a terminal with this name: File exists" in done.stderr
     assert file.read_text() == "mine"
 
 
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (["--console"], "error: --console without --realtime\nhint: nobody types in simulated time: add --realtime\n"),
+        (["--console"], "error: --console without --realtime\nhint: a console needs real time: add --realtime\n"),
         (
             ["--realtime", "--console", "--console-pty", "x"],
-            "error: --console and --console-pty\nhint: there is one console: leave one of them out\n",
+            "error: --console and --console-pty\nhint: a target has one console: remove one of the options\n",
         ),
         (
             ["--realtime", "--console", "--trace", "x.csv"],
-            "error: no --duration\nhint: say how many seconds to run, for example --duration 10\n",
+            "error: --duration is missing\nhint: give the number of seconds, for example --duration 10\n",
         ),
     ],
 )

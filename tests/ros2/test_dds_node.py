@@ -168,7 +168,7 @@ def test_a_best_effort_publisher_gives_nothing_to_a_reliable_reader_and_both_say
         assert pan.refused_for is None
         assert tilt.received == []
         errors = jiwy_robot.end()
-        assert "warning: a subscription of /robot_7/tilt_publisher asks for another reliability" in errors
+        assert "warning: a subscription of /robot_7/tilt_publisher requests another reliability" in errors
         assert "pan_publisher" not in errors
 
 
@@ -441,18 +441,24 @@ def test_it_is_not_found_when_discovery_is_off(jiwy: Path, net: Network, tmp_pat
 @pytest.mark.parametrize(
     ("variable", "value", "message"),
     [
-        ("ROS_DOMAIN_ID", "233", "error: ROS_DOMAIN_ID is '233'\nhint: a domain is a whole number from 0 to 232\n"),
-        ("ROS_DOMAIN_ID", "-1", "error: ROS_DOMAIN_ID is '-1'\nhint: a domain is a whole number from 0 to 232\n"),
-        ("ROS_DOMAIN_ID", "a", "error: ROS_DOMAIN_ID is 'a'\nhint: a domain is a whole number from 0 to 232\n"),
+        (
+            "ROS_DOMAIN_ID",
+            "233",
+            "error: ROS_DOMAIN_ID is '233'\nhint: a domain must be a whole number from 0 to 232\n",
+        ),
+        ("ROS_DOMAIN_ID", "-1", "error: ROS_DOMAIN_ID is '-1'\nhint: a domain must be a whole number from 0 to 232\n"),
+        ("ROS_DOMAIN_ID", "a", "error: ROS_DOMAIN_ID is 'a'\nhint: a domain must be a whole number from 0 to 232\n"),
         (
             "ROS_AUTOMATIC_DISCOVERY_RANGE",
             "NEAR",
-            "error: ROS_AUTOMATIC_DISCOVERY_RANGE is 'NEAR'\nhint: SUBNET, LOCALHOST, OFF or SYSTEM_DEFAULT\n",
+            "error: ROS_AUTOMATIC_DISCOVERY_RANGE is 'NEAR'\n"
+            "hint: it must be SUBNET, LOCALHOST, OFF or SYSTEM_DEFAULT\n",
         ),
         (
             "ROS_STATIC_PEERS",
             'robot.local;"/><evil>',
-            "error: ROS_STATIC_PEERS names '\"/><evil>'\nhint: it holds addresses, with ';' between them\n",
+            "error: ROS_STATIC_PEERS contains '\"/><evil>'\n"
+            "hint: it must be a list of addresses with ';' between them\n",
         ),
     ],
 )
@@ -475,6 +481,6 @@ def test_without_a_network_it_is_tried_again_and_the_loop_runs(jiwy: Path, tmp_p
         command = [str(jiwy), "--realtime", "--quiet", "--duration", "2.5", "--trace", str(trace)]
         done = subprocess.run(command, env=net.environment, capture_output=True, text=True, check=False, timeout=60)
         assert done.returncode == 0
-        assert done.stderr.count("error: no DDS participant: ") == 1
-        assert "hint: it is tried again every second" in done.stderr
+        assert done.stderr.count("error: cannot make a DDS participant: ") == 1
+        assert "hint: the node tries again every second" in done.stderr
         assert len(Robot(None, trace).signal("time")) > 2000  # type: ignore[arg-type]

@@ -62,7 +62,7 @@ def test_fast_dds_hears_positions_sends_setpoints_and_sees_the_node(
     assert [topic for _, topic, *_ in heard] == [topics[1], topics[3], topics[3]]
     assert int(heard[0][2]) > 60 and int(heard[1][2]) > 60
     assert heard[2][2] == "0"
-    assert "warning: a subscription of /robot_7/tilt_publisher asks for another reliability" in errors
+    assert "warning: a subscription of /robot_7/tilt_publisher requests another reliability" in errors
     matched = [line for line in lines if line.startswith("matched ")]
     assert matched[2:4] == [f"matched {topics[5]} 1", f"matched {topics[7]} 1"]
     last = trace.read_text().splitlines()[-1].split(",")

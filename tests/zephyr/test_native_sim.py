@@ -141,10 +141,10 @@ def test_stalls_and_events_have_the_hosts_numbers(image: Path, host: Path, tmp_p
 @pytest.mark.parametrize(
     ("options", "status", "message"),
     [
-        (["--duration=fast"], 2, "error: --duration 'fast' is no time in seconds above 0\n"),
+        (["--duration=fast"], 2, "error: --duration 'fast' is not a time in seconds above 0\n"),
         (["--agent=127.0.0.1:8888", "--duration=1"], 2, "error: --agent without --realtime\n"),
         (["--console", "--duration=1"], 2, "error: --console without --realtime\n"),
-        (["--realtime", "--agent=127.0.0.1"], 2, "error: --agent '127.0.0.1' is no HOST:PORT\n"),
+        (["--realtime", "--agent=127.0.0.1"], 2, "error: --agent '127.0.0.1' is not HOST:PORT\n"),
         (["--realtime", "--agent=no.such.host.invalid:1"], 1, "error: there is no host 'no.such.host.invalid'"),
         (["--duration=1", "--trace=/no/such/folder/t"], 1, "/no/such/folder/t: error: cannot write this file: "),
         (["--duration=1", "--setpoints=wrong.csv"], 2, "wrong.csv:2: error: unknown topic 'roll'\n"),
@@ -222,7 +222,7 @@ def test_what_is_saved_is_there_at_the_next_start(image: Path, tmp_path: Path) -
         assert console.ask("get Pan\\PID\\kp") == ["parameter Pan\\PID\\kp=0.1 generated=2.6", "ok get"]
     with Host(image, "--quiet") as console:
         console.ask("disable")
-        assert console.ask("save") == ["error save nothing can be stored here"]
+        assert console.ask("save") == ["error save this target cannot store parameters"]
 
 
 def test_console_on_a_terminal_and_an_interrupt(image: Path, tmp_path: Path) -> None:

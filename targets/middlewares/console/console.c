@@ -173,7 +173,7 @@ static void run_line(void)
     if (session.input.too_long) {
         epg_console_error(&session, "line", "is too long", NULL);
     } else if (session.input.no_text) {
-        epg_console_error(&session, "line", "holds bytes that are no text", NULL);
+        epg_console_error(&session, "line", "contains bytes that are not text", NULL);
     } else if (!epg_console_cut(session.input.line, &command)) {
         epg_console_error(&session, "line", "has too many words", NULL);
     } else if (command.count > 0) {

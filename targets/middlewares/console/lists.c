@@ -11,19 +11,19 @@
 #include "session.h"
 
 static const char *const help[] = {
-    "ports                        what has a name",
-    "<setpoint>=<number> ...      setpoints; those of one line act in the same cycle",
-    "enable, disable              actuators on (initialises the model, clears a fault), off",
-    "watch [<port> ...], off      values at the communication period, each line of one cycle",
-    "stats                        what the control loop counts",
+    "ports                        the names of all ports",
+    "<setpoint>=<number> ...      sets setpoints; all of one line act in the same cycle",
+    "enable, disable              actuators on (initialises the model, clears a fault); off",
+    "watch [<port> ...], off      shows values at the communication period, one cycle per line",
+    "stats                        counters of the control loop",
     "get [<parameter> ...]        parameters of the model",
-    "set <parameter>=<number> ... changes up to 8 of them in the same cycle",
-    "get|set node, namespace      names of the ROS 2 node, from the next start on: set node=robot_$serial",
-    "save                         keeps the changes; while disabled",
+    "set <parameter>=<number> ... changes up to 8 parameters in the same cycle",
+    "get|set node, namespace      names of the ROS 2 node after the next start: set node=robot_$serial",
+    "save                         stores the changes; only while disabled",
     "capture <port> ... [rows=<n>] [before=<n>] [every=<n>] [when=<port>><number>|when=fault]",
-    "capture [read|stop]          how far it is; its rows; ends it",
-    "jog <actuator> <duty> <ms>   moves it, while disabled, and tells what the encoders counted",
-    "echo on|off                  shows what is typed",
+    "capture [read|stop]          progress of the recording; shows its rows; ends it",
+    "jog <actuator> <duty> <ms>   moves an actuator while disabled, and shows the encoders' counts",
+    "echo on|off                  shows the typed characters",
     "version",
 };
 

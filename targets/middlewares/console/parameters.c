@@ -77,9 +77,9 @@ static void set_name(epg_console_session_t *session, const char *word, const cha
     const bool node = strcmp(word, "node") == 0;
     const bool good = node ? epg_names_set_node(target, text) : epg_names_set_space(target, text);
     if (target->store == NULL) {
-        epg_console_error(session, "set", "names cannot be kept here", NULL);
+        epg_console_error(session, "set", "this target cannot store names", NULL);
     } else if (!good) {
-        epg_console_error(session, "set", node ? "this is no name of a node:" : "this is no namespace:", text);
+        epg_console_error(session, "set", node ? "this is not a name of a node:" : "this is not a namespace:", text);
     } else {
         epg_console_ok(session, "set");
         epg_console_word(&session->output, "acts", "at_next_start_if_saved");
@@ -139,7 +139,7 @@ void epg_console_set(epg_console_session_t *session, const epg_console_command_t
         return;
     }
     if (command->count == 1 || command->count - 1U > EPG_PARAMETER_CHANGES) {
-        epg_console_error(session, "set", "<parameter>=<number>, from 1 to 8 of them", NULL);
+        epg_console_error(session, "set", "use <parameter>=<number>, 1 to 8 times", NULL);
         return;
     }
     for (size_t i = 1; i < command->count; i++) {
@@ -152,7 +152,7 @@ void epg_console_set(epg_console_session_t *session, const epg_console_command_t
             return;
         }
         if (text == NULL || !epg_console_number(text, &value)) {
-            epg_console_error(session, "set", "this is no number:", text == NULL ? "" : text);
+            epg_console_error(session, "set", "this is not a number:", text == NULL ? "" : text);
             return;
         }
         changes[i - 1U] = (epg_parameter_change_t){.index = index, .value = value};
@@ -170,11 +170,11 @@ void epg_console_save(epg_console_session_t *session, const epg_console_command_
     epg_store_t *store = session->target->store;
     size_t count = 0;
     if (store == NULL) {
-        epg_console_error(session, "save", "there is nothing to keep", NULL);
+        epg_console_error(session, "save", "there is nothing to save", NULL);
     } else if (!session->has_status || session->status.enabled || session->jogging) {
-        epg_console_error(session, "save", "only while actuators are off: disable first", NULL);
+        epg_console_error(session, "save", "the actuators must be off: disable first", NULL);
     } else if (!epg_store_save(store, &count)) {
-        epg_console_error(session, "save", "nothing can be stored here", NULL);
+        epg_console_error(session, "save", "this target cannot store parameters", NULL);
     } else {
         epg_console_ok(session, "save");
         epg_console_count(&session->output, "values", (uint32_t)count);

@@ -62,7 +62,7 @@ static bool read_trigger(epg_console_session_t *session, const char *text, epg_c
     }
     const size_t length = strcspn(text, "<>");
     if (text[length] == '\0' || length >= sizeof name) {
-        epg_console_error(session, "capture", "when=<port>><number>, when=<port><<number> or when=fault", NULL);
+        epg_console_error(session, "capture", "use when=<port>><number>, when=<port><<number> or when=fault", NULL);
         return false;
     }
     memcpy(name, text, length);
@@ -73,7 +73,7 @@ static bool read_trigger(epg_console_session_t *session, const char *text, epg_c
         return false;
     }
     if (!epg_console_number(text + length + 1, &request->level)) {
-        epg_console_error(session, "capture", "this is no number:", text + length + 1);
+        epg_console_error(session, "capture", "this is not a number:", text + length + 1);
         return false;
     }
     request->watched = session->target->signals[signal].value;
@@ -97,7 +97,7 @@ static bool read_setting(epg_console_session_t *session, const char *name, const
     } else if (good && strcmp(name, "every") == 0 && number > 0) {
         request->every = number;
     } else {
-        epg_console_error(session, "capture", "rows=<n> before=<n> every=<n>, not", name);
+        epg_console_error(session, "capture", "use rows=<n>, before=<n> or every=<n>, not", name);
         return false;
     }
     return true;
@@ -122,13 +122,13 @@ static bool read_request(epg_console_session_t *session, const epg_console_comma
             return false;
         }
         if (request->columns == EPG_CAPTURE_SIGNALS) {
-            epg_console_error(session, "capture", "at most 8 ports", NULL);
+            epg_console_error(session, "capture", "a recording has at most 8 ports", NULL);
             return false;
         }
         request->signals[request->columns++] = session->target->signals[signal].value;
     }
     if (request->columns == 0) {
-        epg_console_error(session, "capture", "of which ports?", NULL);
+        epg_console_error(session, "capture", "name the ports to record", NULL);
     }
     return request->columns > 0;
 }
@@ -142,13 +142,13 @@ static void start(epg_console_session_t *session, const epg_console_command_t *c
     const size_t most = epg_capture_rows(capture, request.columns);
     request.rows = request.rows == 0 ? most : request.rows;
     if (most == 0 || request.rows > most) {
-        epg_console_begin(&session->output, "error capture there is room for rows=");
+        epg_console_begin(&session->output, "error capture there is only room for rows=");
         epg_console_integer(&session->output, (int64_t)most);
         epg_console_end_or_drop(&session->output);
     } else if (request.before >= request.rows) {
-        epg_console_error(session, "capture", "before= is less than rows=", NULL);
+        epg_console_error(session, "capture", "before= must be less than rows=", NULL);
     } else if (!epg_capture_start(capture, &request)) {
-        epg_console_error(session, "capture", "is going on: capture stop", NULL);
+        epg_console_error(session, "capture", "a recording runs: 'capture stop' ends it", NULL);
     } else {
         session->recording = true;
         epg_console_ok(session, "capture");
@@ -174,7 +174,7 @@ void epg_console_capture(epg_console_session_t *session, const epg_console_comma
     epg_capture_t *capture = session->target->application->capture;
     const char *word = command->count == 2 ? command->words[1] : "";
     if (capture == NULL) {
-        epg_console_error(session, "capture", "this target has no memory for it", NULL);
+        epg_console_error(session, "capture", "this target has no memory for recordings", NULL);
     } else if (command->count == 1) {
         tell(session, "ok capture", capture);
     } else if (strcmp(word, "stop") == 0) {
@@ -183,7 +183,7 @@ void epg_console_capture(epg_console_session_t *session, const epg_console_comma
     } else if (strcmp(word, "read") != 0) {
         start(session, command, capture);
     } else if (!epg_capture_idle(capture)) {
-        epg_console_error(session, "capture", "is going on: capture stop", NULL);
+        epg_console_error(session, "capture", "a recording runs: 'capture stop' ends it", NULL);
     } else {
         epg_console_answer(session, "capture", row_line);
     }

@@ -19,7 +19,7 @@ static bool has_words(epg_console_session_t *session, const epg_console_command_
 
 void epg_console_enable(epg_console_session_t *session, const epg_console_command_t *command)
 {
-    if (has_words(session, command, 1, "is a word alone")) {
+    if (has_words(session, command, 1, "must be the only word")) {
         epg_control_request(session->target->control, true);
         epg_console_wait_for(session, "enable", EPG_CONSOLE_ENABLING);
     }
@@ -37,7 +37,7 @@ void epg_console_echo(epg_console_session_t *session, const epg_console_command_
 {
     const bool on = command->count == 2 && strcmp(command->words[1], "on") == 0;
     if (!on && (command->count != 2 || strcmp(command->words[1], "off") != 0)) {
-        epg_console_error(session, "echo", "is 'on' or 'off'", NULL);
+        epg_console_error(session, "echo", "must be 'on' or 'off'", NULL);
         return;
     }
     session->input.echo = on;
@@ -71,7 +71,7 @@ void epg_console_setpoints(epg_console_session_t *session, const epg_console_com
             return;
         }
         if (text == NULL || !epg_console_number(text, &values[i])) {
-            epg_console_error(session, "setpoint", "this is no number:", text == NULL ? "" : text);
+            epg_console_error(session, "setpoint", "this is not a number:", text == NULL ? "" : text);
             return;
         }
     }
@@ -98,10 +98,10 @@ void epg_console_jog(epg_console_session_t *session, const epg_console_command_t
     epg_jog_t *jog = session->target->application->jog;
     const epg_console_options_t *options = session->options;
     if (jog == NULL || options->jog_duty <= 0.0) {
-        epg_console_error(session, "jog", "this target has none", NULL);
+        epg_console_error(session, "jog", "this target has no jog", NULL);
         return;
     }
-    if (!has_words(session, command, 4, "<actuator> <duty> <ms>")) {
+    if (!has_words(session, command, 4, "use jog <actuator> <duty> <ms>")) {
         return;
     }
     const size_t index = find_actuator(jog, command->words[1]);
@@ -110,28 +110,28 @@ void epg_console_jog(epg_console_session_t *session, const epg_console_command_t
     if (index == SIZE_MAX) {
         epg_console_error(session, "jog", "there is no actuator", command->words[1]);
     } else if (!epg_console_number(command->words[2], &duty)) {
-        epg_console_error(session, "jog", "this is no number:", command->words[2]);
+        epg_console_error(session, "jog", "this is not a number:", command->words[2]);
     } else if (duty > options->jog_duty || duty < -options->jog_duty) {
-        epg_console_begin(&session->output, "error jog a duty is at most ");
+        epg_console_begin(&session->output, "error jog the duty must be at most ");
         epg_console_double(&session->output, options->jog_duty);
-        epg_console_text(&session->output, " here");
+        epg_console_text(&session->output, " for this target");
         epg_console_end_or_drop(&session->output);
     } else if (!epg_console_whole(command->words[3], (uint32_t)(options->jog_time_ns / 1000000U), &time_ms) ||
                time_ms == 0) {
-        epg_console_begin(&session->output, "error jog a time is from 1 to ");
+        epg_console_begin(&session->output, "error jog the time must be from 1 to ");
         epg_console_integer(&session->output, (int64_t)(options->jog_time_ns / 1000000U));
-        epg_console_text(&session->output, " ms here");
+        epg_console_text(&session->output, " ms for this target");
         epg_console_end_or_drop(&session->output);
     } else if (session->has_status && session->status.enabled) {
         epg_console_error(session, "jog", "the target is enabled: disable it", NULL);
     } else if (session->jogging) {
-        epg_console_error(session, "jog", "something is moving", NULL);
+        epg_console_error(session, "jog", "an actuator is moving", NULL);
     } else {
         const uint64_t period_ns = session->target->application->period_ns;
         const uint64_t cycles = ((uint64_t)time_ms * 1000000U + period_ns / 2U) / period_ns;
         session->jogging = epg_jog_start(jog, index, duty, cycles == 0 ? 1U : (uint32_t)cycles);
         if (!session->jogging) {
-            epg_console_error(session, "jog", "something is moving", NULL);
+            epg_console_error(session, "jog", "an actuator is moving", NULL);
         }
     }
 }

@@ -200,14 +200,14 @@ static void try_to_join(uint64_t now_ns)
     if (code < 0) {
         leave();
         if (!dds.failed_before) {
-            fprintf(stderr, "error: no DDS participant: %s\nhint: it is tried again every second\n",
+            fprintf(stderr, "error: cannot make a DDS participant: %s\nhint: the node tries again every second\n",
                     dds_strretcode(code));
         }
         dds.failed_before = true;
         return;
     }
     if (dds.failed_before) {
-        fputs("the DDS participant is there\n", stderr);
+        fputs("the DDS participant is ready\n", stderr);
     }
     dds.failed_before = false;
     set_clock();
@@ -228,7 +228,7 @@ static void start(const epg_target_t *target, const epg_stream_t *stream)
     dds.readers = calloc(target->subscription_count + 1, sizeof *dds.readers);
     dds.writers = calloc(target->publication_count + 1, sizeof *dds.writers);
     if (dds.readers == NULL || dds.writers == NULL) {
-        fputs("error: no DDS participant: no memory\n", stderr);
+        fputs("error: cannot make a DDS participant: not enough memory\n", stderr);
         dds.due_ns = UINT64_MAX;
         return;
     }

@@ -65,7 +65,7 @@ bool epg_dds_domain(uint8_t configured, uint32_t *domain)
     errno = 0;
     const unsigned long value = strtoul(text, &end, 10);
     if (text[0] != '\0' && (!isdigit((unsigned char)text[0]) || *end != '\0' || errno != 0 || value > DOMAIN_LARGEST)) {
-        fprintf(stderr, "error: ROS_DOMAIN_ID is '%s'\nhint: a domain is a whole number from 0 to %d\n", text,
+        fprintf(stderr, "error: ROS_DOMAIN_ID is '%s'\nhint: a domain must be a whole number from 0 to %d\n", text,
                 DOMAIN_LARGEST);
         return false;
     }
@@ -97,8 +97,10 @@ static bool add_peers(text_t *text, const char *peers)
     while (*peers != '\0') {
         const size_t length = strcspn(peers, ";");
         if (length > 0 && !is_address(peers, length)) {
-            fprintf(stderr, "error: ROS_STATIC_PEERS names '%.*s'\nhint: it holds addresses, with ';' between them\n",
-                    (int)length, peers);
+            fprintf(
+                stderr,
+                "error: ROS_STATIC_PEERS contains '%.*s'\nhint: it must be a list of addresses with ';' between them\n",
+                (int)length, peers);
             return false;
         }
         if (length > 0) {
@@ -159,9 +161,10 @@ static bool add_range(text_t *text)
     } else if (range[0] == '\0' || strcmp(range, "SUBNET") == 0) {
         good = add_discovery(text, false, variable("ROS_STATIC_PEERS"));
     } else {
-        fprintf(stderr,
-                "error: ROS_AUTOMATIC_DISCOVERY_RANGE is '%s'\nhint: SUBNET, LOCALHOST, OFF or SYSTEM_DEFAULT\n",
-                range);
+        fprintf(
+            stderr,
+            "error: ROS_AUTOMATIC_DISCOVERY_RANGE is '%s'\nhint: it must be SUBNET, LOCALHOST, OFF or SYSTEM_DEFAULT\n",
+            range);
         good = false;
     }
     add(text, "</Domain></CycloneDDS>,");

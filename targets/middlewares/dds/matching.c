@@ -34,10 +34,10 @@ void epg_dds_check_writer(dds_entity_t writer, const char *name)
     if (dds_get_offered_incompatible_qos_status(writer, &status) == DDS_RETCODE_OK && status.total_count_change > 0) {
         const bool reliability = status.last_policy_id == DDS_RELIABILITY_QOS_POLICY_ID;
         fprintf(stderr,
-                "warning: a subscription of %s asks for another %s than this node offers: it gets no messages\n%s",
+                "warning: a subscription of %s requests another %s than this node offers: it receives no messages\n%s",
                 name, policy_name(status.last_policy_id),
-                reliability ? "hint: it asks for 'reliable'; let it ask for 'best effort', or leave out "
-                              "'qos: best_effort' of the publisher in the .tcf\n"
+                reliability ? "hint: it requests 'reliable': let it request 'best effort', or remove "
+                              "'qos: best_effort' from the publisher in the .tcf\n"
                             : "");
     }
 }
@@ -47,11 +47,12 @@ void epg_dds_check_reader(dds_entity_t reader, const char *name)
     dds_requested_incompatible_qos_status_t status;
     if (dds_get_requested_incompatible_qos_status(reader, &status) == DDS_RETCODE_OK && status.total_count_change > 0) {
         const bool reliability = status.last_policy_id == DDS_RELIABILITY_QOS_POLICY_ID;
-        fprintf(stderr,
-                "warning: a publication of %s offers another %s than this node asks for: its messages do not come\n%s",
-                name, policy_name(status.last_policy_id),
-                reliability ? "hint: it offers 'best effort'; let it offer 'reliable', or write 'qos: best_effort' for "
-                              "the subscriber in the .tcf\n"
-                            : "");
+        fprintf(
+            stderr,
+            "warning: a publication of %s offers another %s than this node requests: its messages do not arrive\n%s",
+            name, policy_name(status.last_policy_id),
+            reliability ? "hint: it offers 'best effort': let it offer 'reliable', or write 'qos: best_effort' for "
+                          "the subscriber in the .tcf\n"
+                        : "");
     }
 }

@@ -9,7 +9,7 @@
 #include <rmw_microxrcedds_c/config.h>
 
 #ifndef RMW_UXRCE_TRANSPORT_CUSTOM
-#error "libmicroros was built for a transport of its own: rebuild it with -DRMW_UXRCE_TRANSPORT=custom"
+#error "libmicroros was built for another transport: rebuild it with -DRMW_UXRCE_TRANSPORT=custom"
 #endif
 
 /* A ping puts a frame on the stack, and middleware.yaml states how large the stack must be. */

@@ -41,10 +41,10 @@ TEST(setpoints_of_one_line_act_all_or_not_at_all)
 {
     bench_start(true);
     check_answer("a/set=1 b=2\n", "error setpoint there is no setpoint 'b'\r\n");
-    check_answer("a/set=1 set_b=nan\n", "error setpoint this is no number: 'nan'\r\n");
-    check_answer("a/set=1 set_b=1e999\n", "error setpoint this is no number: '1e999'\r\n");
-    check_answer("a/set=1 set_b\n", "error setpoint this is no number: ''\r\n");
-    check_answer("a/set=\n", "error setpoint this is no number: ''\r\n");
+    check_answer("a/set=1 set_b=nan\n", "error setpoint this is not a number: 'nan'\r\n");
+    check_answer("a/set=1 set_b=1e999\n", "error setpoint this is not a number: '1e999'\r\n");
+    check_answer("a/set=1 set_b\n", "error setpoint this is not a number: ''\r\n");
+    check_answer("a/set=\n", "error setpoint this is not a number: ''\r\n");
     check_answer("=\n", "error setpoint there is no setpoint ''\r\n");
     CHECK_EQUAL(epg_control_setpoint(&fake.control, 0), 0.0);
 }
@@ -115,11 +115,11 @@ TEST(parameters_change_all_or_not_at_all)
 {
     bench_start(true);
     check_answer("set PID\\kp=0.1 PID\\tau=1\n", "error set there is no parameter 'PID\\tau'\r\n");
-    check_answer("set PID\\kp=0.1 p2=inf\n", "error set this is no number: 'inf'\r\n");
-    check_answer("set PID\\kp\n", "error set this is no number: ''\r\n");
-    check_answer("set\n", "error set <parameter>=<number>, from 1 to 8 of them\r\n");
+    check_answer("set PID\\kp=0.1 p2=inf\n", "error set this is not a number: 'inf'\r\n");
+    check_answer("set PID\\kp\n", "error set this is not a number: ''\r\n");
+    check_answer("set\n", "error set use <parameter>=<number>, 1 to 8 times\r\n");
     check_answer("set p2=1 p3=1 p4=1 p5=1 p6=1 p7=1 p8=1 p9=1 pa=1\n",
-                 "error set <parameter>=<number>, from 1 to 8 of them\r\n");
+                 "error set use <parameter>=<number>, 1 to 8 times\r\n");
     check_answer("get nothing\n", "error get there is no parameter 'nothing'\r\n");
     CHECK_EQUAL(epg_parameters_value(&bench.parameters, 0), 2.6);
     check_answer("set p2=1 p3=2 p4=3 p5=4 p6=5 p7=6 p8=7 p9=8\n", "ok set\r\n");
@@ -130,15 +130,15 @@ TEST(parameters_are_saved_only_while_outputs_are_safe)
 {
     bench_start(true);
     bench_say("set PID\\kp=0.1\n");
-    check_answer("save\n", "error save only while actuators are off: disable first\r\n");
+    check_answer("save\n", "error save the actuators must be off: disable first\r\n");
     CHECK(fake_port.store_size == 0);
     bench_say("disable\njog motor 0.1 200\n");
-    check_answer("save\n", "error save only while actuators are off: disable first\r\n");
+    check_answer("save\n", "error save the actuators must be off: disable first\r\n");
     bench_run(300);
     check_answer("save\n", "ok save values=1\r\n");
     CHECK(fake_port.store_size > 0);
     fake_port.store_refuses = true;
-    check_answer("save\n", "error save nothing can be stored here\r\n");
+    check_answer("save\n", "error save this target cannot store parameters\r\n");
 }
 
 TEST(names_are_read_and_set_and_kept)
@@ -149,9 +149,9 @@ TEST(names_are_read_and_set_and_kept)
     check_answer("set node=robot_$serial\n", "ok set acts=at_next_start_if_saved\r\n");
     check_answer("set namespace=/fleet\n", "ok set acts=at_next_start_if_saved\r\n");
     check_answer("get node\n", "ok get node=robot_$serial name=robot_E6616407E3A51B2C\r\n");
-    check_answer("set node=1st\n", "error set this is no name of a node: '1st'\r\n");
-    check_answer("set node=\n", "error set this is no name of a node: ''\r\n");
-    check_answer("set namespace=fleet\n", "error set this is no namespace: 'fleet'\r\n");
+    check_answer("set node=1st\n", "error set this is not a name of a node: '1st'\r\n");
+    check_answer("set node=\n", "error set this is not a name of a node: ''\r\n");
+    check_answer("set namespace=fleet\n", "error set this is not a namespace: 'fleet'\r\n");
     check_answer("set node=a PID\\kp=1\n", "error set there is no parameter 'node'\r\n");
     check_answer("get namespace\n", "ok get namespace=/fleet name=/fleet\r\n");
     check_answer("save\n", "ok save values=0\r\n");
@@ -166,8 +166,8 @@ TEST(names_cannot_be_set_without_a_store)
     bench_start(false);
     bench.target.store = NULL;
     check_answer("get node\n", "ok get node=bench_node name=bench_node\r\n");
-    check_answer("set node=other\n", "error set names cannot be kept here\r\n");
-    check_answer("save\n", "error save there is nothing to keep\r\n");
+    check_answer("set node=other\n", "error set this target cannot store names\r\n");
+    check_answer("save\n", "error save there is nothing to save\r\n");
 }
 
 static const epg_topic_t values_and_others[3] = {
@@ -280,8 +280,8 @@ TEST(a_capture_waits_for_its_trigger)
     check_answer("capture duty rows=10 before=3 when=position>2.5\n", "ok capture rows=10\r\n");
     const char *answer = bench_say("capture\n");
     CHECK(has_line(answer, "ok capture state=recording rows=10"));
-    check_answer("capture read\n", "error capture is going on: capture stop\r\n");
-    check_answer("capture duty\n", "error capture is going on: capture stop\r\n");
+    check_answer("capture read\n", "error capture a recording runs: 'capture stop' ends it\r\n");
+    check_answer("capture duty\n", "error capture a recording runs: 'capture stop' ends it\r\n");
     bench_say("a/set=3\n");
     bench_run(20);
     CHECK(has_line(bench.out, "captured state=ready rows=10 trigger=3"));
@@ -296,19 +296,21 @@ TEST(a_capture_waits_for_its_trigger)
 TEST(a_capture_that_makes_no_sense_is_refused)
 {
     bench_start(true);
-    check_answer("capture duty rows=151\n", "error capture there is room for rows=150\r\n");
-    check_answer("capture duty rows=0\n", "error capture rows=<n> before=<n> every=<n>, not 'rows'\r\n");
-    check_answer("capture duty every=0\n", "error capture rows=<n> before=<n> every=<n>, not 'every'\r\n");
-    check_answer("capture duty rows=99999999999\n", "error capture rows=<n> before=<n> every=<n>, not 'rows'\r\n");
-    check_answer("capture duty rows=5 before=5\n", "error capture before= is less than rows=\r\n");
-    check_answer("capture rows=5\n", "error capture of which ports?\r\n");
+    check_answer("capture duty rows=151\n", "error capture there is only room for rows=150\r\n");
+    check_answer("capture duty rows=0\n", "error capture use rows=<n>, before=<n> or every=<n>, not 'rows'\r\n");
+    check_answer("capture duty every=0\n", "error capture use rows=<n>, before=<n> or every=<n>, not 'every'\r\n");
+    check_answer("capture duty rows=99999999999\n",
+                 "error capture use rows=<n>, before=<n> or every=<n>, not 'rows'\r\n");
+    check_answer("capture duty rows=5 before=5\n", "error capture before= must be less than rows=\r\n");
+    check_answer("capture rows=5\n", "error capture name the ports to record\r\n");
     check_answer("capture nothing\n", "error capture there is no port 'nothing'\r\n");
     check_answer("capture duty when=nothing>1\n", "error capture there is no port 'nothing'\r\n");
-    check_answer("capture duty when=duty>x\n", "error capture this is no number: 'x'\r\n");
+    check_answer("capture duty when=duty>x\n", "error capture this is not a number: 'x'\r\n");
     check_answer("capture duty when=duty\n",
-                 "error capture when=<port>><number>, when=<port><<number> or when=fault\r\n");
-    check_answer("capture duty duty duty duty duty duty duty duty duty\n", "error capture at most 8 ports\r\n");
-    check_answer("capture duty sort=1\n", "error capture rows=<n> before=<n> every=<n>, not 'sort'\r\n");
+                 "error capture use when=<port>><number>, when=<port><<number> or when=fault\r\n");
+    check_answer("capture duty duty duty duty duty duty duty duty duty\n",
+                 "error capture a recording has at most 8 ports\r\n");
+    check_answer("capture duty sort=1\n", "error capture use rows=<n>, before=<n> or every=<n>, not 'sort'\r\n");
 }
 
 TEST(jog_tells_what_the_encoders_counted)
@@ -329,17 +331,17 @@ TEST(jog_refuses_what_is_not_safe)
     bench_start(true);
     check_answer("jog motor 0.1 50\n", "error jog the target is enabled: disable it\r\n");
     bench_say("disable\n");
-    check_answer("jog motor 0.2501 50\n", "error jog a duty is at most 0.25 here\r\n");
-    check_answer("jog motor -0.2501 50\n", "error jog a duty is at most 0.25 here\r\n");
-    check_answer("jog motor 0.1 2001\n", "error jog a time is from 1 to 2000 ms here\r\n");
-    check_answer("jog motor 0.1 0\n", "error jog a time is from 1 to 2000 ms here\r\n");
-    check_answer("jog motor 0.1 1.5\n", "error jog a time is from 1 to 2000 ms here\r\n");
-    check_answer("jog motor nan 50\n", "error jog this is no number: 'nan'\r\n");
+    check_answer("jog motor 0.2501 50\n", "error jog the duty must be at most 0.25 for this target\r\n");
+    check_answer("jog motor -0.2501 50\n", "error jog the duty must be at most 0.25 for this target\r\n");
+    check_answer("jog motor 0.1 2001\n", "error jog the time must be from 1 to 2000 ms for this target\r\n");
+    check_answer("jog motor 0.1 0\n", "error jog the time must be from 1 to 2000 ms for this target\r\n");
+    check_answer("jog motor 0.1 1.5\n", "error jog the time must be from 1 to 2000 ms for this target\r\n");
+    check_answer("jog motor nan 50\n", "error jog this is not a number: 'nan'\r\n");
     check_answer("jog motors 0.1 50\n", "error jog there is no actuator 'motors'\r\n");
-    check_answer("jog motor 0.1\n", "error jog <actuator> <duty> <ms>\r\n");
+    check_answer("jog motor 0.1\n", "error jog use jog <actuator> <duty> <ms>\r\n");
     CHECK_EQUAL(bench.count, 0);
     bench_say("jog motor 0.1 100\n");
-    check_answer("jog motor 0.1 100\n", "error jog something is moving\r\n");
+    check_answer("jog motor 0.1 100\n", "error jog an actuator is moving\r\n");
     check_answer("disable\n", "error jog stopped by a request or a fault\r\nok disable\r\n");
     const int64_t count = bench.count;
     bench_run(100);
@@ -371,9 +373,9 @@ TEST(lines_that_are_none)
     memset(line, 'x', sizeof line);
     line[300] = '\n';
     CHECK(strcmp(bench_send(line, 301), "error line is too long\r\n") == 0);
-    check_answer("version\x80\n", "error line holds bytes that are no text\r\n");
+    check_answer("version\x80\n", "error line contains bytes that are not text\r\n");
     check_answer("\x01\x02", "");
-    check_answer("\n", "error line holds bytes that are no text\r\n");
+    check_answer("\n", "error line contains bytes that are not text\r\n");
     check_answer("\r\n\r\n \t \n", "");
     check_answer("1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25\n",
                  "error line has too many words\r\n");
@@ -395,7 +397,7 @@ TEST(typing_is_shown_and_corrected)
                  "ok version name=fake node=bench_node epg=1.2.3 hash=0123456789abcdef stored=nothing\r\n");
     check_answer("garbage\x03version\n",
                  "ok version name=fake node=bench_node epg=1.2.3 hash=0123456789abcdef stored=nothing\r\n");
-    check_answer("echo\n", "error echo is 'on' or 'off'\r\n");
+    check_answer("echo\n", "error echo must be 'on' or 'off'\r\n");
 }
 
 TEST(answers_of_several_lines_come_whole_through_a_narrow_stream)
@@ -503,9 +505,9 @@ TEST(a_target_without_any_of_it)
     check_answer("get\n", "error get the model has no parameters\r\n");
     check_answer("set a=1\n", "error set the model has no parameters\r\n");
     bench.store.parameters = NULL;
-    check_answer("save\n", "error save only while actuators are off: disable first\r\n");
-    check_answer("capture duty\n", "error capture this target has no memory for it\r\n");
-    check_answer("jog motor 0.1 5\n", "error jog this target has none\r\n");
+    check_answer("save\n", "error save the actuators must be off: disable first\r\n");
+    check_answer("capture duty\n", "error capture this target has no memory for recordings\r\n");
+    check_answer("jog motor 0.1 5\n", "error jog this target has no jog\r\n");
     check_answer("version\n", "ok version name=fake node=bench_node epg=1.2.3 hash=0123456789abcdef\r\n");
 }
 

@@ -25,8 +25,8 @@ def run(program: Path, *options: str) -> tuple[int, str]:
     [
         (["--agent", "127.0.0.1:8888", "--duration", "1"], 2, "error: --agent without --realtime\n"),
         (["--serial-device", "/dev/null", "--duration", "1"], 2, "error: --serial-device without --realtime\n"),
-        (["--realtime", "--agent", "127.0.0.1"], 2, "error: --agent '127.0.0.1' is no HOST:PORT\n"),
-        (["--realtime", "--agent", "127.0.0.1:70000"], 2, "error: --agent '127.0.0.1:70000' is no HOST:PORT\n"),
+        (["--realtime", "--agent", "127.0.0.1"], 2, "error: --agent '127.0.0.1' is not HOST:PORT\n"),
+        (["--realtime", "--agent", "127.0.0.1:70000"], 2, "error: --agent '127.0.0.1:70000' is not HOST:PORT\n"),
         (["--realtime", "--agent", "a:1", "--serial-device", "b"], 2, "error: --agent and --serial-device\n"),
         (["--realtime", "--agent", "no.such.host.invalid:1"], 1, "error: there is no host 'no.such.host.invalid'"),
         (["--realtime", "--console", "--duration", "1"], 2, "error: this target has no console\n"),
@@ -39,7 +39,7 @@ def test_mistakes(robot: Path, options: list[str], status: int, message: str) ->
 
 def test_a_serial_line_needs_its_terminal(spoken_robot: Path) -> None:
     status, errors = run(spoken_robot, "--realtime", "--duration", "1")
-    assert status == 2 and errors.startswith("error: nobody says which terminal the agent is on\n")
+    assert status == 2 and errors.startswith("error: the serial device of the agent is not given\n")
 
 
 def test_in_simulated_time_it_runs_without_an_agent(robot: Path) -> None:

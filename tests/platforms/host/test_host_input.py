@@ -19,29 +19,29 @@ def call(program: Program, *arguments: str) -> tuple[int, str, str]:
 @pytest.mark.parametrize(
     ("row", "message"),
     [
-        ("0.1,motor_setpoint", "2 fields instead of 'time,topic,value'"),
-        ("0.1", "1 field instead of 'time,topic,value'"),
-        ("0.1,motor_setpoint,1,2", "4 fields instead of 'time,topic,value'"),
-        ("soon,motor_setpoint,1", "'soon' is no time in seconds"),
-        ("-0.1,motor_setpoint,1", "'-0.1' is no time in seconds"),
-        ("nan,motor_setpoint,1", "'nan' is no time in seconds"),
-        ("inf,motor_setpoint,1", "'inf' is no time in seconds"),
-        ("1e10,motor_setpoint,1", "'1e10' is no time in seconds"),
-        (",motor_setpoint,1", "'' is no time in seconds"),
-        ("0.1,motor_setpoint,", "'' is no number"),
-        ("0.1,motor_setpoint,fast", "'fast' is no number"),
-        ("0.1,motor_setpoint,1.2.3", "'1.2.3' is no number"),
-        ("0.1,motor_setpoint,0x10", "'0x10' is no number"),
-        ("0.1,motor_setpoint,1e999", "'1e999' is no number"),
-        ("0.1,motor_setpoint,1 2", "'1 2' is no number"),
-        ("0.1,motor_setpoint,infinity", "'infinity' is no number"),
-        ("0.1,$enable,2", "'2' is neither 0 nor 1"),
-        ("0.1,motor_enable,nan", "'nan' is neither 0 nor 1"),
+        ("0.1,motor_setpoint", "this row has 2 fields: it must have the form 'time,topic,value'"),
+        ("0.1", "this row has 1 field: it must have the form 'time,topic,value'"),
+        ("0.1,motor_setpoint,1,2", "this row has 4 fields: it must have the form 'time,topic,value'"),
+        ("soon,motor_setpoint,1", "'soon' is not a time in seconds"),
+        ("-0.1,motor_setpoint,1", "'-0.1' is not a time in seconds"),
+        ("nan,motor_setpoint,1", "'nan' is not a time in seconds"),
+        ("inf,motor_setpoint,1", "'inf' is not a time in seconds"),
+        ("1e10,motor_setpoint,1", "'1e10' is not a time in seconds"),
+        (",motor_setpoint,1", "'' is not a time in seconds"),
+        ("0.1,motor_setpoint,", "'' is not a number"),
+        ("0.1,motor_setpoint,fast", "'fast' is not a number"),
+        ("0.1,motor_setpoint,1.2.3", "'1.2.3' is not a number"),
+        ("0.1,motor_setpoint,0x10", "'0x10' is not a number"),
+        ("0.1,motor_setpoint,1e999", "'1e999' is not a number"),
+        ("0.1,motor_setpoint,1 2", "'1 2' is not a number"),
+        ("0.1,motor_setpoint,infinity", "'infinity' is not a number"),
+        ("0.1,$enable,2", "'2' must be 0 or 1"),
+        ("0.1,motor_enable,nan", "'nan' must be 0 or 1"),
         ("0.1,$component:emergency_stop,0.5", "'0.5' must be one of 0, 1, open, plant"),
         ("0.1,$component:emergency_stop,off", "'off' must be one of 0, 1, open, plant"),
         ("0.1,$component:emergency_stop,", "'' must be one of 0, 1, open, plant"),
-        ("0.1,$stall,-1", "'-1' is no time in seconds"),
-        ("0.1,$stall,inf", "'inf' is no time in seconds"),
+        ("0.1,$stall,-1", "'-1' is not a time in seconds"),
+        ("0.1,$stall,inf", "'inf' is not a time in seconds"),
     ],
 )
 def test_bad_row(motor: Program, tmp_path: Path, row: str, message: str) -> None:
@@ -89,7 +89,7 @@ def test_names_for_programs(motor: Program) -> None:
 def test_times_must_not_fall(motor: Program, tmp_path: Path) -> None:
     run = motor.run(tmp_path, 0.2, rows("0.1,motor_setpoint,1", "0.1,motor_setpoint,2", "0.09,motor_setpoint,3"))
     assert run.status == 2
-    assert run.stderr == f"{tmp_path / 'setpoints.csv'}:4: error: time 0.09 is before that of the row above\n"
+    assert run.stderr == f"{tmp_path / 'setpoints.csv'}:4: error: time 0.09 is earlier than in the row above\n"
 
 
 @pytest.mark.parametrize("text", ["", "0,motor_setpoint,1\n", "time;topic;value\n"])
@@ -104,7 +104,7 @@ def test_all_errors_at_once_but_not_thousands(motor: Program, tmp_path: Path) ->
     assert run.status == 2
     lines = run.stderr.splitlines()
     assert len(lines) == 21
-    assert lines[19] == f"{tmp_path / 'setpoints.csv'}:21: error: 'x' is no number"
+    assert lines[19] == f"{tmp_path / 'setpoints.csv'}:21: error: 'x' is not a number"
     assert lines[20] == f"{tmp_path / 'setpoints.csv'}: error: 80 more wrong lines"
 
 
@@ -149,14 +149,14 @@ def test_full_disk(motor: Program, option: str) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ([], "error: no --duration\nhint: say how many seconds to run, for example --duration 10\n"),
+        ([], "error: --duration is missing\nhint: give the number of seconds, for example --duration 10\n"),
         (["--duration"], "error: option --duration needs a value\n"),
         (["--duration", ""], "error: option --duration needs a value\n"),
-        (["--duration", "long"], "error: --duration 'long' is no time in seconds above 0\n"),
-        (["--duration", "0"], "error: --duration '0' is no time in seconds above 0\n"),
-        (["--duration=-1"], "error: --duration '-1' is no time in seconds above 0\n"),
-        (["--duration=nan"], "error: --duration 'nan' is no time in seconds above 0\n"),
-        (["--quiet=1", "--duration=1"], "error: option --quiet takes no value\n"),
+        (["--duration", "long"], "error: --duration 'long' is not a time in seconds above 0\n"),
+        (["--duration", "0"], "error: --duration '0' is not a time in seconds above 0\n"),
+        (["--duration=-1"], "error: --duration '-1' is not a time in seconds above 0\n"),
+        (["--duration=nan"], "error: --duration 'nan' is not a time in seconds above 0\n"),
+        (["--quiet=1", "--duration=1"], "error: option --quiet must not have a value\n"),
         (["--duraton", "1"], "error: unknown option '--duraton'\nhint: --help lists the options\n"),
         (["--dur", "1"], "error: unknown option '--dur'\nhint: --help lists the options\n"),
         (["10"], "error: unknown option '10'\nhint: --help lists the options\n"),

@@ -280,7 +280,7 @@ def test_simulated_time_needs_no_linux(tmp_path: Path) -> None:
     run = program.run(tmp_path / "real", 0.1, None, "--realtime")
     assert run.status == 1
     assert run.stderr == (
-        "error: real time on the host needs Linux\nhint: leave out --realtime to run in simulated time\n"
+        "error: real time on the host needs Linux\nhint: remove --realtime to run in simulated time\n"
     )
 
 

@@ -31,7 +31,7 @@
 #include "pico/unique_id.h"
 
 #if PICO_NO_RAM_VECTOR_TABLE
-#error "EPG needs a vector table in RAM: take PICO_NO_RAM_VECTOR_TABLE out of the compile definitions"
+#error "EPG needs a vector table in RAM: remove PICO_NO_RAM_VECTOR_TABLE from the compile definitions"
 #endif
 
 #endif

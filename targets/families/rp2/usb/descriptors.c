@@ -16,7 +16,7 @@
 #include "usb.h"
 
 #if defined(EPG_PICO_USB_VENDOR_ID) != defined(EPG_PICO_USB_PRODUCT_ID)
-#error "define both EPG_PICO_USB_VENDOR_ID and EPG_PICO_USB_PRODUCT_ID: a product id belongs to its vendor's"
+#error "define both EPG_PICO_USB_VENDOR_ID and EPG_PICO_USB_PRODUCT_ID: a product id is valid only with its vendor id"
 #endif
 #ifndef EPG_PICO_USB_VENDOR_ID
 #define EPG_PICO_USB_VENDOR_ID 0x2E8A /* Raspberry Pi */

@@ -16,7 +16,7 @@
 
 #if LIB_PICO_STDIO_USB
 #error                                                                                                                 \
-    "EPG's transport 'usb' and the SDK's stdio over USB want the same USB device: write pico_enable_stdio_usb(<executable> 0), or choose another transport in the .tcf"
+    "EPG's transport 'usb' and the SDK's stdio over USB need the same USB device: write pico_enable_stdio_usb(<executable> 0), or choose another transport in the .tcf"
 #endif
 
 #endif

@@ -23,7 +23,7 @@
 #error "FreeRTOSConfig.h: EPG needs INCLUDE_xTaskGetCurrentTaskHandle 1"
 #endif
 #if configNUMBER_OF_CORES != 1
-#error "FreeRTOSConfig.h: EPG needs configNUMBER_OF_CORES 1, since the control loop runs outside the kernel"
+#error "FreeRTOSConfig.h: EPG needs configNUMBER_OF_CORES 1, because the control loop runs outside the kernel"
 #endif
 #if configTICK_RATE_HZ != 1000
 #error "FreeRTOSConfig.h: EPG needs configTICK_RATE_HZ 1000, so that communication runs every millisecond"

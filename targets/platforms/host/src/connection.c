@@ -34,7 +34,7 @@ static int open_link(epg_host_services_t *services, const epg_host_target_t *hos
 {
     const char *agent = options->agent != NULL ? options->agent : options->device;
     if (agent != NULL && host->agent == NULL) {
-        fputs("error: this target has no agent\nhint: 'communication: {middleware: xrce}' in its .tcf makes it talk to "
+        fputs("error: this target has no agent\nhint: 'communication: {middleware: xrce}' in the .tcf connects it to "
               "one\n",
               stderr);
         return WRONG_INPUT;
@@ -44,8 +44,8 @@ static int open_link(epg_host_services_t *services, const epg_host_target_t *hos
     }
     agent = agent != NULL ? agent : host->agent;
     if (agent[0] == '\0') {
-        fputs("error: nobody says which terminal the agent is on\n"
-              "hint: --serial-device=PATH, or 'communication: {transport: serial, device: PATH}' in the .tcf\n",
+        fputs("error: the serial device of the agent is not given\n"
+              "hint: add --serial-device=PATH, or 'communication: {transport: serial, device: PATH}' in the .tcf\n",
               stderr);
         return WRONG_INPUT;
     }
@@ -66,7 +66,7 @@ static int open_terminal(epg_host_services_t *services, const epg_host_target_t 
         return DONE;
     }
     if (epg_host_console(host) == NULL) {
-        fprintf(stderr, "error: this target has no console\nhint: 'communication: {%s}' in its .tcf gives it one\n",
+        fprintf(stderr, "error: this target has no console\nhint: 'communication: {%s}' in the .tcf adds one\n",
                 epg_host_is_connected(host) ? "console: true" : "middleware: console");
         return WRONG_INPUT;
     }

@@ -18,26 +18,24 @@ void epg_host_print_help(const char *name)
            "\n"
            "Runs the target '%s' against its simulated plant.\n"
            "\n"
-           "  --duration SECONDS   how long to run; default in real time, with a console or a ROS 2 node: until it is "
-           "ended\n"
-           "  --realtime           in real time, in a thread of its own (default: simulated time)\n"
-           "  --console            commands from standard input, answers to standard output (real time)\n"
-           "  --console-pty PATH   the same on a terminal with this name, as if a board were plugged in\n"
-           "  --agent HOST:PORT    where the ROS 2 agent is (real time; default: as the .tcf says)\n"
-           "  --serial-device PATH the agent is on this terminal, such as /dev/ttyUSB0\n"
-           "  --store FILE         where the console's 'save' keeps parameters\n"
-           "  --serial WORD        what '$serial' stands for in names of node and namespace; default: host\n"
-           "  --setpoints FILE     CSV with rows time,topic,value: what arrives, and when\n"
-           "  --topics FILE        writes what is published, in the same form\n"
+           "  --duration SECONDS   duration of the run; in real time, a console or ROS 2 node needs none\n"
+           "  --realtime           runs in real time (default: simulated time)\n"
+           "  --console            reads commands from standard input, answers on standard output (real time)\n"
+           "  --console-pty PATH   the same on a terminal with this name, like the serial port of a board\n"
+           "  --agent HOST:PORT    address of the ROS 2 agent (real time; default: as in the .tcf)\n"
+           "  --serial-device PATH serial device of the ROS 2 agent, such as /dev/ttyUSB0\n"
+           "  --store FILE         file in which the console's 'save' stores parameters\n"
+           "  --serial WORD        replaces '$serial' in the names of node and namespace; default: host\n"
+           "  --setpoints FILE     reads setpoints from a CSV file with rows time,topic,value\n"
+           "  --topics FILE        writes all published values in the same form\n"
            "  --trace FILE         writes all signals, one row per control cycle\n"
            "  --statistics FILE    writes the run's statistics as JSON\n"
            "  --quiet              prints no summary\n"
            "  --interface          prints the names of topics, digital inputs and signals, for programs\n"
            "  --help               prints this text\n"
            "\n"
-           "Exit status: 0 done; 1 could not run or write a file, or the plant diverged; 2 wrong options or setpoint "
-           "file;\n"
-           "130 interrupted (files are written up to there).\n",
+           "Exit status: 0 done; 1 the run or the writing of a file failed, or the plant diverged;\n"
+           "2 wrong options or setpoint file; 130 interrupted (all files are complete up to this moment).\n",
            name, name, name);
 }
 
@@ -72,7 +70,7 @@ static bool take(const option_t *option, int argc, char **argv, int *i)
     if (option->flag != NULL) {
         *option->flag = true;
         if (given != NULL) {
-            fprintf(stderr, "error: option %s takes no value\n", option->name);
+            fprintf(stderr, "error: option %s must not have a value\n", option->name);
         }
         return given == NULL;
     }
@@ -92,25 +90,25 @@ static bool take(const option_t *option, int argc, char **argv, int *i)
 static bool fit_together(const epg_host_options_t *options)
 {
     if ((options->console || options->console_pty != NULL) && !options->realtime) {
-        fputs("error: --console without --realtime\nhint: nobody types in simulated time: add --realtime\n", stderr);
+        fputs("error: --console without --realtime\nhint: a console needs real time: add --realtime\n", stderr);
         return false;
     }
     if (options->console && options->console_pty != NULL) {
-        fputs("error: --console and --console-pty\nhint: there is one console: leave one of them out\n", stderr);
+        fputs("error: --console and --console-pty\nhint: a target has one console: remove one of the options\n",
+              stderr);
         return false;
     }
     if (options->agent != NULL && options->device != NULL) {
-        fputs("error: --agent and --serial-device\nhint: there is one agent: leave one of them out\n", stderr);
+        fputs("error: --agent and --serial-device\nhint: a target has one agent: remove one of the options\n", stderr);
         return false;
     }
     if ((options->agent != NULL || options->device != NULL) && !options->realtime) {
-        fprintf(stderr,
-                "error: %s without --realtime\nhint: an agent does not live in simulated time: add --realtime\n",
+        fprintf(stderr, "error: %s without --realtime\nhint: an agent needs real time: add --realtime\n",
                 options->agent != NULL ? "--agent" : "--serial-device");
         return false;
     }
     if (options->agent != NULL && !epg_host_link_is_address(options->agent)) {
-        fprintf(stderr, "error: --agent '%s' is no HOST:PORT\nhint: for example --agent 192.168.1.10:8888\n",
+        fprintf(stderr, "error: --agent '%s' is not HOST:PORT\nhint: for example --agent 192.168.1.10:8888\n",
                 options->agent);
         return false;
     }
@@ -162,11 +160,11 @@ bool epg_host_complete_options(const char *duration, bool connected, epg_host_op
         return true;
     }
     if (duration == NULL) {
-        fputs("error: no --duration\nhint: say how many seconds to run, for example --duration 10\n", stderr);
+        fputs("error: --duration is missing\nhint: give the number of seconds, for example --duration 10\n", stderr);
         return false;
     }
     if (!epg_host_parse_time(duration, &options->duration_ns) || options->duration_ns == 0) {
-        fprintf(stderr, "error: --duration '%s' is no time in seconds above 0\n", duration);
+        fprintf(stderr, "error: --duration '%s' is not a time in seconds above 0\n", duration);
         return false;
     }
     return true;

@@ -304,7 +304,7 @@ bool epg_host_stop(void)
 
 static bool unavailable(void)
 {
-    fputs("error: real time on the host needs Linux\nhint: leave out --realtime to run in simulated time\n", stderr);
+    fputs("error: real time on the host needs Linux\nhint: remove --realtime to run in simulated time\n", stderr);
     return false;
 }
 

@@ -43,7 +43,7 @@ static void tell_diverged(const epg_host_run_t *run)
     fputs(" at ", stderr);
     epg_host_write_number(stderr, epg_host_seconds(run->diverged_ns));
     fputs(" s\nhint: an output of a plant must be finite and within +-1e12: check the plant's step size and its "
-          "parameters; --trace records the way there\n",
+          "parameters; --trace records its signals up to this time\n",
           stderr);
 }
 

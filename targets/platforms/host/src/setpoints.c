@@ -159,7 +159,7 @@ static bool fail_component(reader_t *reader, const char *name)
     }
     fail(reader, "the target has no digital input '%s'", name);
     if (reader->errors <= ERRORS_SHOWN) {
-        fputs(host->input_count > 0 ? "hint: its digital inputs: " : "hint: it has no digital input at all", stderr);
+        fputs(host->input_count > 0 ? "hint: its digital inputs: " : "hint: it has no digital inputs", stderr);
         for (size_t i = 0; i < host->input_count; i++) {
             fprintf(stderr, "%s'%s'", i > 0 ? ", " : "", host->inputs[i].name);
         }
@@ -230,13 +230,13 @@ static bool read_value(reader_t *reader, const char *text, epg_host_event_t *eve
 {
     uint64_t stall_ns = 0;
     if (!epg_host_parse_number(text, &event->value)) {
-        return fail(reader, "'%s' is no number", text);
+        return fail(reader, "'%s' is not a number", text);
     }
     switch (event->kind) {
     case EPG_HOST_ENABLE:
-        return event->value == 0.0 || event->value == 1.0 ? true : fail(reader, "'%s' is neither 0 nor 1", text);
+        return event->value == 0.0 || event->value == 1.0 ? true : fail(reader, "'%s' must be 0 or 1", text);
     case EPG_HOST_STALL:
-        return epg_host_parse_time(text, &stall_ns) ? true : fail(reader, "'%s' is no time in seconds", text);
+        return epg_host_parse_time(text, &stall_ns) ? true : fail(reader, "'%s' is not a time in seconds", text);
     case EPG_HOST_SETPOINT:
     case EPG_HOST_INPUT:
     default:
@@ -249,13 +249,14 @@ static bool read_event(reader_t *reader, char *line, epg_host_event_t *event)
     char *fields[FIELDS] = {NULL, NULL, NULL};
     const size_t count = split(line, fields);
     if (count != FIELDS) {
-        return fail(reader, "%u field%s instead of '%s'", (unsigned)count, count == 1 ? "" : "s", header);
+        return fail(reader, "this row has %u field%s: it must have the form '%s'", (unsigned)count,
+                    count == 1 ? "" : "s", header);
     }
     if (!epg_host_parse_time(fields[0], &event->time_ns)) {
-        return fail(reader, "'%s' is no time in seconds", fields[0]);
+        return fail(reader, "'%s' is not a time in seconds", fields[0]);
     }
     if (event->time_ns < reader->previous_ns) {
-        return fail(reader, "time %s is before that of the row above", fields[0]);
+        return fail(reader, "time %s is earlier than in the row above", fields[0]);
     }
     reader->previous_ns = event->time_ns;
     event->line = reader->line;

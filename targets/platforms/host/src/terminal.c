@@ -163,7 +163,7 @@ bool epg_host_terminal_open(epg_host_terminal_t *terminal, const char *path)
     };
     const char *name = file >= 0 && grantpt(file) == 0 && unlockpt(file) == 0 ? ptsname(file) : NULL;
     if (name == NULL || fcntl(file, F_SETFL, O_NONBLOCK) != 0 || !make_raw(name) || !make_link(name, path)) {
-        fprintf(stderr, "%s: error: cannot make a terminal of this name: %s\n", path, strerror(errno));
+        fprintf(stderr, "%s: error: cannot make a terminal with this name: %s\n", path, strerror(errno));
         if (file >= 0) {
             close(file);
         }
@@ -203,7 +203,7 @@ void epg_host_terminal_standard(epg_host_terminal_t *terminal)
 bool epg_host_terminal_open(epg_host_terminal_t *terminal, const char *path)
 {
     *terminal = (epg_host_terminal_t){.lost = true};
-    fprintf(stderr, "%s: error: a terminal needs Linux\n", path);
+    fprintf(stderr, "%s: error: --console-pty needs Linux\n", path);
     return false;
 }
 

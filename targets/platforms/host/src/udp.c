@@ -117,7 +117,7 @@ bool epg_host_link_udp(epg_host_link_t *link, const char *address)
     };
     const int error = getaddrinfo(host, colon + 1, &wanted, &found);
     if (error != 0) {
-        fprintf(stderr, "error: there is no host '%s' for the agent: %s\n", host, gai_strerror(error));
+        fprintf(stderr, "error: the agent's host '%s' was not found: %s\n", host, gai_strerror(error));
         return false;
     }
     link->file = connect_to(found);

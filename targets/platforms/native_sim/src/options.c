@@ -48,18 +48,18 @@ static char *statistics;
 static void add_options(void)
 {
     static struct args_struct_t options[] = {
-        VALUE("duration", "SECONDS", duration, "EPG: how long to run, in simulated time unless -realtime is there too"),
-        FLAG(realtime, "EPG: run in real time"),
-        FLAG(console, "EPG: commands from standard input, answers to standard output"),
+        VALUE("duration", "SECONDS", duration, "EPG: duration of the run, in simulated time without -realtime"),
+        FLAG(realtime, "EPG: runs in real time"),
+        FLAG(console, "EPG: reads commands from standard input, answers on standard output"),
         VALUE("console-pty", "PATH", console_pty, "EPG: the same on a terminal with this name"),
-        VALUE("agent", "HOST:PORT", agent, "EPG: where the ROS 2 agent is; default: as the .tcf says"),
-        VALUE("serial-device", "PATH", device, "EPG: the agent is on this terminal"),
+        VALUE("agent", "HOST:PORT", agent, "EPG: address of the ROS 2 agent; default: as in the .tcf"),
+        VALUE("serial-device", "PATH", device, "EPG: serial device of the ROS 2 agent"),
 #ifndef CONFIG_EPG_STORE
-        VALUE("store", "FILE", store, "EPG: where the console's 'save' keeps parameters"),
+        VALUE("store", "FILE", store, "EPG: file in which the console's 'save' stores parameters"),
 #endif
-        VALUE("serial", "WORD", serial, "EPG: what '$serial' stands for in names of node and namespace; default: host"),
-        VALUE("setpoints", "FILE", setpoints, "EPG: CSV with rows time,topic,value: what arrives, and when"),
-        VALUE("topics", "FILE", topics, "EPG: writes what is published, in the same form"),
+        VALUE("serial", "WORD", serial, "EPG: replaces '$serial' in the names of node and namespace; default: host"),
+        VALUE("setpoints", "FILE", setpoints, "EPG: reads setpoints from a CSV file with rows time,topic,value"),
+        VALUE("topics", "FILE", topics, "EPG: writes all published values in the same form"),
         VALUE("trace", "FILE", trace, "EPG: writes all signals, one row per control cycle"),
         VALUE("statistics", "FILE", statistics, "EPG: writes the run's statistics as JSON"),
         FLAG(interface, "EPG: prints the names of topics, digital inputs and signals, for programs"),

@@ -49,8 +49,8 @@ static bool is_emulated_port(const struct device *device)
 static bool complain(const struct device *device, const char *compatible)
 {
     fprintf(stderr,
-            "error: the plant cannot reach '%s'\nhint: in the devicetree of native_sim it must be compatible with "
-            "\"%s\", as EPG's overlay has it\n",
+            "error: the plant cannot use '%s'\nhint: in the devicetree of native_sim it must be compatible with "
+            "\"%s\", as in EPG's overlay\n",
             device->name, compatible);
     return false;
 }

@@ -10,7 +10,7 @@
 #include "parts.h"
 
 BUILD_ASSERT(CONFIG_EPG_COMMUNICATION_PRIORITY < CONFIG_NUM_PREEMPT_PRIORITIES,
-             "CONFIG_EPG_COMMUNICATION_PRIORITY: there are not so many preemptible priorities");
+             "CONFIG_EPG_COMMUNICATION_PRIORITY must be less than the number of preemptible priorities");
 
 #ifdef CONFIG_FPU_SHARING
 #define THREAD_OPTIONS K_FP_REGS

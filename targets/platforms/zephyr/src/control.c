@@ -23,7 +23,7 @@
 #include "parts.h"
 
 BUILD_ASSERT(CONFIG_NUM_METAIRQ_PRIORITIES >= 1,
-             "EPG's control thread goes before all others: CONFIG_NUM_METAIRQ_PRIORITIES must be 1 or more");
+             "EPG's control thread has the highest priority: CONFIG_NUM_METAIRQ_PRIORITIES must be 1 or more");
 
 #ifdef CONFIG_FPU_SHARING
 #define THREAD_OPTIONS K_FP_REGS

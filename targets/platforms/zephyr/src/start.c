@@ -62,14 +62,15 @@ static epg_zephyr_error_t start(const epg_zephyr_target_t *zephyr)
     }
     if (!epg_serve_start_transport(zephyr->transport, zephyr->transport_title) ||
         !epg_serve_start_transport(zephyr->console_transport, "EPG console")) {
-        LOG_ERR("a transport does not start");
+        LOG_ERR("a transport cannot be started");
         return EPG_ZEPHYR_ERROR_DEVICE;
     }
     const epg_zephyr_error_t failed = epg_zephyr_control_start(zephyr, epg_zephyr_fault_before_reset());
     if (failed != EPG_ZEPHYR_OK) {
-        LOG_ERR("the control loop does not start: %s",
-                failed == EPG_ZEPHYR_ERROR_TICK ? "its tick has another clock than the target was generated for"
-                                                : "a device refuses what is asked of it");
+        LOG_ERR("the control loop cannot be started: %s",
+                failed == EPG_ZEPHYR_ERROR_TICK
+                    ? "its tick has another clock than the one that the target was generated for"
+                    : "a device refuses its settings");
         return failed;
     }
     running = zephyr;

@@ -27,7 +27,7 @@
 #define PARTITION storage_partition
 
 #if defined(CONFIG_SETTINGS_NVS) || defined(CONFIG_SETTINGS_ZMS) || defined(CONFIG_SETTINGS_FCB)
-#error "storage_partition holds the settings of the application: set CONFIG_EPG_STORE=n"
+#error "the application stores its settings in storage_partition: set CONFIG_EPG_STORE=n"
 #endif
 
 #define MAGIC 0x53475045U /* "EPGS" */

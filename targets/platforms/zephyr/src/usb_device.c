@@ -98,7 +98,7 @@ bool epg_zephyr_usb_device_start(void)
     if (!started) {
         const int error = start(&epg_usb_device);
         if (error != 0) {
-            LOG_ERR("the USB device does not start (%d)", error);
+            LOG_ERR("the USB device cannot be started (%d)", error);
         }
         started = error == 0; /* it stays on the bus when the target stops */
     }

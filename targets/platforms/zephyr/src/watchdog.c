@@ -65,7 +65,7 @@ epg_zephyr_error_t epg_zephyr_watchdog_start(uint64_t period_ns)
     }
     const int error = set_up(state.timeout_ms);
     if (error < 0) {
-        LOG_ERR("%s: no timeout of %u ms (%d)", device->name, (unsigned)state.timeout_ms, error);
+        LOG_ERR("%s: cannot set a timeout of %u ms (%d)", device->name, (unsigned)state.timeout_ms, error);
         return EPG_ZEPHYR_ERROR_DEVICE;
     }
     state.running = true;
