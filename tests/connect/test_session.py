@@ -438,7 +438,7 @@ def test_another_target_of_the_project_is_opened(project: Path) -> None:
     with serving(session_of(project)) as page:
         assert page.state()["project"]["targets"] == ["robot", "second"]
         page.connect("setpoint_pan", "tilt_subscriber")
-        with pytest.raises(Denied, match="not saved"):
+        with pytest.raises(Denied, match="unsaved changes"):
             page.post("open", target="second")
         page.post("save")
         state = page.post("open", target="second")

@@ -130,7 +130,7 @@ def test_in_a_terminal_a_build_takes_one_line(export: Path, tmp_path: Path) -> N
         ("or q: ", "host_jiwy"),
         ("new project", str(tmp_path / "robot")),
         ("name of the target [robot]: ", ""),
-        ("to go on: ", ""),
+        ("to continue: ", ""),
         ("build? (y/n) [y]: ", ""),
     ]
     seen, until = "", time.monotonic() + 240
@@ -304,7 +304,7 @@ def test_a_conflict_with_edits_outside_is_asked_about(project: Path, bindings: P
 def test_bindings_that_need_an_editor(project: Path, bindings: Path) -> None:
     bindings.write_text("inputs: [")
     status, said = talk(session_of(project))
-    assert status == 1 and "must be mended in an editor first" in said and "robot.bindings.yaml:1:9: error: " in said
+    assert status == 1 and "must first be corrected in an editor" in said and "robot.bindings.yaml:1:9: error: " in said
 
 
 def test_one_of_several_targets(project: Path) -> None:
@@ -336,7 +336,7 @@ def test_choosing_filters_and_says_what_nothing_has(export: Path) -> None:
     names = re.findall(r"^ *\d+  (\S+)", filtered, re.MULTILINE)
     names = [name for name in names if "_w_" not in name]
     assert names == ["rpi_pico2_freertos_jiwy", "rpi_pico2_freertos", "rpi_pico2_freertos_relbot"], "best first"
-    assert "nothing has 'quantum' in it" in said
+    assert "no target matches 'quantum'" in said
 
 
 def test_lines_fit_80_columns_and_any_encoding(project: Path, bindings: Path) -> None:

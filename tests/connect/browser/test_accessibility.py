@@ -58,7 +58,7 @@ def test_diagram_and_details(jiwy: Project, open_page: Open) -> None:
     found["held"] = violations(page)
     page.keyboard.press("Escape")
     jiwy.file.write_text("version: 1\ninputs: [\n", encoding="utf-8")
-    page.get_by_role("button", name="Save mine").wait_for()
+    page.get_by_role("button", name="Overwrite the file").wait_for()
     found["conflict"] = violations(page)
     page.get_by_role("button", name="Load the file").click()
     page.get_by_text("Connections cannot be changed here").wait_for()

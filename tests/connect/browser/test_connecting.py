@@ -410,7 +410,7 @@ def test_several_targets_of_one_project(browser: Any, open_page: Open, tmp_path:
         field(page, "position_tilt").select_option("encoder_pan")
         page.get_by_text("● Unsaved changes").wait_for()
         chooser.select_option("second")
-        page.get_by_role("alert").get_by_text("not saved").wait_for()
+        page.get_by_role("alert").get_by_text("unsaved changes").wait_for()
         assert chooser.input_value() == "jiwy"
         save(page)
         chooser.select_option("second")
