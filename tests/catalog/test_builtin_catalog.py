@@ -146,7 +146,7 @@ def test_jiwy_is_the_thesis_robot(robot: str) -> None:
     catalog, problems = builtin()
     configuration = check_configuration(load_tcf_chain(robot, targets_roots(), problems), [], catalog, problems)
     assert (configuration.node, configuration.control.period) == ("JIWY_node", Fraction(1, 1000))
-    assert not configuration.control.enable_at_start, "nothing moves before somebody enables it"
+    assert not configuration.control.enable_at_start, "nothing moves before the target is enabled"
     assert configuration.communication.period == Fraction(33, 1000)
     topics = {name: c.parameters["topic"] for name, c in configuration.components.items() if c.kind.communication}
     assert topics == {name: name for name in ("pan_subscriber", "tilt_subscriber", "pan_publisher", "tilt_publisher")}

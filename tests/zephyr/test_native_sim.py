@@ -145,7 +145,11 @@ def test_stalls_and_events_have_the_hosts_numbers(image: Path, host: Path, tmp_p
         (["--agent=127.0.0.1:8888", "--duration=1"], 2, "error: --agent without --realtime\n"),
         (["--console", "--duration=1"], 2, "error: --console without --realtime\n"),
         (["--realtime", "--agent=127.0.0.1"], 2, "error: --agent '127.0.0.1' is not HOST:PORT\n"),
-        (["--realtime", "--agent=no.such.host.invalid:1"], 1, "error: there is no host 'no.such.host.invalid'"),
+        (
+            ["--realtime", "--agent=no.such.host.invalid:1"],
+            1,
+            "error: the agent's host 'no.such.host.invalid' was not found",
+        ),
         (["--duration=1", "--trace=/no/such/folder/t"], 1, "/no/such/folder/t: error: cannot write this file: "),
         (["--duration=1", "--setpoints=wrong.csv"], 2, "wrong.csv:2: error: unknown topic 'roll'\n"),
         (["--duration=1", "--setpoints=pin.csv"], 2, "pin.csv:2: error: the target has no digital input 'pwm_pan'\n"),

@@ -28,7 +28,11 @@ def run(program: Path, *options: str) -> tuple[int, str]:
         (["--realtime", "--agent", "127.0.0.1"], 2, "error: --agent '127.0.0.1' is not HOST:PORT\n"),
         (["--realtime", "--agent", "127.0.0.1:70000"], 2, "error: --agent '127.0.0.1:70000' is not HOST:PORT\n"),
         (["--realtime", "--agent", "a:1", "--serial-device", "b"], 2, "error: --agent and --serial-device\n"),
-        (["--realtime", "--agent", "no.such.host.invalid:1"], 1, "error: there is no host 'no.such.host.invalid'"),
+        (
+            ["--realtime", "--agent", "no.such.host.invalid:1"],
+            1,
+            "error: the agent's host 'no.such.host.invalid' was not found",
+        ),
         (["--realtime", "--console", "--duration", "1"], 2, "error: this target has no console\n"),
     ],
 )
