@@ -10,34 +10,19 @@
 #include "epg/cdr.h"
 #include "epg/target.h"
 
-static epg_cdr_writer_t writer_of(void *data, size_t size)
-{
-    return (epg_cdr_writer_t){.data = data, .size = size};
-}
-
-static epg_cdr_reader_t reader_of(const void *data, size_t size)
-{
-    return (epg_cdr_reader_t){.data = data, .size = size};
-}
-
-static size_t written(const epg_cdr_writer_t *writer)
-{
-    return writer->failed ? 0 : writer->length;
-}
-
 static size_t write_float64(const epg_topic_t *topic, const double *values, epg_stamp_t stamp, void *data, size_t size)
 {
     (void)topic;
     (void)stamp;
-    epg_cdr_writer_t writer = writer_of(data, size);
+    epg_cdr_writer_t writer = {.data = data, .size = size};
     epg_cdr_write_f64(&writer, values[0]);
-    return written(&writer);
+    return writer.failed ? 0 : writer.length;
 }
 
 static bool read_float64(const epg_topic_t *topic, const void *data, size_t size, double *values)
 {
     (void)topic;
-    epg_cdr_reader_t reader = reader_of(data, size);
+    epg_cdr_reader_t reader = {.data = data, .size = size};
     values[0] = epg_cdr_read_f64(&reader);
     return !reader.failed;
 }
@@ -46,15 +31,15 @@ static size_t write_float32(const epg_topic_t *topic, const double *values, epg_
 {
     (void)topic;
     (void)stamp;
-    epg_cdr_writer_t writer = writer_of(data, size);
+    epg_cdr_writer_t writer = {.data = data, .size = size};
     epg_cdr_write_f32(&writer, (float)values[0]);
-    return written(&writer);
+    return writer.failed ? 0 : writer.length;
 }
 
 static bool read_float32(const epg_topic_t *topic, const void *data, size_t size, double *values)
 {
     (void)topic;
-    epg_cdr_reader_t reader = reader_of(data, size);
+    epg_cdr_reader_t reader = {.data = data, .size = size};
     values[0] = (double)epg_cdr_read_f32(&reader);
     return !reader.failed;
 }
@@ -76,15 +61,15 @@ static size_t write_int32(const epg_topic_t *topic, const double *values, epg_st
 {
     (void)topic;
     (void)stamp;
-    epg_cdr_writer_t writer = writer_of(data, size);
+    epg_cdr_writer_t writer = {.data = data, .size = size};
     epg_cdr_write_i32(&writer, whole(values[0]));
-    return written(&writer);
+    return writer.failed ? 0 : writer.length;
 }
 
 static bool read_int32(const epg_topic_t *topic, const void *data, size_t size, double *values)
 {
     (void)topic;
-    epg_cdr_reader_t reader = reader_of(data, size);
+    epg_cdr_reader_t reader = {.data = data, .size = size};
     values[0] = (double)epg_cdr_read_i32(&reader);
     return !reader.failed;
 }
@@ -93,15 +78,15 @@ static size_t write_bool(const epg_topic_t *topic, const double *values, epg_sta
 {
     (void)topic;
     (void)stamp;
-    epg_cdr_writer_t writer = writer_of(data, size);
+    epg_cdr_writer_t writer = {.data = data, .size = size};
     epg_cdr_write_u8(&writer, values[0] > 0.5 ? 1 : 0);
-    return written(&writer);
+    return writer.failed ? 0 : writer.length;
 }
 
 static bool read_bool(const epg_topic_t *topic, const void *data, size_t size, double *values)
 {
     (void)topic;
-    epg_cdr_reader_t reader = reader_of(data, size);
+    epg_cdr_reader_t reader = {.data = data, .size = size};
     const uint8_t value = epg_cdr_read_u8(&reader);
     values[0] = (double)value;
     return !reader.failed && value <= 1;
