@@ -24,31 +24,25 @@ epg_host_options_t epg_native_sim_options;
 epg_host_events_t epg_native_sim_events;
 
 static char *duration;
-static char *agent;
-static char *device;
-static char *console_pty;
-#ifndef CONFIG_EPG_STORE
-static char *store;
-#endif
-static char *serial;
-static char *setpoints;
-static char *topics;
-static char *trace;
-static char *statistics;
 
 #define FLAG(member, text)                                                                                             \
     {                                                                                                                  \
         .option = #member, .is_switch = true, .type = 'b', .dest = &epg_native_sim_options.member, .descript = (text)  \
     }
-#define VALUE(text_option, text_value, variable, text)                                                                 \
+#define VALUE(text_option, text_value, member, text)                                                                   \
     {                                                                                                                  \
-        .option = (text_option), .name = (text_value), .type = 's', .dest = &(variable), .descript = (text)            \
+        .option = (text_option), .name = (text_value), .type = 's', .dest = &epg_native_sim_options.member,            \
+        .descript = (text)                                                                                             \
     }
 
 static void add_options(void)
 {
     static struct args_struct_t options[] = {
-        VALUE("duration", "SECONDS", duration, "EPG: duration of the run, in simulated time without -realtime"),
+        {.option = "duration",
+         .name = "SECONDS",
+         .type = 's',
+         .dest = &duration,
+         .descript = "EPG: duration of the run, in simulated time without -realtime"},
         FLAG(realtime, "EPG: runs in real time"),
         FLAG(console, "EPG: reads commands from standard input, answers on standard output"),
         VALUE("console-pty", "PATH", console_pty, "EPG: the same on a terminal with this name"),
@@ -79,13 +73,6 @@ static bool complete(void)
 {
     epg_host_options_t *options = &epg_native_sim_options;
     const bool realtime = options->realtime;
-    options->agent = agent;
-    options->device = device;
-    options->console_pty = console_pty;
-    options->setpoints = setpoints;
-    options->topics = topics;
-    options->trace = trace;
-    options->statistics = statistics;
     options->realtime = realtime || duration == NULL;
     if (!epg_host_complete_options(duration, true, options)) {
         return false;
@@ -111,10 +98,10 @@ static void read_options(void)
         posix_exit(WRONG_INPUT);
     }
 #ifndef CONFIG_EPG_STORE
-    epg_host_store_open(store);
+    epg_host_store_open(options->store);
 #endif
-    if (serial != NULL) {
-        epg_host_serial_set(serial);
+    if (options->serial != NULL) {
+        epg_host_serial_set(options->serial);
     }
     const int status = epg_native_sim_open_transports();
     if (status != DONE) {
