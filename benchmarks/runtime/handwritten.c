@@ -336,7 +336,7 @@ void glue_cycle(uint64_t tick_ns, uint32_t missed)
     u[POSITION_PAN] = encoder_sample(&encoder_pan, &decoder_pan, PAN_RAD_PER_COUNT);
     u[POSITION_TILT] = encoder_sample(&encoder_tilt, &decoder_tilt, TILT_RAD_PER_COUNT);
     if (!epg_port_quadrature_healthy(&decoder_pan) || !epg_port_quadrature_healthy(&decoder_tilt)) {
-        latch(EPG_FAULT_SENSOR);
+        latch((epg_fault_t)10); /* `sensor` of a quadrature_encoder */
     }
     u[SETPOINT_PAN] = setpoints[0];
     u[SETPOINT_TILT] = setpoints[1];

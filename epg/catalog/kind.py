@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
+from zlib import crc32
 
 from epg.documents.items import flag_of, map_of, text_map_of, text_of, texts_of
 from epg.source import Span, YamlNode
@@ -111,6 +112,16 @@ class KindClaim:
 
 
 @dataclass(frozen=True)
+class KindFault:
+    """A fault that disables the target.  ``number`` is its ``epg_fault_t`` in C."""
+
+    name: str
+    number: int
+    description: str
+    span: Span
+
+
+@dataclass(frozen=True)
 class Kind:
     """A kind of component.  ``headers`` and ``sources`` are files in ``folder``."""
 
@@ -128,6 +139,7 @@ class Kind:
     needs_bound: tuple[NeedsBound, ...]
     ports: tuple[KindPort, ...]
     claims: tuple[KindClaim, ...]
+    faults: tuple[KindFault, ...]
     safe_states: tuple[Mapping[str, str], ...]  # claim -> "low" or "high"; safe for any level of the other claims
     headers: tuple[str, ...]
     sources: tuple[str, ...]
@@ -219,6 +231,7 @@ def make_kind(node: YamlNode, folder: Path) -> Kind:
         needs_bound=tuple(NeedsBound(*(text_of(rule, key) for key in ("key", "use", "port"))) for rule in bound),
         ports=tuple(_port(name, child) for name, child in map_of(node, "ports").items()),
         claims=tuple(_claim(name, child, node) for name, child in map_of(node, "claims").items()),
+        faults=tuple(_fault(name, child, node) for name, child in map_of(node, "faults").items()),
         safe_states=tuple(
             text_map_of(state) for state in (node["safe_states"].elements() if "safe_states" in node else ())
         ),
@@ -295,3 +308,12 @@ def _claim(name: str, node: YamlNode, kind: YamlNode) -> KindClaim:
         text_map_of(node, "attributes"),
         kind["claims"].key_span(name),
     )
+
+
+def _fault(name: str, node: YamlNode, kind: YamlNode) -> KindFault:
+    """A fault.  A number that is not stated depends on the names of kind and fault only, so that it never changes."""
+    number = (
+        node["number"].value if "number" in node else 0x100 + crc32(f"{kind['kind'].value}.{name}".encode()) % 0xFF00
+    )
+    assert isinstance(number, int)
+    return KindFault(name, number, text_of(node, "description"), kind["faults"].key_span(name))

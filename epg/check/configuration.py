@@ -161,11 +161,25 @@ def _components(
         parameters = typed_parameters(kind, node, diagnostics)
         kind = kind.of_component(parameters)
         result[name] = Component(name, kind, parameters, {}, conversion_of(node, diagnostics), node, span)
+    _fault_numbers({component.kind.name: component.kind for component in result.values()}, diagnostics)
     kinds = {name: result[name].kind if name in result else None for name, _ in section.items()}
     return {
         name: replace(component, uses=used_components(component.kind, component.node, kinds, diagnostics))
         for name, component in result.items()
     }
+
+
+def _fault_numbers(kinds: Mapping[str, Kind], diagnostics: Diagnostics) -> None:
+    """Reports two faults of a target with the same number."""
+    seen: dict[int, tuple[str, Span]] = {}
+    for kind in kinds.values():
+        for fault in kind.faults:
+            other, first = seen.setdefault(fault.number, (f"'{fault.name}' of kind '{kind.name}'", fault.span))
+            if first != fault.span:
+                message = f"fault '{fault.name}' of kind '{kind.name}' gets the same number as {other}: {fault.number}"
+                notes = [Note("the other one", first)]
+                hint = "choose another name, without 'number'"
+                diagnostics.error("invalid-name", fault.span, message, hint=hint, notes=notes)
 
 
 def _control(

@@ -89,6 +89,9 @@ class Emitter:
             "headers": sorted(headers),
             "driver_headers": sorted(drivers),
             "parts": parts,
+            "faults": sorted(
+                {fault for c in app.components for fault in c.kind.faults}, key=lambda fault: fault.number
+            ),
             "numbers": {part.component.name: part.number for part in parts},
             "topics": topics_of(app, self.macros.macro),
             "arrivals": self._arrivals("subscribe"),

@@ -80,6 +80,7 @@ class Macros:
             application=identifier(self.app.name),
             period=self.app.period,
             write_period=self.app.period * self.app.step_divider,
+            faults={fault.name: fault.number for fault in component.kind.faults},
         )
 
     def _uses(self, name: str) -> dict[str, UseView]:

@@ -57,6 +57,7 @@ class ComponentView:
     value_index: Mapping[str, int] = field(default_factory=dict)
     values: Sequence[ValueView] = ()
     uses: Mapping[str, UseView] = field(default_factory=dict)
+    faults: Mapping[str, int] = field(default_factory=dict)  # name -> number in C
 
 
 @dataclass(frozen=True)

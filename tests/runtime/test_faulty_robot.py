@@ -19,6 +19,28 @@ from .program import ROOT
 
 SOURCE = Path(__file__).resolve().parent / "faulty_robot"
 JIWY = ROOT / "examples" / "jiwy"
+THERMAL_SWITCH = {
+    "component.yaml": """\
+api: 1
+kind: thermal_switch
+summary: a switch that closes when something is too hot
+pins: [contact]
+parameters: {pull: {type: string, default: up, description: resistor of the pin}}
+claims: {level: {class: digital_input, signals: {value: contact}, attributes: {pull: pull}}}
+faults: {too hot: {description: the contact is closed}}
+""",
+    "code.c.j2": """\
+{% macro start(c) %}
+    epg_port_input_start({{ c.claims['level'].pins['value'] }}, EPG_PULL_UP);
+{% endmacro %}
+{% macro check(c) %}
+epg_port_input_read({{ c.claims['level'].pins['value'] }}) ? EPG_FAULT_NONE : {{ c.faults['too hot'] }}
+{%- endmacro %}
+""",
+}
+"""A kind that a user adds.  EPG names it nowhere."""
+TOO_HOT = 37096
+"""The number of its fault.  A trace that was recorded once must stay readable, so it never changes."""
 STALL_S = 0.5
 RUNAWAY_RAD = math.radians(20)
 
@@ -42,7 +64,12 @@ class Run:
 @pytest.fixture(scope="session")
 def robot(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("faulty_robot")
-    environment = {k: v for k, v in os.environ.items() if k not in ("EPG_DIR", "EPG_PATH", "EPG_TARGETS_PATH")}
+    environment = {k: v for k, v in os.environ.items() if k not in ("EPG_DIR", "EPG_PATH")}
+    environment["EPG_TARGETS_PATH"] = str(folder / "targets")
+    kind = folder / "targets/components/thermal_switch"
+    kind.mkdir(parents=True)
+    for name, text in THERMAL_SWITCH.items():
+        (kind / name).write_text(text)
     options = [f"-DJIWY={JIWY}", f"-DEPG_DIR={ROOT / 'cmake'}", f"-DPython3_EXECUTABLE={sys.executable}"]
     options += [f"-DEPG_RUNTIME={ROOT / 'targets/runtime/include'}", "-DCMAKE_BUILD_TYPE=Release"]
     for command in (["cmake", "-S", SOURCE, "-B", folder, "-G", "Ninja", *options], ["cmake", "--build", folder]):
@@ -172,6 +199,12 @@ def test_decoder_that_stops(robot: Path, tmp_path: Path) -> None:
     assert min(found.trace["plant.outputs.angle_pan"][13_000:]) == pytest.approx(0.0, abs=0.01)
     short = run(robot, tmp_path, "decoder-halted@10", seconds=11)
     check_fault(short, "sensor", "encoder_pan", 10.0)
+
+
+def test_fault_of_a_kind_of_the_user(robot: Path, tmp_path: Path) -> None:
+    found = run(robot, tmp_path, "right@0", "10,$component:supply,0", seconds=11)
+    check_fault(found, "too hot", "supply", 10.0)
+    assert {found.at(k / 1000, "fault") for k in range(10_000, 11_000)} == {TOO_HOT}
 
 
 def test_axis_that_is_turned_by_hand_while_disabled(robot: Path, tmp_path: Path) -> None:

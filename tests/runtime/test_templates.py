@@ -195,6 +195,7 @@ class Renderer:
             period=Fraction(1, 1000),
             write_period=Fraction(1, 1000),
             uses=component.uses,
+            faults={fault.name: fault.number for fault in kind.faults},
         )
         env = environment([TARGETS])
         template = env.get_template(f"components/{kind.name}/code.c.j2")

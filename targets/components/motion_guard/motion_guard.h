@@ -5,11 +5,11 @@
  *
  * | found                  | fault           | possible cause                                                        |
  * |------------------------|-----------------|-----------------------------------------------------------------------|
- * | no counts while driving| STALL           | encoder dead or unplugged; motor blocked, unplugged or without power  |
- * | counts against the     | RUNAWAY         | wires of encoder or motor swapped: the feedback then drives, though   |
+ * | no counts while driving| stall           | encoder dead or unplugged; motor blocked, unplugged or without power  |
+ * | counts against the     | runaway         | wires of encoder or motor swapped: the feedback then drives, though   |
  * | drive                  |                 | it should brake                                                       |
- * | homing too far         | HOMING_TRAVEL   | the end stop is at the wrong place, or its switch does not work       |
- * | homing too long        | HOMING_TIME     | the same; or the encoder is dead, or the motor too weak               |
+ * | homing too far         | homing travel   | the end stop is at the wrong place, or its switch does not work       |
+ * | homing too long        | homing time     | the same; or the encoder is dead, or the motor too weak               |
  *
  * The guard is armed while the target is enabled, so an axis that is moved by hand while disabled is not a fault.
  * *Homing* lasts from enabling to the encoder's first reset.  An axis that is at its end stop meanwhile is not a stall.
@@ -41,6 +41,12 @@ typedef struct epg_motion_guard_config {
         double travel;   /**< rad; largest distance, in both directions, from the angle at enabling */
         uint32_t cycles; /**< how long the motor may be driven; 0: no such check */
     } homing;
+    struct {
+        epg_fault_t stall;
+        epg_fault_t runaway;
+        epg_fault_t homing_travel;
+        epg_fault_t homing_time;
+    } faults; /**< the numbers of the faults, as component.yaml declares them */
 } epg_motion_guard_config_t;
 
 /** The state of one guard; epg_motion_guard_start() sets it. */
@@ -143,12 +149,12 @@ static inline epg_fault_t epg_motion_guard_homes(epg_motion_guard_t *guard, cons
 {
     const double travelled = angle - guard->homing_origin;
     if (travelled > config->homing.travel || travelled < -config->homing.travel) {
-        return EPG_FAULT_HOMING_TRAVEL;
+        return config->faults.homing_travel;
     }
     if (duty < 0.0 || duty > 0.0) {
         guard->driven++;
     }
-    return guard->driven > config->homing.cycles ? EPG_FAULT_HOMING_TIME : EPG_FAULT_NONE;
+    return guard->driven > config->homing.cycles ? config->faults.homing_time : EPG_FAULT_NONE;
 }
 
 /**
@@ -178,13 +184,13 @@ static inline epg_fault_t epg_motion_guard_check(epg_motion_guard_t *guard, cons
         epg_motion_guard_begin(guard, angle);
     }
     if (config->runaway.angle > 0.0 && epg_motion_guard_runs_away(guard, config, angle, duty)) {
-        return EPG_FAULT_RUNAWAY;
+        return config->faults.runaway;
     }
     if (guard->homing) {
         return epg_motion_guard_homes(guard, config, angle, duty);
     }
     if (config->stall.cycles > 0 && epg_motion_guard_stalls(guard, config, angle, duty)) {
-        return EPG_FAULT_STALL;
+        return config->faults.stall;
     }
     return EPG_FAULT_NONE;
 }

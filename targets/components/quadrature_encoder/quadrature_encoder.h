@@ -75,12 +75,10 @@ static inline void epg_quadrature_encoder_reset(epg_quadrature_encoder_t *encode
     encoder->reset_level = level;
 }
 
-/**
- * Returns EPG_FAULT_SENSOR if the decoder has stopped, because the position is wrong then; otherwise EPG_FAULT_NONE.
- */
-static inline epg_fault_t epg_quadrature_encoder_check(const epg_quadrature_encoder_config_t *config)
+/** Returns false if the decoder has stopped: the position is wrong then. */
+static inline bool epg_quadrature_encoder_healthy(const epg_quadrature_encoder_config_t *config)
 {
-    return epg_port_quadrature_healthy(&config->decoder) ? EPG_FAULT_NONE : EPG_FAULT_SENSOR;
+    return epg_port_quadrature_healthy(&config->decoder);
 }
 
 /** Ignores the reset signal while the target is disabled.  A signal that is high afterwards counts as an edge. */

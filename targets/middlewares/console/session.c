@@ -51,7 +51,7 @@ void epg_console_wait_for(epg_console_session_t *self, const char *command, epg_
 
 void epg_console_fault(epg_console_session_t *self, const epg_status_t *status)
 {
-    const char *name = epg_fault_name(status->fault);
+    const char *name = epg_target_fault(self->target, status->fault);
     epg_console_text(&self->output, " fault=");
     for (size_t i = 0; name[i] != '\0'; i++) {
         epg_console_text(&self->output, name[i] == ' ' ? "_" : (char[]){name[i], '\0'});

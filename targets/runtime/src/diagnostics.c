@@ -46,7 +46,7 @@ static void write_pairs(epg_cdr_writer_t *writer, const epg_node_t *node, const 
     const size_t count = sizeof numbers / sizeof numbers[0];
     char text[EPG_DECIMAL_SIZE + 1];
     epg_cdr_write_u32(writer, (uint32_t)count + 4U);
-    write_pair(writer, "fault", epg_fault_name(status->fault));
+    write_pair(writer, "fault", epg_target_fault(node->target, status->fault));
     write_pair(writer, "component", epg_target_component(node->target, status->fault_component));
     for (size_t i = 0; i < count; i++) {
         text[epg_decimal_write_integer(text, (int64_t)numbers[i].value)] = '\0';
@@ -64,10 +64,10 @@ static uint8_t level_of(const epg_status_t *status)
     return status->enabled ? LEVEL_OK : LEVEL_WARN;
 }
 
-static const char *message_of(const epg_status_t *status)
+static const char *message_of(const epg_node_t *node, const epg_status_t *status)
 {
     if (status->fault != EPG_FAULT_NONE) {
-        return epg_fault_name(status->fault);
+        return epg_target_fault(node->target, status->fault);
     }
     return status->enabled ? "enabled" : "disabled";
 }
@@ -85,7 +85,7 @@ size_t epg_diagnostics_write(epg_node_t *node, epg_stamp_t stamp, void *data, si
     epg_cdr_write_u32(&writer, 1);
     epg_cdr_write_u8(&writer, level_of(&status));
     epg_cdr_write_string(&writer, node->name);
-    epg_cdr_write_string(&writer, message_of(&status));
+    epg_cdr_write_string(&writer, message_of(node, &status));
     epg_cdr_write_string(&writer, epg_port_serial());
     write_pairs(&writer, node, &status);
     return writer.failed ? 0 : writer.length;

@@ -5,37 +5,28 @@
  */
 #include "epg/fault.h"
 
-const char *epg_fault_name(epg_fault_t fault)
+#include "epg/target.h"
+
+const char *epg_target_fault(const epg_target_t *target, epg_fault_t fault)
 {
-    switch (fault) {
-    case EPG_FAULT_NONE:
-        return "none";
-    case EPG_FAULT_NOT_FINITE:
-        return "not finite";
-    case EPG_FAULT_MODEL_STOPPED:
-        return "model stopped";
-    case EPG_FAULT_OVERRUN:
-        return "overrun";
-    case EPG_FAULT_SETPOINT_TIMEOUT:
-        return "setpoint timeout";
-    case EPG_FAULT_FAIL_SAFE:
-        return "fail-safe";
-    case EPG_FAULT_STALL:
-        return "stall";
-    case EPG_FAULT_RUNAWAY:
-        return "runaway";
-    case EPG_FAULT_HOMING_TRAVEL:
-        return "homing travel";
-    case EPG_FAULT_HOMING_TIME:
-        return "homing time";
-    case EPG_FAULT_SENSOR:
-        return "sensor";
-    case EPG_FAULT_WATCHDOG:
-        return "watchdog";
-    case EPG_FAULT_PROCESSOR:
-        return "processor";
-    case EPG_FAULT_OUTPUT:
-        return "output";
+    static const char *const names[] = {
+        [EPG_FAULT_NONE] = "none",
+        [EPG_FAULT_NOT_FINITE] = "not finite",
+        [EPG_FAULT_MODEL_STOPPED] = "model stopped",
+        [EPG_FAULT_OVERRUN] = "overrun",
+        [EPG_FAULT_SETPOINT_TIMEOUT] = "setpoint timeout",
+        [EPG_FAULT_FAIL_SAFE] = "fail-safe",
+        [EPG_FAULT_WATCHDOG] = "watchdog",
+        [EPG_FAULT_PROCESSOR] = "processor",
+        [EPG_FAULT_OUTPUT] = "output",
+    };
+    if ((size_t)fault < sizeof names / sizeof names[0] && names[fault] != NULL) {
+        return names[fault];
+    }
+    for (size_t i = 0; i < target->fault_count; i++) {
+        if (target->faults[i].fault == fault) {
+            return target->faults[i].name;
+        }
     }
     return "unknown";
 }

@@ -573,25 +573,6 @@ TEST(the_first_of_several_faults_stays)
     CHECK_EQUAL(fake_status().statistics.faults, 1);
 }
 
-TEST(faults_have_names)
-{
-    CHECK(strcmp(epg_fault_name(EPG_FAULT_NONE), "none") == 0);
-    CHECK(strcmp(epg_fault_name(EPG_FAULT_NOT_FINITE), "not finite") == 0);
-    CHECK(strcmp(epg_fault_name(EPG_FAULT_MODEL_STOPPED), "model stopped") == 0);
-    CHECK(strcmp(epg_fault_name(EPG_FAULT_OVERRUN), "overrun") == 0);
-    CHECK(strcmp(epg_fault_name(EPG_FAULT_SETPOINT_TIMEOUT), "setpoint timeout") == 0);
-    CHECK(strcmp(epg_fault_name(EPG_FAULT_FAIL_SAFE), "fail-safe") == 0);
-    CHECK(strcmp(epg_fault_name(EPG_FAULT_STALL), "stall") == 0);
-    CHECK(strcmp(epg_fault_name(EPG_FAULT_RUNAWAY), "runaway") == 0);
-    CHECK(strcmp(epg_fault_name(EPG_FAULT_HOMING_TRAVEL), "homing travel") == 0);
-    CHECK(strcmp(epg_fault_name(EPG_FAULT_HOMING_TIME), "homing time") == 0);
-    CHECK(strcmp(epg_fault_name(EPG_FAULT_SENSOR), "sensor") == 0);
-    CHECK(strcmp(epg_fault_name(EPG_FAULT_WATCHDOG), "watchdog") == 0);
-    CHECK(strcmp(epg_fault_name(EPG_FAULT_PROCESSOR), "processor") == 0);
-    CHECK(strcmp(epg_fault_name(EPG_FAULT_OUTPUT), "output") == 0);
-    CHECK(strcmp(epg_fault_name((epg_fault_t)14), "unknown") == 0);
-}
-
 /* Statistics --------------------------------------------------------------------------------------------------- */
 
 TEST(a_late_cycle_runs_once_and_the_missed_ticks_are_counted)
@@ -724,8 +705,8 @@ RUN(ENTRY(start_makes_peripherals_safe_and_runs_nothing), ENTRY(nothing_is_read_
     ENTRY(overruns_with_a_good_cycle_between_do_not_disable), ENTRY(overruns_without_a_limit_are_only_counted),
     ENTRY(enabling_forgets_the_overruns_before), ENTRY(fail_safe_input_falls), ENTRY(fail_safe_input_at_start),
     ENTRY(fail_safe_input_refuses_enabling), ENTRY(an_active_fail_safe_input_changes_nothing),
-    ENTRY(the_first_of_several_faults_stays), ENTRY(faults_have_names),
-    ENTRY(a_late_cycle_runs_once_and_the_missed_ticks_are_counted), ENTRY(ending_at_the_next_tick_is_in_time),
-    ENTRY(computation_times), ENTRY(shortest_cycle_is_not_the_zero_it_starts_with), ENTRY(times_saturate),
+    ENTRY(the_first_of_several_faults_stays), ENTRY(a_late_cycle_runs_once_and_the_missed_ticks_are_counted),
+    ENTRY(ending_at_the_next_tick_is_in_time), ENTRY(computation_times),
+    ENTRY(shortest_cycle_is_not_the_zero_it_starts_with), ENTRY(times_saturate),
     ENTRY(a_cycle_before_its_tick_is_not_late), ENTRY(counts_of_others), ENTRY(reconnecting_clears_no_latch),
     ENTRY(finite_by_bits))

@@ -126,9 +126,9 @@ TEST(encoder_counts_its_resets)
 TEST(encoder_whose_decoder_has_stopped)
 {
     begin_encoder(0);
-    CHECK(epg_quadrature_encoder_check(&encoder_config) == EPG_FAULT_NONE);
+    CHECK(epg_quadrature_encoder_healthy(&encoder_config));
     fake_port.decoders_failed[1] = true;
-    CHECK(epg_quadrature_encoder_check(&encoder_config) == EPG_FAULT_SENSOR);
+    CHECK(!epg_quadrature_encoder_healthy(&encoder_config));
 }
 
 TEST(encoder_reset_by_nan_does_nothing)

@@ -16,6 +16,8 @@ static void begin(void)
     fake_start();
 }
 
+static const epg_fault_t FAULT_OF_KIND = (epg_fault_t)300;
+
 static void check_fault(epg_fault_t fault, unsigned int component)
 {
     CHECK(!fake_status().enabled);
@@ -38,14 +40,14 @@ TEST(fault_of_a_component_is_safe_in_the_same_cycle)
     begin();
     fake_cycles(3);
     CHECK_EQUAL(fake_status().fault_component, EPG_NO_COMPONENT);
-    fake.fault = EPG_FAULT_STALL;
+    fake.fault = FAULT_OF_KIND;
     fake_cycle();
     CHECK_EQUAL(fake.writes, 3);
     CHECK_EQUAL(fake.actuator, 0.0);
-    check_fault(EPG_FAULT_STALL, FAKE_COMPONENT);
+    check_fault(FAULT_OF_KIND, FAKE_COMPONENT);
     fake.fault = EPG_FAULT_NONE;
     fake_cycles(5);
-    check_fault(EPG_FAULT_STALL, FAKE_COMPONENT);
+    check_fault(FAULT_OF_KIND, FAKE_COMPONENT);
     CHECK_EQUAL(fake_status().statistics.faults, 1);
     CHECK_EQUAL(fake.steps, 9); /* the model keeps running, as after a request to disable */
 }
@@ -53,7 +55,7 @@ TEST(fault_of_a_component_is_safe_in_the_same_cycle)
 TEST(enabling_clears_the_fault_of_a_component)
 {
     begin();
-    fake.fault = EPG_FAULT_RUNAWAY;
+    fake.fault = FAULT_OF_KIND;
     fake_cycle();
     fake.fault = EPG_FAULT_NONE;
     epg_control_request(&fake.control, true);
@@ -68,22 +70,22 @@ TEST(enabling_clears_the_fault_of_a_component)
 TEST(enabling_while_the_fault_lasts_writes_nothing)
 {
     begin();
-    fake.fault = EPG_FAULT_SENSOR;
+    fake.fault = FAULT_OF_KIND;
     fake_cycle();
     epg_control_request(&fake.control, true);
     fake_cycles(3);
     CHECK_EQUAL(fake.writes, 0);
-    check_fault(EPG_FAULT_SENSOR, FAKE_COMPONENT);
+    check_fault(FAULT_OF_KIND, FAKE_COMPONENT);
 }
 
 TEST(the_first_fault_keeps_its_component)
 {
     begin();
-    fake.fault = EPG_FAULT_SENSOR;
+    fake.fault = FAULT_OF_KIND;
     fake_cycle();
     fake.sensor = INFINITY;
     fake_cycle();
-    check_fault(EPG_FAULT_SENSOR, FAKE_COMPONENT);
+    check_fault(FAULT_OF_KIND, FAKE_COMPONENT);
 }
 
 TEST(fault_of_the_target_has_no_component)
@@ -131,6 +133,20 @@ TEST(components_have_names)
     CHECK(strcmp(epg_target_component(&target, 1), "motor") == 0);
     CHECK(strcmp(epg_target_component(&target, 2), "") == 0);
     CHECK(strcmp(epg_target_component(&target, EPG_NO_COMPONENT), "") == 0);
+}
+
+TEST(faults_have_names)
+{
+    static const epg_kind_fault_t faults[] = {{6, "stall"}, {300, "too hot"}};
+    const epg_target_t target = {.fault_count = 2, .faults = faults};
+    static const char *const names[] = {"none",      "not finite", "model stopped", "overrun", "setpoint timeout",
+                                        "fail-safe", "stall",      "unknown",       "unknown", "unknown",
+                                        "unknown",   "watchdog",   "processor",     "output",  "unknown"};
+    for (unsigned int i = 0; i < sizeof names / sizeof names[0]; i++) {
+        CHECK(strcmp(epg_target_fault(&target, (epg_fault_t)i), names[i]) == 0);
+    }
+    CHECK(strcmp(epg_target_fault(&target, (epg_fault_t)300), "too hot") == 0);
+    CHECK(strcmp(epg_target_fault(&target, EPG_FAULT_LARGEST), "unknown") == 0);
 }
 
 TEST(silence_counts_from_the_first_sign_of_life)
@@ -185,5 +201,5 @@ RUN(ENTRY(sensors_are_sampled_before_anything_else), ENTRY(fault_of_a_component_
     ENTRY(enabling_clears_the_fault_of_a_component), ENTRY(enabling_while_the_fault_lasts_writes_nothing),
     ENTRY(the_first_fault_keeps_its_component), ENTRY(fault_of_the_target_has_no_component),
     ENTRY(fail_safe_input_is_the_component), ENTRY(a_platform_that_starts_after_a_watchdog_stays_safe_until_enabled),
-    ENTRY(components_have_names), ENTRY(silence_counts_from_the_first_sign_of_life), ENTRY(signs_of_life_may_wrap),
-    ENTRY(stacks_are_reported))
+    ENTRY(components_have_names), ENTRY(faults_have_names), ENTRY(silence_counts_from_the_first_sign_of_life),
+    ENTRY(signs_of_life_may_wrap), ENTRY(stacks_are_reported))

@@ -204,7 +204,7 @@ TEST(guard_sees_duty_and_angle)
     app_control.enabled = true;
     CHECK(guard_check() == EPG_FAULT_NONE);
     CHECK(guard_check() == EPG_FAULT_NONE);
-    CHECK(guard_check() == EPG_FAULT_STALL);
+    CHECK(guard_check() == guard_config.faults.stall);
 
     begin();
     app_control.enabled = true;
@@ -215,7 +215,7 @@ TEST(guard_sees_duty_and_angle)
         check_guard(0.5, angle);
         found = guard_check();
     }
-    CHECK(found == EPG_FAULT_RUNAWAY);
+    CHECK(found == guard_config.faults.runaway);
     CHECK(angle < -1.0 && angle > -1.1);
 }
 
@@ -239,7 +239,7 @@ TEST(guard_knows_the_resets_of_its_encoder)
     for (int i = 0; i < 3; i++) {
         CHECK(guard_homing_check() == EPG_FAULT_NONE);
     }
-    CHECK(guard_homing_check() == EPG_FAULT_HOMING_TIME);
+    CHECK(guard_homing_check() == guard_homing_config.faults.homing_time);
 }
 
 TEST(encoder_whose_decoder_has_stopped)
@@ -247,7 +247,7 @@ TEST(encoder_whose_decoder_has_stopped)
     begin();
     CHECK(encoder_inverted_check() == EPG_FAULT_NONE);
     epg_plant_quadrature_fail(1, true);
-    CHECK(encoder_inverted_check() == EPG_FAULT_SENSOR);
+    CHECK(encoder_inverted_check() == (epg_fault_t)10);
     CHECK(encoder_span_check() == EPG_FAULT_NONE);
     epg_plant_quadrature_fail(1, false);
     CHECK(encoder_inverted_check() == EPG_FAULT_NONE);

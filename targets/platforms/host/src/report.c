@@ -141,7 +141,7 @@ void epg_host_write_statistics(FILE *file, const epg_host_run_t *run)
     write_count(file, "setpoint_timeouts", statistics.setpoint_timeouts);
     write_count(file, "faults", statistics.faults);
     write_flag(file, "enabled", target->control->enabled);
-    write_string(file, "fault", epg_fault_name(target->control->fault));
+    write_string(file, "fault", epg_target_fault(target, target->control->fault));
     write_string(file, "fault_component", epg_target_component(target, target->control->fault_component));
     write_histogram(file, run);
     fputs("}\n", file);
@@ -205,6 +205,7 @@ void epg_host_print_summary(const epg_host_run_t *run)
            statistics.clamped, statistics.setpoints_dropped, statistics.setpoint_timeouts);
     const char *component = epg_target_component(target, target->control->fault_component);
     printf("  state        %s, faults %" PRIu32 ", fault: %s%s%s%s\n",
-           target->control->enabled ? "enabled" : "disabled", statistics.faults, epg_fault_name(target->control->fault),
-           component[0] != '\0' ? " (" : "", component, component[0] != '\0' ? ")" : "");
+           target->control->enabled ? "enabled" : "disabled", statistics.faults,
+           epg_target_fault(target, target->control->fault), component[0] != '\0' ? " (" : "", component,
+           component[0] != '\0' ? ")" : "");
 }

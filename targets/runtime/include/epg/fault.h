@@ -18,7 +18,12 @@ extern "C" {
 /** Component index of a fault that belongs to the whole target. */
 #define EPG_NO_COMPONENT UINT16_MAX
 
-/** The numbers are part of the interface.  A new fault must be added at the end. */
+/**
+ * The faults that the runtime and the platforms raise.  A component kind declares its own faults in its component.yaml.
+ *
+ * The numbers are part of the interface, and stay.  A new fault must be added before EPG_FAULT_LARGEST.  The numbers 6
+ * to 10, and those from 256 to EPG_FAULT_LARGEST, belong to component kinds.
+ */
 typedef enum epg_fault {
     EPG_FAULT_NONE = 0,
     EPG_FAULT_NOT_FINITE,       /**< a model input, state or output was NaN or infinite */
@@ -26,18 +31,17 @@ typedef enum epg_fault {
     EPG_FAULT_OVERRUN,          /**< too many overruns in a row */
     EPG_FAULT_SETPOINT_TIMEOUT, /**< a setpoint with action `disable` became too old */
     EPG_FAULT_FAIL_SAFE,        /**< the fail-safe input is inactive */
-    EPG_FAULT_STALL,            /**< a driven motor gave no counts: the encoder is dead or the motor is blocked */
-    EPG_FAULT_RUNAWAY,          /**< an axis moved against its drive: encoder or motor has its wires swapped */
-    EPG_FAULT_HOMING_TRAVEL,    /**< homing went farther than the range of the axis */
-    EPG_FAULT_HOMING_TIME,      /**< homing took too long */
-    EPG_FAULT_SENSOR,           /**< a sensor's peripheral has stopped */
-    EPG_FAULT_WATCHDOG,         /**< the watchdog reset the processor, because one of the two sides had stopped */
+    EPG_FAULT_WATCHDOG = 11,    /**< the watchdog reset the processor, because one of the two sides had stopped */
     EPG_FAULT_PROCESSOR,        /**< a hard fault, failed assertion, panic or stack overflow caused the last reset */
-    EPG_FAULT_OUTPUT            /**< the driver of an output refused a write */
+    EPG_FAULT_OUTPUT,           /**< the driver of an output refused a write */
+    EPG_FAULT_LARGEST = 0xFFFF  /**< the largest possible number, so that the type has room for it */
 } epg_fault_t;
 
-/** Returns the name of a fault for messages: "none", "not finite", "overrun", ...; "unknown" for any other number. */
-const char *epg_fault_name(epg_fault_t fault);
+/** A fault that a component kind declares.  epg_target_fault() (epg/target.h) gives the name of any fault. */
+typedef struct epg_kind_fault {
+    epg_fault_t fault;
+    const char *name;
+} epg_kind_fault_t;
 
 #ifdef __cplusplus
 }

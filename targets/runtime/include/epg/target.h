@@ -77,6 +77,8 @@ typedef struct epg_target {
     uint64_t communication_period_ns; /**< time between two publications */
     size_t component_count;
     const char *const *components; /**< names of all components; the component of a fault is an index into them */
+    size_t fault_count;
+    const epg_kind_fault_t *faults; /**< the faults that the kinds of these components declare */
     /** Called before publication `index` is passed to the transport, by epg_target_publishing().  May be NULL. */
     void (*publishing)(size_t index);
     size_t subscription_count;
@@ -102,6 +104,12 @@ static inline const char *epg_target_component(const epg_target_t *target, uint1
 {
     return index < target->component_count ? target->components[index] : "";
 }
+
+/**
+ * Returns the name of a fault of this target for messages: "none", "not finite", "stall", ...; "unknown" for a number
+ * that is not a fault of the target.
+ */
+const char *epg_target_fault(const epg_target_t *target, epg_fault_t fault);
 
 /** Must be called by a middleware before it sends publication `index`.  Communication side. */
 static inline void epg_target_publishing(const epg_target_t *target, size_t index)
