@@ -92,15 +92,13 @@ def typed_parameters(kind: Kind, node: YamlNode, diagnostics: Diagnostics) -> Ma
     """The parameters of a component that fits :func:`component_schema`.  Reports wrong values.
 
     Quantities are in base units (s, Hz, rad, ...).  Quantities and ratios are exact fractions, or floats if the factor
-    of the unit is not exact.  The type ``number`` gives a float, ``integer`` an int.  ``pins`` maps names to pins as
-    they are written.  A parameter that is not stated has its default, or None.
+    of the unit is not exact.  The type ``number`` gives a float, ``integer`` an int.  A parameter
+    that is not stated has its default, or None.
     """
     _relations(kind, node, diagnostics)
     values: dict[str, object] = {}
     for parameter in kind.parameters:
         values[parameter.name] = typed_value(parameter, node.get(parameter.name), diagnostics)
-    pins = node.get("pins")
-    values["pins"] = MappingProxyType({pin: child.value for pin, child in pins.items()} if pins else {})
     return MappingProxyType(values)
 
 
