@@ -24,6 +24,7 @@ from .wire import (
     AGENT_ID,
     CLIENT_ID,
     COOKIE,
+    SUBHEADER,
     VENDOR,
     VERSION,
     WITHOUT_KEY,
@@ -40,6 +41,8 @@ from .wire import (
 )
 
 AGENT_INFO = COOKIE + VERSION + VENDOR + b"\0"
+MOST_QUESTIONS = 3
+"""How often the agent asks a silent client before it removes the client's entities."""
 
 
 @dataclass
@@ -233,10 +236,22 @@ class Agent:
             )
 
     def _beat(self) -> None:
+        for client in [client for client in self.clients.values() if client.dead_after is not None]:
+            self._check_alive(client, client.dead_after or 0.0)
         for client in self.clients.values():
             for beat in client.heartbeats():
                 self._reply(client, beat)
             self._pump(client)
+
+    def _check_alive(self, client: Client, dead_after: float) -> None:
+        """Source: ``Processor::check_heartbeats`` of eProsima's agent (hard liveliness)."""
+        if self._clock() - client.heard < dead_after:
+            return
+        if client.asked == MOST_QUESTIONS:
+            self._forget(client.key)
+            return
+        client.asked += 1
+        self._reply(client, submessage(Id.GET_INFO, b"\0\0" + CLIENT_ID + bytes(4)))
 
     # Messages --------------------------------------------------------------------------------------------------------
 
@@ -251,6 +266,7 @@ class Agent:
             if client is None:
                 self._stranger(peer, header, body)
                 return
+            client.heard, client.asked = self._clock(), 0
             for whole in client.receive(header.stream, header.sequence, body):
                 self._handle_all(client, header.stream, whole)
             if header.stream >= 0x80:
@@ -264,8 +280,10 @@ class Agent:
             if part.id in self.mute:
                 continue
             if part.id == Id.CREATE_CLIENT:
-                self._create_client(peer, header, part)
-            elif part.id == Id.GET_INFO:
+                # eProsima's client gives a length without the properties, and its agent does not read the length.
+                self._create_client(peer, header, Submessage(part.id, part.flags, body[SUBHEADER:]))
+                return
+            if part.id == Id.GET_INFO:
                 self._send(peer, header.pack() + self._info(part, peer in self._peers))
 
     def _stranger(self, peer: Hashable, header: Header, body: bytes) -> None:
@@ -280,9 +298,9 @@ class Agent:
         reader = part.reader
         cookie, version, _vendor = reader.take(4), reader.take(2), reader.take(2)
         key, session = reader.take(4), reader.u8()
+        properties = {}
         if reader.flag():
-            for _ in range(reader.u32()):
-                reader.string(), reader.string()
+            properties = {reader.string(): reader.string() for _ in range(reader.u32())}
         mtu = reader.u16()
         status = Status.OK
         if cookie != COOKIE or key == bytes(4):
@@ -290,11 +308,13 @@ class Agent:
         elif version[:1] != VERSION[:1]:
             status = Status.INCOMPATIBLE
         if status == Status.OK:
-            self._connect(peer, key, session, mtu)
+            client = self._connect(peer, key, session, mtu)
+            client.dead_after = int(properties["uxr_hl"]) / 1000 if "uxr_hl" in properties else None
+            client.heard, client.asked = self._clock(), 0
         reply = Header(session, 0, 0, key).pack()
         self._send(peer, reply + submessage(Id.STATUS_AGENT, bytes([status, 0]) + AGENT_INFO))
 
-    def _connect(self, peer: Hashable, key: bytes, session: int, mtu: int) -> None:
+    def _connect(self, peer: Hashable, key: bytes, session: int, mtu: int) -> Client:
         before = self._peers.get(peer)
         if before is not None and before != key:
             self._forget(before)
@@ -310,6 +330,7 @@ class Agent:
             self.clients[key] = client
         self._peers[peer] = key
         self.created.append((self._clock(), key))
+        return client
 
     def _forget(self, key: bytes) -> None:
         client = self.clients.pop(key, None)

@@ -36,9 +36,24 @@ class Reading:
             self._left -= 1
 
 
+def ros_name(participant: str) -> str:
+    """The full name of the ROS 2 node that micro_ros_agent makes of a participant: namespace and name.
+
+    Source: ``GraphManager::get_name_and_namespace`` of micro_ros_agent.  The first part is the namespace; a name
+    without a slash has the namespace "/".
+    """
+    return "/" + participant.removeprefix("/")
+
+
 class Client:
     def __init__(self, key: bytes, session: int, mtu: int, peer: Hashable, topics: Topics) -> None:
         self.key, self.session, self.mtu, self.peer = key, session, mtu, peer
+        self.dead_after: float | None = None
+        """Seconds of silence after which the agent asks if the client is alive; None: it never asks."""
+        self.heard = 0.0
+        """Time of the last frame from the client, in seconds of the agent's clock."""
+        self.asked = 0
+        """How often the agent has asked since then."""
         self.objects: dict[bytes, Description] = {}
         self.ends: dict[bytes, Endpoint] = {}
         self.readings: dict[bytes, Reading] = {}
@@ -88,8 +103,8 @@ class Client:
 
     @property
     def node(self) -> str:
-        """The name of the participant."""
-        return next((d.name for d in self.objects.values() if d.kind == Kind.PARTICIPANT), "")
+        """The full name of the ROS 2 node, such as "/lab/robot_1"; "" before the client has a participant."""
+        return next((ros_name(d.name) for d in self.objects.values() if d.kind == Kind.PARTICIPANT), "")
 
     def create(self, identity: bytes, new: Description, flags: int) -> Status:
         """Source: DDS-XRCE 1.0, table 7, for the result if the object exists already."""

@@ -60,7 +60,7 @@ def test_a_client_connects_and_talks(client_program: Path, agent: Agent, options
     with client(client_program, agent, "key=7", "count=10", "large=50", *options) as process:
         ready(agent)
         (known,) = agent.clients.values()
-        assert known.node == "bare_7"
+        assert known.node == "/bare_7"
         assert known.key == b"\0\0\0\x07"
         reliable = "best_effort" not in options
         assert {(end.topic, end.type, end.reliable, end.depth) for end in known.ends.values()} == {
@@ -184,4 +184,4 @@ def test_two_boards_hear_each_other(client_program: Path, agent: Agent) -> None:
         pongs = agent.topics.subscribe("rt/pong")
         assert agent.topics.publish("rt/ping", float64(1.5)) == 2
         agent.wait_until(lambda: len(pongs.samples) == 2)
-        assert {sample.writer for sample in agent.topics.samples("rt/pong")} == {"bare_1", "bare_2"}
+        assert {sample.writer for sample in agent.topics.samples("rt/pong")} == {"/bare_1", "/bare_2"}

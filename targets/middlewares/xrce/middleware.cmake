@@ -67,7 +67,11 @@ function(_epg_xrce_configure headers cdr cdr_version client client_version)
   set(UCLIENT_MIN_SESSION_CONNECTION_INTERVAL 1)
   set(UCLIENT_MIN_HEARTBEAT_TIME_INTERVAL 100)
   set(UCLIENT_TWEAK_XRCE_WRITE_LIMIT OFF)
-  set(UCLIENT_HARD_LIVELINESS_CHECK OFF)
+  # An agent that receives no frame for this time asks the client three times within 0.6 s (GET_INFO), and then removes
+  # its entities.  The guard drops the question, because a living client sends a ping every 0.1 s, also while it is
+  # flooded, and the agent counts every frame as an answer.
+  set(UCLIENT_HARD_LIVELINESS_CHECK ON)
+  set(UCLIENT_HARD_LIVELINESS_CHECK_TIMEOUT 3000) # ms
   configure_file("${client}/include/uxr/client/config.h.in" "${headers}/uxr/client/config.h")
 endfunction()
 

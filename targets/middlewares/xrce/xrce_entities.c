@@ -34,6 +34,21 @@ static const epg_topic_t *topic_at(const epg_node_t *node, size_t index)
                                 : &node->target->subscriptions[index - publications];
 }
 
+/**
+ * Requests the participant.  Its name is "namespace/node", without a leading slash: micro_ros_agent has no other field
+ * from which it could take the node's namespace.  It divides the name at the first slash (its function
+ * GraphManager::get_name_and_namespace), so of a longer namespace only the first part is the namespace to ROS 2.
+ */
+static uint16_t create_participant(const epg_xrce_entities_t *entities)
+{
+    static const epg_topic_t self = {.name = "~"};
+    char name[EPG_NODE_TOPIC_SIZE];
+    (void)epg_node_topic(entities->node, &self, name, sizeof name);
+    return uxr_buffer_create_participant_bin(entities->session, entities->requests,
+                                             uxr_object_id(ONLY, UXR_PARTICIPANT_ID), entities->node->target->domain,
+                                             name + 1, MODE);
+}
+
 static uint16_t create_topic(const epg_xrce_entities_t *entities, size_t index)
 {
     char name[2 + EPG_NODE_TOPIC_SIZE] = "rt";
@@ -77,11 +92,9 @@ static uint16_t ask_for_samples(const epg_xrce_entities_t *entities, size_t inde
 static uint16_t ask(const epg_xrce_entities_t *entities)
 {
     const uxrObjectId participant = uxr_object_id(ONLY, UXR_PARTICIPANT_ID);
-    const epg_node_t *node = entities->node;
     switch (entities->step) {
     case PARTICIPANT:
-        return uxr_buffer_create_participant_bin(entities->session, entities->requests, participant,
-                                                 node->target->domain, node->name, MODE);
+        return create_participant(entities);
     case PUBLISHER:
         return uxr_buffer_create_publisher_bin(entities->session, entities->requests,
                                                uxr_object_id(ONLY, UXR_PUBLISHER_ID), participant, MODE);

@@ -12,23 +12,12 @@ from pathlib import Path
 
 import pytest
 
-from tests.middlewares.xrce.board import Board as XrceBoard
+from tests.middlewares.xrce.board import Board
 from tests.xrce_agent import Agent, UdpLink
 
 HERE = Path(__file__).resolve().parent
 SANITIZERS = "-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all"
 WARNINGS = "-Wall -Wextra -Wconversion -Wdouble-promotion -Werror"
-
-
-class Board(XrceBoard):
-    """A board of micro-ROS, which names a node's participant by namespace and name."""
-
-    def __init__(self, program: Path, agent: Agent, *options: str, serial: str = "1") -> None:
-        super().__init__(program, agent, *options, serial=serial)
-        self.node = f"/lab/robot_{serial}"
-
-    def enable(self, on: bool) -> None:
-        self.topics.publish(f"rt{self.node}/enable", bytes([on]))
 
 
 def configure(folder: Path, *settings: str) -> subprocess.CompletedProcess[str]:

@@ -21,7 +21,7 @@ class Board:
         way = "--agent" if isinstance(agent.link, UdpLink) else "--serial-device"
         command = [str(program), "--realtime", "--quiet", "--serial", serial, way, agent.address, *options]
         self.agent, self.topics = agent, agent.topics
-        self.node = f"robot_{serial}"
+        self.node = f"/lab/robot_{serial}"
         self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
     def __enter__(self) -> Board:
@@ -67,7 +67,7 @@ class Board:
         return self.topics.publish(f"rt/lab/{topic}", float64(value), reliable)
 
     def enable(self, on: bool) -> None:
-        self.topics.publish(f"rt/lab/{self.node}/enable", bytes([on]))
+        self.topics.publish(f"rt{self.node}/enable", bytes([on]))
 
     def running(self, seconds: float = PATIENCE) -> float:
         """Waits until the board publishes from now on; returns how long that took."""

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import random
+import signal
 import time
 from collections.abc import Hashable
 from pathlib import Path
@@ -21,7 +22,7 @@ def test_the_agent_is_there_first(robot: Path, agent: Agent) -> None:
     with Board(robot, agent) as board:
         assert board.running() < 5.0
         (client,) = agent.clients.values()
-        assert client.node == "robot_1"
+        assert client.node == "/lab/robot_1"
         check_topics(agent)
         check_alive(board, 0.5)
         check_end_of_session(board)
@@ -261,12 +262,28 @@ def test_garbage_and_damaged_frames(robot: Path, tmp_path: Path, line: str) -> N
         assert board.stop() == ""
 
 
+def test_a_dead_board_leaves_the_graph(robot: Path, agent: Agent) -> None:
+    """An agent with hard liveliness removes its entities; a board that was only suspended connects again."""
+    with Board(robot, agent) as board:
+        board.running()
+        (client,) = agent.clients.values()
+        assert client.dead_after == 3.0
+        began = time.monotonic()
+        board.process.send_signal(signal.SIGSTOP)
+        agent.wait_until(lambda: not agent.clients, 8.0)
+        assert time.monotonic() - began > client.dead_after
+        board.process.send_signal(signal.SIGCONT)
+        board.running()
+        board.kill()
+        agent.wait_until(lambda: not agent.clients, 8.0)
+
+
 def test_two_boards(robot: Path, agent: Agent) -> None:
     """One image for both: names and keys differ by the serial number; a fault of one does not affect the other."""
     with Board(robot, agent, serial="A") as one, Board(robot, agent, serial="B") as other:
         one.running()
         other.running()
-        assert {client.node for client in agent.clients.values()} == {"robot_A", "robot_B"}
+        assert {client.node for client in agent.clients.values()} == {"/lab/robot_A", "/lab/robot_B"}
         assert len({client.key for client in agent.clients.values()}) == 2
         assert one.set("reliable", 0.5) == 2
         one.wait_for("got_reliable", 0.5)

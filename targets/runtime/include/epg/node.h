@@ -76,7 +76,7 @@ void epg_node_set_time(epg_node_t *node, uint64_t epoch_ns, uint64_t now_ns);
 
 /**
  * Writes the full ROS name of `topic` with its leading slash, such as "/robot1/pan_subscriber".  (DDS puts "rt" before
- * it.)  Returns its length, 0 if it does not fit into `size` bytes.
+ * it.)  The name "~" is that of the node itself, such as "/robot1/JIWY_node".  Returns its length, 0 if it does not fit into `size` bytes.
  */
 size_t epg_node_topic(const epg_node_t *node, const epg_topic_t *topic, char *name, size_t size);
 
