@@ -17,11 +17,11 @@ from typing import Any
 from jinja2 import Environment
 
 from epg import __version__
-from epg.emit.claims import board_nodes, claims_of, gpios_of, tick_of
+from epg.emit.claims import board_nodes, claims_of, tick_of
 from epg.emit.cmake import platform_files
 from epg.emit.fingerprint import LITERAL, model_hash
 from epg.emit.macros import Macros
-from epg.emit.pins import input_pins, output_groups, output_pins
+from epg.emit.pins import digital_pins, output_groups
 from epg.emit.service import MiddlewareView, service_of
 from epg.emit.template import environment
 from epg.emit.text import CMakeCode, Code, DevicetreeCode, Escaped, KconfigCode, double, identifier
@@ -82,6 +82,7 @@ class Emitter:
         headers = set(drivers)
         for middleware in app.communication.middlewares:
             headers.update(middleware.headers)
+        pins = digital_pins(self.macros)
         service = service_of(app, self._service_macro)
         context: dict[str, Any] = {
             "app": app,
@@ -99,11 +100,11 @@ class Emitter:
             "inputs": [self._input(wire) for wire in app.inputs],
             "outputs": [self._output(wire) for wire in app.outputs if wire.component.name not in publishers],
             "monitor": [self._output(wire) for wire in app.outputs if wire.component.name in publishers],
-            "output_pins": output_pins(self.macros),
-            "input_pins": input_pins(app),
+            "output_pins": [pin for pin in pins if pin.drives],
+            "input_pins": [pin for pin in pins if not pin.drives],
             "output_groups": output_groups(self.macros),
             "claims": claims_of(app),
-            "gpios": gpios_of(app),
+            "gpios": [pin for pin in pins if pin.plain],
             "tick": tick_of(app),
             "board_nodes": board_nodes(app),
             "service": service,

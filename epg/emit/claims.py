@@ -8,7 +8,7 @@ only their numbers.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from fractions import Fraction
 
 from epg.resolve.allocation import Assignment
@@ -28,9 +28,8 @@ class PinView:
 class ClaimView:
     """A claim of ``component``.  ``component`` is empty for the claim of the control loop.
 
-    ``label`` is unique among the claims of a resource class, and can be part of an identifier.  ``roles`` maps each
-    signal in ``pins`` to the name that the component has for the pin.  The other members are those of
-    :class:`~epg.resolve.allocation.Assignment`.
+    ``label`` is unique among the claims of a resource class, and can be part of an identifier.  The other members are
+    those of :class:`~epg.resolve.allocation.Assignment`.
     """
 
     component: str
@@ -42,7 +41,6 @@ class ClaimView:
     instance_name: str
     slot_name: str
     pins: Mapping[str, PinView]
-    roles: Mapping[str, str]
     settings: Mapping[str, int]
     frequency: Fraction | None
     attributes: Mapping[str, object] = field(default_factory=dict)
@@ -61,34 +59,8 @@ def claims_of(app: Application) -> list[ClaimView]:
                 label += "_"
             labels.add((claim.resource_class, label))
             found = component.claims[claim.name]
-            view = _view(app, component.name, claim.name, claim.resource_class, label, found)
-            result.append(replace(view, roles={signal: claim.signals.get(signal, signal) for signal in found.pins}))
+            result.append(_view(app, component.name, claim.name, claim.resource_class, label, found))
     return result
-
-
-@dataclass(frozen=True)
-class GpioView:
-    """A pin that the platform can read or drive as a plain digital pin.
-
-    A PWM output of a SoC is also such a pin, so that the platform can set it to its safe level.  ``role`` is the name
-    that the component has for the pin, for example ``direction_a``.
-    """
-
-    component: str
-    role: str
-    pin: PinView
-    node: str = ""
-
-
-def gpios_of(app: Application) -> list[GpioView]:
-    """The digital input and output pins of all components.  On a target with real pins, PWM outputs also belong."""
-    classes = ("digital_input", "digital_output", *(("pwm",) if app.target.has_pins else ()))
-    return [
-        GpioView(claim.component, claim.roles[signal], pin, claim.node)
-        for claim in claims_of(app)
-        if claim.resource_class in classes and not (claim.resource_class == "pwm" and claim.node)
-        for signal, pin in sorted(claim.pins.items())
-    ]
 
 
 def tick_of(app: Application) -> ClaimView | None:
@@ -116,7 +88,6 @@ def _view(app: Application, component: str, name: str, resource_class: str, labe
         instance_name=found.instance_name,
         slot_name=found.slot_name,
         pins={signal: PinView(names[pin] if names else str(pin), pin) for signal, pin in found.pins.items()},
-        roles={},
         settings=found.settings,
         frequency=found.frequency,
         attributes=found.attributes,

@@ -4,37 +4,58 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 from epg.catalog.kind import OUTPUT_CLASSES
+from epg.emit.claims import PinView, claims_of
 from epg.emit.macros import Macros
-from epg.emit.views import InputPin, OutputGroup, OutputPin, SafeState
-from epg.resolve.application import Application
+from epg.emit.text import Code
+from epg.emit.views import OutputGroup, SafeState
 
 
-def output_pins(macros: Macros) -> list[OutputPin]:
-    """The pins that components drive, in the order of components and of their claims."""
-    return [
-        OutputPin(component.name, signal, pin, macros.safe_level(component, claim.name))
-        for component in macros.app.components
-        for claim in component.kind.claims
-        if claim.resource_class in OUTPUT_CLASSES
-        for signal, pin in sorted(component.claims[claim.name].pins.items())
-    ]
+@dataclass(frozen=True)
+class DigitalPin:
+    """A pin that ``component`` reads or drives with two levels.
+
+    ``role`` is the name that the component has for the pin, for example ``direction_a``.  ``node`` is the devicetree
+    node that replaces the pin in the ``.tcf``, or "".  A PWM output is also such a pin, so that it can have its safe
+    level.  ``plain`` is false if the platform reaches the pin by its PWM only.
+    """
+
+    component: str
+    role: str
+    pin: PinView
+    node: str
+    plain: bool
+    drives: bool
+    high: Code
+    """Of an output: a C expression, true if the safe level is high."""
+    invert: bool
+    """Of an input: a low level is read as 1."""
 
 
-def input_pins(app: Application) -> list[InputPin]:
-    """The pins of digital inputs."""
-    return [
-        InputPin(component.name, pin, bool(component.parameters.get("invert", False)))
-        for component in app.components
-        for claim in component.kind.claims
-        if claim.resource_class == "digital_input"
-        for pin in component.claims[claim.name].pins.values()
-    ]
+def digital_pins(macros: Macros) -> list[DigitalPin]:
+    """The digital pins of all components, in the order of components, of their claims and of the signals."""
+    app = macros.app
+    components = {component.name: component for component in app.components}
+    result = []
+    for claim in claims_of(app):
+        drives = claim.resource_class in OUTPUT_CLASSES
+        if not drives and claim.resource_class != "digital_input":
+            continue
+        component = components[claim.component]
+        roles = next(found.signals for found in component.kind.claims if found.name == claim.name)
+        plain = claim.resource_class != "pwm" or (app.target.has_pins and not claim.node)
+        high = macros.safe_level(component, claim.name) if drives else Code("false")
+        invert = bool(component.parameters.get("invert", False))
+        for signal, pin in sorted(claim.pins.items()):
+            role = roles.get(signal, signal)
+            result.append(DigitalPin(component.name, role, pin, claim.node, plain, drives, high, invert))
+    return result
 
 
 def output_groups(macros: Macros) -> list[OutputGroup]:
-    """The pins of :func:`output_pins`, grouped by component, with the safe states of each component.
+    """The driven pins, grouped by component, with the safe states of each component.
 
     A kind without ``safe_states`` has one: each pin at its safe level.
     """

@@ -111,25 +111,6 @@ class OutputView:
 
 
 @dataclass(frozen=True)
-class OutputPin:
-    """A pin that a component drives.  ``high`` is a C expression, true if the safe level of the pin is high."""
-
-    component: str
-    signal: str
-    pin: int
-    high: Code
-
-
-@dataclass(frozen=True)
-class InputPin:
-    """A pin that the component ``name`` reads.  If ``invert``, a low level is read as 1."""
-
-    name: str
-    pin: int
-    invert: bool
-
-
-@dataclass(frozen=True)
 class SafeState:
     """One safe state: bit masks of the outputs of a component that must be low, and of those that must be high.
 
