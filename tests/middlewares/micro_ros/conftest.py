@@ -12,7 +12,6 @@ from pathlib import Path
 
 import pytest
 
-from tests.middlewares.xrce.board import Board
 from tests.xrce_agent import Agent, UdpLink
 
 HERE = Path(__file__).resolve().parent
