@@ -51,7 +51,7 @@ def main() -> None:
         for delay, image in pico.programs(platform).items():
             rows.append(row(PLATFORMS[platform], delay, pico.measure(image, options.steps)))
     notes = [
-        "In control cycles of 1 ms, if nothing else is said. Min to max: from the agent's publishing to the output, at "
+        "In control cycles of 1 ms, by default. Min to max: from the agent's publishing to the output, at "
         "any phase of the cycle. From being given: from the moment at which the control side was given the value; "
         "expected is 0 ... 1 cycle until the next tick, and what stands in the last column. In the next cycle: the "
         "first that began after that moment; the rest came in one that had just begun, and had not read its setpoints.",

@@ -61,8 +61,8 @@ def save(before: Snapshot, after: Snapshot, *, project: Path | None = None, anyw
 
     The replacement is atomic: another program that reads the file sees the old or the new contents, never a mixture.
     If the file is a symbolic link, the file that it leads to is replaced and keeps its permissions; the link stays.
-    The link must not lead out of ``project``, the folder of the project.  If the file is not in ``project``, or there
-    is no project, the link must not lead out of the file's own folder.
+    The link must not lead out of ``project``, the folder of the project.  If the file is not in ``project``, or if
+    ``project`` is None, the link must not lead out of the file's own folder.
 
     Raises :class:`Unsavable`; the file is then unchanged.
     """

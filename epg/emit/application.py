@@ -21,7 +21,7 @@ from epg.emit.claims import board_nodes, claims_of, tick_of
 from epg.emit.cmake import platform_files
 from epg.emit.fingerprint import LITERAL, model_hash
 from epg.emit.macros import Macros
-from epg.emit.pins import digital_pins, output_groups
+from epg.emit.pins import pin_lists
 from epg.emit.service import MiddlewareView, service_of
 from epg.emit.template import environment
 from epg.emit.text import CMakeCode, Code, DevicetreeCode, Escaped, KconfigCode, double, identifier
@@ -82,7 +82,6 @@ class Emitter:
         headers = set(drivers)
         for middleware in app.communication.middlewares:
             headers.update(middleware.headers)
-        pins = digital_pins(self.macros)
         service = service_of(app, self._service_macro)
         context: dict[str, Any] = {
             "app": app,
@@ -100,11 +99,8 @@ class Emitter:
             "inputs": [self._input(wire) for wire in app.inputs],
             "outputs": [self._output(wire) for wire in app.outputs if wire.component.name not in publishers],
             "monitor": [self._output(wire) for wire in app.outputs if wire.component.name in publishers],
-            "output_pins": [pin for pin in pins if pin.drives],
-            "input_pins": [pin for pin in pins if not pin.drives],
-            "output_groups": output_groups(self.macros),
+            **pin_lists(self.macros),
             "claims": claims_of(app),
-            "gpios": [pin for pin in pins if pin.plain],
             "tick": tick_of(app),
             "board_nodes": board_nodes(app),
             "service": service,

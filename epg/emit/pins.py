@@ -34,7 +34,7 @@ class DigitalPin:
     """Of an input: a low level is read as 1."""
 
 
-def digital_pins(macros: Macros) -> list[DigitalPin]:
+def _digital_pins(macros: Macros) -> list[DigitalPin]:
     """The digital pins of all components, in the order of components, of their claims and of the signals."""
     app = macros.app
     components = {component.name: component for component in app.components}
@@ -54,7 +54,18 @@ def digital_pins(macros: Macros) -> list[DigitalPin]:
     return result
 
 
-def output_groups(macros: Macros) -> list[OutputGroup]:
+def pin_lists(macros: Macros) -> dict[str, Sequence[object]]:
+    """The template variables about digital pins: driven ones, read ones, and those that GPIO can reach."""
+    pins = _digital_pins(macros)
+    return {
+        "output_pins": [pin for pin in pins if pin.drives],
+        "input_pins": [pin for pin in pins if not pin.drives],
+        "output_groups": _output_groups(macros),
+        "gpios": [pin for pin in pins if pin.plain],
+    }
+
+
+def _output_groups(macros: Macros) -> list[OutputGroup]:
     """The driven pins, grouped by component, with the safe states of each component.
 
     A kind without ``safe_states`` has one: each pin at its safe level.

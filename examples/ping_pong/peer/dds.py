@@ -38,7 +38,7 @@ class Endpoint:
         return Topic(self._participant, f"rt{name}", Float64)  # ROS 2 topics stand below "rt" on DDS
 
     def wait_for_peer(self, seconds: float) -> str:
-        """Waits until somebody reads what is written and writes what is read; "" or what is missing."""
+        """Waits for the reader and the writer of the other program.  Returns "", or the one that is missing."""
         deadline = time.monotonic() + seconds
         while True:
             reads, writes = self._writer.get_matched_subscriptions(), self._reader.get_matched_publications()
