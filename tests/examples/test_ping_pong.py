@@ -18,16 +18,15 @@ from pathlib import Path
 
 import pytest
 
+pytest.importorskip("tests.ros2.packages", exc_type=ImportError)
+
 from epg import bootstrap
-
-bootstrap.ensure("ros")
-
-from tests.emulator.toolchain import skip_if_missing, tool  # noqa: E402
-from tests.examples.pico_project import configure, run  # noqa: E402
-from tests.ros2.network import Network, network, running  # noqa: E402
-from tests.xrce_agent import Agent, UdpLink  # noqa: E402
-from tests.xrce_agent.bare import libraries  # noqa: E402
-from tests.xrce_agent.dds_bridge import DdsBridge  # noqa: E402
+from tests.emulator.toolchain import skip_if_missing, tool
+from tests.examples.pico_project import configure, run
+from tests.ros2.network import Network, network, running
+from tests.xrce_agent import Agent, UdpLink
+from tests.xrce_agent.bare import libraries
+from tests.xrce_agent.dds_bridge import DdsBridge
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples/ping_pong"
 PEER = EXAMPLE / "peer"

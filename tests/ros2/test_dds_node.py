@@ -21,7 +21,7 @@ from typing import Any
 
 import pytest
 
-pytest.importorskip("cyclonedds", reason="CycloneDDS for Python is not installed: python -m pip install cyclonedds")
+pytest.importorskip("tests.ros2.packages", exc_type=ImportError)
 
 from tests.ros2.build import Build
 from tests.ros2.definitions import type_hash

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-pytest.importorskip("cyclonedds", reason="CycloneDDS for Python is not installed: python -m pip install cyclonedds")
+pytest.importorskip("tests.ros2.packages", exc_type=ImportError)
 
 from epg.simulate.scenario import Profile, ProfilePart
 from tests.ros2.build import Build
