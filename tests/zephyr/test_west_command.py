@@ -166,6 +166,6 @@ def test_connect_knows_the_application_it_is_called_in(application: Path) -> Non
 
 def test_connect_asks_in_the_terminal_of_west(application: Path) -> None:
     terminal = Terminal(application, "--terminal")
-    terminal.read_until("q to leave")
+    terminal.read_until("q to quit")
     terminal.type("q\n")
     assert terminal.wait() == 0

@@ -67,7 +67,7 @@ def test_it_says_whether_there_is_an_agent(robot: Path, agent: Agent) -> None:
 
 def test_the_console_beside_it_tells_of_the_connection(spoken_robot: Path, agent: Agent) -> None:
     with Host(spoken_robot, "--quiet", "--agent", agent.address) as host:
-        agent.topics.wait_for_sample("rt/lab/cycles_too", PATIENCE, "robot_host")
+        agent.topics.wait_for_sample("rt/lab/cycles_too", PATIENCE, "/lab/robot_host")
         assert stat(host.ask("stats"), "connection") == "running"
         agent.kill()
         agent.wait_until(lambda: stat(host.ask("stats"), "connection") == "waiting", PATIENCE)

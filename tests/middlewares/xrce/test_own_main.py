@@ -32,7 +32,7 @@ def test_it_is_a_node_while_it_runs(program: Path, agent: Agent) -> None:
     with subprocess.Popen([program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, bufsize=1) as process:
         assert process.stdin is not None and process.stdout is not None
         for _ in range(2):
-            agent.topics.wait_for_sample("rt/lab/cycles_too", PATIENCE, "robot_host")
+            agent.topics.wait_for_sample("rt/lab/cycles_too", PATIENCE, "/lab/robot_host")
             process.stdin.write("stop\n")
             assert process.stdout.readline() == "stopped\n"
             agent.wait_until(lambda: not agent.clients, PATIENCE)  # the board has closed its session

@@ -90,7 +90,7 @@ def test_a_peer_sees_a_node_with_its_topics(robot: Path, tmp_path: Path) -> None
             }
             participants = BuiltinDataReader(peer._participant, BuiltinTopicDcpsParticipant)
             names = {s.qos[Policy.EntityName].name for s in participants.read(20) if Policy.EntityName in s.qos}
-            assert "robot_9" in names
+            assert "lab/robot_9" in names
             enable = peer.publisher("/lab/robot_9/enable", Bool_)
             assert peer.spin_until(lambda: enable.matched == 1)
             enable.publish(Bool_(False))

@@ -99,7 +99,7 @@ static void open_session(const unsigned char *payload)
     agent.expected = 0;
     agent.next = 0;
     memcpy(&agent.key, payload + 8, sizeof agent.key);
-    agent.mtu = (uint16_t)(payload[14] | payload[15] << 8);
+    agent.mtu = (uint16_t)(payload[44] | payload[45] << 8); /* after the property */
     agent_say(false, STATUS_AGENT, accepted, sizeof accepted);
 }
 
@@ -191,7 +191,8 @@ static void take_frame(const unsigned char *data, size_t size)
         agent.goodbyes++;
         agent.known = false;
     } else if (data[0] == 0x80) {
-        CHECK(data[HEADER] == CREATE_CLIENT && size == HEADER + SUBHEADER + 16);
+        /* The property "uxr_hl" makes the payload 30 bytes longer.  The library gives its length without the property. */
+        CHECK(data[HEADER] == CREATE_CLIENT && data[HEADER + 2] == 16 && size == HEADER + SUBHEADER + 16 + 30);
         open_session(data + HEADER + SUBHEADER);
     } else if (!agent.known) {
         if (data[HEADER] == GET_INFO) {
