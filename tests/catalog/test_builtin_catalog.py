@@ -186,7 +186,6 @@ def test_parameters_are_typed_and_have_their_defaults() -> None:
         "invert": False,
         "preset": 0,
         "pull_up": False,
-        "pins": {},
     }
     values, _ = typed("pwm_h_bridge", "{kind: pwm_h_bridge, pins: {value: 1, direction_a: 2, direction_b: GP3}}")
     assert values == {
