@@ -195,7 +195,6 @@ def test_parameters_are_typed_and_have_their_defaults() -> None:
         "zero": "coast",
         "safe": "coast",
         "dead_time": Fraction(1, 1_000_000),
-        "pins": {"value": 1, "direction_a": 2, "direction_b": "GP3"},
     }
     values, _ = typed("ros_subscriber", "{kind: ros_subscriber, topic: x, timeout: 500 ms}")
     assert values["timeout"] == Fraction(1, 2) and values["rate_limit"] is None

@@ -69,7 +69,7 @@ def test_a_family_of_the_user_brings_a_function_before_project(tmp_path: Path) -
     assert f"found: {home}/motor/1.2 1.2\n" in by_variable.stdout, by_variable.stderr
     assert "EPG's own families are there" in by_variable.stdout
     missing = " ".join(configure("c", "-DEPG_TARGETS_PATH=my targets", "-Dwanted=2.0").stderr.split())
-    assert f"for version 2.0 of the Motor SDK, and the one in {home}/motor/1.10 is 1.10. Get it: get the SDK" in missing
+    assert f"for version 2.0 of the Motor SDK, but the one in {home}/motor/1.10 is 1.10. Get it: get the SDK" in missing
     assert "Or write 1.10 in place of 2.0 in CMakeLists.txt." in missing
 
 

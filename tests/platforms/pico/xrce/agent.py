@@ -143,10 +143,15 @@ class BoardAgent(Agent):
 
     def wait_for(self, topic: str, milliseconds: float = 2000) -> Said:
         """The next sample of a topic."""
-        before = self.now()
-        found = self.run_until(lambda: bool(self.heard(topic, before)), milliseconds)
-        assert found, f"nothing on {topic} within {milliseconds} ms; {self.tail()}"
-        return self.heard(topic, before)[0]
+        before = len(self.said)
+
+        def new() -> list[Said]:
+            return [sample for sample in self.said[before:] if sample.topic == topic]
+
+        assert self.run_until(lambda: bool(new()), milliseconds), (
+            f"nothing on {topic} within {milliseconds} ms; {self.tail()}"
+        )
+        return new()[0]
 
     def turn(self) -> None:
         """Does the work that is due."""
