@@ -15,6 +15,7 @@ topics are best effort, and both nodes log the time of each message that they se
 
 from __future__ import annotations
 
+import json
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -27,6 +28,7 @@ from tests.ros2.network import Network, running
 from tests.ros2.peer import Peer, Publisher
 
 PERIOD = 0.033  # s, between two setpoints
+ATTEMPTS = 3
 JIWY, RELBOT = ("pan", "tilt"), ("left", "right")  # axes
 
 
@@ -71,10 +73,12 @@ SITUATIONS: Mapping[int, Sequence[Follower]] = {
 class Logs:
     """``setpoints`` by topic ("/profile/pan"), ``positions`` by robot and axis ("/robot_1/pan"); one clock, in s.
 
-    ``begin`` is the profiles' time 0.  ``traces`` are the robots' own, by namespace.
+    ``begin`` is the profiles' time 0.  ``latest`` is the largest delay of a setpoint in s.  ``traces`` are the robots'
+    own, by namespace.
     """
 
     begin: float
+    latest: float
     setpoints: dict[str, list[tuple[float, float]]]
     positions: dict[str, list[tuple[float, float]]]
     nodes: list[str]
@@ -85,8 +89,30 @@ class Logs:
         """The part of a log between two times of the profiles."""
         return [(at, value) for at, value in log if begin <= at - self.begin <= end]
 
+    @property
+    def in_time(self) -> bool:
+        """Returns whether neither this process nor a robot was stopped for longer than half a period."""
+        reports = [json.loads(file.read_text()) for file in self.statistics.values()]
+        return max(self.latest, *(report["lateness_max"] for report in reports)) < PERIOD / 2
+
 
 def run(
+    robots: Sequence[Follower],
+    profiles: Mapping[str, Profile],
+    duration: float,
+    net: Network,
+    build: Build,
+    folder: Path,
+) -> Logs:
+    """Runs a situation.  Repeats it if the computer was too busy with other work to measure delays."""
+    for _ in range(ATTEMPTS):
+        logs = _run(robots, profiles, duration, net, build, folder)
+        if logs.in_time:
+            break
+    return logs
+
+
+def _run(
     robots: Sequence[Follower],
     profiles: Mapping[str, Profile],
     duration: float,
@@ -123,7 +149,7 @@ def run(
             for topic in publishers
         }
         _meet(monitoring, positions.values(), publishers, expected)
-        begin = _publish(publishers, profiles, duration, monitoring)
+        begin, latest = _publish(publishers, profiles, duration, monitoring)
         nodes = monitoring.graph.node_names()
         for process in processes:
             process.send_signal(2)
@@ -132,6 +158,7 @@ def run(
             assert process.returncode == 130 and errors == "", output + errors
     return Logs(
         begin,
+        latest,
         {topic: [(at, message.data) for at, message in publisher.sent] for topic, publisher in publishers.items()},
         {name: [(at, message.data) for at, message in heard.received] for name, heard in positions.items()},
         nodes,
@@ -150,14 +177,15 @@ def _meet(monitoring: Peer, heard: object, publishers: Mapping[str, Publisher], 
 
 def _publish(
     publishers: Mapping[str, Publisher], profiles: Mapping[str, Profile], duration: float, monitoring: Peer
-) -> float:
-    """Publishes at integer multiples of the period, without drift; returns time 0."""
+) -> tuple[float, float]:
+    """Publishes at integer multiples of the period, without drift; returns time 0 and the largest delay."""
     begin = time.monotonic()
-    number = 0
+    number, latest = 0, 0.0
     while (due := number * PERIOD) < duration:
+        latest = max(latest, time.monotonic() - begin - due)
         for topic, publisher in publishers.items():
             publisher.publish(Float64_(profiles[topic].value(due)))
         number += 1
         while (left := begin + number * PERIOD - time.monotonic()) > 0:
             monitoring.spin(left)
-    return begin
+    return begin, latest
