@@ -74,16 +74,17 @@ def on_loopback() -> Iterator[None]:
 
 @dataclass
 class RealAgent:
-    """``arguments``: for example "udp4 -p 8888" or "serial -D /dev/pts/3"."""
+    """``arguments``: for example "udp4 -p 8888" or "serial -D /dev/pts/3".  ``agent``: another agent's program."""
 
     arguments: list[str]
     domain: int
     folder: Path
+    agent: Path | None = None
     process: subprocess.Popen[bytes] | None = field(default=None, init=False)
 
     @classmethod
-    def udp(cls, folder: Path) -> RealAgent:
-        return cls(["udp4", "-p", str(free_port())], free_domain(), folder)
+    def udp(cls, folder: Path, agent: Path | None = None) -> RealAgent:
+        return cls(["udp4", "-p", str(free_port())], free_domain(), folder, agent)
 
     @property
     def address(self) -> str:
@@ -95,7 +96,7 @@ class RealAgent:
         environment = {**os.environ, "FASTRTPS_DEFAULT_PROFILES_FILE": str(profile)}
         environment["XRCE_DOMAIN_ID_OVERRIDE"] = str(self.domain)
         self.process = subprocess.Popen(
-            [str(program()), *self.arguments],
+            [str(self.agent or program()), *self.arguments],
             env=environment,
             stdin=subprocess.PIPE,  # the agent ends when its input ends
             stdout=subprocess.DEVNULL,

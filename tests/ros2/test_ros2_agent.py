@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The middleware `xrce` and ROS 2 itself, through each agent that is installed.
+
+`micro_ros_agent` is used where ROS 2 is sourced with it, and eProsima's agent where ``EPG_XRCE_AGENT`` names it.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from tests.emulator.toolchain import Missing
+from tests.ros2.build import Build
+from tests.ros2.network import running
+from tests.xrce_agent.real_agent import CYCLONE, RealAgent, program
+
+if shutil.which("ros2") is None:
+    pytest.skip("ROS 2 is not sourced: source /opt/ros/jazzy/setup.bash", allow_module_level=True)
+
+GRAPH_AGENT = "micro_ros_agent"  # it adds boards to the list of nodes of ROS 2
+IMPLEMENTATIONS = ["rmw_cyclonedds_cpp", "rmw_fastrtps_cpp"]
+SERIALS = (1, 2, 3)
+
+
+def _graph_agent() -> Path:
+    for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep):
+        found = Path(prefix) / "lib" / GRAPH_AGENT / GRAPH_AGENT
+        if found.is_file():
+            return found
+    raise Missing(f"ROS 2 is not sourced with {GRAPH_AGENT}: docs/agent.md says how to install it")
+
+
+@pytest.fixture(params=[GRAPH_AGENT, "MicroXRCEAgent"])
+def agent(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[RealAgent]:
+    try:
+        found = _graph_agent() if request.param == GRAPH_AGENT else program()
+    except Missing as missing:
+        pytest.skip(str(missing))
+    with RealAgent.udp(tmp_path, found) as started:
+        yield started
+
+
+@contextmanager
+def boards(robot: Path, agent: RealAgent, *serials: int) -> Iterator[dict[int, subprocess.Popen[str]]]:
+    started = {
+        serial: subprocess.Popen(
+            [str(robot), "--realtime", "--quiet", "--agent", agent.address, "--serial", str(serial)],
+            text=True,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+        )
+        for serial in serials
+    }
+    with running(list(started.values())):
+        yield started
+
+
+NODE = """
+import json, os, signal, sys, time
+import rclpy
+from diagnostic_msgs.msg import DiagnosticArray
+from std_msgs.msg import Bool, Float64
+from rclpy.qos import qos_profile_sensor_data
+
+rclpy.init()
+node = rclpy.create_node("watch")
+
+def wait(condition, seconds):
+    "The seconds until the condition is true; None if that takes longer than `seconds`."
+    began = time.monotonic()
+    while time.monotonic() < began + seconds:
+        if condition():
+            return time.monotonic() - began
+        rclpy.spin_once(node, timeout_sec=0.05)
+    return None
+
+def here(*serials):
+    return all(node.count_publishers(f"/robot_{serial}/pan_publisher") == 1 for serial in serials)
+
+def nodes():
+    return sorted(f"{space.rstrip('/')}/{name}" for name, space in node.get_node_names_and_namespaces() if name != "watch")
+
+"""
+"""The beginning of a ROS 2 node, which the tests continue.  It prints its result as JSON."""
+
+
+def ask(agent: RealAgent, implementation: str, script: str, *arguments: object) -> object:
+    """Runs a script as a ROS 2 node in the agent's domain; returns its result."""
+    environment = {
+        **os.environ,
+        "RMW_IMPLEMENTATION": implementation,
+        "ROS_DOMAIN_ID": str(agent.domain),
+        "CYCLONEDDS_URI": CYCLONE,
+        "FASTRTPS_DEFAULT_PROFILES_FILE": str(agent.folder / "fast_dds.xml"),
+    }
+    command = [sys.executable, "-c", NODE + script, *map(str, arguments)]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False, timeout=120)
+    if "No module named 'rclpy'" in done.stderr:
+        pytest.skip("ROS 2 is not sourced for this Python: run the tests with the system's")
+    assert done.returncode == 0, done.stderr
+    result: object = json.loads(done.stdout)
+    return result
+
+
+THREE = """
+wait(lambda: here(1, 2, 3) and len(nodes()) >= 3, 20)
+names = nodes()
+endpoints = {}
+for serial in (1, 2, 3):
+    try:
+        found = node.get_publisher_names_and_types_by_node("JIWY_node", f"/robot_{serial}")
+        found += node.get_subscriber_names_and_types_by_node("JIWY_node", f"/robot_{serial}")
+        endpoints[serial] = sorted(name for name, _ in found)
+    except Exception as error:
+        endpoints[serial] = str(error)
+print(json.dumps({"nodes": names, "endpoints": endpoints, "here": here(1, 2, 3)}))
+"""
+
+
+@pytest.mark.parametrize("implementation", IMPLEMENTATIONS)
+def test_three_boards_on_one_agent(agent: RealAgent, build: Build, implementation: str) -> None:
+    with boards(build("agent_jiwy"), agent, *SERIALS):
+        told = ask(agent, implementation, THREE)
+    assert isinstance(told, dict) and told["here"]
+    if agent.agent is not None and agent.agent.name != GRAPH_AGENT:
+        return  # eProsima's agent makes topics only
+    names = [f"/robot_{serial}/JIWY_node" for serial in SERIALS]
+    assert told["nodes"] == names
+    for serial, name in zip(SERIALS, names):
+        topics = ("pan_publisher", "pan_subscriber", "tilt_publisher", "tilt_subscriber")
+        own = {f"/robot_{serial}/{topic}" for topic in topics} | {f"{name}/enable", "/diagnostics"}
+        assert set(told["endpoints"][str(serial)]) == own
+
+
+KILLED = """
+other, killed = 1, int(sys.argv[1])
+assert wait(lambda: here(1, 2), 20) is not None, "the boards have not been found"
+graph = bool(nodes())
+os.kill(killed, signal.SIGKILL)
+gone = wait(lambda: node.count_publishers("/robot_2/pan_publisher") == 0, 20)
+left = wait(lambda: "/robot_2/JIWY_node" not in nodes(), 20)
+print(json.dumps({"endpoints": gone, "node": gone + left, "other": here(1)}))
+"""
+
+
+@pytest.mark.parametrize("implementation", IMPLEMENTATIONS)
+def test_a_killed_board_leaves_the_graph(agent: RealAgent, build: Build, implementation: str) -> None:
+    """The limit is docs/ros2.md's, with a second for the discovery."""
+    with boards(build("agent_jiwy"), agent, 1, 2) as started:
+        told = ask(agent, implementation, KILLED, started[2].pid)
+    assert isinstance(told, dict) and told["other"]
+    print(f"{agent.agent}: endpoints {told['endpoints']:.1f} s, node {told['node']:.1f} s after the last frame")
+    assert 3.0 <= told["node"] <= 5.0
+
+
+DISABLED = """
+heard, told = [], []
+node.create_subscription(Float64, "/robot_1/pan_publisher", heard.append, qos_profile_sensor_data)
+node.create_subscription(DiagnosticArray, "/diagnostics", told.append, 10)
+setpoint = node.create_publisher(Float64, "/robot_1/pan_subscriber", qos_profile_sensor_data)
+enable = node.create_publisher(Bool, "/robot_1/JIWY_node/enable", 10)
+assert wait(lambda: here(1) and setpoint.get_subscription_count() == 1 and len(heard) > 10, 20) is not None
+
+def follow():
+    setpoint.publish(Float64(data=0.4))
+    return abs(heard[-1].data - 0.4) < 0.02
+
+moved = wait(follow, 20)
+enable.publish(Bool(data=False))
+disabled = wait(lambda: told and told[-1].status[0].message == "disabled", 10)
+print(json.dumps({"moved": moved, "disabled": disabled, "level": told[-1].status[0].level[0]}))
+"""
+
+
+@pytest.mark.parametrize("implementation", IMPLEMENTATIONS)
+def test_a_node_moves_and_disables_a_board(agent: RealAgent, build: Build, implementation: str) -> None:
+    with boards(build("agent_jiwy"), agent, 1):
+        told = ask(agent, implementation, DISABLED)
+    assert isinstance(told, dict)
+    assert told["moved"] is not None and told["disabled"] is not None
+    assert told["level"] == 1
