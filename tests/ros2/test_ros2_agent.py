@@ -86,7 +86,8 @@ def here(*serials):
     return all(node.count_publishers(f"/robot_{serial}/pan_publisher") == 1 for serial in serials)
 
 def nodes():
-    return sorted(f"{space.rstrip('/')}/{name}" for name, space in node.get_node_names_and_namespaces() if name != "watch")
+    found = node.get_node_names_and_namespaces()
+    return sorted(f"{space.rstrip('/')}/{name}" for name, space in found if name != "watch")
 
 """
 """The beginning of a ROS 2 node, which the tests continue.  It prints its result as JSON."""
