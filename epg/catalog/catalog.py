@@ -22,6 +22,7 @@ from epg.catalog.middleware import Middleware, make_middleware
 from epg.catalog.platform import Family, Platform, make_family, make_platform, platform_for
 from epg.catalog.shared_parameters import with_shared_parameters
 from epg.diagnostics import Diagnostics, did_you_mean
+from epg.documents.merge import merge, without_nulls
 from epg.documents.yaml_file import load_yaml
 from epg.source import Span, YamlNode
 
@@ -184,6 +185,8 @@ class Catalog:
         node = load_yaml(paths[0], self._diagnostics)
         if node is not None and category == "component":
             node = with_shared_parameters(node, self.roots, self._diagnostics)
+        elif node is not None and category == "board":
+            node = self._with_extended(node)
         if node is None or not check_file(category, node, name, self.names("platform"), self._diagnostics):
             return None
         if len(paths) > 1:
@@ -191,6 +194,28 @@ class Catalog:
             hint = "rename its folder to use both"
             self._diagnostics.warning("shadowed-item", node[_NAME_KEYS[category]].span, message, hint=hint)
         return make(node, paths[0].parent)
+
+    def _with_extended(self, node: YamlNode) -> YamlNode | None:
+        """A ``board.yaml`` with the values of the boards that it extends; None after reporting mistakes."""
+        merged = node
+        read: list[str] = []
+        while (extends := node.get("extends")) is not None:
+            name = str(extends.value)
+            paths = self._paths("board").get(name, [])
+            if name in read:
+                message = f"'{name}' extends itself"
+                self._diagnostics.error("extends-loop", extends.span, message, hint="remove this 'extends'")
+                return None
+            if not paths:
+                hint = not_found_hint(name, self.names("board"), "in boards/")
+                self._diagnostics.error("unknown-board", extends.span, f"there is no board '{name}'", hint=hint)
+                return None
+            extended = load_yaml(paths[0], self._diagnostics)
+            if extended is None:
+                return None
+            node, merged = extended, merge(extended, merged)
+            read.append(name)
+        return without_nulls(merged)
 
 
 _NAME_KEYS = {category: "kind" if category == "component" else category for category in FOLDERS}

@@ -165,7 +165,7 @@ class Board:
     console: str
     layout: Layout | None
     node: YamlNode
-    folder: Path
+    files: tuple[Path, ...]  # its own, and those of the boards that it extends
     span: Span
 
     def pin_name(self, written: str) -> str:
@@ -191,7 +191,7 @@ class Target:
     def files(self) -> tuple[Path, ...]:
         """The files that describe the board, the platform, the chip and the family."""
         return (
-            self.board.folder / "board.yaml",
+            *self.board.files,
             self.platform.folder / "platform.yaml",
             self.soc.folder / "soc.yaml",
             *(() if self.platform.family is None else (self.platform.family.folder / "family.yaml",)),
@@ -258,9 +258,14 @@ def make_board(node: YamlNode, folder: Path) -> Board:
         console=text_of(devicetree, "console") if devicetree is not None else "",
         layout=make_layout(node, pin_names(node.get("pins"))),
         node=node,
-        folder=folder,
+        files=tuple(sorted({folder / "board.yaml", *(Path(file) for file in _files(node))})),
         span=node["board"].span,
     )
+
+
+def _files(node: YamlNode) -> set[str]:
+    """The files in which the values of ``node`` are written."""
+    return {node.span.file}.union(*(_files(child) for _, child in node.items()))
 
 
 def _peripheral(name: str, node: YamlNode, soc: YamlNode) -> Peripheral:

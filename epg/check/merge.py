@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Merges ``.tcf`` files that extend each other, in the way of devicetree overlays.
 
-Maps are merged key by key.  Lists and scalars replace those of the extended file.  ``null`` deletes a key.  Every value
-keeps its position in its own file, and gets the positions of each ``extends`` that leads there
-(:attr:`epg.source.YamlNode.origins`).
+:mod:`epg.documents.merge` has the rules.  Every value keeps its position in its own file, and gets the positions of
+each ``extends`` that leads there (:attr:`epg.source.YamlNode.origins`).
 """
 
 from __future__ import annotations
@@ -12,6 +11,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from types import MappingProxyType
 
+from epg.documents.merge import merge, without_nulls
 from epg.documents.tcf import TcfFile
 from epg.source import Span, YamlNode
 
@@ -28,18 +28,6 @@ def merge_chain(chain: Sequence[TcfFile]) -> YamlNode:
     return without_nulls(merged)
 
 
-def merge(base: YamlNode, overlay: YamlNode) -> YamlNode:
-    """``base`` with the values of ``overlay``.  Values ``null`` stay: see :func:`without_nulls`."""
-    if not (base.is_mapping and overlay.is_mapping):
-        return overlay
-    values = dict(base.items())
-    keys = dict(base.keys)
-    for key, node in overlay.items():
-        values[key] = merge(values[key], node) if key in values else node
-        keys[key] = overlay.key_span(key)
-    return replace(base, value=MappingProxyType(values), keys=MappingProxyType(keys), span=overlay.span)
-
-
 def apply_settings(root: YamlNode, settings: Iterable[tuple[tuple[str, ...], YamlNode]]) -> YamlNode:
     """``root`` with the values of settings (keys, value).  Maps that do not exist are created."""
     for path, node in settings:
@@ -47,15 +35,6 @@ def apply_settings(root: YamlNode, settings: Iterable[tuple[tuple[str, ...], Yam
             node = YamlNode(MappingProxyType({key: node}), node.span, MappingProxyType({key: node.span}))
         root = replace(merge(root, node), span=root.span)
     return without_nulls(root)
-
-
-def without_nulls(node: YamlNode) -> YamlNode:
-    """The tree without the keys whose value is ``null``."""
-    if not node.is_mapping:
-        return node
-    values = {key: without_nulls(child) for key, child in node.items() if child.value is not None}
-    keys = {key: node.key_span(key) for key in values}
-    return replace(node, value=MappingProxyType(values), keys=MappingProxyType(keys))
 
 
 def _without(node: YamlNode, key: str) -> YamlNode:

@@ -246,7 +246,7 @@ def test_a_users_folder_comes_first_and_a_missing_one_is_said(tmp_path: Path) ->
 
 
 def test_only_what_is_asked_for_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A target reads only the files of its board, chip, platform and family; a kind only its own."""
+    """A target reads only the files of its board, of the boards that this extends, of chip, platform and family."""
     from epg.catalog import catalog as module
 
     read: list[str] = []
@@ -256,7 +256,17 @@ def test_only_what_is_asked_for_is_read(monkeypatch: pytest.MonkeyPatch) -> None
     catalog.find_target("rpi_pico2_freertos")
     catalog.find_kind("pwm")
     catalog.find_kind("pwm")
-    assert sorted(read) == ["freertos", "pwm", "rp2", "rp2350", "rpi_pico2"]
+    assert sorted(read) == ["freertos", "pwm", "rp2", "rp2350", "rpi_pico", "rpi_pico2"]
+
+
+def test_a_board_that_extends_others() -> None:
+    """The Pico 2 W extends the Pico W, which extends the Pico: values are replaced, added and deleted."""
+    board = builtin()[0].find_target("rpi_pico2_w_bare_metal").board
+    assert [path.parent.name for path in board.files] == ["rpi_pico", "rpi_pico2_w", "rpi_pico_w"]
+    assert board.pins == builtin()[0].find_target("rpi_pico_bare_metal").board.pins
+    assert (board.names, board.onboard, sorted(board.reserved)) == ({}, {}, ["23", "24", "25", "29"])
+    assert board.sdks == {"pico_sdk": "pico2_w", "zephyr": "rpi_pico2/rp2350a/m33"}
+    assert sorted(board.devicetree) == ["adc", "i2c0", "i2c1", "uart0"]
 
 
 def test_a_kind_of_a_user_shares_parameters_with_those_of_epg(tmp_path: Path) -> None:
