@@ -24,6 +24,9 @@ def check_middleware(node: YamlNode, diagnostics: Diagnostics) -> None:
             message = f"'{name}' is a key that every 'communication' has"
             diagnostics.error("invalid-name", span, message, hint="choose another name for the option")
         parameter_problems(name, option, span, diagnostics)
+    if "services" in texts_of(node, "uses") and "node" not in texts_of(node, "uses"):
+        message = "a middleware that uses 'services' must use 'node', too"
+        diagnostics.error("missing-key", node.key_span("uses"), message, hint="add 'node' to 'uses'")
     if "capture" in texts_of(node, "uses"):
         size = options.get("capture")
         if size is None or "type" not in size or size["type"].value != "integer" or "default" not in size:

@@ -22,10 +22,10 @@ class Middleware:
 
     ``platforms`` maps platforms on which the middleware runs, although their own files do not name it, to transports.
     ``connection`` is "stream" (bytes, carried by a transport of the platform), "own" or "none".  ``uses`` names the
-    parts that the generator must add to a target: "node", "signals", "parameters", "capture", "jog".  ``needs`` are
-    names of tools, in addition to those of the platform.  ``symbol`` is the name of its ``epg_middleware_t`` in C,
-    empty if no code runs.  ``headers`` and ``sources`` are files in ``folder``.  ``stack`` is a size in bytes.
-    ``builds`` is False if targets with it can be checked but not built.
+    parts that the generator must add to a target: "node", "services", "signals", "parameters", "capture", "jog".
+    ``needs`` are names of tools, in addition to those of the platform.  ``symbol`` is the name of its
+    ``epg_middleware_t`` in C, empty if no code runs.  ``headers`` and ``sources`` are files in ``folder``.  ``stack``
+    is a size in bytes.  ``builds`` is False if targets with it can be checked but not built.
     """
 
     name: str

@@ -22,6 +22,7 @@ from epg.emit.cmake import platform_files
 from epg.emit.fingerprint import LITERAL, model_hash
 from epg.emit.macros import Macros
 from epg.emit.pins import pin_lists
+from epg.emit.ros_services import ros_services_of
 from epg.emit.service import MiddlewareView, service_of
 from epg.emit.template import environment
 from epg.emit.text import CMakeCode, Code, DevicetreeCode, Escaped, KconfigCode, double, identifier
@@ -104,6 +105,7 @@ class Emitter:
             "tick": tick_of(app),
             "board_nodes": board_nodes(app),
             "service": service,
+            "ros_services": ros_services_of(app),
             "transport": self._transport(),
             "middleware_code": self._middleware_code(service.middleware),
             "console_code": self._middleware_code(service.console),

@@ -32,6 +32,10 @@ DEFINITIONS = {
     "diagnostic_msgs/msg/DiagnosticStatus": "byte level, string name, string message, string hardware_id, "
     "diagnostic_msgs/msg/KeyValue[] values",
     "diagnostic_msgs/msg/DiagnosticArray": "std_msgs/msg/Header header, diagnostic_msgs/msg/DiagnosticStatus[] status",
+    "std_srvs/srv/SetBool_Request": "bool data",
+    "std_srvs/srv/SetBool_Response": "bool success, string message",
+    "std_srvs/srv/Trigger_Request": "uint8 structure_needs_at_least_one_member",
+    "std_srvs/srv/Trigger_Response": "bool success, string message",
     "rmw_dds_common/msg/Gid": "uint8[16] data",  # char[16], which is uint8 in IDL
     "rmw_dds_common/msg/NodeEntitiesInfo": "string<=256 node_namespace, string<=256 node_name, "
     "rmw_dds_common/msg/Gid[] reader_gid_seq, rmw_dds_common/msg/Gid[] writer_gid_seq",

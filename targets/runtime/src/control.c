@@ -59,6 +59,12 @@ static void latch(epg_control_t *control, epg_fault_t fault)
     epg_control_fault(control, fault, EPG_NO_COMPONENT);
 }
 
+static void clear_fault(epg_control_t *control)
+{
+    control->fault = EPG_FAULT_NONE;
+    control->fault_component = EPG_NO_COMPONENT;
+}
+
 /** Carries out a new request.  `permitted` is true if the fail-safe input allows enabling. */
 static void handle_request(epg_control_t *control, bool permitted, uint64_t now_ns)
 {
@@ -75,8 +81,7 @@ static void handle_request(epg_control_t *control, bool permitted, uint64_t now_
     if (control->enabled) {
         return;
     }
-    control->fault = EPG_FAULT_NONE;
-    control->fault_component = EPG_NO_COMPONENT;
+    clear_fault(control);
     if (permitted) {
         control->enabled = true;
         control->initialise = true;
@@ -92,6 +97,10 @@ static void command(epg_control_t *control, const epg_application_t *application
                        epg_exchange_take(application->setpoint_exchange, application->samples) &&
                        epg_setpoints_take(application);
     const bool refused = application->fail_safe != NULL && !application->fail_safe();
+    if (atomic_load(&control->reset)) {
+        atomic_store(&control->reset, false); /* first, so that a request during this cycle is not lost */
+        clear_fault(control);
+    }
     handle_request(control, !refused, now_ns);
     if (refused) {
         epg_control_fault(control, EPG_FAULT_FAIL_SAFE, application->fail_safe_component);
@@ -315,6 +324,11 @@ void epg_control_request(epg_control_t *control, bool enable)
 {
     const unsigned int sequence = (atomic_load(&control->request) | 1U) + 1U;
     atomic_store(&control->request, sequence | (enable ? 1U : 0U));
+}
+
+void epg_control_reset(epg_control_t *control)
+{
+    atomic_store(&control->reset, true);
 }
 
 void epg_control_count_reconnect(epg_control_t *control)

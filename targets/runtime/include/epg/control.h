@@ -40,8 +40,8 @@
  * | a component finds a fault               | disabled, fault with the component's index (epg_control_fault())     |
  * | late cycle                              | runs once; missed ticks are counted, but their cycles are not run    |
  *
- * Every fault is latched: only a request to enable clears it.  If several faults happen, the first one is kept.  A
- * stopped model is not stepped until the target is enabled again; its last monitoring values stay.  A setpoint that is
+ * Every fault is latched: only a request to enable or to reset clears it.  If several faults happen, the first one is
+ * kept.  A reset does not enable the target, and a fault whose cause remains is latched again at once.  A stopped model is not stepped until the target is enabled again; its last monitoring values stay.  A setpoint that is
  * too old is not a fault while the target is disabled, because no sender is expected then.
  */
 #ifndef EPG_CONTROL_H
@@ -169,6 +169,7 @@ typedef struct epg_control {
     epg_exchange_t observer_exchange; /**< for epg_control_observe() */
     epg_status_t observer_buffers[4];
     atomic_bool observed; /**< epg_control_observe() has been called */
+    atomic_bool reset;    /**< epg_control_reset() was called; the next cycle clears it */
 } epg_control_t;
 
 #define EPG_STATUS_MEMBER(member)                                                                                      \
@@ -269,6 +270,12 @@ bool epg_control_observe(epg_control_t *control, epg_status_t *status);
  * clears a latched fault.  May be called from every context.
  */
 void epg_control_request(epg_control_t *control, bool enable);
+
+/**
+ * Requests to clear a latched fault; takes effect in the next cycle.  The target stays disabled.  May be called from
+ * every context.
+ */
+void epg_control_reset(epg_control_t *control);
 
 /** Counts that the communication was lost and has come back. */
 void epg_control_count_reconnect(epg_control_t *control);

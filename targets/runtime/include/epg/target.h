@@ -94,7 +94,10 @@ typedef struct epg_target {
     const void *console_options;
     struct epg_store *store;     /**< data that are kept over a restart (epg/store.h); NULL: none */
     struct epg_node *node_state; /**< memory of a middleware that uses epg/node.h; NULL for others */
-    size_t signal_count;         /**< 0: signals are not monitored */
+    size_t service_count;        /**< services of the node (epg/service.h); 0 for a middleware that serves none */
+    const struct epg_service *services;
+    struct epg_service_state *service_state; /**< NULL: there are no services */
+    size_t signal_count;                     /**< 0: signals are not monitored */
     const epg_signal_t *signals;
     size_t time_index; /**< index of the monitoring value that is the tick of the cycle, as the bits of a uint64_t */
 } epg_target_t;

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The ROS 2 services of an application, for ``templates/ros_services.c.j2``.
+
+A middleware serves them if its ``uses`` names ``services``.  Other middlewares have none.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from epg.emit.text import Code
+from epg.resolve.application import Application
+
+_EMPTY = 8
+"""Bytes for the request of a service of std_srvs, whose content is one byte at most, with padding."""
+
+
+@dataclass(frozen=True)
+class RosService:
+    """A service of the node.
+
+    ``kind`` is the name of its ``epg_service_kind_t`` in C, and ``request`` the size in bytes of the largest request.
+    """
+
+    name: str
+    kind: Code
+    request: int
+
+
+def ros_services_of(app: Application) -> tuple[RosService, ...]:
+    """The services of ``app`` in the order of their numbers.
+
+    A target whose topic for enabling is switched off has no service for it either.
+    """
+    if "services" not in app.communication.middleware.uses:
+        return ()
+    enable = [topic.name for topic in app.subscriptions if topic.role == "enable"]
+    return (
+        *(RosService(name, Code("epg_service_enable"), _EMPTY) for name in enable),
+        RosService("~/reset", Code("epg_service_reset"), _EMPTY),
+    )
