@@ -100,7 +100,7 @@ def _tool(data: Mapping[str, Any]) -> Tool:
         programs=_texts(data.get("programs", [])),
         holds=_text(data.get("holds", "")),
         variables=_texts(data.get("variables", [])),
-        environment=_texts(data.get("environment", [])),
+        environment=_texts(data.get("environment", data.get("variables", []))),
         places=_texts(data.get("places", [])),
         registry=_text(data.get("registry", "")),
         cached=_text(data.get("cached", f"{data['tool']}-*")),

@@ -167,6 +167,12 @@ def test_the_table_is_right() -> None:
     assert needed | {"micro_cdr", "micro_xrce_dds_client", "build_program", "zephyr_sdk"} <= set(TABLE)
 
 
+def test_the_environment_variables_are_by_default_those_of_cmake() -> None:
+    assert TABLE["pico_sdk"].environment == TABLE["pico_sdk"].variables == ("PICO_SDK_PATH",)
+    assert TABLE["c_compiler"].environment == ("CC",)
+    assert TABLE["cmake"].environment == ()
+
+
 CACHED = [tool for tool in TABLE.values() if "{cache}" in tool.get["any"]]
 
 
