@@ -24,7 +24,7 @@ EXAMPLES = (*(f"examples/jiwy/{name}" for name in JIWY + PLANTS), *(f"examples/r
 DATA = ("cmake", "targets", "schemas", "integration", "zephyr", "zephyr_module", "docs/errors.md", *EXAMPLES)
 
 
-EXTRAS = {"zephyr": "zephyr", "plot": "plot", "ros": "ros", "test": "test_all"}
+EXTRAS = {"zephyr": "zephyr", "plot": "plot", "ros": "ros", "mcap": "mcap", "test": "test_all"}
 """The optional dependencies ("extras" of pip), and the file of ``epg/lock`` that lists the packages of each."""
 
 

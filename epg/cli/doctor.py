@@ -79,8 +79,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     items = [
         Item("python", "Python", HOST, True, "found", platform.python_version(), sys.executable),
         *(_package("generator", *package, required=True) for package in bootstrap.requirements("generator").values()),
-        *(_package("plot", *package, required=False) for package in bootstrap.requirements("plot").values()),
-        *(_package("ros", *package, required=False) for package in bootstrap.requirements("ros").values()),
+        *(_package(g, *package, required=False) for g in _USES for package in bootstrap.requirements(g).values()),
         *found.values(),
     ]
     host = all(item.good for item in items if item.needed_for == HOST and item.required)
@@ -137,6 +136,7 @@ def _cache_note(cache: Path) -> str:
 _USES = {
     "plot": "for the plots of 'epg simulate' and 'epg plot'",
     "ros": "for 'epg record', if ROS 2 is not sourced",
+    "mcap": "for 'epg record --mcap'",
 }
 """The purposes of optional packages, by group."""
 
@@ -154,7 +154,7 @@ def _package(group: str, name: str, oldest: tuple[int, ...], *, required: bool) 
     remedy = f"{sys.executable} -m pip install {name}"
     if importlib.util.find_spec("pip") is not None and not os.environ.get("EPG_NO_INSTALL"):
         return Item(name.lower(), name, HOST, required, "later", old, note=note, remedy=remedy)
-    if package_manager() == "apt" and group != "ros":  # Debian has no packages of the group "ros"
+    if package_manager() == "apt" and group not in ("ros", "mcap"):  # Debian has no packages of these groups
         remedy = f"{privileged('apt')}apt install python3-{'yaml' if name == 'PyYAML' else name.lower()}"
     return Item(name.lower(), name, HOST, required, "old" if old else "missing", old, note=note, remedy=remedy)
 

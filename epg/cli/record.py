@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg record``: records the topics that a target publishes and subscribes to on ROS 2, as CSV files."""
+"""``epg record``: records the topics that a target publishes and subscribes to on ROS 2, as CSV files and MCAP."""
 
 from __future__ import annotations
 
@@ -25,6 +25,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--output", type=Path, default=Path(), metavar="FOLDER", help="folder to write; default: the current folder"
     )
+    parser.add_argument(
+        "--mcap", action="store_true", help="also write recording.mcap, for Foxglove, PlotJuggler and ros2 bag"
+    )
     parser.add_argument("--force", action="store_true", help="overwrite an earlier recording")
     parser.add_argument(
         "--duration", type=_seconds, metavar="SECONDS", help="length of the recording; default: until Ctrl-C"
@@ -43,13 +46,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
+    from epg import bootstrap
     from epg.cli.progress import Progress
     from epg.cli.report import to_json
     from epg.ros.open_source import open_source
-    from epg.ros.recorder import SETPOINTS, TOPICS, channels_of, record
+    from epg.ros.recorder import MCAP, SETPOINTS, TOPICS, channels_of, record
 
     robot = _robot(options, diagnostics)
-    files = [options.output / SETPOINTS, options.output / TOPICS]
+    files = [options.output / name for name in (SETPOINTS, TOPICS, *([MCAP] if options.mcap else []))]
     for file in files:
         if file.exists() and not options.force:
             diagnostics.error("file-exists", Span(str(file)), "this file exists", hint="--force overwrites it")
@@ -59,11 +63,13 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     for topic in unknown:
         message = f"'{topic.name}' is not recorded: EPG does not support the type {topic.type}"
         diagnostics.warning("type-not-recorded", Span(str(robot.file)), message)
+    if options.mcap:
+        bootstrap.ensure("mcap")
     source = open_source(options.through, [channel.subscription for channel in channels], _domain(options, robot))
     progress = Progress(quiet=options.json)
     try:
         with _Stop() as stop:
-            heard = record(source, channels, options.output, options.duration, stop, progress)
+            heard = record(source, channels, options.output, options.duration, stop, progress, options.mcap)
     finally:
         source.close()
         progress.done()

@@ -38,7 +38,7 @@ class DdsSource:
         self._waitset.wait(timeout=duration(seconds=seconds))
         now = time.monotonic_ns()
         return [
-            Sample(now, number, message)
+            Sample(now, number, message, message.sample_info.source_timestamp, message.serialize)
             for number, reader in enumerate(self._readers)
             for message in reader.take(N=_TAKE)
             if message.sample_info.valid_data

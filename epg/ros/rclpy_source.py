@@ -12,6 +12,7 @@ import rclpy
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.serialization import deserialize_message
 from rosidl_runtime_py.utilities import get_message
 
 from epg.ros.source import Sample, Subscription
@@ -29,18 +30,22 @@ class RclpySource:
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self._node)
         self._samples: list[Sample] = []
+        self._types = [get_message(subscription.type) for subscription in subscriptions]
         self._names = [subscription.name for subscription in subscriptions]
         for number, subscription in enumerate(subscriptions):
             reliability = ReliabilityPolicy.RELIABLE if subscription.reliable else ReliabilityPolicy.BEST_EFFORT
             self._node.create_subscription(
-                get_message(subscription.type),
+                self._types[number],
                 subscription.name,
                 partial(self._arrived, number),
                 QoSProfile(depth=_DEPTH, reliability=reliability),
+                raw=True,
             )
 
-    def _arrived(self, subscription: int, message: Any) -> None:
-        self._samples.append(Sample(time.monotonic_ns(), subscription, message))
+    def _arrived(self, subscription: int, data: bytes, info: dict[str, Any]) -> None:
+        message = deserialize_message(data, self._types[subscription])
+        published = info.get("source_timestamp", 0)
+        self._samples.append(Sample(time.monotonic_ns(), subscription, message, published, lambda: data))
 
     def take(self, seconds: float) -> list[Sample]:
         self._executor.spin_once(timeout_sec=seconds)

@@ -4,23 +4,34 @@
 ``topics.csv`` holds the values that the target published, and ``setpoints.csv`` those that were sent to it.  A host
 executable can read ``setpoints.csv`` (``--setpoints``).  Times are in seconds since the start of the recording, by the
 clock of the computer that records.
+
+``recording.mcap`` holds all messages as they were sent.  The log time of a message is the time of the control cycle to
+which its values belong, if the message has a stamp; otherwise it is the time of arrival.
 """
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TextIO
 
+from epg.messages.library import known_message
 from epg.ros.messages import TYPES, numbers
 from epg.ros.robot import Robot, RobotTopic
 from epg.ros.source import Sample, Source, Subscription
 
-SETPOINTS, TOPICS = "setpoints.csv", "topics.csv"
+SETPOINTS, TOPICS, MCAP = "setpoints.csv", "topics.csv", "recording.mcap"
 
 _TURN = 0.1  # seconds between two checks whether the recording must end
+
+_NEAR = 10_000_000_000
+"""The longest time in nanoseconds between the stamp of a message and its arrival, if both are by the same time.
+
+A board whose clock has not been set counts from its start, and a simulated robot has simulated time.
+"""
 
 
 @dataclass(frozen=True)
@@ -81,10 +92,11 @@ def record(
     duration: float | None,
     stopped: Callable[[], bool],
     progress: Callable[[str], None] = lambda text: None,
+    mcap: bool = False,
 ) -> list[Heard]:
-    """Writes both files in ``folder`` until ``duration`` seconds are over, or until ``stopped()`` returns True.
+    """Writes the files in ``folder`` until ``duration`` seconds are over, or until ``stopped()`` returns True.
 
-    If ``duration`` is None, only ``stopped()`` ends the recording.
+    If ``duration`` is None, only ``stopped()`` ends the recording.  ``mcap`` writes an MCAP file beside the CSV files.
     """
     folder.mkdir(parents=True, exist_ok=True)
     begin = time.monotonic_ns()
@@ -92,6 +104,7 @@ def record(
     with (
         (folder / SETPOINTS).open("w", encoding="utf-8", newline="\n") as setpoints,
         (folder / TOPICS).open("w", encoding="utf-8", newline="\n") as topics,
+        _Messages(folder / MCAP, channels) if mcap else nullcontext() as messages,
     ):
         files = {SETPOINTS: setpoints, TOPICS: topics}
         for file in files.values():
@@ -105,6 +118,8 @@ def record(
                 channel = channels[sample.subscription]
                 counts[sample.subscription].add(sample.time_ns)
                 _write(files[channel.file], channel, sample, begin)
+                if messages is not None:
+                    messages.write(sample)
             progress(f"{elapsed:.0f} s, {sum(count.messages for count in counts)} messages")
     publishers = source.publishers()
     return [Heard(c, count.messages, count.span, p) for c, count, p in zip(channels, counts, publishers)]
@@ -122,6 +137,33 @@ class _Count:
     @property
     def span(self) -> float:
         return 1e-9 * (self.last - self.first)
+
+
+class _Messages:
+    """The MCAP file of a recording."""
+
+    def __init__(self, path: Path, channels: Sequence[Channel]) -> None:
+        from epg.ros.mcap_file import McapFile
+
+        # One reading of the clock: the times of a recording do not jump when the computer's clock is set.
+        self._to_wall = time.time_ns() - time.monotonic_ns()
+        self._file = McapFile(path)
+        self._channels = [
+            self._file.add_channel(c.name, c.topic.type, c.topic.qos, known_message(c.topic.type)) for c in channels
+        ]
+
+    def write(self, sample: Sample) -> None:
+        arrival = sample.time_ns + self._to_wall
+        stamp = getattr(getattr(sample.message, "header", None), "stamp", None)
+        stamped = 0 if stamp is None else stamp.sec * 1_000_000_000 + stamp.nanosec
+        log_time = stamped if abs(stamped - arrival) <= _NEAR else arrival
+        self._file.write(self._channels[sample.subscription], sample.cdr(), log_time, sample.published_ns or log_time)
+
+    def __enter__(self) -> _Messages:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._file.close()
 
 
 def _write(file: TextIO, channel: Channel, sample: Sample, begin: int) -> None:

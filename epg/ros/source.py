@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -25,11 +26,15 @@ class Sample:
     """A received message.
 
     ``subscription`` is the index of its subscription.  ``time_ns`` is its arrival by the monotonic clock.
+    ``published_ns`` is the instant at which its publisher sent it, in nanoseconds since 1970 by the publisher's clock,
+    or 0 if it is not known.  ``cdr()`` is the serialized message with its encapsulation header.
     """
 
     time_ns: int
     subscription: int
     message: Any
+    published_ns: int
+    cdr: Callable[[], bytes]
 
 
 class Source(Protocol):

@@ -149,7 +149,14 @@ def test_pip_and_the_bootstrap_want_the_same_packages(tmp_path: Path) -> None:
         [name] = [name for name in archive.namelist() if name.endswith(".dist-info/METADATA")]
         metadata = archive.read(name).decode()
     required = {line for line in metadata.splitlines() if line.startswith("Requires-Dist:")}
-    for group, extra in {"generator": "", "zephyr": "zephyr", "plot": "plot", "ros": "ros", "test_all": "test"}.items():
+    for group, extra in {
+        "generator": "",
+        "zephyr": "zephyr",
+        "plot": "plot",
+        "ros": "ros",
+        "mcap": "mcap",
+        "test_all": "test",
+    }.items():
         for distribution, oldest in bootstrap.requirements(group).values():
             condition = f"; extra == '{extra}'" if extra else ""
             assert f"Requires-Dist: {distribution.lower()}>={'.'.join(map(str, oldest))}{condition}" in required, (

@@ -6,6 +6,7 @@ from __future__ import annotations
 import csv
 import json
 import signal
+import struct
 import subprocess
 import sys
 import threading
@@ -18,15 +19,19 @@ from typing import Any
 import pytest
 
 pytest.importorskip("tests.ros2.packages", exc_type=ImportError)
+pytest.importorskip("rosbags", reason="rosbags is not installed: pip install -r epg/lock/test_all.txt")
+pytest.importorskip("mcap", reason="mcap is not installed: pip install mcap")
 
 from cyclonedds.core import Policy, Qos
 from cyclonedds.domain import DomainParticipant
 from cyclonedds.pub import DataWriter
 from cyclonedds.topic import Topic
 from cyclonedds.util import duration
+from mcap.reader import make_reader
 
 from epg.cli.main import main
 from epg.ros import dds_types as msg
+from tests.ros2.definitions import type_hash
 from tests.ros2.network import Network
 
 from .description import topic, write_description
@@ -131,6 +136,101 @@ def test_every_type(net: Network, tmp_path: Path, capsys: pytest.CaptureFixture[
             assert columns[field] == expected, f"{name} {field}: nothing lost, nothing changed"
 
 
+def stamped(clock: Callable[[], int]) -> tuple[str, Callable[[int], Any]]:
+    """JointState messages with the time that ``clock`` returns in nanoseconds."""
+
+    def message(number: int) -> Any:
+        seconds, nanoseconds = divmod(clock(), 1_000_000_000)
+        return msg.JointState(msg.Header(msg.Time(seconds, nanoseconds), "base"), ["pan"], [number / 7], [], [])
+
+    return "sensor_msgs/msg/JointState", message
+
+
+def test_mcap_is_read_by_another_reader(net: Network, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Every message is in the file, with the values that the CSV files have, and with its definition."""
+    from rosbags.highlevel import AnyReader
+    from rosbags.interfaces import QosReliability
+
+    topics = {type.rsplit("/", 1)[1].lower(): type for type in MESSAGES}
+    described = [
+        topic(
+            name,
+            type,
+            values=[f"{name}/{field}" if field else name for field in MESSAGES[type][1]],
+            elements=["first", "second", "third"],
+            qos="best_effort" if name == "bool" else "reliable",
+        )
+        for name, type in topics.items()
+    ]
+    robot = write_description(tmp_path / "robot.json", namespace="/cell", subscriptions=(), publications=described)
+    began = time.time_ns()
+    with publishing(net, {f"rt/cell/{name}": type for name, type in topics.items()}):
+        assert record(robot, "--output", tmp_path / "run", "--duration", "1.5", "--mcap") == 0
+    ended = time.time_ns()
+    recorded = rows(tmp_path / "run/topics.csv")
+    with AnyReader([tmp_path / "run/recording.mcap"]) as reader:
+        assert {c.topic: c.msgtype for c in reader.connections} == {f"/cell/{n}": t for n, t in topics.items()}
+        qos = {c.topic: c.ext.offered_qos_profiles[0].reliability for c in reader.connections}
+        assert {t for t, found in qos.items() if found == QosReliability.BEST_EFFORT} == {"/cell/bool"}
+        messages = [(c.topic, log, reader.deserialize(raw, c.msgtype)) for c, log, raw in reader.messages()]
+    for name, type in topics.items():
+        found = [message for other, _, message in messages if other == f"/cell/{name}"]
+        field = next(iter(MESSAGES[type][1]))
+        in_csv = [value for _, other, value in recorded if other == (f"{name}/{field}" if field else name)]
+        values = {
+            "float64multiarray": lambda m: m.data[1],
+            "jointstate": lambda m: m.position[1],
+            "twist": lambda m: m.linear.x,
+            "twiststamped": lambda m: m.twist.linear.y,
+        }.get(name, lambda m: m.data)
+        assert len(found) > 30 and [float(values(message)) for message in found] == in_csv
+    # The stamps are 1 s after 1970: they belong to another clock than the arrival.
+    assert all(began <= log <= ended for _, log, _ in messages)
+
+
+def test_the_log_time_is_the_time_of_the_control_cycle(net: Network, tmp_path: Path) -> None:
+    from mcap.reader import make_reader
+
+    robot = write_description(
+        tmp_path / "robot.json",
+        subscriptions=(),
+        publications=[topic("joints", "sensor_msgs/msg/JointState", values=["joints/pan.position"])],
+    )
+    late = 40_000_000
+    type, message = stamped(lambda: time.time_ns() - late)
+    participant = DomainParticipant(net.domain)
+    writer = DataWriter(participant, Topic(participant, "rt/joints", msg.JointState), qos=RELIABLE)
+    stop = threading.Event()
+
+    def publish() -> None:
+        while not stop.wait(0.01):
+            writer.write(message(1))
+
+    thread = threading.Thread(target=publish)
+    thread.start()
+    try:
+        assert record(robot, "--output", tmp_path, "--duration", "1", "--mcap") == 0
+    finally:
+        stop.set()
+        thread.join()
+    with (tmp_path / "recording.mcap").open("rb") as file:
+        reader = make_reader(file, validate_crcs=True)
+        assert reader.get_header().profile == "ros2"
+        summary = reader.get_summary()
+        assert summary and summary.chunk_indexes and summary.statistics
+        (schema,) = summary.schemas.values()
+        assert (schema.name, schema.encoding) == (type, "ros2msg")
+        (channel,) = (channel for channel in summary.channels.values())
+        assert channel.message_encoding == "cdr"
+        assert channel.metadata["topic_type_hash"] == type_hash(type)
+        found = [m for _, _, m in reader.iter_messages()]
+    assert len(found) > 20 and summary.statistics.message_count == len(found)
+    for one in found:
+        seconds, nanoseconds = (int.from_bytes(one.data[at : at + 4], "little") for at in (4, 8))
+        assert one.log_time == 1_000_000_000 * seconds + nanoseconds
+        assert one.publish_time >= one.log_time + late, "it was sent after the control cycle"
+
+
 def test_setpoints_and_topics_have_files_of_their_own(
     net: Network, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -175,7 +275,7 @@ def test_names_of_a_board(net: Network, tmp_path: Path) -> None:
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_an_interrupted_recording_is_complete(net: Network, tmp_path: Path, number: signal.Signals) -> None:
     robot = write_description(tmp_path / "robot.json")
-    command = [sys.executable, str(ROOT / "epg"), "record", str(robot), "--output", str(tmp_path)]
+    command = [sys.executable, str(ROOT / "epg"), "record", str(robot), "--output", str(tmp_path), "--mcap"]
     with publishing(net, {"rt/pan_publisher": "std_msgs/msg/Float64"}):
         process = subprocess.Popen(
             command, env=net.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
@@ -191,13 +291,23 @@ def test_an_interrupted_recording_is_complete(net: Network, tmp_path: Path, numb
     recorded = rows(topics)
     assert len(recorded) > 20
     assert f"/pan_publisher   std_msgs/msg/Float64  {len(recorded)} " in out
+    with (tmp_path / "recording.mcap").open("rb") as file:
+        summary = make_reader(file).get_summary()
+    assert summary and summary.statistics and summary.statistics.message_count == len(recorded)
 
 
-def test_rclpy_hears_the_same(net: Network, tmp_path: Path) -> None:
+def test_rclpy_hears_the_same(net: Network, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("rclpy", reason="ROS 2 is not sourced: install ROS 2 Jazzy and '. /opt/ros/jazzy/setup.bash'")
+    monkeypatch.setenv("RMW_IMPLEMENTATION", "rmw_cyclonedds_cpp")  # Fast DDS does not support the tag of `net`
     robot = write_description(tmp_path / "robot.json")
     with publishing(net, {"rt/pan_publisher": "std_msgs/msg/Float64"}):
-        assert record(robot, "--output", tmp_path, "--duration", "2", "--through", "rclpy") == 0
+        assert record(robot, "--output", tmp_path, "--duration", "2", "--through", "rclpy", "--mcap") == 0
+    with (tmp_path / "recording.mcap").open("rb") as file:
+        sent = [message for _, _, message in make_reader(file).iter_messages()]
+    assert [struct.unpack("<d", message.data[4:])[0] for message in sent] == [
+        value for _, _, value in rows(tmp_path / "topics.csv")
+    ]
+    assert all(abs(message.publish_time - message.log_time) < 10**9 for message in sent)
     values = [round(3 * value) for _, _, value in rows(tmp_path / "topics.csv")]
     assert len(values) > 20
     assert values == list(range(values[0], values[0] + len(values)))

@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Reads the text of a ``.msg`` file.
+
+The grammar is that of rosidl (rosidl_adapter/parser.py): one field or constant per line, ``<type> <name> [default]`` or
+``<type> <NAME>=<value>``.  A type can be an array ``[N]``, a bounded sequence ``[<=N]`` or a sequence ``[]``; a string
+can be bounded: ``string<=N``.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from epg.diagnostics import Diagnostics, did_you_mean
+from epg.source import Span
+
+PRIMITIVES = (
+    "bool",
+    "byte",
+    "char",
+    "float32",
+    "float64",
+    "int8",
+    "uint8",
+    "int16",
+    "uint16",
+    "int32",
+    "uint32",
+    "int64",
+    "uint64",
+    "string",
+    "wstring",
+)
+
+_LARGEST = 1 << 20  # the largest bound of an array or string; keeps hostile files from costing memory
+
+_TYPE = re.compile(r"(?P<base>[A-Za-z][A-Za-z0-9_/]*)(?:<=(?P<bound>\d+))?(?:\[(?P<array>(?:<=)?\d*)\])?")
+_NAME = re.compile(r"[a-z](?:_?[a-z0-9]+)*")
+_CONSTANT = re.compile(r"[A-Z](?:_?[A-Z0-9]+)*")
+_NESTED = re.compile(r"(?:[a-z][a-z0-9_]*/)?(?:msg/)?[A-Z][A-Za-z0-9]*|[a-z][a-z0-9_]*/msg/[A-Z][A-Za-z0-9]*")
+
+
+@dataclass(frozen=True)
+class FieldType:
+    """The type of a field.
+
+    ``base`` is a primitive type, or the full name of a message: ``geometry_msgs/msg/Vector3``.  ``string_bound`` is the
+    largest length of a bounded string, otherwise 0.  ``form`` is "one", "array" (``count`` elements), "bounded" (at
+    most ``count`` elements) or "sequence".
+    """
+
+    base: str
+    string_bound: int = 0
+    form: str = "one"
+    count: int = 0
+
+    @property
+    def is_message(self) -> bool:
+        return "/" in self.base
+
+
+@dataclass(frozen=True)
+class Field:
+    """A field of a message.  ``default`` is the text of its default value, or empty."""
+
+    name: str
+    type: FieldType
+    default: str
+    span: Span
+
+
+@dataclass(frozen=True)
+class Message:
+    """The definition of a message.  ``name`` is its full name: ``sensor_msgs/msg/Imu``."""
+
+    name: str
+    fields: tuple[Field, ...]
+    text: str
+    path: Path
+
+    @property
+    def dependencies(self) -> tuple[str, ...]:
+        """The names of the messages that this one names, in alphabetical order."""
+        return tuple(sorted({field.type.base for field in self.fields if field.type.is_message}))
+
+
+def parse_message(name: str, text: str, path: Path, diagnostics: Diagnostics) -> Message | None:
+    """The message ``name`` with the definition ``text`` of the file ``path``.  None after reporting all mistakes."""
+    before = diagnostics.error_count
+    package = name.partition("/")[0]
+    fields: dict[str, Field] = {}
+    for number, line in enumerate(text.splitlines(), start=1):
+        found = _line(line, package, str(path), number, diagnostics)
+        if found is None:
+            continue
+        if found.name in fields:
+            diagnostics.error("message-definition", found.span, f"the message already has a field '{found.name}'")
+        fields[found.name] = found
+    return Message(name, tuple(fields.values()), text, path) if diagnostics.error_count == before else None
+
+
+def _line(line: str, package: str, file: str, number: int, diagnostics: Diagnostics) -> Field | None:
+    """The field of a line.  None for a constant, an empty line, or a mistake, which is reported."""
+    code = _without_comment(line).rstrip()
+    start = len(code) - len(code.lstrip())
+    if not code.strip():
+        return None
+    type_text, _, rest = code[start:].partition(" ")
+    at = Span(file, number, start + 1, start + len(type_text) + 1)
+    type_ = _type(type_text, package, at, diagnostics)
+    if type_ is None:
+        return None
+    rest_start = len(code) - len(rest.lstrip())
+    rest = rest.lstrip()
+    name = re.match(r"[^\s=]*", rest)
+    assert name is not None
+    after = rest[name.end() :].lstrip()
+    span = Span(file, number, rest_start + 1, rest_start + len(name[0]) + 1)
+    if not name[0]:
+        diagnostics.error("message-definition", at, "the name of the field is missing", hint="<type> <name>")
+        return None
+    if after.startswith("="):
+        if not _CONSTANT.fullmatch(name[0]):
+            hint = "capital letters, digits and single underscores, for example MAX_SPEED"
+            diagnostics.error("message-definition", span, f"'{name[0]}' cannot be the name of a constant", hint=hint)
+        return None
+    if not _NAME.fullmatch(name[0]):
+        hint = "small letters, digits and single underscores, for example max_speed"
+        diagnostics.error("message-definition", span, f"'{name[0]}' cannot be the name of a field", hint=hint)
+        return None
+    return Field(name[0], type_, after, span)
+
+
+def _type(text: str, package: str, span: Span, diagnostics: Diagnostics) -> FieldType | None:
+    found = _TYPE.fullmatch(text)
+    if found is None:
+        hint = "for example float64, float64[3], string or geometry_msgs/Vector3"
+        diagnostics.error("message-definition", span, f"'{text}' is not a type of ROS 2", hint=hint)
+        return None
+    base, bound, array = found["base"], found["bound"], found["array"]
+    if base not in PRIMITIVES:
+        if not _NESTED.fullmatch(base):
+            hint = did_you_mean(base, PRIMITIVES)
+            diagnostics.error("message-definition", span, f"'{base}' is not a type of ROS 2", hint=hint)
+            return None
+        parts = base.split("/")
+        base = f"{parts[0] if len(parts) > 1 else package}/msg/{parts[-1]}"
+    if bound is not None and base not in ("string", "wstring"):
+        diagnostics.error("message-definition", span, "only strings can have a bound: string<=20")
+        return None
+    form = "one" if array is None else "sequence" if not array else "bounded" if array[0] == "<" else "array"
+    count = int((array or "").lstrip("<=")[:9] or 0)
+    length = int((bound or "")[:9] or 0)
+    if (form in ("array", "bounded") and not 1 <= count <= _LARGEST) or (bound is not None and not length >= 1):
+        diagnostics.error("message-definition", span, f"a length must be from 1 to {_LARGEST}")
+        return None
+    if length > _LARGEST:
+        diagnostics.error("message-definition", span, f"a length must be from 1 to {_LARGEST}")
+        return None
+    return FieldType(base, length, form, count)
+
+
+def _without_comment(line: str) -> str:
+    """The line up to its comment.  A ``#`` inside quotes does not begin one."""
+    quote = ""
+    for at, char in enumerate(line):
+        if quote:
+            quote = "" if char == quote else quote
+        elif char in "\"'" and line[:at].strip():
+            quote = char
+        elif char == "#":
+            return line[:at]
+    return line
