@@ -9,12 +9,12 @@ from typing import Any
 
 import cyclonedds.idl.annotations as annotate
 from cyclonedds.idl import make_idl_struct
-from cyclonedds.idl.types import array, float32, float64, int32, sequence, uint8, uint32
+from cyclonedds.idl.types import array, float32, float64, int32, int64, sequence, uint8, uint32, uint64
 
 from tests.ros2.definitions import fields_of
 
 _IDL = {"int32": int32, "uint32": uint32, "float32": float32, "float64": float64, "uint8": uint8, "byte": uint8}
-_IDL |= {"bool": bool, "string": str}
+_IDL |= {"bool": bool, "string": str, "int64": int64, "uint64": uint64}
 
 _DEFINITIONS: dict[str, list[tuple[str, str]]] = {
     "std_msgs/msg/Float64": [("data", "float64")],
@@ -70,14 +70,21 @@ def _idl_type(text: str) -> Any:
 
 
 def _idl_struct(type_: str, fields: dict[str, Any]) -> Any:
-    package, _, name = type_.split("/")
-    return annotate.final(make_idl_struct(f"{name}_", f"{package}::msg::dds_::{name}_", fields))
+    package, kind, name = type_.split("/")
+    return annotate.final(make_idl_struct(f"{name}_", f"{package}::{kind}::dds_::{name}_", fields))
 
 
 @cache
 def _struct(type_: str) -> Any:
     """The type of CycloneDDS for the ROS 2 message ``type_``."""
     return _idl_struct(type_, {name: _idl_type(text) for name, text in fields_of(type_)})
+
+
+@cache
+def service_struct(type_: str) -> Any:
+    """The type of a request or a reply, such as ``std_srvs/srv/SetBool_Request``, with rmw_cyclonedds' header."""
+    header = {"client_guid": uint64, "sequence_number": int64}
+    return _idl_struct(type_, header | {name: _idl_type(text) for name, text in fields_of(type_)})
 
 
 Float64_ = _struct("std_msgs/msg/Float64")

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import threading
 import time
+import uuid
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
@@ -41,20 +42,27 @@ from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
 from tests.ros2.definitions import ros_type, type_hash
-from tests.ros2.messages import Gid_, NodeEntitiesInfo_, ParticipantEntitiesInfo_
+from tests.ros2.messages import Gid_, NodeEntitiesInfo_, ParticipantEntitiesInfo_, service_struct
 
 FOREVER = duration(infinite=True)
 ANYTHING = SampleState.Any | ViewState.Any | InstanceState.Any
 
 
-def ros_qos(type_: type, *, reliable: bool = True, depth: int | None = 10, transient_local: bool = False) -> Qos:
+def ros_qos(
+    type_: type,
+    *,
+    reliable: bool = True,
+    depth: int | None = 10,
+    transient_local: bool = False,
+    extra: str = "",
+) -> Qos:
     """The QoS of rmw_cyclonedds; by default rclpy's: reliable, keep last 10, volatile.  A depth of None keeps all."""
     policies = [
         Policy.Reliability.Reliable(FOREVER) if reliable else Policy.Reliability.BestEffort,
         Policy.History.KeepAll if depth is None else Policy.History.KeepLast(depth),
         Policy.Durability.TransientLocal if transient_local else Policy.Durability.Volatile,
         Policy.WriterDataLifecycle(autodispose=False),
-        Policy.Userdata(f"typehash={type_hash(ros_type(type_.__idl__.idl_transformed_typename))};".encode()),
+        Policy.Userdata(f"typehash={type_hash(ros_type(type_.__idl__.idl_transformed_typename))};{extra}".encode()),
     ]
     return Qos(*policies)
 
@@ -128,6 +136,41 @@ class Publisher:
     @property
     def refused_for(self) -> str | None:
         return Subscription._read_status(self.writer.get_offered_incompatible_qos_status())
+
+
+class Client:
+    """Calls a service.  Clients of one peer have different numbers, by which replies are told apart."""
+
+    def __init__(self, peer: Peer, writer: DataWriter, replies: Subscription, request: type) -> None:
+        self._peer, self._writer, self._replies, self._request = peer, writer, replies, request
+        self._number = id(self) & 0xFFFF_FFFF
+        self._sent = 0
+
+    def wait_for_service(self) -> bool:
+        """True when both endpoints of the service are known."""
+        return self._peer.spin_until(
+            lambda: bool(self._writer.get_matched_subscriptions() and self._replies.reader.get_matched_publications())
+        )
+
+    def send(self, *values: Any) -> int:
+        """Sends a request with these values of its fields; returns its number."""
+        self._sent += 1
+        self._writer.write(self._request(self._number, self._sent, *values))
+        return self._sent
+
+    def reply(self, number: int, timeout: float = 10.0) -> Any:
+        """The reply to the request of this number; None if there is none in time."""
+
+        def found() -> list[Any]:
+            return [r for r in self._replies.messages if (r.client_guid, r.sequence_number) == (self._number, number)]
+
+        self._peer.spin_until(lambda: bool(found()), timeout)
+        return next(iter(found()), None)
+
+    def call(self, *values: Any) -> Any:
+        """Sends a request and returns its reply."""
+        assert self.wait_for_service()
+        return self.reply(self.send(*values))
 
 
 @dataclass
@@ -262,6 +305,26 @@ class Peer:
             Publisher(DataWriter(self._participant, entity, qos=Qos(Policy.Reliability.Reliable(FOREVER))))
         )
         return self._publishers[-1]
+
+    def client(self, service: str, type_: str, *, identified: bool = True) -> Client:
+        """A client of rmw_cyclonedds for ``/robot_7/JIWY_node/enable`` of the type ``std_srvs/srv/SetBool``.
+
+        A client that is not ``identified`` has no ``clientid``, as those of other implementations.
+        """
+        request, reply = service_struct(f"{type_}_Request"), service_struct(f"{type_}_Response")
+        extra = f"clientid={uuid.uuid4().hex};" if identified else ""
+        reader = DataReader(
+            self._participant, Topic(self._participant, f"rr{service}Reply", reply), qos=ros_qos(reply, extra=extra)
+        )
+        writer = DataWriter(
+            self._participant,
+            Topic(self._participant, f"rq{service}Request", request),
+            qos=ros_qos(request, extra=extra),
+        )
+        subscription = Subscription(reader, None)
+        self._subscriptions.append(subscription)
+        self._attach(reader)
+        return Client(self, writer, subscription, request)
 
     def spin(self, seconds: float) -> None:
         """Handles messages for this time."""

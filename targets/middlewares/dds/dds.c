@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The DDS participant, with one reader for each subscription and one writer for each publication.
+ * The DDS participant, with one reader for each subscription, one writer for each publication, and both for each
+ * service.
  *
  * CycloneDDS has its own threads, which receive messages and send lost ones again.  The code in this file runs on the
  * communication side and does not wait for these threads.
@@ -17,6 +18,7 @@
 #include "graph.h"
 #include "matching.h"
 #include "message.h"
+#include "repliers.h"
 
 enum {
     BATCH = 16,         /* messages taken from a reader in one poll; the others wait for the next poll */
@@ -62,7 +64,7 @@ static dds_qos_t *qos_of(const epg_topic_t *topic)
     dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, topic->depth);
     dds_qset_durability(qos, DDS_DURABILITY_VOLATILE);
     dds_qset_writer_data_lifecycle(qos, false);
-    epg_dds_set_type_hash(qos, topic->message->hash);
+    epg_dds_set_user_data(qos, topic->message->hash, "");
     return qos;
 }
 
@@ -123,20 +125,22 @@ static dds_return_t create_waitset(void)
 
 static dds_return_t publish_graph(void)
 {
-    const size_t count = dds.target->subscription_count + dds.target->publication_count;
-    dds_entity_t *entities = calloc(count + 1, sizeof *entities);
+    const size_t readers = dds.target->subscription_count + dds.target->service_count;
+    const size_t writers = dds.target->publication_count + dds.target->service_count;
+    dds_entity_t *entities = calloc(readers + writers + 1, sizeof *entities);
     if (entities == NULL) {
         return DDS_RETCODE_OUT_OF_RESOURCES;
     }
-    dds_entity_t *writers = entities + dds.target->subscription_count;
     for (size_t i = 0; i < dds.target->subscription_count; i++) {
         entities[i] = dds.readers[i].entity;
     }
     for (size_t i = 0; i < dds.target->publication_count; i++) {
-        writers[i] = dds.writers[i].entity;
+        entities[readers + i] = dds.writers[i].entity;
     }
-    const dds_return_t code = epg_dds_publish_graph(dds.participant, dds.node, entities, dds.target->subscription_count,
-                                                    writers, dds.target->publication_count);
+    epg_dds_list_repliers(entities + dds.target->subscription_count,
+                          entities + readers + dds.target->publication_count);
+    const dds_return_t code =
+        epg_dds_publish_graph(dds.participant, dds.node, entities, readers, entities + readers, writers);
     free(entities);
     return code;
 }
@@ -147,6 +151,9 @@ static dds_return_t create_all(void)
     dds_return_t code = create_endpoints(dds.readers, dds.target->subscriptions, dds.target->subscription_count, false);
     if (code >= 0) {
         code = create_endpoints(dds.writers, dds.target->publications, dds.target->publication_count, true);
+    }
+    if (code >= 0) {
+        code = epg_dds_create_repliers(dds.participant);
     }
     if (code >= 0) {
         code = create_waitset();
@@ -164,6 +171,7 @@ static void leave(void)
     }
     dds.participant = 0;
     dds.domain = 0;
+    epg_dds_leave_repliers();
 }
 
 static dds_return_t join_domain(void)
@@ -227,7 +235,7 @@ static void start(const epg_target_t *target, const epg_stream_t *stream)
     epg_node_start(dds.node, target, send_message);
     dds.readers = calloc(target->subscription_count + 1, sizeof *dds.readers);
     dds.writers = calloc(target->publication_count + 1, sizeof *dds.writers);
-    if (dds.readers == NULL || dds.writers == NULL) {
+    if (dds.readers == NULL || dds.writers == NULL || epg_dds_start_repliers(dds.node) < 0) {
         fputs("error: cannot make a DDS participant: not enough memory\n", stderr);
         dds.due_ns = UINT64_MAX;
         return;
@@ -281,6 +289,7 @@ static void poll_node(uint64_t now_ns)
     for (size_t i = 0; i < dds.target->subscription_count; i++) {
         receive(i, now_ns);
     }
+    epg_dds_poll_repliers(now_ns);
     epg_node_poll(dds.node, now_ns);
     if (now_ns >= dds.due_ns) {
         look_around(now_ns);
@@ -302,6 +311,7 @@ static void wait_for_message(uint64_t until_ns)
 static void stop(void)
 {
     leave();
+    epg_dds_stop_repliers();
     free(dds.readers);
     free(dds.writers);
     dds.readers = NULL;

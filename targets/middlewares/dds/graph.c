@@ -17,10 +17,10 @@
 
 enum { GID = 16, FIXED = 64 + EPG_NODE_NAME_SIZE + EPG_NODE_SPACE_SIZE }; /* bytes */
 
-void epg_dds_set_type_hash(dds_qos_t *qos, const char *hash)
+void epg_dds_set_user_data(dds_qos_t *qos, const char *hash, const char *more)
 {
-    char text[128];
-    const int length = snprintf(text, sizeof text, "typehash=%s;", hash);
+    char text[192];
+    const int length = snprintf(text, sizeof text, "typehash=%s;%s", hash, more);
     if (hash[0] != '\0' && length > 0 && (size_t)length < sizeof text) {
         dds_qset_userdata(qos, text, (size_t)length);
     }
@@ -57,7 +57,7 @@ static dds_entity_t create_writer(dds_entity_t participant, struct ddsi_sertype 
                                 DDS_LENGTH_UNLIMITED);
     dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 1);
     dds_qset_writer_data_lifecycle(qos, false);
-    epg_dds_set_type_hash(qos, TYPE_HASH);
+    epg_dds_set_user_data(qos, TYPE_HASH, "");
     const dds_entity_t writer = topic < 0 ? topic : dds_create_writer(participant, topic, qos, NULL);
     dds_delete_qos(qos);
     return writer;

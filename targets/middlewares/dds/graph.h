@@ -18,8 +18,11 @@
 #include "dds/dds.h"
 #include "epg/node.h"
 
-/** Sets "typehash=RIHS01_...;" as USER_DATA of a reader or writer (REP 2016).  Does nothing if `hash` is empty. */
-void epg_dds_set_type_hash(dds_qos_t *qos, const char *hash);
+/**
+ * Sets "typehash=RIHS01_...;" (REP 2016) and the text `more` as USER_DATA of a reader or writer.  Does nothing if `hash`
+ * is empty.
+ */
+void epg_dds_set_user_data(dds_qos_t *qos, const char *hash, const char *more);
 
 /**
  * Publishes that `participant` has one node, `node`, with these readers and writers.  Participants that join later get

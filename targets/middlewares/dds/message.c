@@ -21,21 +21,22 @@ typedef struct message {
     unsigned char bytes[];
 } message_t;
 
-/**
- * Allocates a message of `size` bytes with its header, all zero.  Returns NULL without memory, or if it is too large.
- */
+/** Allocates a message of `size` bytes with its header, all zero.  Returns NULL without memory. */
 static message_t *new_message(const struct ddsi_sertype *type, enum ddsi_serdata_kind kind, size_t size)
 {
     const size_t rounded = (size + 3U) & ~(size_t)3U;
-    if (size > EPG_DDS_MESSAGE_LARGEST) {
-        return NULL;
-    }
     message_t *message = calloc(1, sizeof *message + rounded);
     if (message != NULL) {
         ddsi_serdata_init(&message->base, type, kind);
         message->size = rounded;
     }
     return message;
+}
+
+/** As new_message(), for a message that has arrived.  Returns NULL, too, if it is too large. */
+static message_t *received_message(const struct ddsi_sertype *type, enum ddsi_serdata_kind kind, size_t size)
+{
+    return size > EPG_DDS_MESSAGE_LARGEST ? NULL : new_message(type, kind, size);
 }
 
 static struct ddsi_serdata *base_of(message_t *message)
@@ -62,7 +63,7 @@ static uint32_t size_of(const struct ddsi_serdata *base)
 static struct ddsi_serdata *from_fragments(const struct ddsi_sertype *type, enum ddsi_serdata_kind kind,
                                            const struct nn_rdata *fragment, size_t size)
 {
-    message_t *message = new_message(type, kind, size);
+    message_t *message = received_message(type, kind, size);
     uint32_t filled = 0;
     for (; message != NULL && fragment != NULL; fragment = fragment->nextfrag) {
         const uint32_t end = fragment->maxp1 < size ? fragment->maxp1 : (uint32_t)size;
@@ -85,7 +86,7 @@ static struct ddsi_serdata *from_fragments(const struct ddsi_sertype *type, enum
 static struct ddsi_serdata *from_pieces(const struct ddsi_sertype *type, enum ddsi_serdata_kind kind,
                                         ddsrt_msg_iovlen_t count, const ddsrt_iovec_t *pieces, size_t size)
 {
-    message_t *message = new_message(type, kind, size);
+    message_t *message = received_message(type, kind, size);
     size_t filled = 0;
     for (ddsrt_msg_iovlen_t i = 0; message != NULL && i < count && pieces[i].iov_len <= size - filled; i++) {
         memcpy(message->bytes + filled, pieces[i].iov_base, pieces[i].iov_len);

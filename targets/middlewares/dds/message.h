@@ -19,7 +19,7 @@
 #include "dds/dds.h"
 #include "dds/ddsi/ddsi_serdata.h"
 
-/** Largest accepted message in bytes.  A larger one is dropped before memory is allocated for it. */
+/** Largest accepted message in bytes that arrives.  A larger one is dropped before memory is allocated for it. */
 #define EPG_DDS_MESSAGE_LARGEST 65536
 
 /**
