@@ -6,9 +6,9 @@ from __future__ import annotations
 import argparse
 import re
 import sys
-from collections.abc import Mapping
 from pathlib import Path
 
+from epg.cli.robot import write_files
 from epg.diagnostics import Diagnostics
 from epg.source import Span
 
@@ -70,7 +70,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         workspace = options.workspace or f"/home/{options.user}/microros_ws"
         installation = Installation(options.user, options.distribution, workspace, options.domain)
         files |= {f"systemd/{name}": text for name, text in unit_files(agents, installation).items()}
-    _write(options.output, files, options.force, diagnostics)
+    write_files(options.output, files, options.force, diagnostics)
     if options.json:
         data = [
             {
@@ -85,19 +85,6 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     else:
         print("wrote " + ", ".join(str(options.output / name) for name in files))
     return 0
-
-
-def _write(folder: Path, files: Mapping[str, str], force: bool, diagnostics: Diagnostics) -> None:
-    """Writes all files.  Without ``force``, writes none and reports an error if an existing file would change."""
-    for name, text in files.items():
-        path = folder / name
-        if not force and path.exists() and (not path.is_file() or path.read_bytes() != text.encode("utf-8")):
-            diagnostics.error("file-exists", Span(str(path)), "this file exists", hint="--force overwrites it")
-    diagnostics.stop_if_errors()
-    for name, text in files.items():
-        path = folder / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(text.encode("utf-8"))
 
 
 def _assignments(option: str, texts: list[str], diagnostics: Diagnostics) -> dict[str, list[str]]:

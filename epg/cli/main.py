@@ -37,6 +37,7 @@ COMMANDS = {
     "simulate": "run a host executable through a scenario and check its limits",
     "launch": "write a ROS 2 launch file, or systemd units, for the agents of targets",
     "record": "record the topics that a target publishes and receives on ROS 2",
+    "describe": "write layouts for PlotJuggler and Foxglove with the values of a target",
     "plot": "compare a recorded run with another one, or with its simulation",
     "find-tools": "find SDKs and programs (CMake calls this)",
     "doctor": "list the tools that this computer has and those that are missing",

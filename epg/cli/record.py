@@ -5,13 +5,12 @@ from __future__ import annotations
 
 import argparse
 import os
-import re
 import signal
 import sys
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from epg.cli.robot import add_robot_arguments, robot_of
 from epg.diagnostics import Diagnostics
 from epg.source import Span
 
@@ -21,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("target", type=Path, metavar="TARGET", help="<name>.json of a target, or its build folder")
+    add_robot_arguments(parser)
     parser.add_argument(
         "--output", type=Path, default=Path(), metavar="FOLDER", help="folder to write; default: the current folder"
     )
@@ -35,9 +34,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--domain", type=int, choices=range(233), metavar="N", help="ROS domain; default: ROS_DOMAIN_ID, else 0"
     )
-    parser.add_argument("--board", metavar="SERIAL", help="serial number of the board, if names contain $serial")
-    parser.add_argument("--namespace", help="namespace of the node, if it was changed on the console")
-    parser.add_argument("--node", help="name of the node, if it was changed on the console")
     parser.add_argument(
         "--through",
         choices=("dds", "rclpy"),
@@ -52,7 +48,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from epg.ros.open_source import open_source
     from epg.ros.recorder import MCAP, SETPOINTS, TOPICS, channels_of, record
 
-    robot = _robot(options, diagnostics)
+    robot = robot_of(options, diagnostics)
     files = [options.output / name for name in (SETPOINTS, TOPICS, *([MCAP] if options.mcap else []))]
     for file in files:
         if file.exists() and not options.force:
@@ -87,33 +83,6 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         print(_table(heard))
         print("\nwrote " + ", ".join(str(file) for file in files))
     return 0
-
-
-def _robot(options: argparse.Namespace, diagnostics: Diagnostics) -> Robot | None:
-    """The target to record, with the node and namespace that it has on the network.
-
-    None, after an error, if there are several targets.
-    """
-    from epg.ros.robot import load_robots
-
-    robots = load_robots([options.target], diagnostics)
-    diagnostics.stop_if_errors()
-    if len(robots) != 1:
-        hint = "name one of them: " + ", ".join(str(robot.file) for robot in robots)
-        diagnostics.error("several-targets", Span(str(options.target)), f"there are {len(robots)} targets", hint=hint)
-        return None
-    robot = robots[0]
-    if options.board:
-        pico = re.fullmatch("[0-9A-Fa-f]{16}", options.board)  # a Pico has capital letters in its serial number
-        robot = robot.with_serial(options.board.upper() if pico else options.board)
-    if options.namespace is not None:
-        robot = replace(robot, namespace=f"/{options.namespace.strip('/')}" if options.namespace.strip("/") else "")
-    if options.node:
-        robot = replace(robot, node=options.node)
-    if robot.has_serial_in_names:
-        message = f"the name of the node, '{robot.full_node}', contains the serial number of its board"
-        diagnostics.error("board-unknown", Span(str(robot.file)), message, hint="add --board <serial number>")
-    return robot
 
 
 def _domain(options: argparse.Namespace, robot: Robot) -> int:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -34,6 +34,7 @@ class RobotTopic:
     """A topic.  ``name`` is the name in the ``.tcf``.
 
     ``values`` are the names of its values in CSV files.  ``elements`` are the names of all elements of its message.
+    ``component`` is the component with the topic, or empty.
     """
 
     name: str
@@ -42,6 +43,7 @@ class RobotTopic:
     role: str
     values: tuple[str, ...]
     elements: tuple[str, ...]
+    component: str = ""
 
 
 @dataclass(frozen=True)
@@ -65,6 +67,8 @@ class Robot:
     """The serial number that its ``.tcf`` gives to its USB device.  None if the device has the number of the board."""
     subscriptions: tuple[RobotTopic, ...]
     publications: tuple[RobotTopic, ...]
+    wires: Mapping[tuple[str, str], tuple[str, str]]
+    """The model's port and the unit of each port of a component that is bound: (component, port) -> (port, unit)."""
 
     def with_serial(self, serial: str) -> Robot:
         """The same target, with the board's serial number in the names of its node and namespace."""
@@ -156,6 +160,13 @@ def _robot(file: Path, data: dict[str, Any]) -> Robot:
         usb_serial=udev_name(usb["serial"]) if "serial" in usb else None,
         subscriptions=tuple(_topic(topic) for topic in data["subscriptions"]),
         publications=tuple(_topic(topic) for topic in data["publications"]),
+        wires={
+            (wire["component"], wire["component_port"]): (
+                str(wire["port"]),
+                str(wire["component_unit"] or wire["unit"]),
+            )
+            for wire in [*data.get("inputs", []), *data.get("outputs", [])]
+        },
     )
 
 
@@ -173,7 +184,8 @@ def udev_name(text: str) -> str:
 
 def _topic(data: dict[str, Any]) -> RobotTopic:
     name = _checked(data["topic"], topic_problem)
-    return RobotTopic(name, data["type"], data["qos"], data["role"], tuple(data["values"]), tuple(data["elements"]))
+    values, elements = tuple(data["values"]), tuple(data["elements"])
+    return RobotTopic(name, data["type"], data["qos"], data["role"], values, elements, data.get("component") or "")
 
 
 def _checked(text: object, problem: Callable[[str], str | None]) -> str:

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: Apache-2.0
+"""``epg describe``: writes a target's topics in the form of other programs."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from epg.cli.robot import add_robot_arguments, robot_of, write_files
+from epg.diagnostics import Diagnostics
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    add_robot_arguments(parser)
+    parser.add_argument("--plotjuggler", action="store_true", help="write <name>.plotjuggler.xml, a layout")
+    parser.add_argument("--foxglove", action="store_true", help="write <name>.foxglove.json, a layout")
+    parser.add_argument(
+        "--output", type=Path, default=Path(), metavar="FOLDER", help="folder to write; default: the current folder"
+    )
+    parser.add_argument("--force", action="store_true", help="overwrite existing files")
+
+
+def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
+    from epg.cli.report import to_json
+    from epg.ros.foxglove import foxglove_layout
+    from epg.ros.plotjuggler import plotjuggler_layout
+    from epg.ros.plots import plots_of
+
+    if not (options.plotjuggler or options.foxglove):
+        sys.stderr.write("epg describe: add --plotjuggler or --foxglove\n")
+        return 2
+    robot = robot_of(options, diagnostics)
+    diagnostics.stop_if_errors()
+    assert robot is not None
+    plots = plots_of(robot)
+    files = {}
+    if options.plotjuggler:
+        files[f"{robot.name}.plotjuggler.xml"] = plotjuggler_layout(robot.name, plots)
+    if options.foxglove:
+        files[f"{robot.name}.foxglove.json"] = foxglove_layout(plots)
+    write_files(options.output, files, options.force, diagnostics)
+    if options.json:
+        data = [{"title": plot.title, "values": [series.label for series in plot.series]} for plot in plots]
+        sys.stdout.write(to_json({"plots": data, "files": list(files)}))
+    else:
+        print("wrote " + ", ".join(str(options.output / name) for name in files))
+    return 0
