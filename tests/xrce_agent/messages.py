@@ -37,6 +37,11 @@ class Diagnostics:
     hardware: str
     values: dict[str, str]
 
+    @property
+    def state(self) -> str:
+        """The message without its warnings, which depend on how busy the computer is."""
+        return self.message.split(";")[0]
+
 
 def read_diagnostics(data: bytes) -> Diagnostics:
     reader = CdrReader(data)

@@ -8,11 +8,18 @@
  */
 #include "epg/diagnostics.h"
 
+#include <string.h>
+
 #include "epg/cdr.h"
 #include "epg/decimal.h"
 #include "epg/port.h"
 
 enum { LEVEL_OK, LEVEL_WARN, LEVEL_ERROR };
+
+/** How long a warning stays after its counter has grown: several periods of the diagnostics. */
+static const uint64_t WARNING_NS = 5000000000;
+
+enum { LONGEST_MESSAGE = 88 }; /* room for all warnings */
 
 static void write_pair(epg_cdr_writer_t *writer, const char *key, const char *value)
 {
@@ -56,20 +63,60 @@ static void write_pairs(epg_cdr_writer_t *writer, const epg_node_t *node, const 
     write_pair(writer, "firmware", node->target->hash);
 }
 
-static uint8_t level_of(const epg_status_t *status)
+/** Updates the warnings.  Returns true if there is one. */
+static bool update_warnings(epg_node_t *node, const epg_status_t *status)
 {
-    if (status->fault != EPG_FAULT_NONE) {
-        return LEVEL_ERROR;
+    const uint32_t counts[EPG_NODE_WARNINGS] = {
+        [EPG_NODE_OVERRUNS] = status->statistics.overruns,
+        [EPG_NODE_TIMEOUTS] = status->statistics.setpoint_timeouts,
+        [EPG_NODE_REFUSED] = status->statistics.setpoints_dropped,
+        [EPG_NODE_MALFORMED] = node->malformed,
+    };
+    bool any = false;
+    for (size_t i = 0; i < EPG_NODE_WARNINGS; i++) {
+        epg_node_warning_t *warning = &node->warnings[i];
+        if (warning->count != counts[i]) {
+            warning->count = counts[i];
+            warning->until_ns = status->time_ns + WARNING_NS;
+        }
+        any |= warning->until_ns > status->time_ns;
     }
-    return status->enabled ? LEVEL_OK : LEVEL_WARN;
+    return any;
 }
 
-static const char *message_of(const epg_node_t *node, const epg_status_t *status)
+/** Appends a text.  Returns the end of both; there must be room. */
+static char *append(char *end, const char *text)
 {
-    if (status->fault != EPG_FAULT_NONE) {
-        return epg_target_fault(node->target, status->fault);
+    const size_t length = strlen(text);
+    memcpy(end, text, length + 1);
+    return end + length;
+}
+
+/** Writes the level, the name and the message, such as "enabled; setpoint timeouts; malformed messages". */
+static void write_summary(epg_cdr_writer_t *writer, epg_node_t *node, const epg_status_t *status)
+{
+    static const char *const names[EPG_NODE_WARNINGS] = {
+        [EPG_NODE_OVERRUNS] = "; overruns",
+        [EPG_NODE_TIMEOUTS] = "; setpoint timeouts",
+        [EPG_NODE_REFUSED] = "; refused setpoints",
+        [EPG_NODE_MALFORMED] = "; malformed messages",
+    };
+    const bool warning = update_warnings(node, status) || !status->enabled;
+    const bool fault = status->fault != EPG_FAULT_NONE;
+    epg_cdr_write_u8(writer, fault ? LEVEL_ERROR : warning ? LEVEL_WARN : LEVEL_OK);
+    epg_cdr_write_string(writer, node->name);
+    if (fault || !status->enabled) {
+        epg_cdr_write_string(writer, fault ? epg_target_fault(node->target, status->fault) : "disabled");
+        return;
     }
-    return status->enabled ? "enabled" : "disabled";
+    char text[LONGEST_MESSAGE];
+    char *end = append(text, "enabled");
+    for (size_t i = 0; i < EPG_NODE_WARNINGS; i++) {
+        if (node->warnings[i].until_ns > status->time_ns) {
+            end = append(end, names[i]);
+        }
+    }
+    epg_cdr_write_string(writer, text);
 }
 
 size_t epg_diagnostics_write(epg_node_t *node, epg_stamp_t stamp, void *data, size_t size)
@@ -83,9 +130,7 @@ size_t epg_diagnostics_write(epg_node_t *node, epg_stamp_t stamp, void *data, si
     epg_cdr_write_u32(&writer, stamp.nanoseconds);
     epg_cdr_write_string(&writer, "");
     epg_cdr_write_u32(&writer, 1);
-    epg_cdr_write_u8(&writer, level_of(&status));
-    epg_cdr_write_string(&writer, node->name);
-    epg_cdr_write_string(&writer, message_of(node, &status));
+    write_summary(&writer, node, &status);
     epg_cdr_write_string(&writer, epg_port_serial());
     write_pairs(&writer, node, &status);
     return writer.failed ? 0 : writer.length;

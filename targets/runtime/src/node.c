@@ -101,6 +101,9 @@ void epg_node_start(epg_node_t *node, const epg_target_t *target,
     node->epoch_ns = 0;
     node->unsent = 0;
     node->malformed = 0;
+    for (size_t i = 0; i < EPG_NODE_WARNINGS; i++) {
+        node->warnings[i] = (epg_node_warning_t){0};
+    }
     (void)epg_names_expand(epg_names_node(target), node->name, sizeof node->name);
     (void)epg_names_expand(epg_names_space(target), node->name_space, sizeof node->name_space);
     for (size_t i = 0; i < target->publication_count; i++) {

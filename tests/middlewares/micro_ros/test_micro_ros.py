@@ -54,11 +54,11 @@ def test_what_is_no_number_is_dropped_and_counted(robot: Path, agent: Agent) -> 
 def test_the_enable_topic(robot: Path, agent: Agent) -> None:
     with Board(robot, agent) as board:
         board.running()
-        assert board.diagnostics().level == "OK"
+        assert board.diagnostics().state == "enabled"
         board.enable(False)
         agent.wait_until(lambda: board.diagnostics().level == "WARN")
         board.enable(True)
-        agent.wait_until(lambda: board.diagnostics().level == "OK")
+        agent.wait_until(lambda: board.diagnostics().state == "enabled")
         assert board.stop() == ""
 
 

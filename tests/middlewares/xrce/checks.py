@@ -77,7 +77,8 @@ def check_wrong_setpoints(board: Board, malformed: Sequence[bytes]) -> None:
     board.wait_for("got_quick", 0.75)
     board.agent.wait_until(lambda: board.statistic("setpoints_dropped") == 3)
     diagnostics = board.diagnostics()
-    assert (diagnostics.values["malformed"], diagnostics.level) == (str(len(malformed)), "OK")
+    assert (diagnostics.values["malformed"], diagnostics.level) == (str(len(malformed)), "WARN")
+    assert "; refused setpoints; malformed messages" in diagnostics.message
     assert board.values("got_reliable")[-1] == 0.5
 
 

@@ -73,7 +73,8 @@ def test_a_timeout_acts_as_declared_and_nothing_else_does(robot: Path, agent: Ag
         assert seen == {"reliable": {0.5}, "quick": {0.5}, "held": {0.5}, "zeroed": {0.0}}
         diagnostics = board.diagnostics()
         assert diagnostics.values["setpoint_timeouts"] == "2"
-        assert (diagnostics.level, diagnostics.message, diagnostics.values["faults"]) == ("OK", "enabled", "0")
+        assert (diagnostics.level, diagnostics.values["faults"]) == ("WARN", "0")
+        assert diagnostics.message.startswith("enabled") and "; setpoint timeouts" in diagnostics.message
         board.set("zeroed", 0.75)
         board.wait_for("got_zeroed", 0.75)
         assert board.stop() == ""
@@ -95,20 +96,20 @@ def test_a_timeout_that_disables_stays_until_somebody_enables(disabling_robot: P
             assert diagnostics.level == "ERROR"
             assert (diagnostics.values["fault"], diagnostics.values["component"]) == ("setpoint timeout", "zeroed")
         board.enable(True)
-        agent.wait_until(lambda: board.diagnostics().level == "OK")
+        agent.wait_until(lambda: board.diagnostics().state == "enabled")
         assert board.stop() == ""
 
 
 def test_the_enable_topic(robot: Path, agent: Agent) -> None:
     with Board(robot, agent) as board:
         board.running()
-        assert board.diagnostics().level == "OK"
+        assert board.diagnostics().state == "enabled"
         board.enable(False)
         agent.wait_until(lambda: board.diagnostics().level == "WARN")
         assert board.diagnostics().message == "disabled"
         cycles = board.next("cycles")
         board.enable(True)
-        agent.wait_until(lambda: board.diagnostics().level == "OK")
+        agent.wait_until(lambda: board.diagnostics().state == "enabled")
         assert board.next("cycles") < cycles  # the model has been initialised
         assert board.stop() == ""
 

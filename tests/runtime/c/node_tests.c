@@ -287,7 +287,7 @@ TEST(stamps_are_of_the_control_cycle)
     CHECK_EQUAL(epg_cdr_read_u32(&reader), 20 * MS);
 }
 
-/** Reads the message in `buffer`; returns the value of `key`. */
+/** Reads the message in `buffer`; returns the value of `key`, and for "message" the text beside the level. */
 static const char *diagnosed(const char *key, size_t size, uint8_t *level)
 {
     epg_cdr_reader_t reader = {.data = buffer, .size = size};
@@ -298,7 +298,8 @@ static const char *diagnosed(const char *key, size_t size, uint8_t *level)
     CHECK_EQUAL(epg_cdr_read_u32(&reader), 1);
     *level = epg_cdr_read_u8(&reader);
     CHECK(strcmp(epg_cdr_read_string(&reader), "robot_E6616407E3A51B2C") == 0);
-    (void)epg_cdr_read_string(&reader);
+    const char *message = epg_cdr_read_string(&reader);
+    CHECK(message != NULL);
     CHECK(strcmp(epg_cdr_read_string(&reader), "E6616407E3A51B2C") == 0);
     const uint32_t count = epg_cdr_read_u32(&reader);
     for (uint32_t i = 0; i < count; i++) {
@@ -308,7 +309,7 @@ static const char *diagnosed(const char *key, size_t size, uint8_t *level)
         found = strcmp(name, key) == 0 ? value : found;
     }
     CHECK(!reader.failed && reader.position == size);
-    return found == NULL ? "" : found;
+    return strcmp(key, "message") == 0 ? message : found == NULL ? "" : found;
 }
 
 static size_t diagnose(void)
@@ -338,6 +339,34 @@ TEST(diagnostics_tell_state_and_statistics)
     run(2);
     CHECK(strcmp(diagnosed("faults", diagnose(), &level), "1") == 0);
     CHECK_EQUAL(level, 2);
+}
+
+TEST(diagnostics_warn_for_five_seconds)
+{
+    enum { CYCLES = 5001 };
+    uint8_t level;
+    begin();
+    run(5);
+    CHECK(strcmp(diagnosed("message", diagnose(), &level), "enabled") == 0);
+    CHECK_EQUAL(level, 0);
+    const unsigned char short_message[2] = {0};
+    epg_node_receive(&node, PAIR, short_message, sizeof short_message, fake_port.now_ns);
+    CHECK(strcmp(diagnosed("message", diagnose(), &level), "enabled; malformed messages") == 0);
+    CHECK_EQUAL(level, 1);
+    run(CYCLES - 10);
+    fake.control.statistics.setpoint_timeouts++;
+    run(1);
+    CHECK(strcmp(diagnosed("message", diagnose(), &level), "enabled; setpoint timeouts; malformed messages") == 0);
+    run(10);
+    CHECK(strcmp(diagnosed("message", diagnose(), &level), "enabled; setpoint timeouts") == 0);
+    CHECK_EQUAL(level, 1);
+    epg_control_request(&fake.control, false);
+    run(1);
+    CHECK(strcmp(diagnosed("message", diagnose(), &level), "disabled") == 0);
+    epg_control_request(&fake.control, true);
+    run(CYCLES);
+    CHECK(strcmp(diagnosed("message", diagnose(), &level), "enabled") == 0);
+    CHECK_EQUAL(level, 0);
 }
 
 TEST(diagnostics_fit_whatever_they_hold)
@@ -380,4 +409,5 @@ RUN(ENTRY(each_publication_has_its_own_time), ENTRY(a_late_poll_makes_nothing_up
     ENTRY(values_of_a_message_arrive_together), ENTRY(a_message_of_another_type_is_counted), ENTRY(enabling_by_a_topic),
     ENTRY(an_echo_goes_out_at_once_and_unchanged), ENTRY(topics_have_full_names),
     ENTRY(names_that_the_board_keeps_replace_those_of_the_firmware), ENTRY(stamps_are_of_the_control_cycle),
-    ENTRY(diagnostics_tell_state_and_statistics), ENTRY(diagnostics_fit_whatever_they_hold))
+    ENTRY(diagnostics_tell_state_and_statistics), ENTRY(diagnostics_warn_for_five_seconds),
+    ENTRY(diagnostics_fit_whatever_they_hold))

@@ -33,6 +33,14 @@ typedef struct epg_node_publication {
     bool sent;       /**< it was sent at least once: `sent_values` are valid */
 } epg_node_publication_t;
 
+/** The counters whose growth makes the level of the diagnostics WARN for a while. */
+enum { EPG_NODE_OVERRUNS, EPG_NODE_TIMEOUTS, EPG_NODE_REFUSED, EPG_NODE_MALFORMED, EPG_NODE_WARNINGS };
+
+typedef struct epg_node_warning {
+    uint32_t count;    /**< value of the counter in the last diagnostics */
+    uint64_t until_ns; /**< time at which the warning ends, in board time; 0: the counter has never grown */
+} epg_node_warning_t;
+
 typedef struct epg_node {
     /* The generator sets these members. */
     double *values;                       /**< `monitor_count` numbers */
@@ -52,6 +60,7 @@ typedef struct epg_node {
     int64_t epoch_ns;                     /**< board time + this = nanoseconds since 1970; 0: the clock is not set */
     uint32_t unsent;                      /**< publications never sent: newer ones came first, or an echo had no room */
     uint32_t malformed;                   /**< received messages that did not fit their type */
+    epg_node_warning_t warnings[EPG_NODE_WARNINGS];
 } epg_node_t;
 
 /**
