@@ -30,9 +30,9 @@ from tests.platforms.pico.rp2350.profile import cycles, start
 from tests.platforms.pico.timing.programs import PROJECT, Program, by_hand, generated
 
 GENERATED = {
-    "inputs": ("sample", "read_inputs", "inputs_finite"),
+    "inputs": ("sample", "read_sources", "inputs_finite"),
     "model": ("model_step", "model_finite", "model_stopped"),
-    "outputs": ("prepare_outputs", "write_outputs"),
+    "outputs": ("prepare_actuators", "write_actuators"),
 }
 HANDWRITTEN = {"inputs": ("read_inputs",), "model": ("step_model",), "outputs": ("write_outputs",)}
 HOMED = 900

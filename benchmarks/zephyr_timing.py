@@ -33,10 +33,10 @@ AIM = 2500
 """The aim in processor cycles of 8 ns: 20 us."""
 PARTS = {
     "reading in the interrupt": ("epg_zephyr_inputs_sample",),
-    "inputs": ("sample", "read_inputs", "inputs_finite"),
+    "inputs": ("sample", "read_sources", "inputs_finite"),
     "model": ("model_step", "model_finite", "model_stopped"),
-    "preparing outputs": ("prepare_outputs",),
-    "outputs": ("write_outputs",),
+    "preparing outputs": ("prepare_actuators",),
+    "outputs": ("write_actuators",),
 }
 SIMULATED = (
     "Simulated, with the compiler's doubles, and without the flash cache: a board is slower by what the cache misses."

@@ -50,16 +50,6 @@ STANDARD_TYPES = frozenset(
 ) | {f"{sign}int{least}{bits}_t" for sign in ("", "u") for least in ("", "_least", "_fast") for bits in (8, 16, 32, 64)}
 """Types that are defined in headers of C11 and POSIX."""
 
-STATIC_NAMES = frozenset(
-    """read_inputs inputs_finite model_init model_step model_finite model_stopped prepare_outputs write_outputs
-    safe_outputs fail_safe setpoint_states setpoint_buffers setpoint_exchange monitor_values monitor_buffers
-    monitor_exchange plant_init plant_step set_parameter parameter_table parameter_values parameter_applied
-    parameter_changed store_bytes capture_memory jog_actuators jog_encoders jog_first jog_last middleware_options
-    middleware_output middleware_values middleware_received middleware_input middleware_best_effort console_options
-    console_output console_values node_values node_sent_values node_received node_publications node_buffer""".split()
-)
-"""Static names in generated files.  The names of a target and a component, joined by ``_``, could be the same."""
-
 _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,62}")
 _ROS_TOKEN = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _NOT_IN_CMAKE = re.compile(r"\||\$[({]|\$(ENV|CACHE)\{|\]=*\]")

@@ -14,7 +14,6 @@ from epg.check.configuration import Configuration
 from epg.check.names import (
     STANDARD_HEADERS,
     STANDARD_TYPES,
-    STATIC_NAMES,
     SYSTEM_LIBRARIES,
     cmake_path_problem,
     identifier_problem,
@@ -32,8 +31,6 @@ def check_name(name: str, span: Span, diagnostics: Diagnostics) -> None:
         problem = (
             "has the name of a system library: CMake would link the target instead of the library; choose another name"
         )
-    elif problem is None and {f"{name}_inputs", f"{name}_outputs"} & STATIC_NAMES:
-        problem = f"would generate a symbol '{name}_outputs', which the generated code already has: choose another name"
     if problem:
         diagnostics.error("invalid-name", span, f"target '{name}' {problem}")
 

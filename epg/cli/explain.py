@@ -54,7 +54,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
 def _from_files(options: argparse.Namespace, diagnostics: Diagnostics) -> dict[str, Any]:
     """The description of a target that is made from its files, without a build."""
     from epg.cli.generate import mistakes_in_templates
-    from epg.emit.application import application_topics
+    from epg.emit.application import Emitter
     from epg.emit.cmake import PathNames
     from epg.emit.description import describe
     from epg.project import load_application
@@ -64,8 +64,8 @@ def _from_files(options: argparse.Namespace, diagnostics: Diagnostics) -> dict[s
     diagnostics.stop_if_errors()
     assert app is not None
     with mistakes_in_templates(request.user_roots, diagnostics):
-        topics = application_topics(app, request.roots)
-    data: dict[str, Any] = json.loads(describe(app, topics, PathNames(Path.cwd())))
+        emitter = Emitter(app, request.roots)
+    data: dict[str, Any] = json.loads(describe(emitter, PathNames(Path.cwd())))
     return data
 
 

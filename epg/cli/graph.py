@@ -80,7 +80,7 @@ def _wiring(request: Request, title: str, diagnostics: Diagnostics) -> str:
 
 
 def _flow(options: argparse.Namespace, request: Request, title: str, diagnostics: Diagnostics) -> str:
-    from epg.emit.application import application_topics
+    from epg.emit.application import Emitter
     from epg.graph.application import draw_application
     from epg.graph.schedule import draw_schedule
     from epg.project import load_application
@@ -90,4 +90,4 @@ def _flow(options: argparse.Namespace, request: Request, title: str, diagnostics
     assert app is not None
     if options.what == "schedule":
         return draw_schedule(app, title)
-    return draw_application(app, application_topics(app, request.roots), title)
+    return draw_application(app, Emitter(app, request.roots).topics(), title)

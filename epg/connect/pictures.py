@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from epg.connect.loaded import Loaded
 from epg.connect.view import pictures
-from epg.emit.application import application_topics
+from epg.emit.application import Emitter
 from epg.graph.application import draw_application
 from epg.graph.schedule import draw_schedule
 from epg.graph.wiring import draw_wiring
@@ -23,4 +23,4 @@ def draw(loaded: Loaded, name: str, title: str) -> str | None:
     assert application is not None
     if name == "schedule":
         return draw_schedule(application, title)
-    return draw_application(application, application_topics(application, loaded.request.roots), title)
+    return draw_application(application, Emitter(application, loaded.request.roots).topics(), title)

@@ -24,6 +24,7 @@ from epg.emit.macros import Macros
 from epg.emit.pins import pin_lists
 from epg.emit.ros_services import ros_services_of
 from epg.emit.service import MiddlewareView, service_of
+from epg.emit.symbols import TEMPLATES
 from epg.emit.template import environment
 from epg.emit.text import CMakeCode, Code, DevicetreeCode, Escaped, KconfigCode, double, identifier
 from epg.emit.topics import Topics, topics_of
@@ -31,9 +32,6 @@ from epg.emit.views import POINTS, Arrival, InputView, OutputView, Part
 from epg.models.details import HandWritten
 from epg.resolve.application import Application, ResolvedComponent, Step, Wire
 from epg.resolve.conversion import folded
-
-TEMPLATES = Path(__file__).resolve().parent / "templates"
-
 
 LANGUAGES: Mapping[str, type[Escaped]] = {
     ".overlay": DevicetreeCode,
@@ -69,6 +67,10 @@ class Emitter:
             result[file] = env.get_template(f"{platform.template_folder}/{template}").render(context)
         return {file: _tidy(text) for file, text in result.items()}
 
+    def topics(self) -> Topics:
+        """The topics of the application with their messages."""
+        return topics_of(self.app, self.macros.macro)
+
     def _environment(self, file: str) -> Environment:
         """The Jinja environment for the output language of ``file``."""
         language = next((found for suffix, found in LANGUAGES.items() if file.endswith(suffix)), Code)
@@ -83,7 +85,7 @@ class Emitter:
         headers = set(drivers)
         for middleware in app.communication.middlewares:
             headers.update(middleware.headers)
-        service = service_of(app, self._service_macro)
+        service = service_of(app, self._service_macro, self.macros.symbols)
         context: dict[str, Any] = {
             "app": app,
             "prefix": self.prefix,
@@ -94,7 +96,7 @@ class Emitter:
                 {fault for c in app.components for fault in c.kind.faults}, key=lambda fault: fault.number
             ),
             "numbers": {part.component.name: part.number for part in parts},
-            "topics": topics_of(app, self.macros.macro),
+            "topics": self.topics(),
             "arrivals": self._arrivals("subscribe"),
             "departures": self._arrivals("publish"),
             "inputs": [self._input(wire) for wire in app.inputs],
@@ -225,16 +227,6 @@ class Emitter:
                 call = f"epg_limit(&{self.prefix}_control, " if counted else "epg_clamp("
                 value = Code(f"{call}{value}, {low}, {high})")
         return value
-
-
-def emit_application(app: Application, roots: Sequence[Path]) -> dict[str, str]:
-    """The text of each generated file of ``app`` and its platform, by file name."""
-    return Emitter(app, roots).files()
-
-
-def application_topics(app: Application, roots: Sequence[Path]) -> Topics:
-    """The topics of ``app`` with their messages."""
-    return topics_of(app, Emitter(app, roots).macros.macro)
 
 
 def _reference(wire: Wire) -> str:

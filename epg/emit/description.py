@@ -11,16 +11,18 @@ import json
 from typing import Any
 
 from epg import __version__
+from epg.emit.application import Emitter
 from epg.emit.cmake import PathNames
-from epg.emit.topics import Topics, TopicView
+from epg.emit.topics import TopicView
 from epg.models.model import Model
 from epg.resolve.allocation import Assignment
 from epg.resolve.application import Application, ResolvedComponent, Step, Wire
 from epg.source import Span
 
 
-def describe(app: Application, topics: Topics, names: PathNames, hash: str = "") -> str:
-    """The description of ``app`` as JSON text.  ``hash`` is empty if no files are generated."""
+def describe(emitter: Emitter, names: PathNames, hash: str = "") -> str:
+    """The description of an application as JSON text.  ``hash`` is empty if no files are generated."""
+    app, topics, symbols = emitter.app, emitter.topics(), emitter.macros.symbols
     data: dict[str, Any] = {
         "name": app.name,
         "epg": __version__,
@@ -49,7 +51,9 @@ def describe(app: Application, topics: Topics, names: PathNames, hash: str = "")
         },
         "model": _model(app.model, names),
         "parameters": dict(sorted(app.parameters.items())),
-        "components": {component.name: _component(component, names) for component in app.components},
+        "components": {
+            component.name: _component(component, symbols[component.name], names) for component in app.components
+        },
         "inputs": [_wire(wire, "inputs", app, names) for wire in app.inputs],
         "outputs": [_wire(wire, "outputs", app, names) for wire in app.outputs],
         "unconnected": sorted({p.name for p in app.model.outputs} - {wire.port.name for wire in app.outputs}),
@@ -77,10 +81,10 @@ def _model(model: Model, names: PathNames) -> dict[str, Any]:
     }
 
 
-def _component(component: ResolvedComponent, names: PathNames) -> dict[str, Any]:
+def _component(component: ResolvedComponent, symbol: str, names: PathNames) -> dict[str, Any]:
     return {
         "kind": component.kind.name,
-        "symbol": component.symbol,
+        "symbol": symbol,
         "written": _span(component.span, names),
         "resources": {claim: found.resource for claim, found in component.claims.items()},
         "pins": {

@@ -9,6 +9,7 @@ from typing import Any
 from jinja2 import Environment
 
 from epg.diagnostics import Diagnostics, UserError
+from epg.emit.symbols import component_symbols
 from epg.emit.template import CodeMacro, macro_mistake
 from epg.emit.text import Code, identifier
 from epg.emit.views import ComponentView, UseView, ValueView
@@ -22,6 +23,7 @@ class Macros:
         self.app = app
         self.env = env
         self.modules: dict[str, Any] = {}
+        self.symbols = component_symbols(app, env)
         self.components = {component.name: component for component in app.components}
         self.views = {component.name: self._view(component) for component in app.components}
         self.views |= {name: replace(view, uses=self._uses(name)) for name, view in self.views.items()}
@@ -67,7 +69,7 @@ class Macros:
     def _view(self, component: ResolvedComponent) -> ComponentView:
         return ComponentView(
             name=component.name,
-            symbol=identifier(component.symbol),
+            symbol=self.symbols[component.name],
             parameters=component.parameters,
             claims=component.claims,
             first_index=component.first_index,

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from epg.emit.application import application_topics, emit_application
+from epg.emit.application import Emitter
 from epg.emit.cmake import PathNames, application_cmake, model_cmake
 from epg.emit.description import describe
 from epg.emit.fingerprint import PLACE, application_hash
@@ -21,7 +21,8 @@ def application_outputs(app: Application, roots: Sequence[Path], names: PathName
 
     ``roots`` are the ``targets`` folders.
     """
-    files = emit_application(app, roots)
+    emitter = Emitter(app, roots)
+    files = emitter.files()
     parts = [(app.model, f"{app.name}_model", app.parameters)]
     if app.plant is not None:
         parts.append((app.plant.model, f"{app.name}_plant", app.plant.parameters))
@@ -31,7 +32,7 @@ def application_outputs(app: Application, roots: Sequence[Path], names: PathName
         builds.append((name, model_build(model, name, parameters)))
     hash = application_hash(app, files)
     files = {name: text.replace(PLACE, hash) for name, text in files.items()}
-    files[f"{app.name}.json"] = describe(app, application_topics(app, roots), names, hash)
+    files[f"{app.name}.json"] = describe(emitter, names, hash)
     files[f"{app.name}.cmake"] = application_cmake(app, builds, files, names)
     return with_licence(files)
 

@@ -107,7 +107,7 @@ class Service:
 
 
 # One function, because it fills the fields of one object, and most conditions stand for one field each.
-def service_of(app: Application, macro: Macro) -> Service:
+def service_of(app: Application, macro: Macro, symbols: Mapping[str, Code]) -> Service:
     """The services that the middleware of ``app``, and the console beside it, use."""
     communication = app.communication
     middleware, options, console = communication.middleware, communication.options, communication.console
@@ -130,8 +130,8 @@ def service_of(app: Application, macro: Macro) -> Service:
         store=node or "parameters" in uses,
         parameters=tuple(_parameters(app)) if "parameters" in uses else (),
         capture=max((size for size in captures if isinstance(size, int)), default=0),
-        actuators=tuple(a for c in app.components for a in _actuators(c, macro)) if jog else (),
-        encoders=tuple(e for c in app.components for e in _encoders(c, macro)) if jog else (),
+        actuators=tuple(a for c in app.components for a in _actuators(c, macro, symbols[c.name])) if jog else (),
+        encoders=tuple(e for c in app.components for e in _encoders(c, macro, symbols[c.name])) if jog else (),
     )
 
 
@@ -178,19 +178,19 @@ def _parameters(app: Application) -> Iterable[ParameterView]:
         yield ParameterView(_word(parameter.name, names), _word(parameter.unit), value)
 
 
-def _actuators(component: ResolvedComponent, macro: Macro) -> Iterable[ActuatorView]:
+def _actuators(component: ResolvedComponent, macro: Macro, symbol: Code) -> Iterable[ActuatorView]:
     ports = [p for p in component.kind.ports if p.actuator and p.direction == "sink" and p.type == "real"]
     for port in ports:
         name = component.name if len(ports) == 1 else f"{component.name}.{port.name}"
-        function = Code(f"{identifier(component.symbol)}_jog_{identifier(port.name)}")
+        function = Code(f"{symbol}_jog_{identifier(port.name)}")
         yield ActuatorView(name, function, macro(component, "write", port.name, Code("duty")))
 
 
-def _encoders(component: ResolvedComponent, macro: Macro) -> Iterable[EncoderView]:
+def _encoders(component: ResolvedComponent, macro: Macro, symbol: Code) -> Iterable[EncoderView]:
     count, port = macro(component, "count"), component.kind.main_port("source")
     if count and port is not None:
         position = macro(component, "read", port.name)
-        yield EncoderView(component.name, identifier(component.symbol), count.strip(), position.strip(), port.unit)
+        yield EncoderView(component.name, symbol, count.strip(), position.strip(), port.unit)
 
 
 def _word(text: str, taken: set[str] | None = None) -> str:

@@ -34,18 +34,16 @@ class Step:
 class ResolvedComponent:
     """A component with its hardware.
 
-    ``symbol`` is the prefix of its C symbols.  For topics, ``value_index`` maps ports to the value indices in the
-    exchange, counted per direction; ``first_index`` is the smallest one, or None.
+    For topics, ``value_index`` maps ports to the value indices in the exchange, counted per direction; ``first_index``
+    is the smallest one, or None.
     """
 
     name: str
-    symbol: str
     kind: Kind
     parameters: Mapping[str, object]
     claims: Mapping[str, Assignment]
     uses: Mapping[str, Used]
     value_index: Mapping[str, int]
-    application: str
     span: Span
 
     @property

@@ -3,15 +3,13 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 
 from epg.check.bindings import Bindings
 from epg.check.configuration import Component, Configuration
-from epg.check.names import STATIC_NAMES
 from epg.diagnostics import Diagnostics, Note
 from epg.documents.schema import extended_from
 from epg.models.model import Model
@@ -21,11 +19,6 @@ from epg.resolve.application import Application, Plant, ResolvedComponent, Wire
 from epg.resolve.claims import TICK, component_claims, tick_claims
 from epg.resolve.topics import publications_of, subscriptions_of, value_indices_of
 from epg.resolve.wires import input_wires, output_wires, parameter_overrides
-
-_PUBLIC = frozenset(
-    "start stop enable status statistics target inputs outputs control host model plant hash epg_version".split()
-)
-"""The parts after ``<name>_`` of the public names that every application has."""
 
 _SHORTEST, _LONGEST = Fraction(1, 1_000_000), Fraction(3600)
 """The limits of control periods in seconds.  The timer of a target can have narrower limits."""
@@ -53,7 +46,7 @@ def resolve(
     period, divider = _period(configuration, model, diagnostics)
     assignments = allocate_hardware(configuration, period, diagnostics)
     indices = value_indices_of(configuration.components, bindings)
-    components = _components(name, configuration, assignments or {}, indices)
+    components = _components(configuration, assignments or {}, indices)
     inputs = input_wires(bindings, model, configuration.components, components, diagnostics)
     outputs = output_wires(bindings, model, configuration.components, components, diagnostics)
     parameters = parameter_overrides(bindings, model, diagnostics)
@@ -177,7 +170,6 @@ def allocate_hardware(
 
 
 def _components(
-    name: str,
     configuration: Configuration,
     assignments: Mapping[tuple[str, str], Assignment],
     indices: Mapping[str, Mapping[str, int]],
@@ -186,36 +178,17 @@ def _components(
     claims: dict[str, dict[str, Assignment]] = {}
     for (owner, claim), found in assignments.items():
         claims.setdefault(owner, {})[claim] = found
-    beginnings = {name[: match.start()] for name in configuration.components for match in re.finditer("(?<=.)_", name)}
     for component in configuration.components.values():
         result[component.name] = ResolvedComponent(
             name=component.name,
-            symbol=_symbol(name, component.name, beginnings),
             kind=component.kind,
             parameters=component.parameters,
             claims=claims.get(component.name, {}),
             uses=component.uses,
             value_index=indices.get(component.name, {}),
-            application=name,
             span=component.span,
         )
     return result
-
-
-def _symbol(application: str, component: str, beginnings: Collection[str]) -> str:
-    """The C symbol of a component.
-
-    The prefix ``application`` makes it different from names of the C library and symbols of other targets.  Kinds make
-    further symbols by appending words (``<symbol>_config``).  Therefore it must not be one of the ``beginnings`` of
-    components' names: a component ``motor_config`` would have the same symbol.
-    """
-    folded = component.casefold()
-    symbol = component
-    if folded in _PUBLIC or folded.startswith(("model_", "plant_")) or f"{application}_{component}" in STATIC_NAMES:
-        symbol += "_component"
-    while symbol in beginnings:
-        symbol += "_component"
-    return f"{application}_{symbol}"
 
 
 def _plant(

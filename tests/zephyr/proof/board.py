@@ -18,7 +18,7 @@ SPANS = {
     "cycle": ("epg_control_cycle", "return"),
     "read": ("epg_qdec_get_count", "return"),
     "write": ("epg_port_pwm_write", "return"),
-    "locked": ("write_outputs", "return"),
+    "locked": ("write_actuators", "return"),
 }
 """From the tick's interrupt, which reads the encoders, to the end of the cycle in the control thread."""
 

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The C symbols of components."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from jinja2 import Environment
+
+from epg.catalog.kind import TEMPLATE
+from epg.emit.text import Code, identifier
+from epg.resolve.application import Application
+
+TEMPLATES = Path(__file__).resolve().parent / "templates"
+
+
+def component_symbols(app: Application, env: Environment) -> dict[str, Code]:
+    """The C symbol of each component, by the component's name.
+
+    The prefix ``app.name`` makes it different from names of the C library and symbols of other targets.  Kinds make
+    further symbols by appending words (``<symbol>_config``).  Therefore it must not be the beginning of another
+    component's name: a component ``motor_config`` would have the same symbol.
+    """
+    beginnings = {c.name[: match.start()] for c in app.components for match in re.finditer("(?<=.)_", c.name)}
+    taken = _words_of_templates(app, env)
+    result = {}
+    for component in app.components:
+        symbol = component.name
+        if f"{symbol}_".casefold().startswith(("model_", "plant_")):  # the library of the model or of the plant
+            symbol += "_component"
+        while symbol in beginnings or f"{app.name}_{symbol}" in taken:
+            symbol += "_component"
+        result[component.name] = identifier(f"{app.name}_{symbol}")
+    return result
+
+
+def _words_of_templates(app: Application, env: Environment) -> set[str]:
+    """All words in the templates of ``<name>.h`` and ``<name>_app.c``: more than the names that they define.
+
+    A component ``values`` of a target ``parameter`` must not have the name of the static array ``parameter_values``.
+    """
+    kinds = {f"components/{component.kind.name}" for component in app.components}
+    middlewares = {f"middlewares/{part.name}" for part in app.communication.middlewares if part.has_template}
+    templates = [path.name for path in TEMPLATES.glob("*.j2")]
+    templates += [f"{folder}/{TEMPLATE}" for folder in kinds | middlewares]
+    assert env.loader is not None
+    words: set[str] = set()
+    for template in templates:
+        source = env.loader.get_source(env, template)[0]
+        for prefix in (app.name, "middleware", "console"):  # the latter two are values of MiddlewareView.prefix
+            words.update(re.findall(r"\w+", re.sub(r"\{\{ *(m\.)?prefix *\}\}", prefix, source)))
+    return words
