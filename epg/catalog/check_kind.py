@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from epg.catalog.kind import OUTPUT_CLASSES
 from epg.catalog.parameter import COMMON_PARAMETERS, parameter_problems
 from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.documents.items import flag_of, map_of, texts_of
@@ -169,7 +168,7 @@ def _safe_states(node: YamlNode, diagnostics: Diagnostics) -> None:
 
     targets/runtime/include/epg/outputs.h has room for 8 outputs of a component.
     """
-    outputs = [name for name, claim in map_of(node, "claims").items() if claim["class"].value in OUTPUT_CLASSES]
+    outputs = [name for name, claim in map_of(node, "claims").items() if flag_of(claim, "output")]
     if len(outputs) > _OUTPUTS:
         message = f"a kind can claim at most {_OUTPUTS} outputs, not {len(outputs)}"
         diagnostics.error("wrong-value", node["claims"].span, message)

@@ -16,9 +16,6 @@ from epg.source import Span, YamlNode
 TEMPLATE = "code.c.j2"
 """The template of the code that a kind adds to generated files.  Middlewares can have such a template, too."""
 
-OUTPUT_CLASSES = ("digital_output", "pwm")
-"""Resource classes whose pins are outputs."""
-
 _BOUNDS = ("minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum")
 
 
@@ -101,11 +98,13 @@ class NeedsBound:
 class KindClaim:
     """A claim of each component of a kind.
 
-    ``signals`` maps signals of the resource class to names of pins, ``attributes`` maps attributes to parameters.
+    ``signals`` maps signals of the resource class to names of pins, ``attributes`` maps attributes to parameters.  If
+    ``output``, the pins are outputs that have a safe level.
     """
 
     name: str
     resource_class: str
+    output: bool
     signals: Mapping[str, str]
     attributes: Mapping[str, str]
     span: Span
@@ -304,6 +303,7 @@ def _claim(name: str, node: YamlNode, kind: YamlNode) -> KindClaim:
     return KindClaim(
         name,
         text_of(node, "class"),
+        flag_of(node, "output"),
         text_map_of(node, "signals"),
         text_map_of(node, "attributes"),
         kind["claims"].key_span(name),

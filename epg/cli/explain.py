@@ -64,8 +64,7 @@ def _from_files(options: argparse.Namespace, diagnostics: Diagnostics) -> dict[s
     diagnostics.stop_if_errors()
     assert app is not None
     with mistakes_in_templates(request.user_roots, diagnostics):
-        emitter = Emitter(app, request.roots)
-    data: dict[str, Any] = json.loads(describe(emitter, PathNames(Path.cwd())))
+        data: dict[str, Any] = json.loads(describe(Emitter(app, request.roots), PathNames(Path.cwd())))
     return data
 
 

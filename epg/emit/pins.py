@@ -6,7 +6,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from epg.catalog.kind import OUTPUT_CLASSES
 from epg.emit.claims import PinView, claims_of
 from epg.emit.macros import Macros
 from epg.emit.text import Code
@@ -19,7 +18,7 @@ class DigitalPin:
 
     ``role`` is the name that the component has for the pin, for example ``direction_a``.  ``node`` is the devicetree
     node that replaces the pin in the ``.tcf``, or "".  A PWM output is also such a pin, so that it can have its safe
-    level.  ``plain`` is false if the platform reaches the pin by its PWM only.
+    level.  ``plain`` is false if the platform reaches the pin by its peripheral only.
     """
 
     component: str
@@ -40,12 +39,15 @@ def _digital_pins(macros: Macros) -> list[DigitalPin]:
     components = {component.name: component for component in app.components}
     result = []
     for claim in claims_of(app):
-        drives = claim.resource_class in OUTPUT_CLASSES
-        if not drives and claim.resource_class != "digital_input":
-            continue
         component = components[claim.component]
-        roles = next(found.signals for found in component.kind.claims if found.name == claim.name)
-        plain = claim.resource_class != "pwm" or (app.target.has_pins and not claim.node)
+        declared = next(found for found in component.kind.claims if found.name == claim.name)
+        drives, roles = declared.output, declared.signals
+        resource_class = app.target.resource_class(claim.resource_class)
+        assert resource_class is not None
+        by_level = resource_class.peripheral is None
+        if not drives and not by_level:
+            continue
+        plain = by_level or (app.target.has_pins and not claim.node)
         high = macros.safe_level(component, claim.name) if drives else Code("false")
         invert = bool(component.parameters.get("invert", False))
         for signal, pin in sorted(claim.pins.items()):
@@ -74,10 +76,7 @@ def _output_groups(macros: Macros) -> list[OutputGroup]:
     first = 0
     for component in macros.app.components:
         claims = [
-            claim.name
-            for claim in component.kind.claims
-            if claim.resource_class in OUTPUT_CLASSES
-            for _ in component.claims[claim.name].pins
+            claim.name for claim in component.kind.claims if claim.output for _ in component.claims[claim.name].pins
         ]
         if claims:
             safe = {claim: "high" if macros.safe_level(component, claim) == "true" else "low" for claim in claims}

@@ -26,7 +26,7 @@ kind: thermal_switch
 summary: a switch that closes when something is too hot
 pins: [contact]
 parameters: {pull: {type: string, default: up, description: resistor of the pin}}
-claims: {level: {class: digital_input, signals: {value: contact}, attributes: {pull: pull}}}
+claims: {level: {class: digital_input, output: false, signals: {value: contact}, attributes: {pull: pull}}}
 faults: {too hot: {description: the contact is closed}}
 """,
     "code.c.j2": """\
