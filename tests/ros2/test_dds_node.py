@@ -122,6 +122,18 @@ def test_the_ros_graph_shows_node_topics_types_and_qos(jiwy: Path, net: Network,
         ]
 
 
+def test_arguments_of_a_launch_file_rename_the_node_and_its_topics(jiwy: Path, net: Network, tmp_path: Path) -> None:
+    names = "-r __node:=left -r __ns:=/fleet/a -r pan_publisher:=/pan -r ~/enable:=go -p Pan.PID.kp:=3 --log-level warn"
+    with robot(net, jiwy, tmp_path, "--ros-args", *names.split()), Peer(net.domain, "monitor") as peer:
+        meet(peer, "/fleet/a/left")
+        publications = {e.topic for e in peer.graph.publications() if e.node == "/fleet/a/left"}
+        subscriptions = {e.topic for e in peer.graph.subscriptions() if e.node == "/fleet/a/left"}
+        assert {"/pan", "/fleet/a/tilt_publisher"} <= publications
+        assert {"/fleet/a/go", "/fleet/a/pan_subscriber", "/fleet/a/tilt_subscriber"} <= subscriptions
+        pan = peer.subscription("/pan", Float64_)
+        assert hear(peer, pan, 3)
+
+
 def test_values_come_at_the_communication_period(jiwy: Path, net: Network, tmp_path: Path) -> None:
     with robot(net, jiwy, tmp_path), Peer(net.domain, "monitor") as peer:
         pan = peer.subscription("/robot_7/pan_publisher", Float64_)  # with rclpy's default QoS

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -113,3 +114,28 @@ def test_a_node_of_rclpy_with_default_qos(robot: Path, ros: dict[str, str]) -> N
         pytest.skip("ROS 2 is not sourced for this Python: run the tests with the system's")
     heard, state = done.stdout.split()
     assert int(heard) >= 60 and state == "disabled"
+
+
+LAUNCH = """
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+def generate_launch_description():
+    return LaunchDescription([Node(
+        executable="{program}", name="left", namespace="/fleet", parameters=[{{"Pan.PID.kp": 3.5}}],
+        remappings=[("pan_publisher", "/pan")], output="screen")])
+"""
+
+
+def test_launch_starts_a_node_and_ends_it(ros: dict[str, str], build: Build, tmp_path: Path) -> None:
+    file = tmp_path / "robot.launch.py"
+    file.write_text(LAUNCH.format(program=build("jiwy")))
+    with subprocess.Popen(["ros2", "launch", str(file)], env=ros, stderr=subprocess.PIPE, text=True) as launch:
+        try:
+            assert ask(ros, "topic", "echo", "--once", "/pan", "std_msgs/msg/Float64", seconds=60.0).startswith(
+                "data: "
+            )
+            assert "/fleet/left" in ask(ros, "node", "list", "--no-daemon", "--spin-time", "4").split()
+        finally:
+            launch.send_signal(signal.SIGINT)
+        assert "process has finished cleanly" in launch.communicate(timeout=30)[1]

@@ -13,6 +13,7 @@
 #include <stdlib.h>
 
 #include "domain.h"
+#include "epg/host_log.h"
 #include "epg/node.h"
 #include "epg/port.h"
 #include "graph.h"
@@ -93,7 +94,7 @@ static dds_return_t create_endpoints(endpoint_t *endpoints, const epg_topic_t *t
     for (size_t i = 0; i < count; i++) {
         const dds_return_t code = create_endpoint(&endpoints[i], &topics[i], writes);
         if (code < 0) {
-            if (!dds.failed_before) {
+            if (!dds.failed_before && epg_host_logs(EPG_HOST_LOG_ERROR)) {
                 fprintf(stderr, "error: cannot make topic %s\n", endpoints[i].topic);
             }
             return code;
@@ -207,14 +208,14 @@ static void try_to_join(uint64_t now_ns)
     dds.due_ns = now_ns + SECOND;
     if (code < 0) {
         leave();
-        if (!dds.failed_before) {
+        if (!dds.failed_before && epg_host_logs(EPG_HOST_LOG_ERROR)) {
             fprintf(stderr, "error: cannot make a DDS participant: %s\nhint: the node tries again every second\n",
                     dds_strretcode(code));
         }
         dds.failed_before = true;
         return;
     }
-    if (dds.failed_before) {
+    if (dds.failed_before && epg_host_logs(EPG_HOST_LOG_INFO)) {
         fputs("the DDS participant is ready\n", stderr);
     }
     dds.failed_before = false;

@@ -7,6 +7,8 @@
 
 #include <stdio.h>
 
+#include "epg/host_log.h"
+
 /** Returns ROS 2's name of the incompatible policy. */
 static const char *policy_name(uint32_t policy)
 {
@@ -31,7 +33,8 @@ static const char *policy_name(uint32_t policy)
 void epg_dds_check_writer(dds_entity_t writer, const char *name)
 {
     dds_offered_incompatible_qos_status_t status;
-    if (dds_get_offered_incompatible_qos_status(writer, &status) == DDS_RETCODE_OK && status.total_count_change > 0) {
+    if (dds_get_offered_incompatible_qos_status(writer, &status) == DDS_RETCODE_OK && status.total_count_change > 0 &&
+        epg_host_logs(EPG_HOST_LOG_WARN)) {
         const bool reliability = status.last_policy_id == DDS_RELIABILITY_QOS_POLICY_ID;
         fprintf(stderr,
                 "warning: a subscription of %s requests another %s than this node offers: it receives no messages\n%s",
@@ -45,7 +48,8 @@ void epg_dds_check_writer(dds_entity_t writer, const char *name)
 void epg_dds_check_reader(dds_entity_t reader, const char *name)
 {
     dds_requested_incompatible_qos_status_t status;
-    if (dds_get_requested_incompatible_qos_status(reader, &status) == DDS_RETCODE_OK && status.total_count_change > 0) {
+    if (dds_get_requested_incompatible_qos_status(reader, &status) == DDS_RETCODE_OK && status.total_count_change > 0 &&
+        epg_host_logs(EPG_HOST_LOG_WARN)) {
         const bool reliability = status.last_policy_id == DDS_RELIABILITY_QOS_POLICY_ID;
         fprintf(
             stderr,

@@ -96,12 +96,18 @@ bool epg_names_is_space(const char *text)
 
 const char *epg_names_node(const epg_target_t *target)
 {
+    if (target->given_node != NULL) {
+        return target->given_node;
+    }
     return target->store != NULL && target->store->node[0] != '\0' ? target->store->node : target->node;
 }
 
 const char *epg_names_space(const epg_target_t *target)
 {
     const char *stored = target->store != NULL ? target->store->name_space : "";
+    if (target->given_space != NULL) {
+        return target->given_space;
+    }
     if (stored[0] == '\0') {
         return target->name_space;
     }

@@ -178,9 +178,9 @@ void epg_node_set_time(epg_node_t *node, uint64_t epoch_ns, uint64_t now_ns)
     node->epoch_ns = (int64_t)(epoch_ns - now_ns);
 }
 
-size_t epg_node_topic(const epg_node_t *node, const epg_topic_t *topic, char *name, size_t size)
+size_t epg_node_name(const epg_node_t *node, const char *relative, bool service, char *name, size_t size)
 {
-    const char *rest = topic->name;
+    const char *rest = relative;
     const char *parts[4] = {"", "", "", ""};
     if (rest[0] == '~') {
         parts[0] = node->name_space;
@@ -201,7 +201,21 @@ size_t epg_node_topic(const epg_node_t *node, const epg_topic_t *topic, char *na
         memcpy(name + length, parts[i], count + 1);
         length += count;
     }
+    if (node->target->rename == NULL || strcmp(relative, "~") == 0) {
+        return length;
+    }
+    const char *renamed = node->target->rename(name, service);
+    length = strlen(renamed);
+    if (length >= size) {
+        return 0;
+    }
+    memmove(name, renamed, length + 1);
     return length;
+}
+
+size_t epg_node_topic(const epg_node_t *node, const epg_topic_t *topic, char *name, size_t size)
+{
+    return epg_node_name(node, topic->name, false, name, size);
 }
 
 uint32_t epg_node_key(const epg_node_t *node)

@@ -19,13 +19,12 @@ static epg_service_state_t *state_of(const epg_node_t *node)
 
 size_t epg_service_topic(const epg_node_t *node, size_t service, bool reply, char *name, size_t size)
 {
-    const epg_topic_t topic = {.name = node->target->services[service].name};
     const char *end = reply ? "Reply" : "Request";
     const size_t end_size = strlen(end) + 1;
     if (size < 2) {
         return 0;
     }
-    const size_t length = epg_node_topic(node, &topic, name + 2, size - 2);
+    const size_t length = epg_node_name(node, node->target->services[service].name, true, name + 2, size - 2);
     if (length == 0 || end_size > size - 2 - length) {
         return 0;
     }

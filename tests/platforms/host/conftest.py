@@ -21,3 +21,11 @@ def patient_motor(tmp_path_factory: pytest.TempPathFactory) -> Program:
     folder: Path = tmp_path_factory.mktemp("patient_motor")
     sources = [PROGRAMS / "motor.c", *platform_sources()]
     return Program(compile_program(folder / "motor", sources, defines=["OVERRUN_LIMIT=0"]))
+
+
+@pytest.fixture(scope="session")
+def connected_motor(tmp_path_factory: pytest.TempPathFactory) -> Program:
+    """The motor with a middleware that prints "connected", and has no network."""
+    folder: Path = tmp_path_factory.mktemp("connected_motor")
+    sources = [PROGRAMS / "motor.c", *platform_sources()]
+    return Program(compile_program(folder / "motor", sources, defines=["CONNECTED", "OVERRUN_LIMIT=0"]))

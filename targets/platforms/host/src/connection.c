@@ -8,6 +8,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "epg/host_log.h"
+
 static epg_host_link_t link_to_agent;
 static epg_host_terminal_t terminal;
 
@@ -114,8 +116,10 @@ void epg_host_services_tell(epg_host_services_t *services)
     const char *state = middleware->state();
     const bool running = strcmp(state, "running") == 0;
     if (running != (services->state != NULL)) {
-        fprintf(stderr, running ? "%s: connected to the agent at %s\n" : "%s: lost the agent at %s\n",
-                services->target->application->name, services->agent);
+        if (epg_host_logs(EPG_HOST_LOG_INFO)) {
+            fprintf(stderr, running ? "%s: connected to the agent at %s\n" : "%s: lost the agent at %s\n",
+                    services->target->application->name, services->agent);
+        }
         services->state = running ? state : NULL;
     }
 }

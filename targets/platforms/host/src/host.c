@@ -10,6 +10,7 @@
 #include "files.h"
 #include "options.h"
 #include "report.h"
+#include "ros.h"
 #include "run.h"
 #include "serial.h"
 #include "setpoints.h"
@@ -19,6 +20,12 @@ static void on_interrupt(int number)
 {
     (void)number;
     epg_host_interrupted = 1;
+}
+
+/** True if the run ends like that of any ROS 2 node: Ctrl-C is its regular end, which a launch file must not report. */
+static bool is_ros_node(const epg_host_options_t *options)
+{
+    return options->ros.given && options->duration_ns == UINT64_MAX;
 }
 
 /** Runs the target and writes the files.  They are open, and the events are read. */
@@ -40,6 +47,9 @@ static int run_target(const epg_host_target_t *host, const epg_host_options_t *o
         return FAILED;
     }
     epg_host_run_start(&run, options->realtime ? target->application : epg_host_prepare_simulated(&run));
+    if (options->ros.given) {
+        epg_host_ros_set_parameters(target);
+    }
     int status = DONE;
     if (options->realtime) {
         status = epg_host_run_realtime(&run) ? DONE : FAILED;
@@ -57,7 +67,7 @@ static int run_target(const epg_host_target_t *host, const epg_host_options_t *o
     if (status == DONE && !options->quiet && !options->console) {
         epg_host_print_summary(&run);
     }
-    return status == DONE && epg_host_interrupted ? INTERRUPTED : status;
+    return status == DONE && epg_host_interrupted && !is_ros_node(options) ? INTERRUPTED : status;
 }
 
 /** Opens the connections of the middlewares, and runs the target. */
@@ -82,27 +92,42 @@ static int run_with_files(const epg_host_target_t *host, const epg_host_options_
     return epg_host_files_close(&files, options) ? status : FAILED;
 }
 
-int epg_host_main(const epg_host_target_t *host, int argc, char **argv)
+/** Opens the store, and applies the arguments after --ros-args to `target`.  Returns false after a message. */
+static bool prepare_target(epg_target_t *target, const epg_host_options_t *options)
+{
+    epg_host_store_open(options->store);
+    if (options->serial != NULL) {
+        epg_host_serial_set(options->serial);
+    }
+    return !options->ros.given || epg_host_ros_prepare(&options->ros, target);
+}
+
+int epg_host_main(const epg_host_target_t *generated, int argc, char **argv)
 {
     epg_host_options_t options;
-    if (!epg_host_read_options(argc, argv, epg_host_is_connected(host), &options)) {
+    if (!epg_host_read_options(argc, argv, epg_host_is_connected(generated), &options)) {
         return WRONG_INPUT;
     }
     if (options.help) {
-        epg_host_print_help(host->target->application->name);
+        epg_host_print_help(generated->target->application->name);
         return DONE;
     }
     if (options.interface) {
-        epg_host_print_interface(host);
+        epg_host_print_interface(generated);
         return DONE;
     }
+    static epg_target_t target; /* a copy of the generated constant, which can have other names */
+    target = *generated->target;
+    epg_host_target_t changed = *generated;
+    changed.target = &target;
+    const epg_host_target_t *host = &changed;
     epg_host_events_t events = {NULL, 0};
     if (options.setpoints != NULL && !epg_host_read_setpoints(options.setpoints, host, options.realtime, &events)) {
         return WRONG_INPUT;
     }
-    epg_host_store_open(options.store);
-    if (options.serial != NULL) {
-        epg_host_serial_set(options.serial);
+    if (!prepare_target(&target, &options)) {
+        epg_host_free_setpoints(&events);
+        return WRONG_INPUT;
     }
     epg_host_interrupted = 0;
     signal(SIGINT, on_interrupt);

@@ -13,30 +13,33 @@
 
 void epg_host_print_help(const char *name)
 {
-    printf("usage: %s [options] --duration SECONDS\n"
-           "       %s [options] --realtime [--console]\n"
-           "\n"
-           "Runs the target '%s' against its simulated plant.\n"
-           "\n"
-           "  --duration SECONDS   duration of the run; in real time, a console or ROS 2 node needs none\n"
-           "  --realtime           runs in real time (default: simulated time)\n"
-           "  --console            reads commands from standard input, answers on standard output (real time)\n"
-           "  --console-pty PATH   the same on a terminal with this name, like the serial port of a board\n"
-           "  --agent HOST:PORT    address of the ROS 2 agent (real time; default: as in the .tcf)\n"
-           "  --serial-device PATH serial device of the ROS 2 agent, such as /dev/ttyUSB0\n"
-           "  --store FILE         file in which the console's 'save' stores parameters\n"
-           "  --serial WORD        replaces '$serial' in the names of node and namespace; default: host\n"
-           "  --setpoints FILE     reads setpoints from a CSV file with rows time,topic,value\n"
-           "  --topics FILE        writes all published values in the same form\n"
-           "  --trace FILE         writes all signals, one row per control cycle\n"
-           "  --statistics FILE    writes the run's statistics as JSON\n"
-           "  --quiet              prints no summary\n"
-           "  --interface          prints the names of topics, digital inputs and signals, for programs\n"
-           "  --help               prints this text\n"
-           "\n"
-           "Exit status: 0 done; 1 the run or the writing of a file failed, or the plant diverged;\n"
-           "2 wrong options or setpoint file; 130 interrupted (all files are complete up to this moment).\n",
-           name, name, name);
+    printf(
+        "usage: %s [options] --duration SECONDS\n"
+        "       %s [options] --realtime [--console]\n"
+        "\n"
+        "Runs the target '%s' against its simulated plant.\n"
+        "\n"
+        "  --duration SECONDS   duration of the run; in real time, a console or ROS 2 node needs none\n"
+        "  --realtime           runs in real time (default: simulated time)\n"
+        "  --console            reads commands from standard input, answers on standard output (real time)\n"
+        "  --console-pty PATH   the same on a terminal with this name, like the serial port of a board\n"
+        "  --agent HOST:PORT    address of the ROS 2 agent (real time; default: as in the .tcf)\n"
+        "  --serial-device PATH serial device of the ROS 2 agent, such as /dev/ttyUSB0\n"
+        "  --store FILE         file in which the console's 'save' stores parameters\n"
+        "  --serial WORD        replaces '$serial' in the names of node and namespace; default: host\n"
+        "  --setpoints FILE     reads setpoints from a CSV file with rows time,topic,value\n"
+        "  --topics FILE        writes all published values in the same form\n"
+        "  --trace FILE         writes all signals, one row per control cycle\n"
+        "  --statistics FILE    writes the run's statistics as JSON\n"
+        "  --quiet              prints no summary\n"
+        "  --interface          prints the names of topics, digital inputs and signals, for programs\n"
+        "  --help               prints this text\n"
+        "  --ros-args ...       the arguments of ROS 2 (-r, -p, --params-file, --log-level), up to --; a ROS 2 node\n"
+        "                       then runs in real time unless --duration is given\n"
+        "\n"
+        "Exit status: 0 done; 1 the run or the writing of a file failed, or the plant diverged;\n"
+        "2 wrong options or setpoint file; 130 interrupted (all files are complete up to this moment).\n",
+        name, name, name);
 }
 
 /** An option of the command line: a flag, or a text value.  One of the two pointers is NULL. */
@@ -84,6 +87,16 @@ static bool take(const option_t *option, int argc, char **argv, int *i)
         fprintf(stderr, "error: option %s needs a value\n", option->name);
     }
     return (*option->value)[0] != '\0';
+}
+
+static void refuse_unknown(const char *argument)
+{
+    fprintf(stderr, "error: unknown option '%s'\n", argument);
+    if (strstr(argument, ":=") != NULL) {
+        fprintf(stderr, "hint: write --ros-args -r %s\n", argument);
+    } else {
+        fputs("hint: --help lists the options\n", stderr);
+    }
 }
 
 /** True if the options can be combined; false after a message. */
@@ -137,15 +150,23 @@ bool epg_host_read_options(int argc, char **argv, bool connected, epg_host_optio
         {"--serial-device", NULL, &options->device},
     };
     for (int i = 1; i < argc; i++) {
+        if (strcmp(argv[i], "--ros-args") == 0) {
+            if (!epg_host_ros_take(&options->ros, argc, argv, &i)) {
+                return false;
+            }
+            continue;
+        }
         const option_t *option = find(known, sizeof known / sizeof known[0], argv[i]);
         if (option == NULL) {
-            fprintf(stderr, "error: unknown option '%s'\nhint: --help lists the options\n", argv[i]);
+            refuse_unknown(argv[i]);
             return false;
         }
         if (!take(option, argc, argv, &i)) {
             return false;
         }
     }
+    /* `ros2 run` and launch files start a node without options of this program. */
+    options->realtime = options->realtime || (options->ros.given && connected && duration == NULL);
     return options->help || options->interface || epg_host_complete_options(duration, connected, options);
 }
 

@@ -9,6 +9,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "ros.h"
+
 /** Exit status of the program. */
 enum { DONE = 0, FAILED = 1, WRONG_INPUT = 2, INTERRUPTED = 130 };
 
@@ -28,6 +30,7 @@ typedef struct epg_host_options {
     const char *topics;      /**< path of the file for publications; NULL: not written */
     const char *trace;       /**< path of the file for signals; NULL: not written */
     const char *statistics;  /**< path of the file for statistics; NULL: not written */
+    epg_host_ros_t ros;      /**< the arguments after --ros-args */
 } epg_host_options_t;
 
 /**

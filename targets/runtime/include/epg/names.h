@@ -3,7 +3,8 @@
  * @file
  * The name and the namespace of a target's ROS 2 node.
  *
- * A name is the generated one, unless the user has stored another one on the board (epg/store.h).  It can contain the
+ * A name is the generated one, unless the user has stored another one on the board (epg/store.h), or has given another
+ * one to a program on its command line.  It can contain the
  * word "$serial", which is replaced by the board's serial number; so one firmware gives each board its own name.
  *
  * The rules are those of ROS 2.  A name consists of letters, digits and '_', and does not begin with a digit.  A
@@ -33,7 +34,10 @@ bool epg_names_is_node(const char *text);
 /** Returns true if `text` can be a namespace, such as "/" or "/fleet/robot_$serial". */
 bool epg_names_is_space(const char *text);
 
-/** Returns the name of the node: the stored or set one, otherwise the generated one.  "$serial" is not replaced. */
+/**
+ * Returns the name of the node: the given one (`given_node`), otherwise the stored or set one, otherwise the generated
+ * one.  "$serial" is not replaced.
+ */
 const char *epg_names_node(const epg_target_t *target);
 
 /** Returns the namespace of the node in the same way: "" or "/robot1". */

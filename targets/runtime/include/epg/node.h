@@ -89,6 +89,9 @@ void epg_node_set_time(epg_node_t *node, uint64_t epoch_ns, uint64_t now_ns);
  */
 size_t epg_node_topic(const epg_node_t *node, const epg_topic_t *topic, char *name, size_t size);
 
+/** The same for a name that is not in a topic, such as that of a service. */
+size_t epg_node_name(const epg_node_t *node, const char *relative, bool service, char *name, size_t size);
+
 /**
  * Returns a number by which an agent distinguishes this node from others.  It is never 0, and different for two boards
  * and for two nodes on one computer.  It is the hash FNV-1a (Fowler, Noll, Vo), 32 bits, of the serial number, the

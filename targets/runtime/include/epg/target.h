@@ -8,6 +8,7 @@
 #ifndef EPG_TARGET_H
 #define EPG_TARGET_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -71,8 +72,15 @@ typedef struct epg_signal {
 typedef struct epg_target {
     epg_control_t *control;
     const epg_application_t *application;
-    const char *node;                 /**< name of the node; can contain "$serial", the serial number (epg/names.h) */
-    const char *name_space;           /**< "" or "/robot1"; can contain "$serial", too */
+    const char *node;        /**< name of the node; can contain "$serial", the serial number (epg/names.h) */
+    const char *name_space;  /**< "" or "/robot1"; can contain "$serial", too */
+    const char *given_node;  /**< name of the node that replaces a stored one, too; NULL: none was given */
+    const char *given_space; /**< the same for the namespace */
+    /**
+     * Returns the name that replaces the full name `name` of a topic or a service, or `name` itself.  NULL: no name is
+     * replaced.  Only for computers: a launch file gives the names.
+     */
+    const char *(*rename)(const char *name, bool service);
     uint8_t domain;                   /**< ROS_DOMAIN_ID; EPG_DOMAIN_DEFAULT: that of the agent or the environment */
     uint64_t communication_period_ns; /**< time between two publications */
     size_t component_count;

@@ -7,10 +7,13 @@
  * tests of overruns in real time use this.
  */
 #include <math.h>
+#include <stdio.h>
 
 #include "epg/finite.h"
 #include "epg/host.h"
+#include "epg/middleware.h"
 #include "epg/port.h"
+#include "epg/store.h"
 
 #ifndef PERIOD_NS
 #define PERIOD_NS 1000000
@@ -42,8 +45,32 @@ static double setpoint;
 static double duty;
 static double cycle_count;
 
+/* The parameters of the controller: its gain, and the largest duty. */
+static const epg_parameter_t parameter_table[] = {{"PID\\kp", "1/rad", 0.8}, {"PID\\limit", "", 0.9}};
+enum { PARAMETERS = sizeof parameter_table / sizeof parameter_table[0] };
+static double gains[PARAMETERS];
+static double requested[PARAMETERS];
+static double applied[PARAMETERS];
+static bool changed[PARAMETERS];
+
+static void set_gain(size_t index, double value)
+{
+    gains[index] = value;
+}
+
+static epg_parameters_t parameters = {.count = PARAMETERS,
+                                      .table = parameter_table,
+                                      .model = 1,
+                                      .set = set_gain,
+                                      .values = requested,
+                                      .applied = applied,
+                                      .changed = changed};
+static unsigned char store_bytes[EPG_STORE_SIZE(PARAMETERS)];
+static epg_store_t store = {.bytes = store_bytes, .parameters = &parameters};
+
 static void start(void)
 {
+    epg_store_load(&store);
     epg_port_quadrature_start(&encoder);
     epg_port_pwm_start(&pwm);
     epg_port_output_start(DIRECTION, false);
@@ -68,6 +95,9 @@ static bool inputs_finite(void)
 static void model_init(void)
 {
     duty = 0.0;
+    for (size_t i = 0; i < PARAMETERS; i++) {
+        gains[i] = parameter_table[i].value;
+    }
 }
 
 static void model_step(void)
@@ -80,7 +110,7 @@ static void model_step(void)
         duty = 0.0;
         return;
     }
-    duty = fmax(-0.9, fmin(0.9, 0.8 * (setpoint - position)));
+    duty = fmax(-gains[1], fmin(gains[1], gains[0] * (setpoint - position)));
 }
 
 static bool model_finite(void)
@@ -148,16 +178,39 @@ static const epg_application_t application = {
     .monitor_count = 2,
     .monitor_values = monitor_values,
     .monitor_exchange = &monitor_exchange,
+    .parameters = &parameters,
 };
 
-static const epg_topic_t subscriptions[2] = {
-    {.name = "motor_setpoint", .count = 1}, {.name = "motor_enable", .role = EPG_TOPIC_ENABLE, .count = 1}};
+static const epg_topic_t subscriptions[2] = {{.name = "motor_setpoint", .count = 1},
+                                             {.name = "motor_enable", .role = EPG_TOPIC_ENABLE, .count = 1}};
 static const epg_topic_t publications[2] = {{.name = "motor_position", .count = 1},
                                             {.name = "motor_echo", .index = 1, .count = 1}};
 
 static const char *const components[] = {"encoder", "motor", "emergency_stop"};
 
+#ifdef CONNECTED
+/* A middleware that makes its own connection. */
+static void middleware_start(const epg_target_t *of, const epg_stream_t *stream)
+{
+    (void)of;
+    (void)stream;
+    puts("connected");
+    fflush(stdout);
+}
+
+static void middleware_poll(uint64_t now_ns)
+{
+    (void)now_ns;
+}
+
+static const epg_middleware_t middleware = {
+    .start = middleware_start, .poll = middleware_poll, .wait = epg_port_wait_until};
+#endif
+
 static const epg_target_t target = {
+#ifdef CONNECTED
+    .middleware = &middleware,
+#endif
     .control = &control,
     .application = &application,
     .node = "motor_node",
@@ -169,6 +222,7 @@ static const epg_target_t target = {
     .publications = publications,
     .component_count = sizeof components / sizeof components[0],
     .components = components,
+    .store = &store,
 };
 
 /* The plant: a motor that reaches 20 rad/s at full duty with a time constant of 50 ms. */
