@@ -89,6 +89,8 @@ class Agent:
         """Every connection since the start: its time and its client."""
         self.mute: set[Id] = set()
         """Submessages that the agent does not answer."""
+        self.mute_streams: set[int] = set()
+        """Streams whose frames from the boards are lost."""
         self.clock_offset = 0.0
         """Seconds by which the agent's clock is ahead."""
         self.log = Log()
@@ -151,6 +153,13 @@ class Agent:
             for peer in self._peers:
                 self.log.add(False, peer, data, "injected")
                 self.link.send_raw(peer, data if raw else self.link.raw(peer, data))
+
+    def say(self, stream: int, content: bytes) -> None:
+        """Sends the submessage ``content`` to every client on a stream of its session, correctly numbered."""
+        with self.lock:
+            for client in self.clients.values():
+                for message in client.push(stream, content) or []:
+                    self._send(client.peer, message)
 
     def refuse(self, status: Status, kind: Kind | None = None, name: str = "", times: int = 1_000_000) -> None:
         self.refusals.append(Refusal(status, kind, name, times))
@@ -267,6 +276,8 @@ class Agent:
                 self._stranger(peer, header, body)
                 return
             client.heard, client.asked = self._clock(), 0
+            if header.stream in self.mute_streams:
+                return
             for whole in client.receive(header.stream, header.sequence, body):
                 self._handle_all(client, header.stream, whole)
             if header.stream >= 0x80:

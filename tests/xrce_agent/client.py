@@ -7,11 +7,12 @@ import time
 from collections import deque
 from collections.abc import Callable, Hashable
 
-from .representations import Description
+from .representations import Description, Qos
 from .streams import BestEffortInput, BestEffortOutput, Fragments, ReliableInput, ReliableOutput
-from .topics import DEPTH, Endpoint, ReaderEnd, Topics
-from .wire import BEST_EFFORT_STREAM, REPLACE, REUSE, Id, Kind, Status, Submessage, submessage
+from .topics import DEPTH, IDENTITY, Endpoint, ReaderEnd, Topics
+from .wire import BEST_EFFORT_STREAM, REPLACE, REUSE, Id, Kind, Status, Submessage, WireError, submessage
 
+REPLIER_QOS = Qos(reliable=True, depth=1)
 UNLIMITED = 0xFFFF
 """Value of READ_DATA's ``max_samples`` that means no limit."""
 
@@ -56,7 +57,10 @@ class Client:
         """How often the agent has asked since then."""
         self.objects: dict[bytes, Description] = {}
         self.ends: dict[bytes, Endpoint] = {}
+        self.reply_ends: dict[bytes, Endpoint] = {}
+        """The writer of each replier; ``ends`` has its reader."""
         self.readings: dict[bytes, Reading] = {}
+        self._fragments: dict[int, Fragments] = {}
         self._topics = topics
         self.pump: Callable[[Client], None] = lambda client: None
         """Called when samples wait."""
@@ -66,7 +70,7 @@ class Client:
         self._inputs: dict[int, ReliableInput | BestEffortInput] = {}
         self._reliable: dict[int, ReliableOutput] = {}
         self._best_effort: dict[int, BestEffortOutput] = {}
-        self._fragments: dict[int, Fragments] = {}
+        # eProsima's agent keeps the fragments that it has collected (ReliableInputStream::reset)
 
     # Streams ---------------------------------------------------------------------------------------------------------
 
@@ -125,8 +129,17 @@ class Client:
             if topic is None:
                 return Status.UNKNOWN_REFERENCE
             self._attach(identity, new, topic)
+        if new.kind == Kind.REPLIER:
+            self._attach_replier(identity, new)
         self.objects[identity] = new
         return Status.OK
+
+    def _attach_replier(self, identity: bytes, new: Description) -> None:
+        """The QoS is that of ``FastDDSMiddleware::create_replier_by_bin`` of eProsima's agent."""
+        self._attach(identity, Description(Kind.READER, qos=REPLIER_QOS), new)
+        writer = Endpoint(*new.replies, reliable=True, depth=1, node=self.node)
+        self.reply_ends[identity] = writer
+        self._topics.attach_writer(writer)
 
     def _attach(self, identity: bytes, new: Description, topic: Description) -> None:
         depth = new.qos.depth or DEPTH
@@ -151,8 +164,9 @@ class Client:
             return Status.UNKNOWN_REFERENCE
         self.readings.pop(identity, None)
         end = self.ends.pop(identity, None)
-        if end is not None:
-            self._topics.detach(end)
+        for each in (end, self.reply_ends.pop(identity, None)):
+            if each is not None:
+                self._topics.detach(each)
         children = [child for child, d in self.objects.items() if identity in (d.parent, d.topic)]
         for child in children:
             self.delete(child)
@@ -165,6 +179,11 @@ class Client:
     # Data ------------------------------------------------------------------------------------------------------------
 
     def write(self, identity: bytes, data: bytes) -> None:
+        if identity in self.reply_ends:
+            if len(data) < IDENTITY:
+                raise WireError("a reply without the identity of its request")
+            self._topics.reply(self.reply_ends[identity], data[:IDENTITY], data[IDENTITY:])
+            return
         writer = self.ends.get(identity)
         if writer is not None and not isinstance(writer, ReaderEnd):
             self._topics.write(writer, data)

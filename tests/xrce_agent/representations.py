@@ -39,6 +39,8 @@ class Description:
     qos: Qos = Qos(reliable=True)
     domain: int = 0
     form: int = BINARY
+    replies: tuple[str, str] = ("", "")
+    """The name and the type of a replier's topic for replies; ``name`` and ``type`` are those of its requests."""
 
 
 def read_description(payload: CdrReader) -> Description:
@@ -79,9 +81,26 @@ def _binary(kind: Kind, data: CdrReader, parent: bytes, domain: int) -> Descript
         return Description(kind, parent, name, data.string() if data.flag() else "")
     if kind in (Kind.PUBLISHER, Kind.SUBSCRIBER):
         return Description(kind, parent)
+    if kind == Kind.REPLIER:
+        return _binary_replier(data, parent)
+    if kind == Kind.REQUESTER:
+        raise WireError("this agent has no requesters")
     topic = data.take(2)
     qos = _binary_qos(data) if data.flag() else Qos(reliable=kind == Kind.WRITER)
     return Description(kind, parent, topic=topic, qos=qos)
+
+
+def _binary_replier(data: CdrReader, parent: bytes) -> Description:
+    """Source: ``OBJK_Replier_Binary::deserialize`` of eProsima's agent; here, topics must have names."""
+    data.string()  # name of the service, for which the agent has no use
+    request_type, reply_type = data.string(), data.string()
+    if not data.flag():
+        raise WireError("a replier without a topic for requests")
+    requests = data.string()
+    if not data.flag():
+        raise WireError("a replier without a topic for replies")
+    replies = data.string()
+    return Description(Kind.REPLIER, parent, requests, request_type, replies=(replies, reply_type))
 
 
 def _binary_qos(data: CdrReader) -> Qos:
@@ -105,6 +124,8 @@ def _xml(kind: Kind, text: str, parent: bytes, domain: int) -> Description:
         return Description(kind, parent, find("topic/name"), find("topic/dataType"), form=XML)
     if kind in (Kind.PUBLISHER, Kind.SUBSCRIBER):
         return Description(kind, parent, form=XML)
+    if kind in (Kind.REQUESTER, Kind.REPLIER):
+        raise WireError("this agent makes repliers of the binary form only")
     base = "data_writer" if kind == Kind.WRITER else "data_reader"
     default = "RELIABLE" if kind == Kind.WRITER else "BEST_EFFORT"
     depth = find(f"{base}/topic/historyQos/depth")

@@ -109,12 +109,13 @@ class ReliableOutput:
         self._next = 0
         self._unacknowledged: OrderedDict[int, bytes] = OrderedDict()
 
-    @property
-    def room(self) -> int:
-        return WINDOW - 1 - len(self._unacknowledged)
-
     def push(self, content: bytes, mtu: int) -> list[bytes] | None:
-        """Messages to send now; None if the window is full."""
+        """Messages to send now; None if the window is full.
+
+        As in eProsima's agent, the fragments of one submessage are sent at once, also if the window is full then.
+        """
+        if len(self._unacknowledged) >= WINDOW - 1:
+            return None
         room = mtu - len(Header(self._session, self._stream, 0, self._key).pack())
         bodies = [content]
         if len(content) > room:
@@ -122,8 +123,6 @@ class ReliableOutput:
             pieces = [content[at : at + size] for at in range(0, len(content), size)]
             flags = [0] * (len(pieces) - 1) + [LAST_FRAGMENT]
             bodies = [submessage(Id.FRAGMENT, piece, flag | LITTLE_ENDIAN) for piece, flag in zip(pieces, flags)]
-        if len(bodies) > self.room:
-            return None
         messages = []
         for body in bodies:
             messages.append(Header(self._session, self._stream, self._next, self._key).pack() + body)

@@ -13,6 +13,8 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+IDENTITY = 24
+"""Bytes of the identity of a sample: GUID and sequence number of its writer.  XRCE has it before a request or reply."""
 DEPTH = 10
 """Depth of a history by default, as in ROS 2."""
 
@@ -26,6 +28,8 @@ class Sample:
     """CDR without its encapsulation header."""
     writer: str
     """The board's node name, or "" for a test."""
+    request: bytes = b""
+    """The identity of the request that this sample answers; b"" for other samples."""
 
 
 @dataclass(eq=False)
@@ -73,6 +77,7 @@ class Topics:
         self._samples: deque[Sample] = deque(maxlen=kept)
         self.readers: list[ReaderEnd] = []
         self.writers: list[Endpoint] = []
+        self._requests = 0
         self.listeners: list[Callable[[str, Endpoint], None]] = []
         """Called with "attach" or "detach" and the endpoint of a board; a bridge needs this."""
         self.taps: list[Callable[[Endpoint, bytes], None]] = []
@@ -112,6 +117,12 @@ class Topics:
                 tap(writer, data)
             self._news.notify_all()
 
+    def reply(self, writer: Endpoint, request: bytes, data: bytes) -> None:
+        """Takes a board's reply to the request with the identity ``request``."""
+        with self.lock:
+            self._samples.append(Sample(time.monotonic(), writer.topic, data, writer.node, request))
+            self._news.notify_all()
+
     def _give(self, writer: Endpoint, data: bytes) -> int:
         matched = [reader for reader in self.readers if writer.matches(reader)]
         for reader in matched:
@@ -124,6 +135,28 @@ class Topics:
         """Publishes like a peer with this QoS; returns the number of readers that match."""
         with self.lock:
             return self._give(Endpoint(topic, type_name, reliable), data)
+
+    def ask(self, service: str, data: bytes, request_type: str | None = None) -> bytes:
+        """Sends a request like a service client; ``service`` is such as "/robot_1/enable".  Returns its identity."""
+        self._requests += 1
+        identity = b"test's requester" + (self._requests << 32).to_bytes(8, "little")
+        found = self.publish(f"rq{service}Request", identity + data, type_name=request_type)
+        assert found == 1, f"{found} repliers of {service}"
+        return identity
+
+    def answers(self, service: str, identity: bytes) -> list[bytes]:
+        return [each.data for each in self.samples(f"rr{service}Reply") if each.request == identity]
+
+    def call(self, service: str, data: bytes, seconds: float = 20.0) -> bytes:
+        """The reply to a request."""
+        identity = self.ask(service, data)
+        found = self.wait_until(lambda: bool(self.answers(service, identity)), seconds)
+        assert found, f"no answer of {service} within {seconds} s"
+        (answer,) = self.answers(service, identity)
+        return answer
+
+    def wait_for_service(self, service: str, seconds: float = 20.0) -> None:
+        self.wait_for_reader(f"rq{service}Request", seconds)
 
     def subscribe(self, topic: str, reliable: bool = True, type_name: str | None = None) -> Subscription:
         return Subscription(self, topic, type_name, reliable)

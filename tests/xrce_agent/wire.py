@@ -64,6 +64,8 @@ class Kind(IntEnum):
     SUBSCRIBER = 4
     WRITER = 5
     READER = 6
+    REQUESTER = 7
+    REPLIER = 8
 
 
 class Status(IntEnum):
