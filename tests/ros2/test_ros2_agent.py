@@ -188,3 +188,48 @@ def test_a_node_moves_and_disables_a_board(agent: RealAgent, build: Build, imple
     assert isinstance(told, dict)
     assert told["moved"] is not None and told["disabled"] is not None
     assert told["level"] == 1
+
+
+SERVED = """
+from std_srvs.srv import SetBool, Trigger
+told = []
+node.create_subscription(DiagnosticArray, "/diagnostics", told.append, 10)
+enable = node.create_client(SetBool, "/robot_1/JIWY_node/enable")
+reset = node.create_client(Trigger, "/robot_1/JIWY_node/reset")
+assert wait(lambda: here(1) and enable.service_is_ready() and reset.service_is_ready() and told, 20) is not None
+
+def call(client, request, seconds):
+    "The reply, and the seconds until it came; None for both if none came."
+    future = client.call_async(request)
+    waited = wait(future.done, seconds)
+    return None if waited is None else [future.result().success, future.result().message, waited]
+
+seconds = float(sys.argv[1])
+answers = [call(enable, SetBool.Request(data=data), seconds) for data in (False, True, False)]
+answers.append(call(reset, Trigger.Request(), seconds))
+values = lambda: {pair.key: pair.value for pair in told[-1].status[0].values}
+wait(lambda: int(values()["malformed"]) >= int(sys.argv[2]), 10)
+print(json.dumps({"answers": answers, "malformed": values()["malformed"], "reconnects": values()["reconnects"]}))
+"""
+
+
+def test_services_answer_their_own_rmw(agent: RealAgent, build: Build) -> None:
+    with boards(build("agent_jiwy"), agent, 1):
+        told = ask(agent, "rmw_fastrtps_cpp", SERVED, 10, 0)
+    assert isinstance(told, dict)
+    assert [answer[:2] for answer in told["answers"]] == [
+        [True, "disabled"],
+        [True, "enabled"],
+        [True, "disabled"],
+        [True, "disabled, without a fault"],
+    ]
+    print(f"{agent.agent}: replies after {[round(1000 * answer[2]) for answer in told['answers']]} ms")
+    assert (told["malformed"], told["reconnects"]) == ("0", "0")
+
+
+def test_requests_of_the_other_rmw_are_counted(agent: RealAgent, build: Build) -> None:
+    with boards(build("agent_jiwy"), agent, 1):
+        told = ask(agent, "rmw_cyclonedds_cpp", SERVED, 1, 4)
+    assert isinstance(told, dict)
+    assert told["answers"] == [None] * 4
+    assert (told["malformed"], told["reconnects"]) == ("4", "0")

@@ -9,8 +9,8 @@
  * | creating | requests node, topics, writers and readers, one by one     | all exist: running; refused, or no answer |
  * |          |                                                            | within 2 s: waiting, with longer          |
  * |          |                                                            | intervals                                 |
- * | running  | exchanges messages; pings every 0.1 s; asks for the time   | the session is unknown to the agent, or   |
- * |          | every 10 s                                                 | the agent silent for 1 s: waiting         |
+ * | running  | exchanges messages, requests of services and replies;      | the session is unknown to the agent, or   |
+ * |          | pings every 0.1 s; asks for the time every 10 s            | the agent silent for 1 s: waiting         |
  *
  * The client library is called so that none of its functions waits.  With a timeout of 0, a function sends the frames
  * that are ready, takes one frame if there is one, and returns.
@@ -24,6 +24,7 @@
 #include "xrce_entities.h"
 #include "xrce_guard.h"
 #include "xrce_link.h"
+#include "xrce_services.h"
 
 #define MS ((uint64_t)1000000)
 
@@ -57,6 +58,7 @@ static struct {
     epg_xrce_link_t link;
     epg_xrce_guard_t guard;
     epg_xrce_entities_t entities;
+    epg_xrce_services_t services;
     uxrCommunication communication;
     uxrSession session;
     uxrStreamId reliable; /* output streams */
@@ -64,16 +66,18 @@ static struct {
     size_t buffered; /* bytes that the frames in the streams will take on the line */
     epg_xrce_status_t status;
 
-    uint64_t now_ns;       /* board time of this poll */
-    uint64_t attempt_ns;   /* next request for a session */
-    uint64_t interval_ns;  /* interval from that request to the one after it */
-    uint64_t patience_ns;  /* shortest interval between requests, FIRST_ATTEMPT_NS ... MOST_PATIENCE_NS */
-    uint64_t answer_ns;    /* deadline of the agent's answer */
-    uint64_t ping_ns;      /* next ping */
-    uint64_t alive_ns;     /* last sign of life of the agent */
-    uint64_t sync_ns;      /* next request for the time */
-    progress_t sent;       /* our reliable stream, until the agent has acknowledged all frames */
-    progress_t received;   /* the agent's reliable stream, until all announced frames are here */
+    uint64_t now_ns;      /* board time of this poll */
+    uint64_t attempt_ns;  /* next request for a session */
+    uint64_t interval_ns; /* interval from that request to the one after it */
+    uint64_t patience_ns; /* shortest interval between requests, FIRST_ATTEMPT_NS ... MOST_PATIENCE_NS */
+    uint64_t answer_ns;   /* deadline of the agent's answer */
+    uint64_t ping_ns;     /* next ping */
+    uint64_t alive_ns;    /* last sign of life of the agent */
+    uint64_t sync_ns;     /* next request for the time */
+    progress_t sent;      /* our reliable stream, until the agent has acknowledged all frames */
+    progress_t received;  /* the agent's reliable stream, until all announced frames are here */
+    progress_t replies;   /* the same for the stream of the services */
+    progress_t requests;
     uint16_t asked_for;    /* last acknowledged number when `heartbeat_ns` was set */
     uint64_t heartbeat_ns; /* next request for an acknowledgement */
 } client;
@@ -179,7 +183,11 @@ static bool streams_are_stuck(void)
     const bool sent = is_stuck(&client.sent, output->last_acknown, output->last_acknown != output->last_sent, STUCK_NS);
     const bool received =
         is_stuck(&client.received, input->last_handled, input->last_handled != input->last_announced, STUCK_NS);
-    return sent || received;
+    const bool replies = is_stuck(&client.replies, client.services.unacknowledged,
+                                  client.services.unacknowledged != client.services.next, STUCK_NS);
+    const bool requests =
+        is_stuck(&client.requests, client.services.expected, epg_xrce_services_lack_frames(&client.services), STUCK_NS);
+    return sent || received || replies || requests;
 }
 
 /**
@@ -205,6 +213,7 @@ static void wait_for_agent(uint64_t first_ns)
     client.status.state = EPG_XRCE_WAITING;
     client.guard.open = false;
     client.guard.reading = false;
+    epg_xrce_services_start(&client.services);
     client.attempt_ns = client.now_ns + first_ns;
     client.interval_ns = client.patience_ns;
     client.session.info.last_requested_status = UXR_STATUS_NONE;
@@ -251,6 +260,8 @@ static void ask_for_session(void)
     client.buffered = 0;
     client.sent.since_ns = 0;
     client.received.since_ns = 0;
+    client.replies.since_ns = 0;
+    client.requests.since_ns = 0;
     client.attempt_ns = client.now_ns + client.interval_ns;
     const uint64_t longest_ns = client.patience_ns > LAST_ATTEMPT_NS ? client.patience_ns : LAST_ATTEMPT_NS;
     client.interval_ns = client.interval_ns * 3 / 2 < longest_ns ? client.interval_ns * 3 / 2 : longest_ns;
@@ -404,6 +415,11 @@ static void start(const epg_target_t *target, const epg_stream_t *stream)
     client.options = target->options;
     client.node = target->node_state;
     client.guard.session = &client.session;
+    client.guard.services = target->service_count > 0 ? &client.services : NULL;
+    client.services.node = client.node;
+    client.services.link = &client.link;
+    client.services.frame = client.options->best_effort;
+    client.services.frame_size = client.options->output_frame;
     client.patience_ns = FIRST_ATTEMPT_NS;
     epg_node_start(client.node, target, send_message);
     epg_xrce_link_start(&client.link, stream, client.options->received, client.options->input_frame);
@@ -429,6 +445,7 @@ static void poll(uint64_t now_ns)
         epg_xrce_link_reset(&client.link);
         return;
     }
+    client.services.now_ns = now_ns;
     time_heartbeat();
     exchange_frames();
     if (client.status.state == EPG_XRCE_WAITING) {
@@ -442,6 +459,9 @@ static void poll(uint64_t now_ns)
     }
     if (client.status.state != EPG_XRCE_WAITING) {
         uxr_flash_output_streams(&client.session);
+        if (client.target->service_count > 0) {
+            epg_xrce_services_poll(&client.services, now_ns); /* the library's buffer is free until the next message */
+        }
     }
 }
 

@@ -7,6 +7,9 @@
 
 #include <string.h>
 
+#include "epg/service.h"
+#include "xrce_services.h"
+
 enum {
     ONLY = 1, /* id of the participant, the publisher and the subscriber; topics, writers and readers begin at 1 */
     /* Entities with the same id that the agent has kept of an earlier session must be replaced. */
@@ -21,10 +24,16 @@ static size_t topic_count(const epg_node_t *node)
     return node->target->publication_count + node->target->subscription_count;
 }
 
-/** Returns the step that requests the samples of the first reader.  Before it, each topic has two steps. */
-static size_t first_reading(const epg_node_t *node)
+/** Returns the step that creates the first replier.  Before it, each topic has two steps. */
+static size_t first_replier(const epg_node_t *node)
 {
     return FIRST_TOPIC + 2 * topic_count(node);
+}
+
+/** Returns the step that requests the samples of the first reader. */
+static size_t first_reading(const epg_node_t *node)
+{
+    return first_replier(node) + node->target->service_count;
 }
 
 static const epg_topic_t *topic_at(const epg_node_t *node, size_t index)
@@ -79,6 +88,24 @@ static uint16_t create_endpoint(const epg_xrce_entities_t *entities, size_t inde
                                             uxr_object_id(ONLY, UXR_SUBSCRIBER_ID), of, qos, MODE);
 }
 
+/**
+ * Requests the replier of service `index`.  The binary form has no QoS; agents make both topics reliable.  Agents do not
+ * use the name of the service.  Without it, the two longest topics fit into the library's 512 bytes.
+ */
+static uint16_t create_replier(const epg_xrce_entities_t *entities, size_t index)
+{
+    enum { END = sizeof "Request" };
+    char requests[2 + EPG_NODE_TOPIC_SIZE + END] = "";
+    char replies[2 + EPG_NODE_TOPIC_SIZE + END] = "";
+    const epg_service_kind_t *kind = entities->node->target->services[index].kind;
+    (void)epg_service_topic(entities->node, index, false, requests, sizeof requests);
+    (void)epg_service_topic(entities->node, index, true, replies, sizeof replies);
+    return uxr_buffer_create_replier_bin(
+        entities->session, entities->requests, uxr_object_id(epg_xrce_services_id(index), UXR_REPLIER_ID),
+        uxr_object_id(ONLY, UXR_PARTICIPANT_ID), "", kind->request.type, kind->reply.type, requests, replies,
+        (uxrQoS_t){.reliability = UXR_RELIABILITY_RELIABLE}, MODE);
+}
+
 /** Requests the samples of subscription `index`, until the session ends. */
 static uint16_t ask_for_samples(const epg_xrce_entities_t *entities, size_t index)
 {
@@ -87,6 +114,15 @@ static uint16_t ask_for_samples(const epg_xrce_entities_t *entities, size_t inde
     return uxr_buffer_request_data(entities->session, entities->requests,
                                    uxr_object_id((uint16_t)(index + 1), UXR_DATAREADER_ID),
                                    reliable ? entities->reliable : entities->best_effort, &control);
+}
+
+/** Requests the requests of service `index`, until the session ends. */
+static uint16_t ask_for_requests(const epg_xrce_entities_t *entities, size_t index)
+{
+    const uxrDeliveryControl control = {.max_samples = UXR_MAX_SAMPLES_UNLIMITED};
+    return uxr_buffer_request_data(entities->session, entities->requests,
+                                   uxr_object_id(epg_xrce_services_id(index), UXR_REPLIER_ID),
+                                   (uxrStreamId){.raw = EPG_XRCE_SERVICE_STREAM}, &control);
 }
 
 static uint16_t ask(const epg_xrce_entities_t *entities)
@@ -103,6 +139,9 @@ static uint16_t ask(const epg_xrce_entities_t *entities)
                                                 uxr_object_id(ONLY, UXR_SUBSCRIBER_ID), participant, MODE);
     default:
         break;
+    }
+    if (entities->step >= first_replier(entities->node)) {
+        return create_replier(entities, entities->step - first_replier(entities->node));
     }
     const size_t step = entities->step - FIRST_TOPIC;
     return step % 2 == 0 ? create_topic(entities, step / 2) : create_endpoint(entities, step / 2);
@@ -127,12 +166,16 @@ bool epg_xrce_entities_exist(const epg_xrce_entities_t *entities)
     return entities->step >= first_reading(entities->node);
 }
 
-/** Requests the samples of all remaining readers.  The agent's answer consists of the samples only. */
+/** Requests the samples of all remaining readers and repliers.  The agent's answer consists of the samples only. */
 static epg_xrce_progress_t ask_for_all_samples(epg_xrce_entities_t *entities)
 {
+    const size_t subscriptions = entities->node->target->subscription_count;
     const size_t first = first_reading(entities->node);
-    while (entities->step - first < entities->node->target->subscription_count) {
-        if (ask_for_samples(entities, entities->step - first) == UXR_INVALID_REQUEST_ID) {
+    while (entities->step - first < subscriptions + entities->node->target->service_count) {
+        const size_t index = entities->step - first;
+        const uint16_t request = index < subscriptions ? ask_for_samples(entities, index)
+                                                       : ask_for_requests(entities, index - subscriptions);
+        if (request == UXR_INVALID_REQUEST_ID) {
             return EPG_XRCE_UNDERWAY; /* the stream is full until the agent has acknowledged its frames */
         }
         entities->step++;

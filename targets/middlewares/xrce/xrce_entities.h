@@ -4,7 +4,8 @@
  * The entities of a target in DDS, which the agent creates on request.
  *
  * They are a participant, a publisher and a subscriber, and for each topic the topic itself and its writer or reader.
- * At the end, the samples of the readers are requested.
+ * Each service has a replier, which has its own topics.  At the end, the samples of the readers and the requests of the
+ * services are requested.
  */
 #ifndef EPG_XRCE_ENTITIES_H
 #define EPG_XRCE_ENTITIES_H

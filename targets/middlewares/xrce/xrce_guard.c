@@ -72,12 +72,11 @@ static bool is_timely(const epg_xrce_guard_t *guard, uint16_t first_missing)
  * of one of its frames.  The agent ignores acknowledgements of numbers that it has not reached, so its stream may stop
  * and never go on.  The session is not usable any more then.
  */
-static bool limit_heartbeat(epg_xrce_guard_t *guard, uint8_t *last)
+static bool limit_heartbeat(epg_xrce_guard_t *guard, uint32_t *behind, uint16_t handled, uint8_t *last)
 {
-    const uint16_t handled = guard->session->streams.input_reliable[0].last_handled;
     const int ahead = distance(handled, number_at(last));
-    guard->behind = ahead < 0 ? guard->behind + 1U : 0U;
-    guard->unknown |= guard->behind >= MOST_BEHIND;
+    *behind = ahead < 0 ? *behind + 1U : 0U;
+    guard->unknown |= *behind >= MOST_BEHIND;
     if (ahead > LARGEST_HISTORY) {
         const uint16_t limit = (uint16_t)(handled + LARGEST_HISTORY);
         last[0] = (uint8_t)(limit & 0xFFU);
@@ -94,14 +93,36 @@ static void read_info(epg_xrce_guard_t *guard, const uint8_t *payload, size_t le
     if (length >= 6 && payload[0] == 0 && payload[1] == PING_REQUEST && payload[4] == UXR_STATUS_OK) {
         guard->pong |= payload[5] != 0;
         guard->unknown |= payload[5] == 0;
+        guard->taken = true;
     }
+}
+
+static void read_service_acknack(epg_xrce_guard_t *guard, const uint8_t *payload)
+{
+    epg_xrce_services_acknowledge(guard->services, number_at(payload), (uint16_t)(payload[2] << 8 | payload[3]));
+    guard->taken = true;
+}
+
+static void read_service_heartbeat(epg_xrce_guard_t *guard, uint8_t *payload)
+{
+    const uint16_t handled = (uint16_t)(guard->services->expected - 1U);
+    if (limit_heartbeat(guard, &guard->behind[1], handled, payload + 2)) {
+        epg_xrce_services_heartbeat(guard->services, number_at(payload + 2));
+    }
+    guard->taken = true;
+}
+
+/** Returns true if an ACKNACK or a HEARTBEAT is about the stream of the services. */
+static bool is_of_services(const epg_xrce_guard_t *guard, const uint8_t *payload, size_t length)
+{
+    return length >= 5 && payload[4] == EPG_XRCE_SERVICE_STREAM && guard->services != NULL;
 }
 
 /** Returns true if the library may get a submessage that came on `stream`. */
 static bool passes(epg_xrce_guard_t *guard, uint8_t stream, uint8_t id, uint8_t flags, uint8_t *payload, size_t length)
 {
     if (!guard->open) {
-        guard->behind = 0;
+        memset(guard->behind, 0, sizeof guard->behind);
         /* A STATUS_AGENT with properties must not pass: the library would write their names to an invalid pointer. */
         return id == STATUS_AGENT && stream == NO_STREAM && length >= 11 && payload[10] == 0;
     }
@@ -116,14 +137,24 @@ static bool passes(epg_xrce_guard_t *guard, uint8_t stream, uint8_t id, uint8_t 
         return guard->reading && stream != NO_STREAM && kind == UXR_DATAREADER_ID && (flags & FORMAT_FLAGS) == 0;
     }
     case ACKNACK:
+        if (stream == NO_STREAM && is_of_services(guard, payload, length)) {
+            read_service_acknack(guard, payload);
+            return false;
+        }
         /* On another stream, the library could keep the ACKNACK and read it when it is not timely any more. */
         return stream == NO_STREAM && length >= 5 && payload[4] == RELIABLE && is_timely(guard, number_at(payload));
     case HEARTBEAT:
-        return length >= 5 && payload[4] == RELIABLE && limit_heartbeat(guard, payload + 2);
+        if (is_of_services(guard, payload, length)) {
+            read_service_heartbeat(guard, payload);
+            return false;
+        }
+        return length >= 5 && payload[4] == RELIABLE &&
+               limit_heartbeat(guard, &guard->behind[0], guard->session->streams.input_reliable[0].last_handled,
+                               payload + 2);
     case TIMESTAMP_REPLY:
         return length >= 24;
     default:
-        /* All messages fit into one frame, so there are no fragments.  No other message is for a client. */
+        /* The messages of topics fit into one frame, so there are no fragments.  No other message is for a client. */
         return false;
     }
 }
@@ -184,14 +215,21 @@ static size_t sift(epg_xrce_guard_t *guard, uint8_t *frame, size_t size)
 
 size_t epg_xrce_guard(epg_xrce_guard_t *guard, uint8_t *frame, size_t size)
 {
-    const bool whole = size >= HEADER + SUBHEADER && frame[0] == EPG_XRCE_SESSION_ID;
+    const bool ours = size >= HEADER && frame[0] == EPG_XRCE_SESSION_ID;
+    const bool whole = ours && size >= HEADER + SUBHEADER;
+    guard->taken = false;
+    if (ours && guard->open && guard->services != NULL && frame[1] == EPG_XRCE_SERVICE_STREAM) {
+        const bool good = epg_xrce_services_receive(guard->services, number_at(frame + 2), frame + HEADER,
+                                                    size - HEADER, !guard->reading);
+        guard->dropped += good ? 0U : 1U;
+        return 0;
+    }
     const bool reliable = whole && frame[1] == RELIABLE;
     if (!whole || (!reliable && frame[1] != NO_STREAM && frame[1] != BEST_EFFORT) ||
         (reliable && (!guard->open || !fits(guard, number_at(frame + 2))))) {
         guard->dropped++;
         return 0;
     }
-    const bool pong = guard->pong || guard->unknown;
     const size_t left = sift(guard, frame, size);
     if (left > HEADER) {
         return left;
@@ -199,6 +237,6 @@ size_t epg_xrce_guard(epg_xrce_guard_t *guard, uint8_t *frame, size_t size)
     if (reliable && left > 0) {
         return make_empty(frame);
     }
-    guard->dropped += (guard->pong || guard->unknown) && !pong ? 0U : 1U;
+    guard->dropped += guard->taken ? 0U : 1U;
     return 0;
 }

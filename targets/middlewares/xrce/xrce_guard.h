@@ -8,7 +8,7 @@
  * frame can be noise on a serial line, a datagram of an unknown sender, or a delayed one.
  *
  * The guard therefore reads each frame first.  It removes every submessage that is malformed, or that does not belong
- * to the present state of this session.
+ * to the present state of this session.  It also takes out the stream of the services, which the library does not know.
  */
 #ifndef EPG_XRCE_GUARD_H
 #define EPG_XRCE_GUARD_H
@@ -20,17 +20,22 @@
 #include <uxr/client/client.h>
 #include <uxr/client/util/ping.h>
 
+#include "xrce_services.h"
+
 /** The id of the session.  With an id of 0x80 or more, frames do not contain the client's key. */
 #define EPG_XRCE_SESSION_ID 0x81
 
 typedef struct epg_xrce_guard {
     const uxrSession *session;
-    bool open;        /**< the agent has accepted the session; before, only its acceptance passes */
-    bool reading;     /**< samples were requested; earlier ones belong to an older session */
-    bool pong;        /**< the agent has answered a ping and knows the session; the caller clears it */
-    bool unknown;     /**< the session is not usable any more, for example unknown to the agent; the caller clears it */
-    uint32_t behind;  /**< heartbeats in a row of an agent that has sent fewer frames than were handled here */
-    uint32_t dropped; /**< frames that were removed as a whole */
+    epg_xrce_services_t *services; /**< gets what belongs to their stream; NULL: the target has no services */
+    bool open;                     /**< the agent has accepted the session; before, only its acceptance passes */
+    bool reading;                  /**< samples were requested; earlier ones belong to an older session */
+    bool pong;                     /**< the agent has answered a ping and knows the session; the caller clears it */
+    bool unknown; /**< the session is not usable any more, for example unknown to the agent; the caller clears it */
+    bool taken;   /**< the guard itself has read a submessage of the present frame */
+    uint32_t behind[2]; /**< heartbeats in a row of an agent that has sent fewer frames than were handled here, for the
+                             library's stream and for that of the services */
+    uint32_t dropped;   /**< frames that were removed as a whole */
 } epg_xrce_guard_t;
 
 /**

@@ -14,13 +14,16 @@
 #include "agent.h"
 #include "epg/diagnostics.h"
 #include "epg/node.h"
+#include "epg/service.h"
 #include "fake_application.h"
 #include "fake_port.h"
+#include "reply.h"
 #include "xrce.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
 enum { MTU = 512, HISTORY = 4, LINE = 16384, RECOVERY_MS = 10000, STEP_MS = 10, MONITORED = 3 };
+enum { REQUEST = 2000, REPEATED = 4 };
 enum { BEGIN = 0x7E, ESCAPE = 0x7D, XOR = 0x20 };
 
 #define MS ((uint64_t)1000000)
@@ -245,6 +248,36 @@ enum { SUBSCRIPTIONS = sizeof subscriptions / sizeof subscriptions[0] };
 enum { PUBLICATIONS = sizeof publications / sizeof publications[0] };
 enum { BUFFER = 1400, OUTPUT = BUFFER + EPG_XRCE_OVERHEAD };
 
+/* The service "copy" answers with its request, REPEATED times. */
+
+static bool take_copy(epg_node_t *node, epg_cdr_reader_t *request)
+{
+    (void)node;
+    return request->size > 0 && request->data[0] != 0xFF;
+}
+
+static bool write_copy(epg_node_t *node, epg_reply_t *reply, size_t part)
+{
+    const epg_service_state_t *state = node->target->service_state;
+    for (size_t i = 0; part < REPEATED && i < state->length; i++) {
+        epg_reply_u8(reply, state->request[i]);
+    }
+    return part < REPEATED;
+}
+
+static const epg_service_kind_t copy = {
+    .request = {.type = "copy_Request_", .hash = "RIHS01_0"},
+    .reply = {.type = "copy_Response_", .hash = "RIHS01_1"},
+    .take = take_copy,
+    .write = write_copy,
+};
+static const epg_service_t services[] = {
+    {.name = "~/enable", .kind = &epg_service_enable, .request_size = 8},
+    {.name = "~/copy", .kind = &copy, .request_size = REQUEST},
+};
+static unsigned char service_request[REQUEST];
+static epg_service_state_t service_state = {.request = service_request, .request_size = sizeof service_request};
+
 static double values[MONITORED], sent_values[MONITORED], received_values[2];
 static epg_node_publication_t states[PUBLICATIONS];
 static unsigned char buffer[BUFFER];
@@ -275,6 +308,9 @@ static epg_target_t target = {
     .subscriptions = subscriptions,
     .publication_count = PUBLICATIONS,
     .publications = publications,
+    .service_count = sizeof services / sizeof services[0],
+    .services = services,
+    .service_state = &service_state,
     .version = "1",
     .hash = "0123456789abcdef",
     .options = &options,
@@ -305,8 +341,9 @@ static void start(bool datagrams)
     line.in_size = line.in_taken = line.out_size = 0;
     line.damage = 0;
     line.since_beat = 0;
-    memset(&agent, 0, offsetof(agent_t, sent));
-    agent.queued = agent.taken = agent.readers = agent.written = 0;
+    agent_forget(&agent);
+    agent.queued = agent.taken = agent.written = agent.replies = agent.last_request = 0;
+    service_state.service = NULL;
     line.datagrams = datagrams;
     line.connected = true;
     line.room = LINE;
@@ -372,10 +409,10 @@ static size_t take_some(input_t *input, const uint8_t **bytes, size_t most)
 /** Sends a frame on a stream with arbitrary submessages; `ahead`: distance to the number that the board expects. */
 static void strange_frame(input_t *input, uint8_t which, int ahead)
 {
-    static const uint8_t ids[4] = {0x00, 0x01, 0x80, 0x00};
+    static const uint8_t ids[4] = {0x00, 0x01, 0x80, 0x81};
     uint8_t frame[AGENT_FRAME] = {0x81, ids[which]};
     const uint8_t *bytes;
-    const uint16_t expected = which == 2 ? agent.next : agent.best_effort;
+    const uint16_t expected = which == 2 ? agent.topics.next : which == 3 ? agent.services.next : agent.best_effort;
     const uint16_t number = (uint16_t)(expected + ahead);
     frame[2] = (uint8_t)number;
     frame[3] = (uint8_t)(number >> 8);
@@ -389,10 +426,13 @@ static void strange_frame(input_t *input, uint8_t which, int ahead)
 /** Sends a submessage with the correct length. */
 static void strange_submessage(input_t *input, uint8_t which, int ahead)
 {
-    static const uint8_t ids[4] = {0x00, 0x01, 0x80, 0x80};
+    static const uint8_t ids[4] = {0x00, 0x01, 0x80, 0x81};
     uint8_t frame[AGENT_FRAME] = {0x81, ids[which]};
     const uint8_t *bytes;
-    const uint16_t number = (uint16_t)((which >= 2 ? agent.next : agent.best_effort) + ahead);
+    const uint16_t number = (uint16_t)((which == 2   ? agent.topics.next
+                                        : which == 3 ? agent.services.next
+                                                     : agent.best_effort) +
+                                       ahead);
     frame[2] = (uint8_t)number;
     frame[3] = (uint8_t)(number >> 8);
     frame[4] = take(input) & 0x0F;
@@ -419,6 +459,18 @@ static void raw_bytes(input_t *input)
     }
 }
 
+/** Sends a request to the first or the second service: the bytes, or for `how` >= 2 many of them. */
+static void request(unsigned int how, const uint8_t *bytes, size_t size)
+{
+    static uint8_t many[2 * REQUEST];
+    const size_t most = sizeof many;
+    size_t length = how < 2 || size == 0 ? size : size * 16 < most ? size * 16 : most;
+    for (size_t i = 0; i < length; i++) {
+        many[i] = bytes[i % size];
+    }
+    (void)agent_request(&agent, how & 1, 1000, many, length);
+}
+
 static void happen(input_t *input)
 {
     const uint8_t event = take(input);
@@ -437,7 +489,11 @@ static void happen(input_t *input)
         break;
     case 3:
         size = take_some(input, &bytes, 480);
-        agent_sample(&agent, (size_t)(event >> 3) % 8, bytes, size);
+        if ((event & 0xC0) == 0xC0) {
+            request(event >> 3 & 3, bytes, size);
+        } else {
+            agent_sample(&agent, (size_t)(event >> 3) % 8, bytes, size);
+        }
         break;
     case 4:
         line.damage_at = take(input);
@@ -466,6 +522,31 @@ static void check(bool good, const char *what)
     }
 }
 
+/**
+ * A request of many fragments has its reply.  It is sent again every second: a frame of a stranger can have taken the
+ * number of one of its frames.
+ */
+static void ask_for_copy(void)
+{
+    enum { NUMBER = 7, SIZE = REQUEST - 1 };
+    static uint8_t data[SIZE];
+    for (size_t i = 0; i < SIZE; i++) {
+        data[i] = (uint8_t)(i * 31 >> 3 & 0x7F);
+    }
+    unsigned int again = 0;
+    for (unsigned int i = 0; i < RECOVERY_MS / STEP_MS && agent.last_request != NUMBER; i++) {
+        line.room = LINE;
+        if (i >= again && agent_request(&agent, 1, NUMBER, data, SIZE)) {
+            again = i + 1000 / STEP_MS;
+        }
+        step(STEP_MS);
+    }
+    check(agent.last_request == NUMBER && agent.last_reply_size == REPEATED * SIZE, "no reply");
+    for (size_t i = 0; i < REPEATED; i++) {
+        check(memcmp(agent.last_reply + i * SIZE, data, SIZE) == 0, "a wrong reply");
+    }
+}
+
 /** Only the honest agent: the board connects again, and a setpoint reaches the model. */
 static void recover(void)
 {
@@ -483,6 +564,7 @@ static void recover(void)
         works = state() == EPG_XRCE_RUNNING && fake.control.enabled && epg_control_setpoint(&fake.control, 0) == 0.5;
     }
     check(state() == EPG_XRCE_RUNNING, "not running again");
+    ask_for_copy();
     check(works, "no setpoint arrives");
     check(fake_status().fault == EPG_FAULT_NONE, "a fault");
 }

@@ -153,6 +153,14 @@ class BoardAgent(Agent):
         )
         return new()[0]
 
+    def call(self, service: str, request: bytes, milliseconds: float = 1000) -> bytes:
+        """The reply to a request."""
+        identity = self.topics.ask(service, request)
+        assert self.run_until(lambda: bool(self.topics.answers(service, identity)), milliseconds), (
+            f"no answer of {service} within {milliseconds} ms; {self.tail()}"
+        )
+        return self.topics.answers(service, identity)[0]
+
     def turn(self) -> None:
         """Does the work that is due."""
         if not self._alive or self._frozen:

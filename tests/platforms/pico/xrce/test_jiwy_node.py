@@ -16,6 +16,7 @@ from .board import Jiwy
 from .checks import ENDS, assert_it_tracks, assert_undisturbed
 
 PAN, TILT = AXES
+SERVICES = {"rq/JIWY_node/enableRequest", "rq/JIWY_node/resetRequest"}
 STOP, START = 7, 8
 """Orders to the user's program."""
 
@@ -30,7 +31,8 @@ def jiwy(request: pytest.FixtureRequest) -> Iterator[Jiwy]:
 def test_what_it_reads_and_writes(jiwy: Jiwy) -> None:
     jiwy.agent.run(1200)
     ends = {end.topic: (end.type, end.reliable) for end in [*jiwy.agent.topics.readers, *jiwy.agent.topics.writers]}
-    assert ends == ENDS
+    assert {topic: end for topic, end in ends.items() if topic.startswith("rt/")} == ENDS
+    assert {topic for topic in ends if topic.startswith("rq/")} >= SERVICES
     said = read_diagnostics(jiwy.agent.heard("rt/diagnostics")[-1].data)
     assert (said.name, said.values["fault"], said.values["overruns"]) == ("JIWY_node", "none", "0")
     assert said.hardware == jiwy.pico.call("usb")["serial"]
@@ -53,6 +55,24 @@ def test_the_console_and_the_topic_enable(jiwy: Jiwy) -> None:
         assert jiwy.agent.topics.publish("rt/JIWY_node/enable", value) == 1
         jiwy.agent.run(20)
         assert jiwy.stats()["enabled"] == enabled
+
+
+def test_the_service_enables_and_disturbs_no_cycle(jiwy: Jiwy) -> None:
+    """The reply comes within some control cycles, also if many requests are made at once."""
+    jiwy.home()
+    jiwy.begin()
+    began = jiwy.agent.now()
+    assert jiwy.agent.call("/JIWY_node/enable", b"\1") == b"\1\0\0\0" + b"\x08\0\0\0enabled\0"
+    assert jiwy.agent.now() - began < 0.02
+    asked = [jiwy.agent.topics.ask("/JIWY_node/enable", b"\1") for _ in range(10)]
+    assert jiwy.agent.run_until(
+        lambda: all(jiwy.agent.topics.answers("/JIWY_node/enable", each) for each in asked), 500
+    )
+    jiwy.agent.run(300)
+    stats = assert_undisturbed(jiwy)
+    assert (stats["reconnects"], stats["malformed"]) == ("0", "0")
+    assert jiwy.agent.call("/JIWY_node/enable", b"\0")[:1] == b"\1"
+    assert jiwy.stats()["enabled"] == "0"
 
 
 def test_a_value_that_is_none_is_dropped(jiwy: Jiwy) -> None:
