@@ -16,6 +16,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--plotjuggler", action="store_true", help="write <name>.plotjuggler.xml, a layout")
     parser.add_argument("--foxglove", action="store_true", help="write <name>.foxglove.json, a layout")
     parser.add_argument(
+        "--ros2-control", action="store_true", help="write <name>.ros2_control.xacro, its controllers and a launch file"
+    )
+    parser.add_argument(
         "--output", type=Path, default=Path(), metavar="FOLDER", help="folder to write; default: the current folder"
     )
     parser.add_argument("--force", action="store_true", help="overwrite existing files")
@@ -26,9 +29,10 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from epg.ros.foxglove import foxglove_layout
     from epg.ros.plotjuggler import plotjuggler_layout
     from epg.ros.plots import plots_of
+    from epg.ros.ros2_control import control_launch_file, controllers_file, hardware_of, xacro_file
 
-    if not (options.plotjuggler or options.foxglove):
-        sys.stderr.write("epg describe: add --plotjuggler or --foxglove\n")
+    if not (options.plotjuggler or options.foxglove or options.ros2_control):
+        sys.stderr.write("epg describe: add --plotjuggler, --foxglove or --ros2-control\n")
         return 2
     robot = robot_of(options, diagnostics)
     diagnostics.stop_if_errors()
@@ -39,6 +43,11 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         files[f"{robot.name}.plotjuggler.xml"] = plotjuggler_layout(robot.name, plots)
     if options.foxglove:
         files[f"{robot.name}.foxglove.json"] = foxglove_layout(plots)
+    if options.ros2_control and (hardware := hardware_of(robot, diagnostics)) is not None:
+        files[f"{robot.name}.ros2_control.xacro"] = xacro_file(hardware)
+        files[f"{robot.name}.controllers.yaml"] = controllers_file(hardware)
+        files[f"{robot.name}.ros2_control.launch.py"] = control_launch_file(hardware)
+    diagnostics.stop_if_errors()
     write_files(options.output, files, options.force, diagnostics)
     if options.json:
         data = [{"title": plot.title, "values": [series.label for series in plot.series]} for plot in plots]

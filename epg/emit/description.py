@@ -119,9 +119,11 @@ def _topic(view: TopicView) -> dict[str, Any]:
     """The description of one topic.
 
     ``values`` are the names of its values in the CSV files of topics and setpoints.  ``elements`` are the names of all
-    elements of the message, also of those that are not bound.
+    elements of the message, also of those that are not bound.  ``timeout`` is in seconds; 0 means that setpoints do not
+    become too old.
     """
     topic = view.topic
+    setpoint = topic.values[0].setpoint if topic.values else None
     return {
         "topic": topic.name,
         "component": topic.component.name if topic.component else None,
@@ -131,6 +133,7 @@ def _topic(view: TopicView) -> dict[str, Any]:
         "role": topic.role,
         "values": [value.name for value in topic.values],
         "elements": [port.name for port in topic.component.kind.topic_ports] if topic.component else [],
+        **({"timeout": float(setpoint.timeout), "on_timeout": setpoint.on_timeout} if setpoint else {}),
     }
 
 

@@ -34,7 +34,8 @@ class RobotTopic:
     """A topic.  ``name`` is the name in the ``.tcf``.
 
     ``values`` are the names of its values in CSV files.  ``elements`` are the names of all elements of its message.
-    ``component`` is the component with the topic, or empty.
+    ``component`` is the component with the topic, or empty.  ``timeout`` is the age in s from which a setpoint is too
+    old, 0 for none, and ``on_timeout`` the action then.
     """
 
     name: str
@@ -44,6 +45,8 @@ class RobotTopic:
     values: tuple[str, ...]
     elements: tuple[str, ...]
     component: str = ""
+    timeout: float = 0.0
+    on_timeout: str = "hold"
 
 
 @dataclass(frozen=True)
@@ -57,6 +60,9 @@ class Robot:
     node: str
     namespace: str
     domain: int | None
+    enable_at_start: bool
+    period: float
+    """The time between two publications, in s."""
     middleware: str
     transport: str | None
     usb_name: str
@@ -153,6 +159,8 @@ def _robot(file: Path, data: dict[str, Any]) -> Robot:
         node=_checked(data["node"], node_name_problem),
         namespace=_checked(data["namespace"], namespace_problem),
         domain=domain,
+        enable_at_start=data.get("control", {}).get("enable_at_start", False) is True,
+        period=float(communication["period"]),
         middleware=_checked(communication["middleware"], _word_problem),
         transport=None if transport is None else _checked(transport, _word_problem),
         usb_name="_".join(udev_name(usb.get(key, text)) for key, text in USB_NAMES.items()),
@@ -185,7 +193,9 @@ def udev_name(text: str) -> str:
 def _topic(data: dict[str, Any]) -> RobotTopic:
     name = _checked(data["topic"], topic_problem)
     values, elements = tuple(data["values"]), tuple(data["elements"])
-    return RobotTopic(name, data["type"], data["qos"], data["role"], values, elements, data.get("component") or "")
+    component = data.get("component") or ""
+    timeout, on_timeout = float(data.get("timeout", 0.0)), str(data.get("on_timeout", "hold"))
+    return RobotTopic(name, data["type"], data["qos"], data["role"], values, elements, component, timeout, on_timeout)
 
 
 def _checked(text: object, problem: Callable[[str], str | None]) -> str:
