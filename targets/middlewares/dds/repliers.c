@@ -32,7 +32,7 @@ static struct {
     epg_node_t *node;
     size_t count;
     replier_t *repliers;
-    size_t next; /* replier whose requests are looked for first, so that none waits for ever */
+    size_t next; /* replier whose requests are looked for first, so that none waits without end */
 
     size_t asked; /* replier of the request in work */
     unsigned char header[HEADER];
