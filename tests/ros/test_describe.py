@@ -215,7 +215,7 @@ def test_each_axis_of_the_examples_has_its_plot(robot: str, tmp_path: Path) -> N
 
 def test_what_is_missing_is_told(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["describe", str(robot)]) == 2
-    assert "add --plotjuggler or --foxglove" in capsys.readouterr().err
+    assert "add --plotjuggler, --foxglove or --ros2-control" in capsys.readouterr().err
     (robot.parent / "arm.plotjuggler.xml").write_text("mine", encoding="utf-8")
     assert main(["describe", str(robot), "--plotjuggler", "--output", str(robot.parent)]) == 1
     assert "this file exists" in capsys.readouterr().err
