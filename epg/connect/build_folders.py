@@ -7,7 +7,7 @@ import json
 import os
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -21,13 +21,13 @@ CACHE = "CMakeCache.txt"
 
 @dataclass(frozen=True)
 class BuildFolder:
-    """A build folder.  ``variables`` are those of its CMake cache, or of the preset ``preset`` that would create it.
+    """A build folder, and the preset ``preset`` that creates it.  ``board`` is Zephyr's board of a configured one.
 
     If Zephyr's sysbuild has built several images, ``path`` is the folder around them, as ``west build -d`` takes it.
     """
 
     path: Path
-    variables: Mapping[str, str] = field(default_factory=dict)
+    board: str = ""
     preset: str = ""
     image: Path | None = None  # the folder that CMake has configured: ``path`` or, with sysbuild, a folder below it
 
@@ -40,21 +40,16 @@ def build_folders(source: Path) -> list[BuildFolder]:
     found: dict[Path, BuildFolder] = {}
     names = {preset.path: preset.preset for preset in presets}
     for place in places:
-        if place not in found and (variables := _variables(place, source)) is not None:
+        variables = _cache(place / CACHE) if place not in found else {}
+        if _same(variables.get("CMAKE_HOME_DIRECTORY", ""), source):
             above = place.parent
-            of_sysbuild = "APP_DIR" in _cache(above / CACHE)
-            found[place] = BuildFolder(above if of_sysbuild else place, variables, names.get(place, ""), place)
+            path = above if "APP_DIR" in _cache(above / CACHE) else place
+            found[place] = BuildFolder(path, variables.get("BOARD", ""), names.get(place, ""), place)
     return [*found.values(), *(preset for preset in presets if preset.path not in found), BuildFolder(source / USUAL)]
 
 
 def _below(folder: Path) -> list[Path]:
     return sorted(cache.parent for cache in folder.glob(f"*/{CACHE}"))
-
-
-def _variables(folder: Path, source: Path) -> dict[str, str] | None:
-    """The variables in the cache of ``folder``, or None if CMake has not configured ``source`` there."""
-    variables = _cache(folder / CACHE)
-    return variables if _same(variables.get("CMAKE_HOME_DIRECTORY", ""), source) else None
 
 
 def _cache(file: Path) -> dict[str, str]:
@@ -82,38 +77,18 @@ def _presets(source: Path) -> Iterator[BuildFolder]:
         if not preset.get("hidden") and isinstance(folder, str):
             path = _expand(folder, source, name)
             if path is not None:
-                yield BuildFolder(source / path, dict(_cache_variables(preset, presets, source, name)), name)
+                yield BuildFolder(source / path, preset=name)
 
 
 def _inherited(preset: Mapping[str, Any], key: str, presets: Mapping[str, Mapping[str, Any]], depth: int = 0) -> object:
     if key in preset or depth > 16:
         return preset.get(key)
-    for parent in _parents(preset):
-        found = _inherited(presets.get(parent, {}), key, presets, depth + 1)
+    inherits = preset.get("inherits", [])
+    for parent in [inherits] if isinstance(inherits, str) else inherits:
+        found = _inherited(presets.get(str(parent), {}), key, presets, depth + 1)
         if found is not None:
             return found
     return None
-
-
-def _cache_variables(
-    preset: Mapping[str, Any], presets: Mapping[str, Mapping[str, Any]], source: Path, name: str, depth: int = 0
-) -> dict[str, str]:
-    found: dict[str, str] = {}
-    for parent in reversed(_parents(preset)) if depth <= 16 else ():
-        found |= _cache_variables(presets.get(parent, {}), presets, source, name, depth + 1)
-    own = preset.get("cacheVariables")
-    for variable, value in own.items() if isinstance(own, dict) else ():
-        text = value.get("value") if isinstance(value, dict) else value
-        text = ("TRUE" if text else "FALSE") if isinstance(text, bool) else text
-        expanded = _expand(text, source, name) if isinstance(text, str) else None
-        if expanded is not None:
-            found[variable] = expanded
-    return found
-
-
-def _parents(preset: Mapping[str, Any]) -> list[str]:
-    inherits = preset.get("inherits", [])
-    return [inherits] if isinstance(inherits, str) else [name for name in inherits if isinstance(name, str)]
 
 
 def _expand(text: str, source: Path, preset: str) -> str | None:
@@ -125,13 +100,9 @@ def _expand(text: str, source: Path, preset: str) -> str | None:
         "presetName": preset,
         "dollar": "$",
     }
-    unknown = False
-
-    def value(match: re.Match[str]) -> str:
-        nonlocal unknown
-        found = os.environ.get(match[2], "") if match[1] else values.get(match[2])
-        unknown = unknown or found is None
-        return found or ""
-
-    replaced = re.sub(r"\$(p?env)?\{(\w+)\}", value, text)
-    return None if unknown else replaced
+    try:
+        return re.sub(
+            r"\$(p?env)?\{(\w+)\}", lambda name: os.environ.get(name[2], "") if name[1] else values[name[2]], text
+        )
+    except KeyError:
+        return None

@@ -78,7 +78,7 @@ def find_jobs(folder: Path, diagnostics: Diagnostics) -> list[Job]:
             built_by="west" if by_west else "cmake",
             preset=build.preset,
             executables=tuple(executables.get(name, ())),
-            board=build.variables.get("BOARD", "") if by_west else "",
+            board=build.board if by_west else "",
         )
         for name, request in requests.items()
     ]
