@@ -48,37 +48,35 @@ class Texts:
     tcf: str | None
 
 
-@dataclass(frozen=True)
-class _Done:
-    operation: Operation
-    before: Texts
-
-
 class Draft:
-    """The operations, and the texts of the two files after them.
+    """The operations, and the texts of the two files after each of them.
 
     ``fresh`` is the first text of the bindings if that file does not exist yet.
     """
 
     def __init__(self, bindings: Snapshot, tcf: Snapshot, fresh: str) -> None:
         self.bindings, self.tcf, self._fresh = bindings, tcf, fresh
-        self.texts = self._on_disk()
-        self._done: list[_Done] = []
-        self._undone: list[tuple[Operation, Texts]] = []
+        self._texts = [Texts(fresh if bindings.data is None else bindings.text, tcf.text)]  # one more than operations
+        self._operations: list[Operation] = []
+        self._count = 0  # the number of operations that are done; undo has taken back the later ones
         self._saved = 0  # the number of operations that the files on the disk contain
         self._diverged = False  # True after some of the saved operations were undone and others done in their place
 
     @property
+    def texts(self) -> Texts:
+        return self._texts[self._count]
+
+    @property
     def changed(self) -> bool:
-        return self._pairs() != []
+        return self.unsaved() != []
 
     @property
     def can_undo(self) -> bool:
-        return bool(self._done)
+        return self._count > 0
 
     @property
     def can_redo(self) -> bool:
-        return bool(self._undone)
+        return self._count < len(self._operations)
 
     def drafts(self) -> dict[Path, str]:
         """The texts that must be read instead of the files, by path."""
@@ -90,24 +88,29 @@ class Draft:
         after = self._applied(self.texts, operation, model)
         if after == self.texts:
             return
-        self._diverged |= len(self._done) < self._saved
-        self._done.append(_Done(operation, self.texts))
-        self._undone.clear()
-        self.texts = after
+        self._diverged |= self._count < self._saved
+        self._operations[self._count :] = [operation]
+        self._count += 1
+        self._texts[self._count :] = [after]
 
     def undo(self) -> None:
-        last = self._done.pop()
-        self._undone.append((last.operation, self.texts))
-        self.texts = last.before
+        self._count -= 1
 
     def redo(self) -> None:
-        operation, after = self._undone.pop()
-        self._done.append(_Done(operation, self.texts))
-        self.texts = after
+        self._count += 1
 
-    def unsaved(self) -> list[Snapshot]:
-        """The new contents of the files that differ from the disk."""
-        return [after for _, after in self._pairs()]
+    def unsaved(self) -> list[tuple[Snapshot, Snapshot]]:
+        """The files that differ from the disk: as they were last read or saved, and with their new contents."""
+        pairs = []
+        for before, text in ((self.bindings, self.texts.bindings), (self.tcf, self.texts.tcf)):
+            if text is not None and text != before.text:
+                pairs.append((before, before.with_text(text)))
+        return pairs
+
+    @property
+    def pending(self) -> list[Operation]:
+        """The operations that are done, and that the files on the disk do not contain."""
+        return self._operations[self._saved : self._count]
 
     def saved(self, after: Snapshot) -> None:
         """Notes that one of the files was saved as ``after``."""
@@ -116,48 +119,30 @@ class Draft:
         else:
             self.tcf = after
         if not self.changed:
-            self._saved, self._diverged = len(self._done), False
+            self._saved, self._diverged = self._count, False
 
-    def rebase(self, bindings: Snapshot, tcf: Snapshot, model: Model | None) -> int:
-        """Takes new contents of the files, and applies the unsaved operations to them.  Returns their number.
+    def rebased(self, bindings: Snapshot, tcf: Snapshot, model: Model | None) -> Draft:
+        """A draft on new contents of the files, with the unsaved operations applied to them.
 
-        Raises CannotEdit if an operation does not fit the new text any more; the draft is then unchanged.
+        Raises CannotEdit if an operation does not fit the new text any more.
         """
-        if self.changed and (self._diverged or len(self._done) < self._saved):
+        if self.changed and (self._diverged or self._count < self._saved):
             raise CannotEdit("a change that was saved and then undone cannot be removed from the new text")
-        operations = [done.operation for done in self._done[self._saved :]]
-        other = Draft(bindings, tcf, self._fresh)
-        for operation in operations:
-            other.do(operation, model)
-        self.bindings, self.tcf, self.texts = bindings, tcf, other.texts
-        self._done, self._undone, self._saved, self._diverged = other._done, [], 0, False
-        return len(operations)
-
-    def before_saving(self, path: Path) -> Snapshot:
-        """The file at ``path`` as it was last read or saved."""
-        return self.bindings if path == self.bindings.path else self.tcf
+        draft = Draft(bindings, tcf, self._fresh)
+        for operation in self.pending:
+            draft.do(operation, model)
+        return draft
 
     def diff(self) -> str:
         """The changes that saving would make, as a unified diff."""
         lines: list[str] = []
-        for before, after in self._pairs():
+        for before, after in self.unsaved():
             old, new = before.text or "", after.text or ""
             name = before.path.name
             lines += difflib.unified_diff(
                 _lines(old), _lines(new), name if before.data is not None else "(no file)", name, lineterm=""
             )
         return "".join(f"{line}\n" for line in lines)
-
-    def _on_disk(self) -> Texts:
-        text = self._fresh if self.bindings.data is None else self.bindings.text
-        return Texts(text, self.tcf.text)
-
-    def _pairs(self) -> list[tuple[Snapshot, Snapshot]]:
-        pairs = []
-        for before, text in ((self.bindings, self.texts.bindings), (self.tcf, self.texts.tcf)):
-            if text is not None and text != before.text:
-                pairs.append((before, before.with_text(text)))
-        return pairs
 
     def _applied(self, texts: Texts, operation: Iterable[SetEnds | SetExtends], model: Model | None) -> Texts:
         for change in operation:

@@ -65,8 +65,8 @@ class Editor:
         """Writes the changed files.  ``anyway`` also overwrites edits that other programs have made since."""
         if not anyway:
             self.check_conflict()
-        for after in self.draft.unsaved():
-            save(self.draft.before_saving(after.path), after, project=self.job.source_dir, anyway=anyway)
+        for before, after in self.draft.unsaved():
+            save(before, after, project=self.job.source_dir, anyway=anyway)
             self.draft.saved(after)
         self.conflict = self.external = None
         self._seen = self.draft.bindings, self.draft.tcf
@@ -168,8 +168,9 @@ class Editor:
         self._load()
 
     def _rebase(self, bindings: Snapshot, tcf: Snapshot, what: str) -> None:
+        count = len(self.draft.pending)
         try:
-            count = self.draft.rebase(bindings, tcf, self.loaded.parts.model)
+            self.draft = self.draft.rebased(bindings, tcf, self.loaded.parts.model)
         except CannotEdit as problem:
             message = f"another program changed {what}, and your changes do not fit the new text: {problem}"
             self.conflict = {"message": message, "hint": _CONFLICT_HINT}
