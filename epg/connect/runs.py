@@ -4,30 +4,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from epg.catalog.hardware import Target
 from epg.connect.body import Refused
+from epg.connect.build.consent import Question, question_about
+from epg.connect.build.run import Build
 from epg.connect.places import Places
 from epg.connect.projects import Job
 from epg.source import Span
-
-if TYPE_CHECKING:
-    from epg.connect.build.consent import Question
-    from epg.connect.build.run import Build
-
-NONE: dict[str, Any] = {
-    "state": "idle",
-    "step": "",
-    "action": "",
-    "done": 0,
-    "total": 0,
-    "seconds": 0.0,
-    "messages": [],
-    "products": [],
-    "lines": 0,
-    "ask": None,
-}
 
 
 class Runs:
@@ -38,12 +23,12 @@ class Runs:
 
     def __init__(self, changed: Callable[[], None]) -> None:
         self._changed = changed
-        self._build: Build | None = None
+        self._build = Build(changed)
         self._question: Question | None = None
 
     @property
     def running(self) -> bool:
-        return self._build is not None and self._build.state()["state"] == "running"
+        return self._build.is_running
 
     def check_idle(self) -> None:
         if self.running:
@@ -54,8 +39,6 @@ class Runs:
 
         ``agreed`` is the key of a question that the user has answered with yes.
         """
-        from epg.connect.build.consent import question_about
-
         self._question = question_about(job, target)
         if self._question is not None and self._question.key == agreed:
             self._question.agree()
@@ -64,31 +47,24 @@ class Runs:
 
     def start(self, job: Job) -> None:
         """Configures and builds ``job``.  Raises Refused while another build runs."""
-        from epg.connect.build.run import Build
-
         self.check_idle()
-        self._build = Build(job, self._changed)
-        self._build.start()
+        self._build = Build(self._changed)
+        self._build.start(job)
 
     def cancel(self) -> None:
-        if self._build is not None:
-            self._build.cancel()
+        self._build.cancel()
 
     def close(self) -> None:
         """Cancels a running build, and waits at most 10 s for its end."""
         self.cancel()
-        if self._build is not None:
-            self._build.wait(10)
+        self._build.wait(10)
 
     def forget(self) -> None:
-        self._build = self._question = None
+        self._build, self._question = Build(self._changed), None
 
     def state(self, places: Places | None) -> dict[str, Any]:
         """The state of the build for the page.  A message about the bindings gets the port that it is about."""
-        ask = self._question.data() if self._question is not None else None
-        if self._build is None:
-            return NONE | {"ask": ask}
-        state = self._build.state() | {"ask": ask}
+        state = self._build.state() | {"ask": self._question.data() if self._question is not None else None}
         for message in state["messages"] if places is not None else ():
             assert places is not None
             message["port"] = places.port_at(Span(message["file"], message["line"], message["column"]))
@@ -96,5 +72,5 @@ class Runs:
 
     def log(self, start: int) -> dict[str, Any]:
         """The printed lines from line ``start`` on, and the number of the next line."""
-        lines = self._build.lines(start) if self._build is not None else []
+        lines = self._build.lines(start)
         return {"lines": lines, "next": start + len(lines)}

@@ -18,8 +18,8 @@ def job_of(folder: Path) -> Job:
 
 def run(job: Job) -> Build:
     """Runs a build to its end."""
-    build = Build(job, lambda: None)
-    build.start()
+    build = Build(lambda: None)
+    build.start(job)
     assert build.wait(600), build.lines(0)
     return build
 

@@ -70,9 +70,9 @@ def messages(build: Build) -> list[tuple[str, str, int]]:
 def test_a_project_is_configured_and_built_and_its_program_runs(robot: Path) -> None:
     shutil.rmtree(robot / "build")
     states: list[dict[str, Any]] = []
-    build = Build(job_of(robot), lambda: states.append(build.state()))
+    build = Build(lambda: states.append(build.state()))
     assert build.state()["state"] == "idle"
-    build.start()
+    build.start(job_of(robot))
     assert build.wait(300)
     state = build.state()
     assert state["state"] == "done" and state["messages"] == []
@@ -238,8 +238,8 @@ def test_a_cancelled_build_leaves_no_process_and_goes_on_later(
     monkeypatch.setenv("CMAKE_GENERATOR", generator)
     folder = tmp_path / "cancelled"
     job = replace(job_of(robot), build_dir=folder)
-    build = Build(job, lambda: None)
-    build.start()
+    build = Build(lambda: None)
+    build.start(job)
     until = time.monotonic() + 60
     while not (build.state()["step"] == step and build.lines(0) and build.state()["done"] >= (step == "build")):
         assert time.monotonic() < until and build.state()["state"] == "running", build.lines(0)
@@ -259,9 +259,9 @@ def test_a_cancelled_build_leaves_no_process_and_goes_on_later(
 
 
 def test_cancelling_before_the_start_and_twice(robot: Path) -> None:
-    build = Build(job_of(robot), lambda: None)
+    build = Build(lambda: None)
     build.cancel()
-    build.start()
+    build.start(job_of(robot))
     build.cancel()
     assert build.wait(20) and build.state()["state"] == "cancelled"
 
@@ -270,7 +270,7 @@ def test_cancelling_before_the_start_and_twice(robot: Path) -> None:
 
 
 def plan_of(job: Job) -> tuple[list[tuple[str, ...]], dict[str, str]]:
-    plan = make_plan(job, None, targets_roots(()))
+    plan = make_plan(job, None)
     return [step.command[1:] for step in plan.steps], dict(plan.environment)
 
 

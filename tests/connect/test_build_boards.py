@@ -14,7 +14,6 @@ from epg.catalog.catalog import load_catalog
 from epg.catalog.hardware import Target
 from epg.connect.build.plan import make_plan
 from epg.connect.projects import Job
-from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
 from epg.new_project import ProjectRequest, write_project
 from epg.project import load_configuration
@@ -52,7 +51,7 @@ def test_a_program_of_zephyr_by_west(tmp_path: Path, monkeypatch: pytest.MonkeyP
     write_project(ProjectRequest("robot", tmp_path / "robot", "native_sim_jiwy", MODEL), Diagnostics())
     job = replace(job_of(tmp_path / "robot"), board=NATIVE)
     assert job.built_by == "west"
-    plan = make_plan(replace(job, board=""), load_target(job), targets_roots(()))
+    plan = make_plan(replace(job, board=""), load_target(job))
     assert plan.steps[0].command[1:] == (
         *("build", "--cmake-only", "-d", str(tmp_path / "robot/build"), "-b", "native_sim"),
         str(tmp_path / "robot"),

@@ -66,7 +66,7 @@ def question_about(job: Job, target: Target | None) -> Question | None:
 
     None if there is nothing to run, or the user has agreed before.  This runs no program that a build folder names.
     """
-    plan = make_plan(job, target, job.request.roots, run=False)
+    plan = make_plan(job, target, run=False)
     if not plan.steps:
         return None
     programs = {step.command[0] for step in plan.steps} | {plan.build_program}

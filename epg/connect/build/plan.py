@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Plans a build: the same commands that a user would type, and their environment.
 
->>> # plan = make_plan(job, target, roots)
+>>> # plan = make_plan(job, target)
 >>> # [step.command for step in plan.steps]  ->  [("cmake", "-S", ..., "-B", "build"), ("cmake", "--build", "build")]
 """
 
@@ -10,12 +10,13 @@ from __future__ import annotations
 import os
 import shutil
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from epg.catalog.hardware import Target
-from epg.connect.build.tools import ALWAYS, MissingTool, find_tools, missing
+from epg.connect.build.messages import Message
+from epg.connect.build.tools import ALWAYS, find_tools, missing_tools
 from epg.connect.build_folders import CACHE, USUAL
 from epg.connect.projects import Job
 from epg.data import data_folder
@@ -47,11 +48,11 @@ class Plan:
     steps: tuple[Command, ...]
     environment: Mapping[str, str]
     cache: Mapping[str, str]
-    missing: tuple[MissingTool, ...] = ()
+    missing: tuple[Message, ...] = ()
     build_program: str = ""
 
 
-def make_plan(job: Job, target: Target | None, roots: Sequence[Path], *, run: bool = True) -> Plan:
+def make_plan(job: Job, target: Target | None, *, run: bool = True) -> Plan:
     """The plan for ``job``.  It builds all targets of the project, as the user's own ``cmake --build`` would do.
 
     The products are therefore the same, including files that are made after linking, such as ``.uf2``.
@@ -65,8 +66,8 @@ def make_plan(job: Job, target: Target | None, roots: Sequence[Path], *, run: bo
     cache = read_cmake_cache(file, Diagnostics()) if file.is_file() else {}
     west = job.built_by == "west"
     names = (*ALWAYS, *(["west", "zephyr"] if west and not cache else []))
-    findings = find_tools(names, roots, cache, run=run)
-    lacking = tuple(missing(findings, roots, cache))
+    findings = find_tools(names, job.request.roots, cache, run=run)
+    lacking = tuple(missing_tools(findings, job.request.roots, cache).values())
     if lacking:
         return Plan(source, build, (), {}, cache, lacking)
     programs = {finding.tool.name: str(finding.path) for finding in findings}

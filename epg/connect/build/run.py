@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs a build in the background: starts and cancels it, and shows its progress, messages and products.
 
->>> # build = Build(job, changed=wake_the_page)
->>> # build.start(); build.state()["done"], build.state()["messages"], build.lines(0)
+>>> # build = Build(changed=wake_the_page)
+>>> # build.start(job); build.state()["done"], build.state()["messages"], build.lines(0)
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 from epg.catalog.catalog import load_catalog
@@ -19,10 +19,10 @@ from epg.connect.build.messages import Message, Messages, plain
 from epg.connect.build.plan import Plan, make_plan
 from epg.connect.build.process import Process
 from epg.connect.build.products import Made, ask, products
-from epg.connect.build.tools import MissingTool, missing_tools
+from epg.connect.build.tools import find_tools, missing_tools
 from epg.connect.projects import Job
 from epg.diagnostics import Diagnostics
-from epg.project import load_configuration
+from epg.project import Request, load_configuration
 
 KEPT = 20_000
 """The number of lines of output that can be read again; older ones are forgotten."""
@@ -35,13 +35,13 @@ _PROGRESS = re.compile(r"\[ *(?P<done>\d+)(?:/(?P<total>\d+)|%)\] (?P<action>.*)
 
 
 class Build:
-    """One build of ``job`` in a separate thread.  ``changed`` is called when there is something new to show.
+    """One build in a separate thread, idle until its start.  ``changed`` is called when there is something new to show.
 
     All methods can be called by any thread.  Only :meth:`wait` blocks.
     """
 
-    def __init__(self, job: Job, changed: Callable[[], None]) -> None:
-        self._job, self._changed = job, changed
+    def __init__(self, changed: Callable[[], None]) -> None:
+        self._changed = changed
         self._lock = threading.Lock()
         self._lines: list[str] = []
         self._messages: Messages | None = None
@@ -54,12 +54,16 @@ class Build:
         self._cancelled = False
         self._thread: threading.Thread | None = None
 
-    def start(self) -> None:
-        """Starts the build.  It can be called once for each object."""
+    @property
+    def is_running(self) -> bool:
+        return self._state == "running"
+
+    def start(self, job: Job) -> None:
+        """Starts the build of ``job``.  It can be called once for each object."""
         with self._lock:
             assert self._thread is None, "a build is started once"
             self._state, self._began = "running", time.monotonic()
-            self._thread = threading.Thread(target=self._run, name="build", daemon=True)
+            self._thread = threading.Thread(target=self._run, args=(job,), name="build", daemon=True)
         self._thread.start()
         self._changed()
 
@@ -101,11 +105,11 @@ class Build:
 
     # The methods below run in the build's thread. ---------------------------------------------------------------------
 
-    def _run(self) -> None:
+    def _run(self, job: Job) -> None:
         state, found = "failed", [Message("error", "the build could not be started", id="build-failed")]
         made: list[Made] = []
         try:
-            state, found, made = self._build()
+            state, found, made = self._build(job)
         except OSError as error:
             found = [Message("error", f"{error.filename or 'the build'}: {error.strerror or error}", id="build-failed")]
         finally:
@@ -114,11 +118,12 @@ class Build:
                 self._ended, self._action = time.monotonic(), ""
             self._changed()
 
-    def _build(self) -> tuple[str, list[Message], list[Made]]:
-        target = self._target()
-        plan = make_plan(self._job, target, self._job.request.roots)
+    def _build(self, job: Job) -> tuple[str, list[Message], list[Made]]:
+        request = job.request
+        target = _target(request)
+        plan = make_plan(job, target)
         if plan.missing:
-            return "failed", [_message(problem) for problem in plan.missing], []
+            return "failed", list(plan.missing), []
         messages = Messages((plan.source, plan.build))
         with self._lock:
             self._messages = messages
@@ -129,14 +134,14 @@ class Build:
                 return "cancelled", messages.finish(failed=False), []
             if status != 0:
                 found = messages.finish(failed=True)
-                return "failed", [*found, *self._unsaid(found, target, plan)], []
+                if step.name == "configure" and target is not None:
+                    said = " ".join(message.message for message in found)
+                    needed = find_tools(target.platform.needs, request.roots, plan.cache)
+                    lacking = missing_tools(needed, request.roots, plan.cache)
+                    found += [message for title, message in lacking.items() if title not in said]
+                return "failed", found, []
         platform = target.platform if target is not None else None
-        request = self._job.request
-        return (
-            "done",
-            messages.finish(failed=False),
-            products(plan.build, request.name, platform, self._job.executables),
-        )
+        return "done", messages.finish(failed=False), products(plan.build, request.name, platform, job.executables)
 
     def _run_step(self, plan: Plan, name: str, process: Process) -> int:
         with self._lock:
@@ -146,21 +151,6 @@ class Build:
                 return -1
         self._changed()
         return process.run()
-
-    def _target(self) -> Target | None:
-        """Board and platform; None if the configuration has an error, which the build reports."""
-        diagnostics = Diagnostics()
-        catalog = load_catalog(self._job.request.roots, diagnostics)
-        configuration = load_configuration(self._job.request, catalog, diagnostics)
-        return configuration.target if configuration is not None else None
-
-    def _unsaid(self, found: Sequence[Message], target: Target | None, plan: Plan) -> list[Message]:
-        """Messages about missing tools that no message in ``found`` names, if configuring has failed."""
-        if self._step != "configure" or target is None:
-            return []
-        said = " ".join(message.message for message in found)
-        lacking = missing_tools(target.platform, self._job.request.roots, plan.cache)
-        return [_message(problem) for problem in lacking if problem.title not in said]
 
     def _read(self, line: str) -> None:
         text = plain(line[: 2 * WIDEST])[:WIDEST]
@@ -183,5 +173,8 @@ class Build:
             self._changed()
 
 
-def _message(problem: MissingTool) -> Message:
-    return Message("error", problem.message, hint=problem.hint, id="tool-missing")
+def _target(request: Request) -> Target | None:
+    """Board and platform; None if the configuration has an error, which the build reports."""
+    diagnostics = Diagnostics()
+    configuration = load_configuration(request, load_catalog(request.roots, diagnostics), diagnostics)
+    return configuration.target if configuration is not None else None

@@ -1,18 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """The tools that a build for a platform needs, and the remedy if one is missing, as ``epg doctor`` reports them.
 
->>> # [problem.message for problem in missing_tools(platform, roots)]  ->  ["The picotool was not found."]
+>>> # list(missing_tools(find_tools(platform.needs, roots), roots))  ->  ["picotool"]
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from epg.bootstrap import cache_folder
 from epg.catalog.catalog import load_catalog
-from epg.catalog.platform import Platform
+from epg.connect.build.messages import Message
 from epg.connect.projects import find_jobs
 from epg.diagnostics import Diagnostics
 from epg.project import load_configuration
@@ -22,16 +21,6 @@ from epg.tools.tools import load_tools
 
 ALWAYS = ("cmake", "build_program")
 """The tools that every build needs."""
-
-
-@dataclass(frozen=True)
-class MissingTool:
-    """A tool that is not found, is too old, or is not in the place that a variable names."""
-
-    name: str
-    title: str
-    message: str
-    hint: str
 
 
 def find_tools(
@@ -48,29 +37,19 @@ def find_tools(
 
 
 def missing_tools(
-    platform: Platform | None, roots: Sequence[Path], cmake: Mapping[str, str] | None = None
-) -> list[MissingTool]:
-    """The tools that a build for ``platform`` needs and that are missing on this computer."""
-    names = platform.needs if platform is not None and platform.needs else ALWAYS
-    return missing(find_tools(names, roots, cmake), roots, cmake)
-
-
-def missing(
     findings: Iterable[Finding], roots: Sequence[Path], cmake: Mapping[str, str] | None = None
-) -> list[MissingTool]:
-    """The problems of the tools in ``findings``, each with a hint."""
+) -> dict[str, Message]:
+    """A message for each tool in ``findings`` that a build cannot use, by its title."""
     tools = load_tools(roots, Diagnostics())
     where = Surroundings.here(cache_folder(), cmake)
-    problems = []
+    problems = {}
     for finding in findings:
-        tool = finding.tool
-        if finding.status == "wrong":
-            hint = f"correct or unset the {finding.source}"
-        elif finding.status in ("old", "missing"):
-            hint = f"get it: {command_for(tool, where, tools)}"
-        else:
+        if finding.status == "found":
             continue
-        problems.append(MissingTool(tool.name, tool.title, problem_of(finding), hint))
+        hint = f"correct or unset the {finding.source}"
+        if finding.status != "wrong":
+            hint = f"get it: {command_for(finding.tool, where, tools)}"
+        problems[finding.tool.title] = Message("error", problem_of(finding), hint=hint, id="tool-missing")
     return problems
 
 
