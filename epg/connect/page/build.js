@@ -2,11 +2,11 @@
 // The build after "Generate": its progress, messages, products and log.
 
 import { openDialog } from "./dialog.js";
-import { h } from "./dom.js";
+import { h, plural } from "./dom.js";
 import { icon } from "./icons.js";
-import { problem } from "./problems.js";
+import { isError, problem } from "./problems.js";
 import { current, getJson } from "./server.js";
-import { attempt, draw, say, ui } from "./ui.js";
+import { attempt, draw, openTab, say, ui } from "./ui.js";
 
 let log = []; // the fetched lines
 let next = 0; // the number of the next line to fetch
@@ -20,11 +20,8 @@ function forgetLog() {
 }
 
 export async function generate() {
-  if (current().diagnostics.some((each) => each.severity === "error")) ui.tab = "problems";
-  else ui.tab = "build";
-  if (ui.dock === "closed") ui.dock = "open";
   forgetLog();
-  draw();
+  openTab(current().diagnostics.some(isError) ? "problems" : "build");
   if ((await attempt("generate")) && current().build.ask) openDialog("run", "Run these commands?", question);
 }
 
@@ -88,12 +85,12 @@ async function fetchLog() {
 
 function outcome(state) {
   const { build } = state;
-  const errors = build.messages.filter((each) => each.severity === "error").length;
+  const errors = build.messages.filter(isError).length;
   return {
     idle: "Nothing has been generated yet.",
     running: build.step === "configure" ? "Configuring" : "Building",
     done: build.products.length ? "Done. The firmware is ready." : "Done.",
-    failed: `Failed${errors ? `, with ${errors} error${errors === 1 ? "" : "s"}` : ""}.`,
+    failed: errors ? `Failed, with ${plural(errors, "error")}.` : "Failed.",
     cancelled: "Cancelled.",
   }[build.state];
 }
@@ -164,18 +161,7 @@ function product({ path, what }, n) {
 }
 
 async function copy(text, button) {
-  try {
-    await navigator.clipboard.writeText(text);
-  } catch {
-    // Some embedded browsers do not allow the clipboard: copy from a temporary text field instead.
-    const field = document.createElement("textarea");
-    field.value = text;
-    document.body.append(field);
-    field.select();
-    document.execCommand("copy");
-    field.remove();
-    button.focus();
-  }
+  await navigator.clipboard.writeText(text);
   say("Copied");
   button.textContent = "Copied";
   setTimeout(() => (button.textContent = "Copy path"), 1500);
@@ -192,7 +178,7 @@ function logPart(build) {
         fetchLog();
       },
     },
-    h("summary", `Log, ${build.lines} line${build.lines === 1 ? "" : "s"}`),
+    h("summary", `Log, ${plural(build.lines, "line")}`),
     h("pre", { tabindex: "0", "aria-label": "Log", keep: true, shown: showLog }),
   );
 }

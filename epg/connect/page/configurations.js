@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cards of the configurations that can be chosen, grouped by robot and board, with search and filter.
 
-import { h, id } from "./dom.js";
+import { h, id, plural, textField } from "./dom.js";
 import { icon } from "./icons.js";
 import { wiringPicture } from "./pictures.js";
-import { draw, ui } from "./ui.js";
+import { change, ui } from "./ui.js";
 
 const NO_ROBOT = "Board only";
 
@@ -21,7 +21,7 @@ export function configurationCards(state, prefix, only = () => true) {
       "p.muted",
       { role: "status" },
       shown.length === configurations.length
-        ? `${shown.length} target${shown.length === 1 ? "" : "s"}`
+        ? plural(shown.length, "target")
         : `${shown.length} of ${configurations.length} targets`,
     ),
     state.configurations.length === 0
@@ -54,20 +54,12 @@ const isReady = (configuration) => configuration.possible && configuration.missi
 // Returns [{robot, boards: [{board, list}]}]. The robot with the most matching ports is first; boards without a robot
 // are last. Of each robot, the boards for which this computer can build now are first.
 function grouped(configurations) {
-  const robots = new Map();
-  for (const each of configurations) {
-    const robot = each.robot || NO_ROBOT;
-    if (!robots.has(robot)) robots.set(robot, new Map());
-    const boards = robots.get(robot);
-    if (!boards.has(each.board)) boards.set(each.board, []);
-    boards.get(each.board).push(each);
-  }
-  const best = (boards) => Math.max(...[...boards.values()].flat().map((each) => each.matches));
-  return [...robots]
-    .sort(([a, aBoards], [b, bBoards]) => (a === NO_ROBOT) - (b === NO_ROBOT) || best(bBoards) - best(aBoards))
-    .map(([robot, boards]) => ({
+  const best = (all) => Math.max(...all.map((each) => each.matches));
+  return [...Map.groupBy(configurations, (each) => each.robot || NO_ROBOT)]
+    .sort(([a, ofA], [b, ofB]) => (a === NO_ROBOT) - (b === NO_ROBOT) || best(ofB) - best(ofA))
+    .map(([robot, all]) => ({
       robot,
-      boards: [...boards]
+      boards: [...Map.groupBy(all, (each) => each.board)]
         .map(([board, list]) => ({ board, list: list.sort((a, b) => isReady(b) - isReady(a)) }))
         .sort((a, b) => isReady(b.list[0]) - isReady(a.list[0])),
     }));
@@ -76,23 +68,18 @@ function grouped(configurations) {
 function filters(robots, prefix) {
   return h(
     "div.filters",
-    h(
-      "div.field",
-      h("label", { for: `${prefix}-search` }, "Search"),
-      h("input", {
-        id: `${prefix}-search`,
-        type: "search",
-        placeholder: "board, robot, RTOS",
-        initial: ui.filter.text,
-        oninput: (event) => change({ text: event.target.value }),
-      }),
-    ),
+    textField(`${prefix}-search`, "Search", {
+      type: "search",
+      placeholder: "board, robot, RTOS",
+      initial: ui.filter.text,
+      oninput: (event) => filter({ text: event.target.value }),
+    }),
     h(
       "div.field",
       h("label", { for: `${prefix}-robot` }, "Robot"),
       h(
         "select",
-        { id: `${prefix}-robot`, value: ui.filter.robot, onchange: (event) => change({ robot: event.target.value }) },
+        { id: `${prefix}-robot`, value: ui.filter.robot, onchange: (event) => filter({ robot: event.target.value }) },
         h("option", { key: "", value: "" }, "all"),
         robots.map((robot) => h("option", { key: `:${robot}`, value: robot }, robot)),
       ),
@@ -102,17 +89,14 @@ function filters(robots, prefix) {
       h("input", {
         type: "checkbox",
         checked: ui.filter.fits,
-        onchange: (event) => change({ fits: event.target.checked }),
+        onchange: (event) => filter({ fits: event.target.checked }),
       }),
       "Only targets that this computer can build now",
     ),
   );
 }
 
-function change(part) {
-  Object.assign(ui.filter, part);
-  draw();
-}
+const filter = (part) => change({ filter: { ...ui.filter, ...part } });
 
 function robotGroup({ robot, boards }, prefix) {
   const name = id(prefix, "robot", robot);
@@ -150,10 +134,7 @@ function card(configuration, prefix) {
       value: name,
       checked: ui.chosen === name,
       disabled: !possible,
-      onchange: () => {
-        ui.chosen = name;
-        draw();
-      },
+      onchange: () => change({ chosen: name }),
     }),
     picture
       ? wiringPicture(name, { alt: "", width: "84", height: "84" })
@@ -177,7 +158,7 @@ function breakable(name) {
 }
 
 function offer(components, matches, ports) {
-  const parts = [components === 0 ? "no components yet" : `${components} component${components === 1 ? "" : "s"}`];
+  const parts = [components === 0 ? "no components yet" : plural(components, "component")];
   if (components > 0 && ports > 0) parts.push(`${matches} of ${ports} ports match by name`);
   return parts.join(", ");
 }

@@ -2,7 +2,8 @@
 // The dialog of one wire: scale, offset, limits, unit.
 
 import { closeDialog, openDialog } from "./dialog.js";
-import { h, id } from "./dom.js";
+import { h, id, textField } from "./dom.js";
+import { isError } from "./problems.js";
 import { act, current } from "./server.js";
 import { draw, say, ui } from "./ui.js";
 import { endsOf, modelPort, replaceEnd } from "./wiring.js";
@@ -33,7 +34,7 @@ export function editConversion(port, n) {
     draw();
     if (error) return;
     ui.refused = null;
-    closeDialog("conversion");
+    closeDialog();
     const text = endsOf(current(), port)[n]?.text;
     say(text ? `${from} to ${to}: ${text}` : `${from} to ${to} without a conversion`);
   };
@@ -43,6 +44,8 @@ export function editConversion(port, n) {
     // Another program may have removed the wire.
     if (!end || end.reference !== reference) return null;
     const readonly = !current().editable;
+    const field = (name, label, initial, hint) =>
+      textField(`conversion-${name}`, label, { name, initial, readonly, autofocus: name === "scale" }, hint);
     return h(
       "form",
       { onsubmit: apply, autocomplete: "off", novalidate: true },
@@ -54,17 +57,11 @@ export function editConversion(port, n) {
       end.from_tcf && h("p", "The .tcf also converts the value: ", h("b", end.from_tcf)),
       h(
         "div.fields",
-        text(
-          "scale",
-          "Scale",
-          end.scale,
-          "a number or a ratio such as 361/5625; replaces the conversion of units",
-          readonly,
-        ),
-        text("offset", "Offset", end.offset, "", readonly),
-        text("low", "Lowest", end.limits?.[0], "", readonly),
-        text("high", "Highest", end.limits?.[1], "", readonly),
-        text("unit", "Unit", end.unit, "unit of the value in the model, if it differs from the port's unit", readonly),
+        field("scale", "Scale", end.scale, "a number or a ratio such as 361/5625; replaces the conversion of units"),
+        field("offset", "Offset", end.offset),
+        field("low", "Lowest", end.limits?.[0]),
+        field("high", "Highest", end.limits?.[1]),
+        field("unit", "Unit", end.unit, "unit of the value in the model, if it differs from the port's unit"),
       ),
       error && h("p.refusal", { role: "alert" }, error.message, error.hint ? h("span.hint", error.hint) : null),
       h(
@@ -75,7 +72,7 @@ export function editConversion(port, n) {
             type: "button",
             disabled: readonly,
             onclick: () => {
-              closeDialog("conversion");
+              closeDialog();
               replaceEnd(port, n, null);
               document.getElementById(id("ends", port, 0))?.focus();
             },
@@ -83,33 +80,13 @@ export function editConversion(port, n) {
           "Remove wire",
         ),
         h("span.space"),
-        h("button", { type: "button", onclick: () => closeDialog("conversion") }, "Cancel"),
+        h("button", { type: "button", onclick: closeDialog }, "Cancel"),
         h("button", { type: "submit", class: "primary", disabled: readonly }, "Apply"),
       ),
     );
   });
 }
 
-function text(name, label, value, hint, readonly) {
-  const field = id("conversion-field", name);
-  return h(
-    "div",
-    { class: `field field-${name}` },
-    h("label", { for: field }, label),
-    h("input", {
-      id: field,
-      name,
-      type: "text",
-      spellcheck: "false",
-      initial: value || "",
-      autofocus: name === "scale",
-      readonly,
-      "aria-describedby": hint ? `${field}-hint` : null,
-    }),
-    hint && h("span.hint", { id: `${field}-hint` }, hint),
-  );
-}
-
-const errorsOf = (port) => current().diagnostics.filter((each) => each.port === port && each.severity === "error");
+const errorsOf = (port) => current().diagnostics.filter((each) => each.port === port && isError(each));
 
 const pick = ({ reference, scale, offset, limits, unit }) => ({ reference, scale, offset, limits, unit });

@@ -5,49 +5,40 @@
 import { h, render } from "./dom.js";
 import { icon } from "./icons.js";
 
-const open = new Map(); // name -> {element, title, content}
+let open = null; // {element, title, content}
 
-// Opens a dialog. `content` is called for each drawing: it returns the children, or null to close the dialog.
-export function openDialog(name, title, content, attributes = {}) {
-  closeDialog(name);
+// Opens a dialog in place of the open one. `content` is called for each drawing: it returns the children, or null to
+// close the dialog.
+export function openDialog(name, title, content) {
+  closeDialog();
   const element = document.createElement("dialog");
   element.className = `dialog dialog-${name}`;
-  element.setAttribute("aria-labelledby", `${name}-title`);
-  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
+  element.setAttribute("aria-labelledby", "dialog-title");
   element.addEventListener("close", () => {
-    open.delete(name);
+    if (open?.element === element) open = null;
     element.remove();
   });
   document.body.append(element);
-  open.set(name, { element, title, content });
-  drawDialog(name);
+  open = { element, title, content };
+  drawDialog();
   element.showModal();
 }
 
-export function closeDialog(name) {
-  open.get(name)?.element.close();
+export function closeDialog() {
+  open?.element.close();
 }
 
-export function drawDialogs() {
-  for (const name of [...open.keys()]) drawDialog(name);
-}
-
-function drawDialog(name) {
-  const { element, title, content } = open.get(name);
-  const inside = content();
+export function drawDialog() {
+  const inside = open?.content() ?? null;
   if (inside === null) {
-    element.close();
+    closeDialog();
     return;
   }
   const head = h(
     "div.dialog-head",
     { key: "head" },
-    h("h2", { id: `${name}-title` }, title),
-    h(
-      "button",
-      { type: "button", class: "quiet icon-button", "aria-label": "Close", onclick: () => element.close() },
-      icon("close"),
-    ),
+    h("h2", { id: "dialog-title" }, open.title),
+    h("button.quiet.icon-button", { "aria-label": "Close", onclick: closeDialog }, icon("close")),
   );
-  render(element, [head, h("div.dialog-body", { key: "body" }, inside)]);
+  render(open.element, [head, h("div.dialog-body", { key: "body" }, inside)]);
 }

@@ -8,7 +8,7 @@ import { hardware } from "./hardware.js";
 import { icon } from "./icons.js";
 import { picture } from "./pictures.js";
 import { problemList } from "./problems.js";
-import { draw, ui } from "./ui.js";
+import { change, openTab, ui } from "./ui.js";
 
 function tabs(state) {
   const { pictures, diagnostics } = state;
@@ -38,12 +38,8 @@ export function dock(state) {
       ),
       h(
         "div.dock-size",
-        sizeButton(
-          ui.dock === "large" ? "Smaller" : "Larger",
-          ui.dock === "large" ? "open" : "large",
-          ui.dock === "large" ? "smaller" : "larger",
-        ),
-        sizeButton(isOpen ? "Hide details" : "Show details", isOpen ? "closed" : "open", isOpen ? "close" : "larger"),
+        ui.dock === "large" ? sizeButton("Smaller", "open", "smaller") : sizeButton("Larger", "large", "larger"),
+        isOpen ? sizeButton("Hide details", "closed", "close") : sizeButton("Show details", "open", "larger"),
       ),
     ),
     h(
@@ -72,11 +68,7 @@ function tab({ name, title }, selected) {
       "aria-selected": String(selected),
       "aria-controls": "panel",
       tabindex: selected ? "0" : "-1",
-      onclick: () => {
-        ui.tab = name;
-        if (ui.dock === "closed") ui.dock = "open";
-        draw();
-      },
+      onclick: () => openTab(name),
     },
     title,
   );
@@ -87,22 +79,14 @@ function arrow(event, all, shown) {
   if (!by) return;
   event.preventDefault();
   const next = all[(all.indexOf(shown) + by + all.length) % all.length];
-  ui.tab = next.name;
-  draw();
+  change({ tab: next.name });
   document.getElementById(`tab-${next.name}`).focus();
 }
 
 function sizeButton(label, size, picture) {
   return h(
     "button.quiet.icon-button",
-    {
-      "aria-label": label,
-      title: label,
-      onclick: () => {
-        ui.dock = size;
-        draw();
-      },
-    },
+    { "aria-label": label, title: label, onclick: () => change({ dock: size }) },
     icon(picture),
   );
 }

@@ -108,6 +108,18 @@ function set(node, name, value, old) {
   else node.setAttribute(name, value === true ? "" : String(value));
 }
 
+// A text field with its label. A hint is below it.
+export function textField(id, label, attributes, hint = null) {
+  return h(
+    "div.field",
+    h("label", { for: id }, label),
+    h("input", { id, type: "text", spellcheck: "false", "aria-describedby": hint && `${id}-hint`, ...attributes }),
+    hint && h("span.hint", { id: `${id}-hint` }, hint),
+  );
+}
+
+export const plural = (number, noun) => `${number} ${noun}${number === 1 ? "" : "s"}`;
+
 // Joins the parts to an id that is legal for any name of a port.
 export function id(...parts) {
   return parts.join("-").replace(/[^\w-]/g, (letter) => `_${letter.codePointAt(0)}_`);

@@ -6,7 +6,7 @@ import { chooseTarget } from "./chooser.js";
 import { h } from "./dom.js";
 import { icon } from "./icons.js";
 import { counted, shortFile } from "./problems.js";
-import { attempt, draw, ui } from "./ui.js";
+import { attempt, openTab } from "./ui.js";
 
 export function header(state) {
   const brand = h("p.brand", { key: "brand" }, icon("target"), h("span", "EPG"));
@@ -88,9 +88,7 @@ function problemsButton(state) {
       class: `quiet problems-count ${errors ? "error" : warnings ? "warning" : "done"}`,
       key: "problems",
       onclick: () => {
-        ui.tab = "problems";
-        if (ui.dock === "closed") ui.dock = "open";
-        draw();
+        openTab("problems");
         document.getElementById("tab-problems").focus();
       },
     },

@@ -8,7 +8,7 @@
 import { bars } from "./bars.js";
 import { followBuild } from "./build.js";
 import { componentColumn } from "./components.js";
-import { drawDialogs } from "./dialog.js";
+import { drawDialog } from "./dialog.js";
 import { dock } from "./dock.js";
 import { h, render } from "./dom.js";
 import { listenForDrags } from "./drag.js";
@@ -40,7 +40,7 @@ function drawPage() {
   part("dock").hidden = !connecting;
   if (connecting) render(part("dock"), dock(state));
   drawStops();
-  drawDialogs();
+  drawDialog();
   drawWires();
 }
 
@@ -48,15 +48,10 @@ function diagram(state) {
   if (!state.model) {
     return [h("p.empty", { key: "none" }, "The model cannot be read. The tab Problems shows the reason.")];
   }
-  const byPort = group(state.diagnostics, "port");
-  const byComponent = group(
-    state.diagnostics.filter((each) => !each.port),
-    "component",
-  );
-  const users = new Map();
-  for (const [port, ends] of Object.entries(state.wires)) {
-    for (const end of ends) users.set(end.reference, [...(users.get(end.reference) || []), { port, end }]);
-  }
+  const byPort = Map.groupBy(state.diagnostics, (each) => each.port);
+  const byComponent = Map.groupBy(byPort.get(null) || [], (each) => each.component);
+  const wires = Object.entries(state.wires).flatMap(([port, ends]) => ends.map((end) => ({ port, end })));
+  const users = Map.groupBy(wires, ({ end }) => end.reference);
   return [
     h(
       "div.diagram",
@@ -70,12 +65,6 @@ function diagram(state) {
       h("p.unseen", { id: "handle-help", key: "help" }, "Press Enter or click to pick up the end of a wire"),
     ),
   ];
-}
-
-function group(list, name) {
-  const groups = new Map();
-  for (const each of list) if (each[name]) groups.set(each[name], [...(groups.get(each[name]) || []), each]);
-  return groups;
 }
 
 const sizes = new ResizeObserver(() => drawWires());

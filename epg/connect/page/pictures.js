@@ -1,45 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures that the server draws, with buttons for zoom.
+// Pictures that the server draws.
 
 import { h } from "./dom.js";
 import { getPicture } from "./server.js";
-import { draw, ui } from "./ui.js";
-
-const STEPS = [0.25, 0.5, 0.75, 1, 1.5, 2, 3, 4];
+import { draw } from "./ui.js";
 
 export function picture(state, name) {
-  const zoom = ui.zoom[name] || 0; // 0: fitted into the panel
   const shown = newest(name, `picture/${name}.svg?version=${state.version}`);
   return [
-    h(
-      "div.zoom",
-      { key: "zoom", role: "group", "aria-label": "Zoom" },
-      button("Fit", () => change(name, 0), zoom === 0),
-      button("−", () => change(name, step(zoom, -1)), false, "Zoom out"),
-      h("span.zoom-value", { role: "status" }, zoom ? `${zoom * 100} %` : "fit"),
-      button("+", () => change(name, step(zoom, 1)), false, "Zoom in"),
-      h("a", { href: shown, target: "_blank", rel: "noopener" }, "Open in a new tab"),
-    ),
-    h(
-      "div",
-      {
-        class: zoom ? "picture" : "picture fit",
-        key: "picture",
-        tabindex: "0",
-        role: "region",
-        "aria-label": "Picture, scrollable",
-      },
-      h("img", {
-        key: name,
-        alt: description(state, name),
-        src: shown,
-        shown: (image) => {
-          const size = () => (image.style.width = zoom ? `${image.naturalWidth * zoom}px` : "");
-          image.onload = size;
-          size();
-        },
-      }),
-    ),
+    h("a", { key: "open", href: shown, target: "_blank", rel: "noopener" }, "Open in a new tab"),
+    h("img.picture", { key: name, alt: description(state, name), src: shown }),
   ];
 }
 
@@ -110,18 +80,4 @@ function description(state, name) {
     .filter((each) => each.where?.length)
     .map((each) => `${each.name}: ${each.where.join(", ")}`);
   return `The board seen from above, with the components at its contacts. ${wires.join("; ")}.`;
-}
-
-function step(zoom, by) {
-  const now = STEPS.indexOf(zoom || 1);
-  return STEPS[Math.max(0, Math.min(STEPS.length - 1, now + by))];
-}
-
-function change(name, zoom) {
-  ui.zoom[name] = zoom;
-  draw();
-}
-
-function button(text, onclick, pressed, label = null) {
-  return h("button", { onclick, "aria-label": label, "aria-pressed": label ? null : String(pressed) }, text);
 }

@@ -5,8 +5,8 @@ import { editConversion } from "./conversion.js";
 import { h, id } from "./dom.js";
 import { handle, match, modelLabel } from "./handles.js";
 import { icon } from "./icons.js";
-import { inline } from "./problems.js";
-import { attempt, draw, ui } from "./ui.js";
+import { inline, isError } from "./problems.js";
+import { attempt, change, ui } from "./ui.js";
 import { disconnect, endsOf, fits, isUnconnected, replaceEnd, setEnds, unitMark } from "./wiring.js";
 
 export function modelHead(state) {
@@ -63,7 +63,7 @@ function row(state, side, port, diagnostics) {
   const { name } = port;
   const ends = endsOf(state, name);
   const proposal = name in state.wires ? null : state.proposals[name];
-  const worst = diagnostics.some((each) => each.severity === "error") ? " has-error" : "";
+  const worst = diagnostics.some(isError) ? " has-error" : "";
   const fields =
     ends.length === 0 ? [field(state, side, port, null, 0)] : ends.map((end, n) => field(state, side, port, end, n));
   if (ui.adding === name && ends.length > 0) fields.push(field(state, side, port, null, ends.length));
@@ -131,8 +131,7 @@ function field(state, side, port, end, n) {
           title: "Connect to another component",
           disabled: !state.editable,
           onclick: () => {
-            ui.adding = name;
-            draw();
+            change({ adding: name });
             document.getElementById(id("ends", name, ends.length))?.focus();
           },
         },

@@ -1,23 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // Messages, at their port or component and as a list. Their text is the same as on the command line.
 
-import { h, id } from "./dom.js";
+import { h, id, plural } from "./dom.js";
 import { icon } from "./icons.js";
 import { current } from "./server.js";
 import { showSource } from "./source.js";
-import { draw, ui } from "./ui.js";
+import { change, ui } from "./ui.js";
+
+export const isError = (message) => message.severity === "error";
 
 export function counted(diagnostics) {
-  const errors = diagnostics.filter((each) => each.severity === "error").length;
+  const errors = diagnostics.filter(isError).length;
   const warnings = diagnostics.filter((each) => each.severity === "warning").length;
-  return { errors, warnings, text: countText(errors, warnings) };
-}
-
-function countText(errors, warnings) {
-  const parts = [];
-  if (errors) parts.push(`${errors} error${errors === 1 ? "" : "s"}`);
-  if (warnings) parts.push(`${warnings} warning${warnings === 1 ? "" : "s"}`);
-  return parts.join(", ") || "No problems";
+  const parts = [errors && plural(errors, "error"), warnings && plural(warnings, "warning")].filter(Boolean);
+  return { errors, warnings, text: parts.join(", ") || "No problems" };
 }
 
 const severityIcon = (severity) => icon(severity in { error: 1, warning: 1 } ? severity : "note");
@@ -99,10 +95,7 @@ function goTo(message) {
 }
 
 function focusPort(port) {
-  if (ui.dock === "large") {
-    ui.dock = "open";
-    draw();
-  }
+  if (ui.dock === "large") change({ dock: "open" });
   const field = document.getElementById(id("ends", port, 0));
   if (!field) return false;
   field.scrollIntoView({ block: "center" });

@@ -67,16 +67,13 @@ export async function act(action, body = {}) {
     });
     data = await answer.json();
   } catch {
-    if (action === "done") {
-      ended = true;
+    if (action !== "done") {
+      lost = true;
       changed();
-      return null;
+      return { message: "EPG does not answer", hint: "" };
     }
-    lost = true;
-    changed();
-    return { message: "EPG does not answer", hint: "" };
   }
-  if (!answer.ok) return data.error;
+  if (data?.error) return data.error;
   if (action === "done") {
     ended = true;
     changed();
@@ -87,16 +84,19 @@ export async function act(action, body = {}) {
 }
 
 export async function getJson(address) {
-  const answer = await request(address);
-  if (!answer.ok) throw new Error(await answer.text());
-  return answer.json();
+  return (await get(address)).json();
 }
 
 // Fetches a picture, and returns a local address of it for <img> and links: these cannot send the secret.
 export async function getPicture(address) {
+  const answer = await get(address);
+  return URL.createObjectURL(await answer.blob());
+}
+
+async function get(address) {
   const answer = await request(address);
   if (!answer.ok) throw new Error(await answer.text());
-  return URL.createObjectURL(await answer.blob());
+  return answer;
 }
 
 async function request(address, options = {}) {

@@ -2,7 +2,7 @@
 // The start page for a model without a project. It has three steps: 1 Model, 2 Target, 3 Project.
 
 import { configurationCards } from "./configurations.js";
-import { h } from "./dom.js";
+import { h, textField } from "./dom.js";
 import { wiringPicture } from "./pictures.js";
 import { attempt, draw, ui } from "./ui.js";
 import { unitMark } from "./wiring.js";
@@ -85,30 +85,8 @@ function projectStep(state) {
     h(
       "form",
       { onsubmit: create, autocomplete: "off" },
-      h(
-        "div.field",
-        h("label", { for: "create-name" }, "Name"),
-        h("input", {
-          id: "create-name",
-          name: "name",
-          type: "text",
-          required: true,
-          spellcheck: "false",
-          initial: state.create?.name,
-        }),
-      ),
-      h(
-        "div.field",
-        h("label", { for: "create-folder" }, "Folder"),
-        h("input", {
-          id: "create-folder",
-          name: "folder",
-          type: "text",
-          required: true,
-          spellcheck: "false",
-          initial: state.create?.folder,
-        }),
-      ),
+      textField("create-name", "Name", { name: "name", required: true, initial: state.create.name }),
+      textField("create-folder", "Folder", { name: "folder", required: true, initial: state.create.folder }),
       h("p.picked", picked ? ["Target ", h("b", picked.name)] : h("span.muted", "No target is chosen yet.")),
       picked?.missing.length &&
         h(

@@ -12,16 +12,22 @@ export const ui = {
   dragged: false, // true right after a drag: the click event that follows must be ignored
   filter: { text: "", robot: "", fits: false },
   chosen: null, // the configuration chosen on the start page or in the dialog
-  zoom: {}, // zoom of each picture
   logOpen: false,
 };
 
-let redraw = () => {};
-export function whenDrawn(draw) {
-  redraw = draw;
+export let draw = () => {};
+export function whenDrawn(drawPage) {
+  draw = drawPage;
 }
-export function draw() {
-  redraw();
+
+// Changes some values of `ui`, and draws the page.
+export function change(values) {
+  Object.assign(ui, values);
+  draw();
+}
+
+export function openTab(tab) {
+  change({ tab, dock: ui.dock === "closed" ? "open" : ui.dock });
 }
 
 // Sends an action, and shows the error if it is refused. Returns true if it was done.

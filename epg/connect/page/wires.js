@@ -3,10 +3,10 @@
 
 import { editConversion } from "./conversion.js";
 import { h, id, render } from "./dom.js";
-import { handleId } from "./handles.js";
+import { isError } from "./problems.js";
 import { current } from "./server.js";
 import { ui } from "./ui.js";
-import { modelPort, ofModel } from "./wiring.js";
+import { ofModel } from "./wiring.js";
 
 let pointer = null; // the position of a dragged end, in the diagram's coordinates
 
@@ -31,7 +31,7 @@ export function drawWires() {
     anchors.set(key, { x: box.left + box.width / 2 - zero.left, y: box.top + box.height / 2 - zero.top });
   }
   const size = { width: diagram.scrollWidth, height: diagram.scrollHeight };
-  const bad = new Set(state.diagnostics.filter((each) => each.severity === "error").map((each) => each.port));
+  const bad = new Set(state.diagnostics.filter(isError).map((each) => each.port));
   const paths = [];
   for (const [port, ends] of Object.entries(state.wires)) {
     ends.forEach((end, n) => {
@@ -58,24 +58,10 @@ function wire(port, n, end, d, isBad) {
       class: `wire-group${isBad ? " bad" : ""}`,
       key: name,
       onclick: () => editConversion(port, n),
-      onmouseenter: () => mark(port, end.reference, true),
-      onmouseleave: () => mark(port, end.reference, false),
     },
     h("path.wire-reach", { d }),
     h("path.wire", { d }),
   );
-}
-
-// Marks both ends of a wire while the pointer is over it.
-function mark(port, reference, on) {
-  const side = modelPort(current(), port)?.side;
-  const other = side === "inputs" ? "sources" : "sinks";
-  for (const [where, name] of [
-    [side, port],
-    [other, reference],
-  ]) {
-    document.getElementById(handleId(where, name))?.closest(".port")?.classList.toggle("marked", on);
-  }
 }
 
 function heldCurve(state, anchors, zero) {

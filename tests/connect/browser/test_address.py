@@ -77,7 +77,7 @@ def test_a_page_of_an_epg_that_has_ended(browser: Any, tmp_path: Path) -> None:
 def test_a_picture_by_itself(jiwy: Project, open_page: Open) -> None:
     page = open_page(jiwy.address)
     page.get_by_role("tab", name="Application").click()
-    until(page, "document.querySelector('.picture img')?.naturalWidth > 0")
+    until(page, "document.querySelector('img.picture')?.naturalWidth > 0")
     with page.context.expect_page() as opening:
         page.get_by_role("link", name="Open in a new tab").click()
     alone = opening.value
