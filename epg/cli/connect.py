@@ -96,7 +96,7 @@ def _serve(session: Session, options: argparse.Namespace) -> int:
         server.run(until_closed=options.until_closed)
     except KeyboardInterrupt:
         print()
-    if session.state()["draft"]["changed"]:
+    if session.has_changes:
         sys.stderr.write("epg connect: changes that were not saved are lost\n")
     return 0
 

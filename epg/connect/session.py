@@ -166,6 +166,11 @@ class Session:
         """True while a build runs."""
         return self._runs.running
 
+    @property
+    def has_changes(self) -> bool:
+        """True if there are unsaved changes."""
+        return self._editor is not None and self._editor.draft.changed
+
     # actions of the user
 
     def _connect(self, body: Body) -> None:

@@ -30,31 +30,14 @@ class Start:
         return changed
 
     def show(self) -> dict[str, Any]:
-        """The state without a project: all values that belong to a project are empty."""
+        """The state without a project: values that belong to a project are left out."""
         model = self.model
         return {
             "phase": "choose",
             "project": None,
             "create": self._create,
             "model": model_view(model) if model is not None else None,
-            "components": [],
-            "wires": {},
-            "proposals": {},
-            "candidates": {},
-            "fits": {},
             "diagnostics": [diagnostic_view(problem) for problem in self._problems],
-            "hardware": [],
-            "pictures": {"wiring": False, "application": False, "schedule": False},
-            "draft": {
-                "changed": False,
-                "can_undo": False,
-                "can_redo": False,
-                "diff": "",
-                "conflict": None,
-                "external": None,
-            },
-            "editable": False,
-            "why_not": "choose a target first",
         }
 
     def _load(self) -> None:

@@ -5,7 +5,7 @@ import { h } from "./dom.js";
 import { icon } from "./icons.js";
 import { whyLocked } from "./key.js";
 import { hasEnded, isLost } from "./server.js";
-import { attempt, draw, ui } from "./ui.js";
+import { attempt, change, draw, ui } from "./ui.js";
 
 let dismissed = null; // the note about an edit by another program that the user has dismissed
 
@@ -13,14 +13,8 @@ export function bars(state) {
   if (hasEnded()) return [];
   const list = [];
   if (whyLocked()) {
-    list.push(
-      bar("locked", "error", [
-        h("b", whyLocked()),
-        " Open the address that ",
-        h("code", "epg connect"),
-        " printed last in its terminal.",
-      ]),
-    );
+    const how = [" Open the address that ", h("code", "epg connect"), " printed last in its terminal."];
+    list.push(bar("locked", "error", [h("b", whyLocked()), how]));
   } else if (isLost()) {
     const folder = state?.project?.folder;
     list.push(
@@ -35,57 +29,38 @@ export function bars(state) {
       ]),
     );
   }
-  if (!state) return list;
-  const { draft } = state;
-  if (!draft.external) dismissed = null;
-  if (state.phase === "connect" && draft.conflict) {
-    list.push(
-      bar(
-        "conflict",
-        "error",
-        [h("b", draft.conflict.message), draft.conflict.hint ? ` ${draft.conflict.hint}` : null],
-        h("button", { onclick: () => attempt("reload") }, "Load the file, discard my changes"),
-        h("button", { onclick: () => attempt("save", { anyway: true }) }, "Overwrite the file with my changes"),
-      ),
-    );
-  } else if (state.phase === "connect" && draft.external && draft.external !== dismissed) {
-    list.push(
-      bar(
-        "external",
-        "note",
-        draft.external,
-        dismiss(() => (dismissed = draft.external)),
-      ),
-    );
-  }
-  if (state.phase === "connect" && !state.editable) {
-    list.push(bar("readonly", "warning", [h("b", "Connections cannot be changed here. "), state.why_not]));
+  if (state?.phase === "connect") {
+    const { conflict, external } = state.draft;
+    if (!external) dismissed = null;
+    if (conflict) {
+      list.push(
+        bar(
+          "conflict",
+          "error",
+          explained(conflict),
+          h("button", { onclick: () => attempt("reload") }, "Load the file, discard my changes"),
+          h("button", { onclick: () => attempt("save", { anyway: true }) }, "Overwrite the file with my changes"),
+        ),
+      );
+    } else if (external && external !== dismissed) {
+      const dismiss = () => {
+        dismissed = external;
+        draw();
+      };
+      list.push(bar("external", "note", external, h("button.quiet", { onclick: dismiss }, "Dismiss")));
+    }
+    if (!state.editable) {
+      list.push(bar("readonly", "warning", [h("b", "Connections cannot be changed here. "), state.why_not]));
+    }
   }
   if (ui.refused) {
-    list.push(
-      bar(
-        "refused",
-        "error",
-        [h("b", ui.refused.message), ui.refused.hint ? ` ${ui.refused.hint}` : null],
-        dismiss(() => (ui.refused = null)),
-      ),
-    );
+    const dismiss = h("button.quiet", { onclick: () => change({ refused: null }) }, "Dismiss");
+    list.push(bar("refused", "error", explained(ui.refused), dismiss));
   }
   return list;
 }
 
-function dismiss(forget) {
-  return h(
-    "button.quiet",
-    {
-      onclick: () => {
-        forget();
-        draw();
-      },
-    },
-    "Dismiss",
-  );
-}
+const explained = ({ message, hint }) => [h("b", message), hint ? ` ${hint}` : null];
 
 function bar(key, severity, text, ...buttons) {
   return h(

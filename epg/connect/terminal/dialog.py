@@ -33,7 +33,7 @@ def run(session: Session, input: TextIO, output: TextIO) -> int:
     except Left:
         return 0
     except Ended:
-        lost = session.state()["phase"] == "choose" or session.state()["draft"]["changed"]
+        lost = session.state()["phase"] == "choose" or session.has_changes
         console.say("the input has ended" + (": nothing was saved" if lost else ""))
         return LEFT_UNSAVED if lost else 0
     except KeyboardInterrupt:
