@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 from epg.diagnostics import Diagnostic
 from epg.documents.tcf import TcfFile
@@ -13,31 +12,20 @@ from epg.source import Span, YamlNode
 
 _SECTIONS = ("inputs", "outputs")
 
-
-@dataclass(frozen=True)
-class _Stretch:
-    """The text from the first character of a key to the last character of its value."""
-
-    name: str
-    file: str
-    first: tuple[int, int]
-    last: tuple[int, int]
-
-    def holds(self, span: Span) -> bool:
-        return span.file == self.file and self.first <= (span.line, span.column) <= self.last
+_Key = tuple[str, int, int, str]
+"""The file, line and column at which a key begins, and its name; "" for a key that names no port or component."""
 
 
 class Places:
-    """The lines of the bindings that belong to ports, and the lines of the ``.tcf`` files that belong to components."""
+    """The lines of the bindings that belong to ports, and the lines of the ``.tcf`` files that belong to components.
+
+    They go from a name to the next one, or to the next key of the file.
+    """
 
     def __init__(self, bindings: str, root: YamlNode | None, model: Model | None, chain: Sequence[TcfFile]) -> None:
         self._bindings = bindings
-        self._ports: list[_Stretch] = []
-        for section in _SECTIONS:
-            node = root.get(section) if root is not None else None
-            self._ports += _stretches(node) if node is not None else []
-        sections = [node for file in chain if (node := file.node.get("components")) is not None]
-        self._components = [stretch for node in sections for stretch in _stretches(node)]
+        self._ports = sorted(_keys(root, _SECTIONS)) if root is not None else []
+        self._components = sorted(key for file in chain for key in _keys(file.node, ("components",)))
         ports = (*model.inputs, *model.outputs) if model is not None else ()
         spans = [port.span for port in ports]
         self._declared = {port.span: port.name for port in ports if port.span.line and spans.count(port.span) == 1}
@@ -59,24 +47,14 @@ class Places:
         return _name(self._components, diagnostic.span)
 
 
-def _name(stretches: Sequence[_Stretch], span: Span) -> str | None:
-    return next((stretch.name for stretch in stretches if stretch.holds(span)), None)
+def _keys(root: YamlNode, sections: Sequence[str]) -> Iterator[_Key]:
+    for parent, names in ((root, False), *((root[section], True) for section in sections if section in root)):
+        for key, _ in parent.items():
+            span = parent.key_span(key)
+            yield span.file, span.line, span.column, key if names else ""
 
 
-def _stretches(section: YamlNode) -> list[_Stretch]:
-    found = []
-    for name, value in section.items():
-        key = section.key_span(name)
-        ends = [(span.line, span.end - 1) for span in (key, *_spans(value)) if span.file == key.file]
-        found.append(_Stretch(name, key.file, (key.line, key.column), max(ends)))
-    return found
-
-
-def _spans(node: YamlNode) -> Iterator[Span]:
-    """The positions of a value and of everything in it."""
-    yield node.span
-    yield from node.keys.values()
-    for _, child in node.items():
-        yield from _spans(child)
-    for child in node.elements():
-        yield from _spans(child)
+def _name(keys: Sequence[_Key], span: Span) -> str | None:
+    """The name of the last key that does not begin behind ``span``."""
+    before = [key for key in keys if key[0] == span.file and key[1:3] <= (span.line, span.column)]
+    return before[-1][3] or None if before else None

@@ -70,7 +70,6 @@ class Runs:
             message["port"] = places.port_at(Span(message["file"], message["line"], message["column"]))
         return state
 
-    def log(self, start: int) -> dict[str, Any]:
-        """The printed lines from line ``start`` on, and the number of the next line."""
-        lines = self._build.lines(start)
-        return {"lines": lines, "next": start + len(lines)}
+    def lines(self, start: int) -> list[str]:
+        """The printed lines from line ``start`` on."""
+        return self._build.lines(start)

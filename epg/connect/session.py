@@ -128,7 +128,7 @@ class Session:
 
     def log(self, start: int) -> dict[str, Any]:
         """The output of configuring and building, from line ``start`` on."""
-        return self._runs.log(max(0, start))
+        return {"lines": self._runs.lines(start)}
 
     def picture(self, name: str, configuration: str = "") -> str:
         """The picture ``name`` of the open target as SVG, or the wiring of ``configuration``.  Raises Refused."""

@@ -38,8 +38,8 @@ def test_a_program_is_made_and_runs(host_page: Page, tmp_path: Path) -> None:
     build = page.until(lambda state: state["build"]["state"] != "running", 120)["build"]
     log = page.json("api/log?from=0")
     assert build["state"] == "done", log["lines"][-20:]
-    assert log["next"] == len(log["lines"]) == build["lines"] and log["lines"]
-    assert page.json(f"api/log?from={log['next']}")["lines"] == []
+    assert len(log["lines"]) == build["lines"] > 0
+    assert page.json(f"api/log?from={build['lines']}")["lines"] == []
     (product,) = [each for each in build["products"] if Path(each["path"]).name == "robot_host"]
     assert subprocess.run([product["path"], "--help"], capture_output=True, timeout=20).returncode == 0
 

@@ -9,18 +9,12 @@ import { current, getJson } from "./server.js";
 import { attempt, draw, openTab, say, ui } from "./ui.js";
 
 let log = []; // the fetched lines
-let next = 0; // the number of the next line to fetch
 let fetching = false;
 let since = null; // {seconds, at}: the build's age in the last state, and the time when that state arrived, in ms
 let last = "idle"; // the last state of the build
 
-function forgetLog() {
-  log = [];
-  next = 0;
-}
-
 export async function generate() {
-  forgetLog();
+  log = [];
   openTab(current().diagnostics.some(isError) ? "problems" : "build");
   if ((await attempt("generate")) && current().build.ask) openDialog("run", "Run these commands?", question);
 }
@@ -59,7 +53,7 @@ export function followBuild(state) {
   since = { seconds: build.seconds, at: performance.now() };
   if (build.state !== last) {
     if (build.state === "running") {
-      forgetLog();
+      log = [];
       ui.tab = "build";
     }
     if (last === "running") say(outcome(state));
@@ -70,12 +64,12 @@ export function followBuild(state) {
 
 async function fetchLog() {
   const { build } = current();
-  if (fetching || !ui.logOpen || next >= build.lines) return;
+  if (fetching || !ui.logOpen || log.length >= build.lines) return;
   fetching = true;
+  const known = log; // a new build begins with another list
   try {
-    const answer = await getJson(`api/log?from=${next}`);
-    log.push(...answer.lines);
-    next = answer.next;
+    const answer = await getJson(`api/log?from=${known.length}`);
+    known.push(...answer.lines);
   } catch {
     // The notice about the lost connection is shown already.
   }
@@ -119,7 +113,7 @@ function status(state) {
     build.state === "running" && build.step === "build" && build.total
       ? ` ${build.done} of ${build.total} steps`
       : null,
-    h("span.muted.elapsed", { id: "elapsed", keep: true, shown: (node) => (node.textContent = elapsed(build)) }),
+    h("span.muted.elapsed", elapsed(build)),
   );
 }
 
@@ -130,9 +124,7 @@ function elapsed(build) {
 }
 
 setInterval(() => {
-  const place = document.getElementById("elapsed");
-  const state = current();
-  if (place && state?.build.state === "running") place.textContent = elapsed(state.build);
+  if (current()?.build.state === "running") draw();
 }, 1000);
 
 // While the number of steps is unknown, the bar has no value: the browser then draws it moving.

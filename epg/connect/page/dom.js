@@ -12,7 +12,6 @@ const SVG_TAGS = new Set(["svg", "path", "circle", "g", "rect"]);
 //   key      identifies the element among its siblings
 //   on...    an event handler
 //   keep     render() does not touch the children; another function draws them
-//   made     called once with the new element
 //   shown    called with the element after each drawing
 //   initial  the first value of an input; later the user's text stays
 // Children that are null, undefined, false, 0 or an empty text are left out.
@@ -78,7 +77,6 @@ function make(wanted) {
   const node = SVG_TAGS.has(tag) ? document.createElementNS(SVG, tag) : document.createElement(tag);
   node.epgKey = attributes.key;
   node.epgAttributes = {};
-  if (attributes.made) attributes.made(node);
   return node;
 }
 
@@ -100,7 +98,7 @@ function update(node, wanted, after) {
 }
 
 function set(node, name, value, old) {
-  if (["key", "keep", "made", "shown", "checked"].includes(name) || value === old) return;
+  if (["key", "keep", "shown", "checked"].includes(name) || value === old) return;
   if (name === "value" && node.localName === "select") return;
   if (name.startsWith("on")) node[name] = value;
   else if (name === "initial") node.value = value ?? "";

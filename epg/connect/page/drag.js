@@ -73,12 +73,15 @@ function follow(start, handle) {
     }
     dragging = false;
     document.documentElement.classList.remove("dragging");
-    for (const [name, listener] of Object.entries(listeners)) window.removeEventListener(name, listener, true);
+    listening.abort();
     setPointer(null);
     draw();
   };
   const listeners = { pointermove: moved, pointerup: released, pointercancel: released, keydown: pressed };
-  for (const [name, listener] of Object.entries(listeners)) window.addEventListener(name, listener, true);
+  const listening = new AbortController();
+  for (const [name, listener] of Object.entries(listeners)) {
+    window.addEventListener(name, listener, { capture: true, signal: listening.signal });
+  }
 }
 
 function portAt(event, side) {

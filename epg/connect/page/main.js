@@ -55,7 +55,7 @@ function diagram(state) {
   return [
     h(
       "div.diagram",
-      { id: "diagram", key: "diagram", made: (node) => sizes.observe(node) },
+      { id: "diagram", key: "diagram", shown: (node) => sizes.observe(node) },
       componentColumn(state, "sources", byComponent, users),
       modelHead(state),
       modelPorts(state, "inputs", byPort),
