@@ -12,9 +12,11 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeVar
 
 from epg.source import Span
+
+Result = TypeVar("Result")
 
 
 @dataclass(frozen=True)
@@ -115,6 +117,12 @@ class Diagnostics:
         """Raises :class:`UserError` if there is an error.  Callers do this between two layers."""
         if self.has_errors:
             raise UserError(self)
+
+    def checked(self, result: Result | None) -> Result:
+        """``result``, which is None only after an error.  Raises :class:`UserError` if there is an error."""
+        self.stop_if_errors()
+        assert result is not None
+        return result
 
 
 class UserError(Exception):

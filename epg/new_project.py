@@ -128,9 +128,7 @@ def write_project(request: ProjectRequest, diagnostics: Diagnostics) -> NewProje
 
     Raises :class:`~epg.diagnostics.UserError`; then nothing was written.
     """
-    project = new_project(request, diagnostics)
-    diagnostics.stop_if_errors()
-    assert project is not None
+    project = diagnostics.checked(new_project(request, diagnostics))
     present = present_files(request.folder, project.files)
     if len(present) == 1:
         hint = "no file was written: 'epg new' does not replace files"

@@ -41,17 +41,13 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         if options.output is None:
             sys.stderr.write("epg bind: --update needs the file to update: add -o FILE\n")
             return 2
-        text = read_text(options.output, diagnostics)
-        diagnostics.stop_if_errors()
-        assert text is not None
+        text = diagnostics.checked(read_text(options.output, diagnostics))
         try:
-            change = updated_bindings(text, str(options.output), model, matches, diagnostics)
+            change = diagnostics.checked(updated_bindings(text, str(options.output), model, matches, diagnostics))
         except CannotEdit as problem:
             sys.stderr.write(f"epg bind: {options.output} was not changed: {problem}\n")
             sys.stderr.write("  write one 'port: component' on each line\n")
             return 1
-        diagnostics.stop_if_errors()
-        assert change is not None
         if change.text != text:
             options.output.write_text(change.text, encoding="utf-8", newline="")
         if options.json:

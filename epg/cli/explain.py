@@ -60,9 +60,7 @@ def _from_files(options: argparse.Namespace, diagnostics: Diagnostics) -> dict[s
     from epg.project import load_application
 
     request = request_of(options, options.name)
-    app = load_application(request, diagnostics)
-    diagnostics.stop_if_errors()
-    assert app is not None
+    app = diagnostics.checked(load_application(request, diagnostics))
     with mistakes_in_templates(request.user_roots, diagnostics):
         data: dict[str, Any] = json.loads(describe(Emitter(app, request.roots), PathNames(Path.cwd())))
     return data

@@ -47,9 +47,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from epg.project import load_application
 
     request = request_of(options, options.name)
-    app = load_application(request, diagnostics)
-    diagnostics.stop_if_errors()
-    assert app is not None
+    app = diagnostics.checked(load_application(request, diagnostics))
     if not app.target.platform.builds:
         span = app.target_span
         message = f"{app.target.name} can be checked, but this EPG has no port layer for {app.target.platform.name}"

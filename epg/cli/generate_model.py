@@ -34,8 +34,7 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
         check_instances(model, options.instances, caller, diagnostics)
         check_model_names(model, options.name, diagnostics)
         check_paths(model.files, diagnostics)
-    diagnostics.stop_if_errors()
-    assert model is not None
+    model = diagnostics.checked(model)
     files = model_outputs(model, options.name, options.instances, PathNames(options.source_dir))
     update_folder(options.output, files, sys.stdout if options.json else None)
     write_warnings(options.warnings, diagnostics)

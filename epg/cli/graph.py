@@ -66,17 +66,14 @@ def _wiring(request: Request, title: str, diagnostics: Diagnostics) -> str:
     from epg.resolve.resolve import allocate_hardware
 
     configuration = load_configuration(request, load_catalog(request.roots, diagnostics), diagnostics)
-    diagnostics.stop_if_errors()
-    assert configuration is not None
+    configuration = diagnostics.checked(configuration)
     assignments = allocate_hardware(configuration, configuration.control.period, diagnostics)
     target = configuration.target
     if target.board.layout is None:
         message = f"EPG cannot draw the wiring of {target.board.summary}"
         hint = "add a 'layout' to its board.yaml: docs/adding-a-board.md" if target.has_pins else "it has no pins"
         diagnostics.error("no-layout", configuration.root["target"].span, message, hint=hint)
-    diagnostics.stop_if_errors()
-    assert assignments is not None
-    return draw_wiring(target, configuration.components, assignments, title)
+    return draw_wiring(target, configuration.components, diagnostics.checked(assignments), title)
 
 
 def _flow(options: argparse.Namespace, request: Request, title: str, diagnostics: Diagnostics) -> str:
@@ -85,9 +82,7 @@ def _flow(options: argparse.Namespace, request: Request, title: str, diagnostics
     from epg.graph.schedule import draw_schedule
     from epg.project import load_application
 
-    app = load_application(request, diagnostics)
-    diagnostics.stop_if_errors()
-    assert app is not None
+    app = diagnostics.checked(load_application(request, diagnostics))
     if options.what == "schedule":
         return draw_schedule(app, title)
     return draw_application(app, Emitter(app, request.roots).topics(), title)

@@ -20,9 +20,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from epg.models import load_model
 
-    model = load_model(options.model, diagnostics)
-    diagnostics.stop_if_errors()
-    assert model is not None
+    model = diagnostics.checked(load_model(options.model, diagnostics))
     if options.json:
         data: dict[str, Any] = {
             "name": model.name,

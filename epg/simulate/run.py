@@ -37,9 +37,7 @@ def simulate(
     limit that does not hold and a run that ends in the wrong state are not errors: see ``Result.passed``.
     """
     diagnostics = Diagnostics()
-    read = load_scenario(scenario, diagnostics)
-    diagnostics.stop_if_errors()
-    assert read is not None
+    read = diagnostics.checked(load_scenario(scenario, diagnostics))
     reference = load_reference(read.reference) if read.reference else None
     if realtime and any(event.kind == "stall" for event in read.events):
         diagnostics.warning("no-stall", Span(str(scenario)), "cycles are stalled in simulated time only")
