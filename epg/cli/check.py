@@ -85,7 +85,9 @@ def _missing(options: argparse.Namespace) -> str:
 
 
 def _print_hardware(hardware: Mapping[str, Hardware]) -> None:
-    from epg.cli.hardware import hardware_table
+    from epg.cli.table import table
+    from epg.emit.hardware import hardware_rows
 
     for name, found in hardware.items():
-        print(f"{name}\n\n{hardware_table(found)}\n")
+        rows = table(("used by", "hardware", "pins", "frequency", "resolution"), hardware_rows(found))
+        print(f"{name}\n\n{rows}\n")

@@ -13,38 +13,30 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Callable, Sequence
+from functools import cache
 from pathlib import Path
 
 from epg.diagnostics import Diagnostic, Diagnostics
 from epg.source import Span
 
+_Reader = Callable[[str], Sequence[str]]
 
-class _Lines:
-    """The lines of source files.  Each file is read only once."""
 
-    def __init__(self) -> None:
-        self.files: dict[str, list[str]] = {}
-
-    def line(self, file: str, number: int) -> str | None:
-        if file not in self.files:
-            self.files[file] = self._read(file)
-        lines = self.files[file]
-        return _printable(lines[number - 1], "?") if 0 < number <= len(lines) else None
-
-    @staticmethod
-    def _read(file: str) -> list[str]:
-        try:
-            text = Path(file).read_bytes().decode("utf-8-sig", "replace")
-        except OSError:
-            return []
-        return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+def _read_lines(file: str) -> Sequence[str]:
+    """The lines of a file; none if it cannot be read."""
+    try:
+        text = Path(file).read_bytes().decode("utf-8-sig", "replace")
+    except OSError:
+        return ()
+    return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 
 def format_diagnostics(diagnostics: Diagnostics) -> str:
     """The text of all diagnostics, sorted by file and line.  Errors and warnings are mixed."""
     ordered = sorted(diagnostics, key=lambda d: (d.span.file, d.span.line, d.span.column, d.id, d.message))
-    lines = _Lines()
-    return "".join(_format(diagnostic, lines) for diagnostic in ordered)
+    lines_of = cache(_read_lines)
+    return "".join(_format(diagnostic, lines_of) for diagnostic in ordered)
 
 
 def to_json(data: object) -> str:
@@ -66,10 +58,10 @@ def shown_path(file: str) -> str:
     return file
 
 
-def _format(d: Diagnostic, source: _Lines) -> str:
-    lines = [f"{_place(d.span)}: {d.severity}: {_printable(d.message)} [{d.id}]", *_excerpt(d.span, source)]
+def _format(d: Diagnostic, lines_of: _Reader) -> str:
+    lines = [f"{_place(d.span)}: {d.severity}: {_printable(d.message)} [{d.id}]", *_excerpt(d.span, lines_of)]
     for note in d.notes:
-        lines += [f"{_place(note.span)}: note: {_printable(note.message)}", *_excerpt(note.span, source)]
+        lines += [f"{_place(note.span)}: note: {_printable(note.message)}", *_excerpt(note.span, lines_of)]
     if d.hint:
         lines.append(f"hint: {_printable(d.hint)}")
     return "\n".join(lines) + "\n"
@@ -94,14 +86,15 @@ def _place(span: Span) -> str:
     return f"{file}:{span.line}:{span.column}" if span.column else f"{file}:{span.line}"
 
 
-def _excerpt(span: Span, source: _Lines) -> list[str]:
+def _excerpt(span: Span, lines_of: _Reader) -> list[str]:
     """The line of the source that contains ``span``, and a line below with a caret under it."""
     if not span.line or not span.column:
         return []
-    text = _printable(span.text, "?") if span.text is not None else source.line(span.file, span.line)
-    if text is None:
+    lines = lines_of(span.file) if span.text is None else (span.text,)
+    number = span.line if span.text is None else 1
+    if number > len(lines):
         return []
-    text = text.rstrip("\r\n")
+    text = _printable(lines[number - 1], "?").rstrip("\r\n")
     start, end = span.column - 1, max(span.end - 1, span.column)
     if start > len(text):
         return []

@@ -139,10 +139,9 @@ function progress(build) {
   });
 }
 
-function product({ path, what }, n) {
+function product({ path, what }) {
   return h(
     "li",
-    { key: n },
     h("p", what),
     h(
       "p.product-path",

@@ -11,7 +11,7 @@ export function changes(state) {
     diff
       .replace(/\n$/, "")
       .split("\n")
-      .map((line, n) => h("span", { key: n, class: kind(line) }, `${line}\n`)),
+      .map((line) => h("span", { class: kind(line) }, `${line}\n`)),
   );
 }
 

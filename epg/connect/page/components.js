@@ -38,7 +38,7 @@ function card(state, side, component, direction, diagnostics, users) {
       (first || ports.length === 0) &&
       h(
         "ul.facts",
-        facts.map((fact, n) => h("li", { key: n }, fact)),
+        facts.map((fact) => h("li", fact)),
       ),
     ports.length &&
       h(
@@ -62,17 +62,7 @@ function row(state, side, port, users) {
       "data-name": reference,
       "data-wire-component": id("at", reference),
     },
-    handle(
-      side,
-      reference,
-      componentLabel(
-        state,
-        side,
-        port,
-        users.map((user) => user.port),
-      ),
-      users.length > 0,
-    ),
+    handle(side, reference, componentLabel(side, port, users), users.length > 0),
     h("span.port-name", { title: port.summary || null }, name),
     unitMark(port),
     converted && h("span.tcf-label", { key: "tcf", title: "The .tcf converts this value" }, ".tcf: ", converted),

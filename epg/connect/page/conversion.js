@@ -6,7 +6,7 @@ import { h, id, textField } from "./dom.js";
 import { isError } from "./problems.js";
 import { act, current } from "./server.js";
 import { draw, say, ui } from "./ui.js";
-import { endsOf, modelPort, replaceEnd } from "./wiring.js";
+import { endsOf, modelPort, plain, replaceEnd } from "./wiring.js";
 
 export function editConversion(port, n) {
   const found = modelPort(current(), port);
@@ -24,7 +24,7 @@ export function editConversion(port, n) {
       draw();
       return;
     }
-    const ends = endsOf(current(), port).map((end) => pick(end));
+    const ends = endsOf(current(), port).map(plain);
     ends[n] = { reference, scale: value("scale"), offset: value("offset"), limits, unit: value("unit") };
     const before = errorsOf(port).map((each) => each.message);
     error = await act("connect", { port, ends });
@@ -88,5 +88,3 @@ export function editConversion(port, n) {
 }
 
 const errorsOf = (port) => current().diagnostics.filter((each) => each.port === port && isError(each));
-
-const pick = ({ reference, scale, offset, limits, unit }) => ({ reference, scale, offset, limits, unit });

@@ -141,8 +141,9 @@ export function modelLabel(state, side, port) {
   return `${side === "inputs" ? "input" : "output"} ${port.name}, ${unitText(port)}, ${how}`;
 }
 
-export function componentLabel(state, side, port, users) {
-  const how = users.length ? `connected with ${users.join(" and ")}` : "not connected";
+export function componentLabel(side, port, users) {
+  const ports = users.map((user) => user.port).join(" and ");
+  const how = ports ? `connected with ${ports}` : "not connected";
   return `${side === "sources" ? "source" : "sink"} ${port.reference}, ${unitText(port)}, ${how}`;
 }
 

@@ -15,31 +15,9 @@ const COLUMNS = [
 export function hardware(state) {
   if (state.hardware.length === 0) return h("p.empty", "The target uses no pins or peripherals.");
   const columns = COLUMNS.filter(([name]) => state.hardware.some((row) => row[name]));
-  return h(
-    "table",
-    h("caption.unseen", "Pins and peripherals"),
-    h(
-      "thead",
-      h(
-        "tr",
-        columns.map(([name, title]) => h("th", { key: name, scope: "col" }, title)),
-      ),
-    ),
-    h(
-      "tbody",
-      state.hardware.map((row, n) =>
-        h(
-          "tr",
-          { key: n },
-          columns.map(([name], column) =>
-            h(
-              column === 0 ? "th" : "td",
-              { key: name, scope: column === 0 ? "row" : null, class: `column-${name}` },
-              row[name],
-            ),
-          ),
-        ),
-      ),
-    ),
-  );
+  const head = columns.map(([, title]) => h("th", { scope: "col" }, title));
+  const [[first], ...others] = columns;
+  const cells = (row) => others.map(([name]) => h("td", { class: `column-${name}` }, row[name]));
+  const rows = state.hardware.map((row) => h("tr", h("th", { scope: "row" }, row[first]), cells(row)));
+  return h("table", h("caption.unseen", "Pins and peripherals"), h("thead", h("tr", head)), h("tbody", rows));
 }

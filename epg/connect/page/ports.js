@@ -64,9 +64,7 @@ function row(state, side, port, diagnostics) {
   const ends = endsOf(state, name);
   const proposal = name in state.wires ? null : state.proposals[name];
   const worst = diagnostics.some(isError) ? " has-error" : "";
-  const fields =
-    ends.length === 0 ? [field(state, side, port, null, 0)] : ends.map((end, n) => field(state, side, port, end, n));
-  if (ui.adding === name && ends.length > 0) fields.push(field(state, side, port, null, ends.length));
+  const shown = ui.adding === name || ends.length === 0 ? [...ends, null] : ends;
   const refused = ui.refused?.port === name ? { severity: "error", ...ui.refused } : null;
   return h(
     "li",
@@ -82,7 +80,7 @@ function row(state, side, port, diagnostics) {
       h("label.port-name", { for: id("ends", name, 0), title: port.description || null }, name),
       unitMark(port),
     ),
-    fields,
+    shown.map((end, n) => field(state, side, port, end, n)),
     proposal &&
       h(
         "button.proposal",

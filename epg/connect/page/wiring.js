@@ -38,7 +38,7 @@ export function unitMark(port) {
 }
 
 // The fields of an end that api/connect takes.
-function plain({ reference, scale, offset, limits, unit }) {
+export function plain({ reference, scale, offset, limits, unit }) {
   return { reference, scale: scale || "", offset: offset || "", limits: limits || null, unit: unit || "" };
 }
 
