@@ -8,9 +8,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 from epg.catalog.catalog import Catalog, load_catalog
 from epg.check.bindings import Bindings, load_bindings
@@ -19,6 +20,7 @@ from epg.check.model import check_model_names
 from epg.check.target_names import check_driver_headers, check_name, check_paths, check_sdk_headers
 from epg.data import targets_roots
 from epg.diagnostics import Diagnostics
+from epg.documents.cmake_call import caller_span, setting_span
 from epg.documents.tcf import load_tcf_chain, settings_node
 from epg.documents.text_file import Drafts
 from epg.models import load_model
@@ -34,6 +36,9 @@ Hardware = Mapping[ClaimKey, Assignment]
 
 
 ModelReader = Callable[[Path, Diagnostics], "Model | None"]
+
+
+_PATHS = ("model", "bindings", "plant", "plant_bindings", "beside")
 
 
 @dataclass(frozen=True)
@@ -59,6 +64,27 @@ class Request:
     @property
     def roots(self) -> tuple[Path, ...]:
         return targets_roots(self.user_roots)
+
+
+def request_of_options(
+    name: str, options: Mapping[str, Any], settings: Iterable[str], user_roots: Sequence[Path]
+) -> Request:
+    """The request of ``epg generate`` with ``options``: their values by their names, None if an option is not given."""
+    given = {key: Path(value) for key, value in options.items() if key in _PATHS and value is not None}
+    named = [f"{key}={options[key]}" for key in ("node", "namespace") if options.get(key) is not None]
+    caller = options.get("caller")
+    return Request(
+        name=name,
+        tcf=options.get("tcf") or "",
+        model=given.get("model", Path()),
+        bindings=given.get("bindings", Path()),
+        plant=given.get("plant"),
+        plant_bindings=given.get("plant_bindings"),
+        settings=[(text, setting_span(caller, name, text)) for text in (*settings, *named)],
+        user_roots=user_roots,
+        caller=caller_span(caller, name) if caller else None,
+        beside=given.get("beside", Path()),
+    )
 
 
 @dataclass(frozen=True)

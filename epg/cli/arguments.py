@@ -8,8 +8,6 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from epg.documents.cmake_call import caller_span, setting_span
-
 if TYPE_CHECKING:
     from epg.project import Request
 
@@ -28,6 +26,14 @@ def add_target_arguments(parser: argparse.ArgumentParser, *, required: bool) -> 
     )
     parser.add_argument("--plant", type=Path, metavar="FOLDER", help="model of the plant, for targets on the host")
     parser.add_argument("--plant-bindings", type=Path, metavar="FILE", help="bindings of the plant's ports")
+    add_settings(parser)
+    parser.add_argument("--node", help="name of the ROS 2 node; default: as in the .tcf")
+    parser.add_argument("--namespace", help="namespace of the ROS 2 node; default: as in the .tcf")
+    parser.add_argument("--caller", metavar="CMAKELISTS", help=argparse.SUPPRESS)
+    parser.add_argument("--beside", type=Path, default=Path(), help=argparse.SUPPRESS)
+
+
+def add_settings(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--set",
         action="append",
@@ -36,10 +42,6 @@ def add_target_arguments(parser: argparse.ArgumentParser, *, required: bool) -> 
         metavar="KEY.KEY=VALUE",
         help="replace a value of the .tcf",
     )
-    parser.add_argument("--node", help="name of the ROS 2 node; default: as in the .tcf")
-    parser.add_argument("--namespace", help="namespace of the ROS 2 node; default: as in the .tcf")
-    parser.add_argument("--caller", metavar="CMAKELISTS", help=argparse.SUPPRESS)
-    parser.add_argument("--beside", type=Path, default=Path(), help=argparse.SUPPRESS)
 
 
 def user_roots() -> list[Path]:
@@ -49,23 +51,6 @@ def user_roots() -> list[Path]:
 
 def request_of(arguments: argparse.Namespace, name: str) -> Request:
     """The request from the arguments of :func:`add_target_arguments`."""
-    from epg.project import Request
+    from epg.project import request_of_options
 
-    settings = list(arguments.settings)
-    if arguments.node is not None:
-        settings.append(f"node={arguments.node}")
-    if arguments.namespace is not None:
-        settings.append(f"namespace={arguments.namespace}")
-    caller = caller_span(arguments.caller, name) if arguments.caller else None
-    return Request(
-        name=name,
-        tcf=arguments.tcf or "",
-        model=arguments.model or Path(),
-        bindings=arguments.bindings or Path(),
-        plant=arguments.plant,
-        plant_bindings=arguments.plant_bindings,
-        settings=[(text, setting_span(arguments.caller, name, text)) for text in settings],
-        user_roots=user_roots(),
-        caller=caller,
-        beside=arguments.beside,
-    )
+    return request_of_options(name, vars(arguments), arguments.settings, user_roots())

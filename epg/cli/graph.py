@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 from epg.catalog.catalog import load_catalog
-from epg.cli.arguments import request_of
+from epg.cli.arguments import add_settings, request_of
 from epg.cli.report import to_json
 from epg.diagnostics import Diagnostics
 from epg.project import Request
@@ -25,16 +25,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--model", type=Path, metavar="FOLDER", help="folder of the model; not needed for the wiring")
     parser.add_argument("--bindings", type=Path, metavar="FILE", help="bindings of the model's ports")
     parser.add_argument("--output", "-o", type=Path, metavar="FILE.svg", help="file to write; default: standard output")
-    parser.add_argument(
-        "--set",
-        action="append",
-        default=[],
-        dest="settings",
-        metavar="KEY.KEY=VALUE",
-        help="replace a value of the .tcf",
-    )
+    add_settings(parser)
     parser.add_argument("--name", default="", help="name of the target in the picture; default: the .tcf's name")
-    parser.set_defaults(node=None, namespace=None, plant=None, plant_bindings=None, caller=None, beside=Path())
 
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:

@@ -12,9 +12,8 @@ from pathlib import Path
 
 from epg.connect.build_folders import BuildFolder
 from epg.diagnostics import Diagnostics
-from epg.documents.cmake_call import caller_span, setting_span
 from epg.documents.text_file import is_file, read_text
-from epg.project import Request
+from epg.project import Request, request_of_options
 
 RECORD = "CMakeFiles/epg/calls.txt"
 
@@ -53,21 +52,9 @@ def _request(name: str, options: list[tuple[str, str]]) -> Request | None:
 
     ``options`` are those of ``epg generate``, and ``--targets-path``.
     """
-    values = dict(options)
-    if not {"--tcf", "--model", "--bindings", "--beside", "--caller"} <= values.keys():
+    values = {option.removeprefix("--").replace("-", "_"): value for option, value in options}
+    if not {"tcf", "model", "bindings", "beside", "caller"} <= values.keys():
         return None
-    caller = values["--caller"]
     settings = [value for option, value in options if option == "--set"]
-    settings += [f"{key}={values[f'--{key}']}" for key in ("node", "namespace") if f"--{key}" in values]
-    return Request(
-        name=name,
-        tcf=values["--tcf"],
-        model=Path(values["--model"]),
-        bindings=Path(values["--bindings"]),
-        plant=Path(values["--plant"]) if "--plant" in values else None,
-        plant_bindings=Path(values["--plant-bindings"]) if "--plant-bindings" in values else None,
-        settings=[(setting, setting_span(caller, name, setting)) for setting in settings],
-        user_roots=tuple(Path(value) for option, value in options if option == "--targets-path"),
-        caller=caller_span(caller, name),
-        beside=Path(values["--beside"]),
-    )
+    roots = tuple(Path(value) for option, value in options if option == "--targets-path")
+    return request_of_options(name, values, settings, roots)
