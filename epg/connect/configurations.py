@@ -50,7 +50,6 @@ class Configurations:
     def __init__(self, user_roots: Sequence[Path]) -> None:
         self._user_roots = tuple(user_roots)
         self._roots = Request("connect", "", Path(), Path(), user_roots=self._user_roots).roots
-        self._preparing = threading.Lock()
         self._counts: dict[tuple[object, ...], int] = {}
         self._ready = threading.Event()
 
@@ -61,10 +60,9 @@ class Configurations:
 
     def prepare(self) -> None:
         """Reads all choices, and looks for the tools of all targets."""
-        with self._preparing:
-            for choice in self.choices:
-                self._missing(choice.target)
-            self._ready.set()
+        for choice in self.choices:
+            self._missing(choice.target)
+        self._ready.set()
 
     @cached_property
     def choices(self) -> tuple[Choice, ...]:

@@ -50,6 +50,16 @@ class _Part:
     divided: bool
 
     @property
+    def middle(self) -> float:
+        """The middle of its contacts, as a line of the grid."""
+        return sum(terminal.place for terminal in self.terminals) / len(self.terminals)
+
+    @property
+    def rows(self) -> int:
+        """The number of its terminals, with that of the ground."""
+        return len(self.terminals) + 1
+
+    @property
     def kind(self) -> str:
         return self.component.kind.name + (" (part)" if self.divided else "")
 
@@ -183,14 +193,8 @@ def _parts(components: Mapping[str, Component], found: Sequence[Terminal], other
     groups: dict[str, list[Terminal]] = {}
     for terminal in found:
         groups.setdefault(terminal.component, []).append(terminal)
-
-    def middle(name: str) -> float:
-        return sum(terminal.place for terminal in groups[name]) / len(groups[name])
-
-    return [
-        _Part(components[name], tuple(groups[name]), groups[name][0].colour, name in other)
-        for name in sorted(groups, key=middle)
-    ]
+    parts = [_Part(components[name], tuple(own), own[0].colour, name in other) for name, own in groups.items()]
+    return sorted(parts, key=lambda part: part.middle)
 
 
 def drives(component: Component) -> bool:
@@ -208,17 +212,15 @@ def _side(picture: Picture, layout: Layout, side: str, parts: Sequence[_Part]) -
     places = _places(layout, side)
     grounds = _grounds([place for place, contact in places.items() if layout.role(contact) == "ground"], parts)
     labels = max(width(f"{t.component} {t.signal}", _SMALL) for part in parts for t in part.terminals)
-    count = sum(len(part.terminals) + 1 for part in parts)
     near = _INSIDE + 14 + labels + 10  # the position of the first lane
-    edge = near + count * _LANE + 10  # the inner edge of the components
+    edge = near + sum(part.rows for part in parts) * _LANE + 10  # the inner edge of the components
     wide = 24 + max(
         max(width(part.component.name), width(part.kind, _SMALL), width(_RESISTOR, _SMALL)) for part in parts
     )
     wires: list[_Wire] = []
     for part, first, ground in zip(parts, _lines(parts, max(places)), grounds, strict=True):
-        rows = len(part.terminals) + 1
         top = first * PITCH - 32
-        high = rows * PITCH + (54 if drives(part.component) else 38)
+        high = part.rows * PITCH + (54 if drives(part.component) else 38)
         x = edge if sign > 0 else -edge - wide
         picture.box(x, top, wide, high, "box", part.component.kind.summary)
         tx = x + 12 if sign > 0 else x + wide - 12
@@ -230,7 +232,7 @@ def _side(picture: Picture, layout: Layout, side: str, parts: Sequence[_Part]) -
             picture.text(tx, y + 4, terminal.signal, anchor, 11)
             what = f"{terminal.component} {terminal.signal}"
             wires.append(_Wire(terminal.place, y, what, f"{what}: {terminal.resource}", f"w{part.colour}"))
-        y = (first + rows - 0.5) * PITCH
+        y = (first + part.rows - 0.5) * PITCH
         picture.text(tx, y + 4, "GND", anchor, 11)
         if ground is not None:
             wires.append(_Wire(ground, y, "", f"ground of {part.component.name}", "earth"))
@@ -247,11 +249,9 @@ def _lines(parts: Sequence[_Part], last: int) -> list[int]:
     firsts: list[int] = []
     free = -len(parts) * 8
     for part in parts:
-        rows = len(part.terminals) + 1
-        middle = sum(terminal.place for terminal in part.terminals) / len(part.terminals)
-        first = max(free + 2, round(middle - rows / 2))
+        first = max(free + 2, round(part.middle - part.rows / 2))
         firsts.append(first)
-        free = first + rows + 1
+        free = first + part.rows + 1
     below = max(0, free - 1 - last)  # lines below the end of the board; move all up by half of them
     return [first - below // 2 for first in firsts]
 
@@ -266,10 +266,9 @@ def _grounds(grounds: Sequence[int], parts: Sequence[_Part]) -> list[int | None]
     own = len(grounds) >= len(parts)
     start = 0
     for index, part in enumerate(parts):
-        middle = sum(terminal.place for terminal in part.terminals) / len(part.terminals)
         end = len(grounds) - (len(parts) - index - 1) if own else len(grounds)
         choice = range(start, end) if own else range(len(grounds))
-        chosen = min(choice, key=lambda at: abs(grounds[at] - middle), default=None)
+        chosen = min(choice, key=lambda at: abs(grounds[at] - part.middle), default=None)
         result.append(None if chosen is None else grounds[chosen])
         start = 0 if chosen is None else chosen + 1
     return result

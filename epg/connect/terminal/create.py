@@ -10,6 +10,7 @@ from typing import Any
 
 from epg.connect.session import Refused, Session
 from epg.connect.terminal.console import Console
+from epg.connect.terminal.message import say_refused
 from epg.new_project import project_name
 
 WAIT = 60.0
@@ -50,9 +51,7 @@ def create_project(session: Session, console: Console) -> None:
             session.act("create", {"configuration": choice["name"], "folder": folder, "name": name})
             return
         except Refused as problem:
-            console.say(f"error: {problem.message}")
-            if problem.hint:
-                console.say(f"hint: {problem.hint}")
+            say_refused(problem, console)
 
 
 def _choose(configurations: Sequence[Choice], console: Console) -> Choice:

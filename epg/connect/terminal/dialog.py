@@ -14,6 +14,7 @@ from epg.connect.session import Refused, Session
 from epg.connect.terminal.build import ask_to_build, build
 from epg.connect.terminal.console import Console, Ended
 from epg.connect.terminal.create import Left, create_project
+from epg.connect.terminal.message import say_refused
 from epg.connect.terminal.ports import Ports
 from epg.connect.terminal.talk import Talk
 from epg.connect.terminal.text import is_open, ports_of
@@ -118,7 +119,7 @@ class _Dialog:
         try:
             return 0 if build(self._talk.session, self._console, agreed) else 1
         except Refused as problem:
-            self._talk.say_refused(problem)
+            say_refused(problem, self._console)
             return 1
 
     def _save(self) -> bool:

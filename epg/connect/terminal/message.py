@@ -21,6 +21,12 @@ def say_message(message: Mapping[str, Any], session: Session, console: Console) 
         console.say(line)
 
 
+def say_refused(problem: Refused, console: Console) -> None:
+    console.fill(f"error: {problem.message}")
+    if problem.hint:
+        console.fill(f"hint: {problem.hint}")
+
+
 def _excerpt(place: Mapping[str, Any], session: Session) -> list[str]:
     """The line at a position, from the draft if there is one, and a caret below it.  Empty if it cannot be read."""
     if not place["line"] or not place["column"]:

@@ -9,7 +9,7 @@ from typing import Any
 from epg.connect.session import Refused, Session, State
 from epg.connect.terminal.console import Console
 from epg.connect.terminal.create import Left
-from epg.connect.terminal.message import say_message
+from epg.connect.terminal.message import say_message, say_refused
 from epg.connect.terminal.text import ModelPort
 
 OF_OPEN_PORTS = frozenset(("unbound-input", "unbound-output", "needs-bound", "unused-component"))
@@ -31,7 +31,7 @@ class Talk:
         try:
             self.state = self.session.act(action, body)
         except Refused as problem:
-            self.say_refused(problem)
+            say_refused(problem, self.console)
             self.state = self.session.state()
             return False
         self.say_messages(
@@ -53,11 +53,6 @@ class Talk:
     def say_messages(self, problems: Iterable[State]) -> None:
         for problem in problems:
             say_message(problem, self.session, self.console)
-
-    def say_refused(self, problem: Refused) -> None:
-        self.console.fill(f"error: {problem.message}")
-        if problem.hint:
-            self.console.fill(f"hint: {problem.hint}")
 
     def named(self, word: str, names: Sequence[str], what: str) -> str | None:
         """The name in ``names`` that is equal to ``word``, begins with it, or has it as its number, counted from 1.
