@@ -123,7 +123,7 @@ class Server:
                     break
         finally:
             self.session.ended.set()
-            self.session.close()
+            self.session.runs.close()
             time.sleep(0.2)  # the page that has ended the session must get its answer
             self._http.shutdown()
             self._http.server_close()
@@ -141,7 +141,7 @@ class Server:
 
     def _is_abandoned(self) -> bool:
         with self._lock:
-            if self._waiting or self.session.is_building:
+            if self._waiting or self.session.runs.running:
                 return False
             if self._last_seen is None:
                 return time.monotonic() - self._started > self._until_opened
@@ -234,7 +234,7 @@ class _Handler(BaseHTTPRequestHandler):
         if path == "api/state":
             self._json(owner.state(_integer(query, "after", 0)))
         elif path == "api/log":
-            self._json(owner.session.log(_integer(query, "from", 0)))
+            self._json({"lines": owner.session.runs.lines(_integer(query, "from", 0))})
         elif path == "api/source":
             self._json(owner.session.source(query.get("file", ""), _integer(query, "line", 1)))
         elif path.startswith("picture/") and path.endswith(".svg"):

@@ -64,7 +64,7 @@ class Session:
         self._configurations = Configurations(self._user_roots)
         self._start = Start(model) if model is not None and not jobs else None
         self._editor = Editor(jobs[0]) if jobs else None
-        self._runs = Runs(self._bump)
+        self.runs = Runs(self._bump)
         self._actions: dict[str, Callable[[Body], None]] = {
             "connect": self._connect,
             "disconnect": self._disconnect,
@@ -80,7 +80,7 @@ class Session:
         }
         self._unlocked: dict[str, Callable[[Body], None]] = {
             "create": self._create,
-            "cancel": lambda body: self._runs.cancel(),
+            "cancel": lambda body: self.runs.cancel(),
         }
         self._shown: State = {}
         self._publish()
@@ -91,7 +91,7 @@ class Session:
         with self._changed:
             places = self._editor.loaded.places if self._editor is not None else None
             shown = {"version": self._version, "epg": epg.__version__, **self._shown}
-            return shown | {"build": self._runs.state(places)}
+            return shown | {"build": self.runs.state(places)}
 
     def wait(self, after: int, timeout: float) -> State:
         """The state, once its version differs from ``after``, the session ends, or ``timeout`` seconds have passed."""
@@ -126,10 +126,6 @@ class Session:
             raise Refused(str(problem), status=409) from None
         return self.state()
 
-    def log(self, start: int) -> dict[str, Any]:
-        """The output of configuring and building, from line ``start`` on."""
-        return {"lines": self._runs.lines(start)}
-
     def picture(self, name: str, configuration: str = "") -> str:
         """The picture ``name`` of the open target as SVG, or the wiring of ``configuration``.  Raises Refused."""
         editor = self._editor
@@ -156,15 +152,6 @@ class Session:
         """
         with self._changed:
             return self._ask("")
-
-    def close(self) -> None:
-        """Cancels a running build and all programs that it has started."""
-        self._runs.close()
-
-    @property
-    def is_building(self) -> bool:
-        """True while a build runs."""
-        return self._runs.running
 
     @property
     def has_changes(self) -> bool:
@@ -220,8 +207,8 @@ class Session:
             return
         if self._opened().draft.changed:
             raise Refused("there are unsaved changes", "save or undo them first", 409)
-        self._runs.check_idle()
-        self._runs.forget()
+        self.runs.check_idle()
+        self.runs.forget()
         self._editor = Editor(job)
 
     def _create(self, body: Body) -> None:
@@ -235,7 +222,7 @@ class Session:
             self._publish()
 
     def _generate(self, body: Body) -> None:
-        self._runs.check_idle()
+        self.runs.check_idle()
         self._opened().check_conflict()
         count = sum(problem["severity"] == "error" for problem in self._shown["diagnostics"])
         if count:
@@ -243,11 +230,11 @@ class Session:
             raise Refused(f"there {what}: the project cannot be built", "correct the errors in the messages", 409)
         if self._ask(text(body, "run", "")) is None:
             self._save({})
-            self._runs.start(self._opened().job)
+            self.runs.start(self._opened().job)
 
     def _ask(self, agreed: str) -> dict[str, Any] | None:
         configuration = self._opened().loaded.parts.configuration
-        return self._runs.ask(self._opened().job, configuration.target if configuration is not None else None, agreed)
+        return self.runs.ask(self._opened().job, configuration.target if configuration is not None else None, agreed)
 
     # making the state
 

@@ -82,20 +82,15 @@ class Picture:
     def box(self, x: float, y: float, wide: float, high: float, style: str, title: str = "", round: float = 4) -> None:
         """Adds a rectangle.  A browser shows ``title`` when the mouse pointer is over it."""
         self._reach(x, y, x + wide, y + high)
-        self._shapes.append(
-            f'<rect x="{_n(x)}" y="{_n(y)}" width="{_n(wide)}" height="{_n(high)}" rx="{_n(round)}" class="{style}"'
-            + (f"><title>{escape(title)}</title></rect>" if title else "/>")
-        )
+        place = f'x="{_n(x)}" y="{_n(y)}" width="{_n(wide)}" height="{_n(high)}" rx="{_n(round)}"'
+        self._add("rect", place, style, title)
 
     def line(self, points: Sequence[tuple[float, float]], style: str = "line", title: str = "") -> None:
         """Adds a line through ``points``."""
         for x, y in points:
             self._reach(x, y, x, y)
         path = " ".join(f"{_n(x)},{_n(y)}" for x, y in points)
-        self._shapes.append(
-            f'<polyline points="{path}" class="{style}"'
-            + (f"><title>{escape(title)}</title></polyline>" if title else "/>")
-        )
+        self._add("polyline", f'points="{path}"', style, title)
 
     def arrow(self, points: Sequence[tuple[float, float]], style: str = "line", title: str = "") -> None:
         """Adds a line with an arrow head at its end.  Its last part must be horizontal or vertical."""
@@ -136,6 +131,10 @@ class Picture:
     def bottom(self) -> float:
         """The lowest edge of the shapes that were added so far."""
         return self._bottom
+
+    def _add(self, tag: str, place: str, style: str, title: str) -> None:
+        inside = f"><title>{escape(title)}</title></{tag}>" if title else "/>"
+        self._shapes.append(f'<{tag} {place} class="{style}"{inside}')
 
     def _reach(self, left: float, top: float, right: float, bottom: float) -> None:
         self._left, self._top = min(self._left, left), min(self._top, top)

@@ -41,7 +41,7 @@ def run(session: Session, input: TextIO, output: TextIO) -> int:
         console.say()
         return INTERRUPTED
     finally:
-        session.close()
+        session.runs.close()
 
 
 class _Dialog:
