@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``epg launch``: writes a ROS 2 launch file, and systemd units, for the agents that targets need."""
+"""``epg launch``: writes a ROS 2 launch file, and systemd units, for agents of targets and for host programs."""
 
 from __future__ import annotations
 
@@ -31,6 +31,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="NAME=DEVICE[:BAUD]",
         help="tty of target NAME, if it is not connected by USB; repeat the option for each target",
     )
+    parser.add_argument(
+        "--program",
+        action="append",
+        default=[],
+        metavar="NAME=PATH",
+        help="host program of target NAME, which the launch file starts; repeat the option for each program",
+    )
+    parser.add_argument(
+        "--remap",
+        action="append",
+        default=[],
+        metavar="NAME=FROM:=TO",
+        help="another name for a topic of the host program of target NAME; repeat the option for each topic",
+    )
     parser.add_argument("--port", type=_port, default=8888, help="UDP port of the agent; default: 8888")
     parser.add_argument(
         "--output", type=Path, default=Path(), metavar="FOLDER", help="folder to write; default: the current folder"
@@ -51,21 +65,35 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
     from epg.cli.report import to_json
-    from epg.ros.agents import Wiring, plan_agents
+    from epg.ros.agents import Wiring, check_target_names, plan_agents
     from epg.ros.launch_file import FILE_NAME, launch_file
+    from epg.ros.programs import ProgramRequest, plan_programs
     from epg.ros.robot import load_robots
     from epg.ros.systemd_units import Installation, unit_files
 
     robots = load_robots(options.targets, diagnostics)
-    wiring = Wiring(
-        _assignments("--board", options.board, diagnostics),
-        _assignments("--device", options.device, diagnostics),
-        options.port,
-    )
+    given = {
+        option: _assignments(option, texts, diagnostics)
+        for option, texts in (
+            ("--board", options.board),
+            ("--device", options.device),
+            ("--program", options.program),
+            ("--remap", options.remap),
+        )
+    }
     diagnostics.stop_if_errors()
+    check_target_names(robots, given, diagnostics)
+    paths = given["--program"]
+    wiring = Wiring(given["--board"], given["--device"], options.port, paths)
     agents = plan_agents(robots, wiring, diagnostics)
+    request = ProgramRequest(paths, given["--remap"], options.output, options.port)
+    programs = plan_programs(robots, request, diagnostics)
     diagnostics.stop_if_errors()
-    files = {FILE_NAME: launch_file(agents)}
+    files = {FILE_NAME: launch_file(agents, programs)}
+    if options.systemd and not agents:
+        hint = "remove --systemd: services are for agents, not for host programs"
+        diagnostics.error("nothing-to-launch", Span("command line"), "none of these targets needs an agent", hint=hint)
+        diagnostics.stop_if_errors()
     if options.systemd:
         workspace = options.workspace or f"/home/{options.user}/microros_ws"
         installation = Installation(options.user, options.distribution, workspace, options.domain)
@@ -81,7 +109,8 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
             }
             for agent in agents
         ]
-        sys.stdout.write(to_json({"agents": data, "files": list(files)}))
+        started = [{"node": program.robot.full_node, "path": program.path} for program in programs]
+        sys.stdout.write(to_json({"agents": data, "programs": started, "files": list(files)}))
     else:
         print("wrote " + ", ".join(str(options.output / name) for name in files))
     return 0

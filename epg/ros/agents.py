@@ -11,10 +11,10 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from epg.diagnostics import Diagnostics, did_you_mean
-from epg.ros.robot import Robot
+from epg.ros.robot import HOST_SERIAL, Robot
 from epg.source import Span
 
 AGENT_MIDDLEWARES = ("xrce", "micro_ros")
@@ -45,22 +45,32 @@ class Agent:
 
 @dataclass(frozen=True)
 class Wiring:
-    """Facts that are not in a description: serial numbers of boards, and ttys, by name of the target; the UDP port."""
+    """Facts that are not in a description: serial numbers of boards, and ttys, by name of the target; the UDP port.
+
+    ``programs`` are the host programs of targets, which the launch file starts.
+    """
 
     boards: Mapping[str, Sequence[str]]
     devices: Mapping[str, Sequence[str]]
     port: int = 8888
+    programs: Mapping[str, Sequence[str]] = field(default_factory=dict)
 
 
-def plan_agents(robots: Sequence[Robot], wiring: Wiring, diagnostics: Diagnostics) -> list[Agent]:
-    """The agents that ``robots`` need, in the order of the robots.  The agent for UDP is the last one."""
+def check_target_names(
+    robots: Sequence[Robot], options: Mapping[str, Mapping[str, Sequence[str]]], diagnostics: Diagnostics
+) -> None:
+    """Reports names of targets in ``options`` that have no description.  ``options`` is by option, then by name."""
     names = {robot.name for robot in robots}
-    for option, given in (("--board", wiring.boards), ("--device", wiring.devices)):
+    for option, given in options.items():
         for name in given:
             if name not in names:
                 span = Span.of_argument(f"{name}={given[name][0]}", option)
                 hint = did_you_mean(name, names, "targets")
                 diagnostics.error("unknown-target-name", span, f"there is no target '{name}'", hint=hint)
+
+
+def plan_agents(robots: Sequence[Robot], wiring: Wiring, diagnostics: Diagnostics) -> list[Agent]:
+    """The agents that ``robots`` need, in the order of the robots.  The agent for UDP is the last one."""
     for name, count in Counter(robot.name for robot in robots).items():
         if count > 1:
             files = ", ".join(str(robot.file) for robot in robots if robot.name == name)
@@ -69,13 +79,18 @@ def plan_agents(robots: Sequence[Robot], wiring: Wiring, diagnostics: Diagnostic
     agents: list[Agent] = []
     by_udp: list[Robot] = []
     for robot in robots:
+        if robot.middleware not in AGENT_MIDDLEWARES and robot.name in wiring.programs:
+            continue
         if robot.middleware not in AGENT_MIDDLEWARES:
             why = (
                 "its middleware 'dds' does not use one"
                 if robot.middleware == "dds"
                 else f"its middleware is '{robot.middleware}'"
             )
-            diagnostics.warning("no-agent-needed", Span(str(robot.file)), f"'{robot.name}' needs no agent: {why}")
+            hint = f"add --program {robot.name}=<path>: the launch file then starts its program"
+            hint = hint if robot.platform == "host" else ""
+            message = f"'{robot.name}' needs no agent: {why}"
+            diagnostics.warning("no-agent-needed", Span(str(robot.file)), message, hint=hint)
         elif robot.name in wiring.devices:
             agents += [_on_device(robot, device, diagnostics) for device in wiring.devices[robot.name]]
         elif robot.transport == "usb":
@@ -90,8 +105,10 @@ def plan_agents(robots: Sequence[Robot], wiring: Wiring, diagnostics: Diagnostic
         port = str(wiring.port)
         agents.append(Agent(f"agent_udp_{port}", ("udp4", "-p", port), None, None, tuple(by_udp)))
     _refuse_one_device_twice(agents, diagnostics)
-    _warn_of_equal_nodes(agents, diagnostics)
-    if not agents and not diagnostics.has_errors:
+    served = [robot for agent in agents for robot in agent.serves if robot.name not in wiring.programs]
+    started = [robot.with_serial(HOST_SERIAL) for robot in robots for _ in wiring.programs.get(robot.name, ())]
+    _warn_of_equal_nodes(served, started, diagnostics)
+    if not agents and not wiring.programs and not diagnostics.has_errors:
         diagnostics.error("nothing-to-launch", Span("command line"), "none of these targets needs an agent")
     return agents
 
@@ -161,14 +178,17 @@ def _refuse_one_device_twice(agents: Sequence[Agent], diagnostics: Diagnostics) 
             )
 
 
-def _warn_of_equal_nodes(agents: Sequence[Agent], diagnostics: Diagnostics) -> None:
+def _warn_of_equal_nodes(served: Sequence[Robot], started: Sequence[Robot], diagnostics: Diagnostics) -> None:
     """Warns of robots whose nodes have the same name.
 
-    They would receive the same setpoints, and a subscriber could not distinguish their positions.
+    They would receive the same setpoints, and a subscriber could not distinguish their positions.  The boards
+    ``served`` have different serial numbers; the programs ``started`` do not.
     """
-    nodes = Counter(robot.full_node for agent in agents for robot in agent.serves if not robot.has_serial_in_names)
+    nodes = Counter(robot.full_node for robot in [*(r for r in served if not r.has_serial_in_names), *started])
     for node, count in nodes.items():
         if count > 1:
             message = f"{count} robots have the same node '{node}' and therefore the same topics"
             hint = "write namespace: robot_$serial in the .tcf, or set a different name on each console"
+            if any(robot.full_node == node for robot in started):
+                hint = "launch each program in its own namespace: the launch file has an argument for each"
             diagnostics.warning("equal-nodes", Span("command line"), message, hint=hint)

@@ -22,6 +22,9 @@ from epg.source import Span
 
 SERIAL = "$serial"
 
+HOST_SERIAL = "host"
+"""The word that replaces ``$serial`` in the names of a host program without ``--serial``."""
+
 RASPBERRY_PI = 0x2E8A
 """The USB vendor number of a Pico whose ``.tcf`` does not set ``communication.usb``."""
 

@@ -29,13 +29,14 @@ def write_description(
     node: str = "JIWY_node",
     namespace: str = "",
     usb: dict[str, object] | None = None,
+    target: dict[str, str] | None = None,
     subscriptions: Sequence[dict[str, Any]] = (topic("pan_subscriber"),),
     publications: Sequence[dict[str, Any]] = (topic("pan_publisher"),),
 ) -> Path:
     """A description in EPG's format, with the entries that the tools read."""
     data = {
         "name": file.stem,
-        "target": {"board": "rpi_pico2", "platform": "freertos"},
+        "target": target or {"board": "rpi_pico2", "platform": "freertos"},
         "node": node,
         "namespace": namespace,
         "communication": {

@@ -48,13 +48,15 @@ def nodes(source: str) -> list[dict[str, Any]]:
     found = []
     for call in ast.walk(ast.parse(source)):
         if isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id == "Node":
-            found.append({keyword.arg: value(keyword.value) for keyword in call.keywords})
+            found.append({keyword.arg: value(keyword.value) for keyword in call.keywords if keyword.arg is not None})
     return found
 
 
 def value(node: ast.expr) -> object:
     if isinstance(node, ast.List):
         return [value(element) for element in node.elts]
+    if isinstance(node, ast.Call):
+        return ast.unparse(node)
     return node.id if isinstance(node, ast.Name) else ast.literal_eval(node)
 
 
@@ -100,6 +102,52 @@ def test_a_board_with_names_of_its_own(tmp_path: Path, capsys: pytest.CaptureFix
     assert 'ATTRS{idVendor}=="1209", ATTRS{serial}=="7"' in rules.read_text(encoding="utf-8")
     assert main([*launch, "--board", "jiwy=8"]) != 0
     assert "'8' is not the serial number of 'jiwy'" in capsys.readouterr().err
+
+
+def test_host_programs_with_names_and_agent(robots: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A program of UDP uses the agent that the same file starts."""
+    (robots / "build").mkdir()
+    for name in ("sim", "other"):
+        (robots / "build" / name).touch()
+    host = {"board": "host", "platform": "host"}
+    write_description(robots / "sim1.json", node="sim", namespace="/lab/r_$serial", transport="udp", target=host)
+    write_description(robots / "arm.json", node="arm", middleware="dds", transport=None, target=host)
+    programs = ["--program", "sim1=build/sim", "--program", f"arm={robots / 'build/other'}"]
+    remaps = ["--remap", "sim1=pan_subscriber:=/joystick/pan", "--remap", "sim1=pan_publisher:=pan"]
+    options = ["--port", "9999", "--output", "launch"]
+    assert main(["launch", "sim1.json", "arm.json", *programs, *remaps, *options]) == 0
+    assert capsys.readouterr().err == ""
+    source = (robots / "launch/agents.launch.py").read_text(encoding="utf-8")
+    compile(source, "agents.launch.py", "exec")
+    agent, sim, arm = nodes(source)
+    assert agent["arguments"] == ["udp4", "-p", "9999", "verbosity"]
+    assert sim == {
+        "executable": "PathJoinSubstitution([ThisLaunchFileDir(), '../build/sim'])",
+        "name": "sim",
+        "namespace": "LaunchConfiguration('sim1_namespace')",
+        "arguments": ["--agent", "127.0.0.1:9999"],
+        "remappings": [("pan_subscriber", "/joystick/pan"), ("pan_publisher", "pan")],
+        "output": "screen",
+    }
+    assert (arm["executable"], arm["namespace"]) == (
+        str(robots / "build/other"),
+        "LaunchConfiguration('arm_namespace')",
+    )
+    assert 'DeclareLaunchArgument("sim1_namespace", default_value="lab/r_host"' in source
+    assert 'DeclareLaunchArgument("arm_namespace", default_value=""' in source
+    assert source.count("**END") == 3, "whatever hangs is ended"
+
+
+def test_two_programs_of_one_target_have_the_same_node(robots: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (robots / "arm").touch()
+    host = {"board": "host", "platform": "host"}
+    write_description(robots / "arm.json", middleware="dds", transport=None, namespace="/r_$serial", target=host)
+    assert main(["launch", "arm.json", "--program", "arm=arm", "--program", "arm=arm"]) == 0
+    assert "2 robots have the same node '/r_host/JIWY_node'" in capsys.readouterr().err
+    source = (robots / "agents.launch.py").read_text(encoding="utf-8")
+    assert "[arm_namespace:=robot_2] [arm_2_namespace:=robot_2]" in source
+    assert main(["launch", "arm.json", "--program", "arm=arm", "--systemd"]) == 1
+    assert "services are for agents, not for host programs" in capsys.readouterr().err
 
 
 def test_the_launch_file_starts_where_ros_is(robots: Path) -> None:

@@ -7,16 +7,19 @@ Without ROS 2, these tests do not run: tests/ros2/test_dds_node.py tests the sam
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import signal
 import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 
+from epg.cli.main import main
 from tests.ros2.build import Build
 from tests.ros2.definitions import type_hash
 from tests.ros2.network import Network, running
@@ -116,6 +119,26 @@ def test_a_node_of_rclpy_with_default_qos(robot: Path, ros: dict[str, str]) -> N
     assert int(heard) >= 60 and state == "disabled"
 
 
+@contextmanager
+def launched(ros: dict[str, str], file: Path, *arguments: str) -> Iterator[subprocess.Popen[str]]:
+    """A launch file that runs; at the end, what it has left."""
+    command = ["ros2", "launch", str(file), *arguments]
+    with subprocess.Popen(command, env=ros, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as launch:
+        try:
+            yield launch
+        finally:
+            launch.kill()
+
+
+def process_of(launch: subprocess.Popen[str]) -> int:
+    """The process that a launch file has started."""
+    assert launch.stdout is not None
+    for line in launch.stdout:
+        if found := re.search(r"process started with pid \[(\d+)\]", line):
+            return int(found[1])
+    raise AssertionError("launch has started nothing")
+
+
 LAUNCH = """
 from launch import LaunchDescription
 from launch_ros.actions import Node
@@ -130,12 +153,28 @@ def generate_launch_description():
 def test_launch_starts_a_node_and_ends_it(ros: dict[str, str], build: Build, tmp_path: Path) -> None:
     file = tmp_path / "robot.launch.py"
     file.write_text(LAUNCH.format(program=build("jiwy")))
-    with subprocess.Popen(["ros2", "launch", str(file)], env=ros, stderr=subprocess.PIPE, text=True) as launch:
-        try:
-            assert ask(ros, "topic", "echo", "--once", "/pan", "std_msgs/msg/Float64", seconds=60.0).startswith(
-                "data: "
-            )
-            assert "/fleet/left" in ask(ros, "node", "list", "--no-daemon", "--spin-time", "4").split()
-        finally:
-            launch.send_signal(signal.SIGINT)
-        assert "process has finished cleanly" in launch.communicate(timeout=30)[1]
+    with launched(ros, file) as launch:
+        process_of(launch)
+        assert ask(ros, "topic", "echo", "--once", "/pan", "std_msgs/msg/Float64", seconds=60.0).startswith("data: ")
+        assert "/fleet/left" in ask(ros, "node", "list", "--no-daemon", "--spin-time", "4").split()
+        launch.send_signal(signal.SIGINT)
+        assert "process has finished cleanly" in launch.communicate(timeout=30)[0]
+
+
+def test_the_file_of_epg_launch_starts_a_program_and_ends_it_when_it_hangs(
+    ros: dict[str, str], build: Build, tmp_path: Path
+) -> None:
+    program = build("jiwy")
+    description = program.parent / "epg/jiwy/jiwy.json"
+    names = ["--program", f"jiwy={program}", "--remap", "jiwy=pan_publisher:=/pan"]
+    assert main(["launch", str(description), *names, "--output", str(tmp_path)]) == 0
+    with launched(ros, tmp_path / "agents.launch.py", "jiwy_namespace:=lab/r2") as launch:
+        process = process_of(launch)
+        assert ask(ros, "topic", "echo", "--once", "/pan", "std_msgs/msg/Float64", seconds=60.0).startswith("data: ")
+        assert "/lab/r2/JIWY_node" in ask(ros, "node", "list", "--no-daemon", "--spin-time", "4").split()
+        os.kill(process, signal.SIGSTOP)
+        launch.send_signal(signal.SIGINT)
+        output = launch.communicate(timeout=30)[0]
+        assert "escalating to 'SIGTERM'" in output and "escalating to 'SIGKILL'" in output
+        with pytest.raises(ProcessLookupError):
+            os.kill(process, 0)
