@@ -129,11 +129,11 @@ def _ports(node: YamlNode, parameters: Mapping[str, YamlNode], diagnostics: Diag
 
 
 def _each(port: YamlNode, parameters: Mapping[str, YamlNode], diagnostics: Diagnostics) -> None:
-    """Checks a port with ``each``: this must name a required parameter of the type ``names``."""
+    """Checks a port with ``each``: this must name a required parameter of the type ``names`` or ``message``."""
     named = port["each"]
     _known("parameter", named, parameters, diagnostics)
     parameter = parameters.get(str(named.value))
-    if parameter is not None and ("type" not in parameter or parameter["type"].value != "names"):
+    if parameter is not None and ("type" not in parameter or parameter["type"].value not in ("names", "message")):
         message = f"'each' must name a list, and parameter '{named.value}' is not a list"
         diagnostics.error("wrong-value", named.span, message, hint="give the parameter 'type: names'")
     elif parameter is not None and not flag_of(parameter, "required"):

@@ -27,7 +27,7 @@ class KindParameter:
     """
 
     name: str
-    type: str  # "number", "integer", "boolean", "string", "ratio", "quantity", "names" or "object"
+    type: str  # "number", "integer", "boolean", "string", "ratio", "quantity", "names", "message", "fields" or "object"
     dimension: str
     description: str
     required: bool
@@ -48,9 +48,9 @@ class KindPort:
     ``drive``: the value drives a motor.  The macro ``applied`` of the kind's template gives the present duty.
     ``boolean_with``: the port is boolean if the component's parameters have these values; else it has ``type``.
     ``integer_with``: the port gives whole numbers if the parameters have these values, so integer inputs can take it.
-    ``each``: the parameter with a list of names; a component has one such port for each name.  A component's own kind
-    (:meth:`Kind.of_component`) has a port for each ``element`` of the list instead, and ``part`` is the name of the
-    port in the original kind.
+    ``each``: the parameter with a list of names, or with a message; a component has one such port for each name, or for
+    each number of the message.  A component's own kind (:meth:`Kind.of_component`) has a port for each ``element``
+    instead, and ``part`` is the name of the port in the original kind.
     """
 
     name: str
@@ -168,8 +168,8 @@ class Kind:
             boolean = port.boolean_with and all(parameters[key] == text for key, text in port.boolean_with.items())
             ports += [replace(port, type="boolean") if boolean else port] if not port.each else []
         for each in dict.fromkeys(port.each for port in self.ports if port.each):
-            elements = parameters[each]
-            assert isinstance(elements, tuple)
+            stated = parameters[each]  # a list of names, or a message with the names of its numbers
+            elements = stated if isinstance(stated, tuple) else getattr(stated, "names", ())
             parts = [port for port in self.ports if port.each == each]
             for element in elements:
                 for port in parts:

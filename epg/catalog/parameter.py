@@ -30,6 +30,9 @@ _NAME = {
     "maxLength": 63,
     "x-message": "is not a valid name: use at most 63 letters, digits and '_', and do not begin with a digit",
 }
+_CONSTANT = "is not a number, a text, true or false, or a list of them"
+MOST_ELEMENTS = 1024
+"""The largest number of elements in a constant of a message."""
 MOST_NAMES = 32
 """The largest number of names in a list.  epg/message.h has room for as many joints."""
 
@@ -101,6 +104,12 @@ def parameter_schema(parameter: KindParameter) -> dict[str, Any]:
         }
         if examples:
             schema.setdefault("examples", [examples])
+    elif parameter.type == "message":
+        schema |= {"type": "string", "minLength": 1, "maxLength": 255}
+    elif parameter.type == "fields":
+        one = {"type": ["number", "string", "boolean"]}
+        value = {"anyOf": [one, {"type": "array", "items": one, "maxItems": MOST_ELEMENTS}], "x-message": _CONSTANT}
+        schema |= {"type": "object", "additionalProperties": value}
     elif parameter.type == "names":
         schema |= {"type": "array", "items": _NAME, "minItems": 1, "maxItems": MOST_NAMES, "uniqueItems": True}
     else:
@@ -129,6 +138,8 @@ def typed_value(parameter: KindParameter, node: YamlNode | None, diagnostics: Di
     if parameter.type == "object":
         values = {child.name: typed_value(child, stated.get(child.name), diagnostics) for child in parameter.properties}
         return MappingProxyType(values)
+    if parameter.type == "fields":
+        return stated.plain()
     if parameter.type == "names":
         return tuple(str(element.value) for element in stated.elements())
     try:

@@ -16,6 +16,7 @@ from epg.check.compose import component_schema, typed_parameters
 from epg.check.devicetree import check_node
 from epg.check.fail_safe import check_fail_safe
 from epg.check.merge import apply_settings, merge_chain
+from epg.check.messages import message_files, with_messages
 from epg.check.names import identifier_problem, normal_namespace
 from epg.check.topics import Use, check_names
 from epg.check.uses import Used, used_components
@@ -120,7 +121,7 @@ def check_configuration(
         control=control,
         communication=communication,
         components=components,
-        files=tuple(file.path for file in chain),
+        files=(*(file.path for file in chain), *_message_files(components)),
         absent=tuple(path for file in chain for path in file.absent),
         root=root,
     )
@@ -159,6 +160,10 @@ def _components(
         if not validate(node, component_schema(kind, with_pins=with_pins), diagnostics):
             continue
         parameters = typed_parameters(kind, node, diagnostics)
+        with_message = with_messages(kind, parameters, node, catalog.roots, diagnostics)
+        if with_message is None:
+            continue
+        parameters = with_message
         kind = kind.of_component(parameters)
         result[name] = Component(name, kind, parameters, {}, conversion_of(node, diagnostics), node, span)
     _fault_numbers({component.kind.name: component.kind for component in result.values()}, diagnostics)
@@ -167,6 +172,11 @@ def _components(
         name: replace(component, uses=used_components(component.kind, component.node, kinds, diagnostics))
         for name, component in result.items()
     }
+
+
+def _message_files(components: Mapping[str, Component]) -> tuple[Path, ...]:
+    """The files of the definitions of messages."""
+    return tuple(dict.fromkeys(file for c in components.values() for file in message_files(c.parameters)))
 
 
 def _fault_numbers(kinds: Mapping[str, Kind], diagnostics: Diagnostics) -> None:

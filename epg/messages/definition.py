@@ -9,6 +9,7 @@ can be bounded: ``string<=N``.
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -76,6 +77,7 @@ class Message:
 
     name: str
     fields: tuple[Field, ...]
+    constants: Mapping[str, str]  # name -> text of the value
     text: str
     path: Path
 
@@ -90,18 +92,21 @@ def parse_message(name: str, text: str, path: Path, diagnostics: Diagnostics) ->
     before = diagnostics.error_count
     package = name.partition("/")[0]
     fields: dict[str, Field] = {}
+    constants: dict[str, str] = {}
     for number, line in enumerate(text.splitlines(), start=1):
-        found = _line(line, package, str(path), number, diagnostics)
+        found = _line(line, package, str(path), number, constants, diagnostics)
         if found is None:
             continue
         if found.name in fields:
             diagnostics.error("message-definition", found.span, f"the message already has a field '{found.name}'")
         fields[found.name] = found
-    return Message(name, tuple(fields.values()), text, path) if diagnostics.error_count == before else None
+    return Message(name, tuple(fields.values()), constants, text, path) if diagnostics.error_count == before else None
 
 
-def _line(line: str, package: str, file: str, number: int, diagnostics: Diagnostics) -> Field | None:
-    """The field of a line.  None for a constant, an empty line, or a mistake, which is reported."""
+def _line(
+    line: str, package: str, file: str, number: int, constants: dict[str, str], diagnostics: Diagnostics
+) -> Field | None:
+    """The field of a line.  None for an empty line, a constant, which is added, or a mistake, which is reported."""
     code = _without_comment(line).rstrip()
     start = len(code) - len(code.lstrip())
     if not code.strip():
@@ -124,9 +129,12 @@ def _line(line: str, package: str, file: str, number: int, diagnostics: Diagnost
         if not _CONSTANT.fullmatch(name[0]):
             hint = "capital letters, digits and single underscores, for example MAX_SPEED"
             diagnostics.error("message-definition", span, f"'{name[0]}' cannot be the name of a constant", hint=hint)
+        constants[name[0]] = after[1:].strip()
         return None
     if not _NAME.fullmatch(name[0]):
         hint = "small letters, digits and single underscores, for example max_speed"
+        if _CONSTANT.fullmatch(name[0]):
+            hint = f"write a constant with '=': {name[0]}=<value>"
         diagnostics.error("message-definition", span, f"'{name[0]}' cannot be the name of a field", hint=hint)
         return None
     return Field(name[0], type_, after, span)

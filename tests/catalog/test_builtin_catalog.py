@@ -70,6 +70,8 @@ def test_the_kinds() -> None:
         "ros_echo",
         "ros_joint_state_publisher",
         "ros_joint_state_subscriber",
+        "ros_message_publisher",
+        "ros_message_subscriber",
         "ros_publisher",
         "ros_subscriber",
         "ros_twist_publisher",

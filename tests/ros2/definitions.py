@@ -25,6 +25,13 @@ DEFINITIONS = {
     "std_msgs/msg/Float64MultiArray": "std_msgs/msg/MultiArrayLayout layout, float64[] data",
     "geometry_msgs/msg/Vector3": "float64 x, float64 y, float64 z",
     "geometry_msgs/msg/Twist": "geometry_msgs/msg/Vector3 linear, geometry_msgs/msg/Vector3 angular",
+    "geometry_msgs/msg/Quaternion": "float64 x, float64 y, float64 z, float64 w",
+    "sensor_msgs/msg/Imu": "std_msgs/msg/Header header, geometry_msgs/msg/Quaternion orientation, "
+    "float64[9] orientation_covariance, geometry_msgs/msg/Vector3 angular_velocity, "
+    "float64[9] angular_velocity_covariance, geometry_msgs/msg/Vector3 linear_acceleration, "
+    "float64[9] linear_acceleration_covariance",
+    "robot_msgs/msg/Gripper": "std_msgs/msg/Header header, bool holding, uint8 state, float32[3] force, int16 raw, "
+    "string<=10 label, float64 width",
     "geometry_msgs/msg/TwistStamped": "std_msgs/msg/Header header, geometry_msgs/msg/Twist twist",
     "sensor_msgs/msg/JointState": "std_msgs/msg/Header header, string[] name, float64[] position, float64[] velocity, "
     "float64[] effort",
@@ -44,7 +51,17 @@ DEFINITIONS = {
 }
 
 # type_description_interfaces/msg/FieldType
-_NUMBERS = {"int32": 6, "uint32": 7, "float32": 10, "float64": 11, "uint8": 3, "bool": 15, "byte": 16, "string": 17}
+_NUMBERS = {
+    "int16": 4,
+    "int32": 6,
+    "uint32": 7,
+    "float32": 10,
+    "float64": 11,
+    "uint8": 3,
+    "bool": 15,
+    "byte": 16,
+    "string": 17,
+}
 _NESTED, _BOUNDED_STRING, _ARRAY, _SEQUENCE = 1, 21, 48, 144
 
 

@@ -9,11 +9,19 @@ from typing import Any
 
 import cyclonedds.idl.annotations as annotate
 from cyclonedds.idl import make_idl_struct
-from cyclonedds.idl.types import array, float32, float64, int32, int64, sequence, uint8, uint32, uint64
+from cyclonedds.idl.types import array, float32, float64, int16, int32, int64, sequence, uint8, uint32, uint64
 
 from tests.ros2.definitions import fields_of
 
-_IDL = {"int32": int32, "uint32": uint32, "float32": float32, "float64": float64, "uint8": uint8, "byte": uint8}
+_IDL = {
+    "int16": int16,
+    "int32": int32,
+    "uint32": uint32,
+    "float32": float32,
+    "float64": float64,
+    "uint8": uint8,
+    "byte": uint8,
+}
 _IDL |= {"bool": bool, "string": str, "int64": int64, "uint64": uint64}
 
 _DEFINITIONS: dict[str, list[tuple[str, str]]] = {
@@ -95,6 +103,11 @@ MultiArrayDimension_ = _struct("std_msgs/msg/MultiArrayDimension")
 MultiArrayLayout_ = _struct("std_msgs/msg/MultiArrayLayout")
 Float64MultiArray_ = _struct("std_msgs/msg/Float64MultiArray")
 JointState_ = _struct("sensor_msgs/msg/JointState")
+Imu_ = _struct("sensor_msgs/msg/Imu")
+Vector3_ = _struct("geometry_msgs/msg/Vector3")
+Gripper_ = _struct("robot_msgs/msg/Gripper")
+Header_ = _struct("std_msgs/msg/Header")
+Time_ = _struct("builtin_interfaces/msg/Time")
 DiagnosticArray_ = _struct("diagnostic_msgs/msg/DiagnosticArray")
 Gid_ = _struct("rmw_dds_common/msg/Gid")
 NodeEntitiesInfo_ = _struct("rmw_dds_common/msg/NodeEntitiesInfo")

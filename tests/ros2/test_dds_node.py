@@ -30,12 +30,16 @@ from tests.ros2.messages import (
     DiagnosticArray_,
     Float64_,
     Float64MultiArray_,
+    Gripper_,
+    Header_,
     HugeFloat64_,
+    Imu_,
     JointState_,
     LongFloat64_,
     MultiArrayDimension_,
     MultiArrayLayout_,
     ShortFloat64_,
+    Time_,
     numbers,
 )
 from tests.ros2.network import Network, network, running
@@ -384,6 +388,34 @@ def test_messages_of_several_values(build_checked: Build, net: Network, tmp_path
     positions = set(zip(jiwy_robot.signal("outputs.pan_logging"), jiwy_robot.signal("outputs.tilt_logging")))
     # each message is from one control cycle
     assert {tuple(message.position) for message in states.messages[2:]} <= positions
+    assert set(jiwy_robot.signal("inputs.setpoint_pan")) == {0.0, 0.125}
+    assert set(jiwy_robot.signal("inputs.setpoint_tilt")) == {0.0, -0.5}
+
+
+def test_messages_of_any_type(build_checked: Build, net: Network, tmp_path: Path) -> None:
+    """An Imu of ROS 2, and a message of the user's own, whose texts have any length on the way in."""
+    with robot(net, build_checked("sensors"), tmp_path) as jiwy_robot, Peer(net.domain, "rviz") as peer:
+        measured = peer.subscription("/robot_7/imu/data", Imu_)
+        gripper = peer.publisher("/robot_7/gripper", Gripper_)
+        assert meet_and_wait(peer, lambda: gripper.matched == 1 and len(measured.received) > 20)
+        for frame in ("", "a frame with a long name", "x"):
+            header = Header_(Time_(1, 2), frame)
+            gripper.publish(Gripper_(header, True, 1, [9.0, -0.5, 9.0], -7, frame[:10], 0.125))
+            peer.spin(0.1)
+        own = [e for e in [*peer.graph.publications(), *peer.graph.subscriptions()] if e.node == NODE]
+        types = {e.topic: e.type for e in own}
+        assert types["/robot_7/imu/data"] == "sensor_msgs/msg/Imu"
+        assert types["/robot_7/gripper"] == "robot_msgs/msg/Gripper"
+        assert [e.hash for e in own] == [type_hash(e.type) for e in own]
+        jiwy_robot.end()
+    last = measured.messages[-1]
+    assert last.header.frame_id == "imu_link" and last.orientation.w == 1.0
+    assert list(last.orientation_covariance) == [-1.0] + [0.0] * 8
+    assert list(last.angular_velocity_covariance) == [0.01, 0, 0, 0, 0.01, 0, 0, 0, 0.01]
+    assert abs(last.header.stamp.sec - time.time()) < 60.0
+    positions = set(zip(jiwy_robot.signal("outputs.pan_logging"), jiwy_robot.signal("outputs.tilt_logging")))
+    sent = {(message.angular_velocity.z, message.linear_acceleration.x) for message in measured.messages[2:]}
+    assert sent <= positions
     assert set(jiwy_robot.signal("inputs.setpoint_pan")) == {0.0, 0.125}
     assert set(jiwy_robot.signal("inputs.setpoint_tilt")) == {0.0, -0.5}
 

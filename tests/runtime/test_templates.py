@@ -14,6 +14,7 @@ import pytest
 
 from epg.catalog.catalog import Catalog, load_catalog
 from epg.check.compose import typed_parameters
+from epg.check.messages import with_messages
 from epg.diagnostics import Diagnostics
 from epg.documents.yaml_file import parse_yaml
 from epg.emit.template import environment
@@ -153,6 +154,12 @@ COMPONENTS_TRIED = [
     ),
     Component("twist_in", "{kind: ros_twist_subscriber, topic: g}", first_index=12),
     Component("twist_out", "{kind: ros_twist_publisher, topic: h, stamped: true, frame: base}", first_index=12),
+    Component("range_in", "{kind: ros_message_subscriber, topic: i, message: sensor_msgs/Range}", first_index=18),
+    Component(
+        "range_out",
+        "{kind: ros_message_publisher, topic: j, message: sensor_msgs/Range, constants: {header.frame_id: bumper}}",
+        first_index=18,
+    ),
     Component("answer", "{kind: ros_echo, from: ping, to: pong, type: int32}"),
     Component(
         "number",
@@ -179,6 +186,7 @@ class Renderer:
         kind = catalog.find_kind(str(node["kind"].value))
         assert kind is not None
         parameters = typed_parameters(kind, node, diagnostics)
+        parameters = with_messages(kind, parameters, node, [], diagnostics) or {}
         assert diagnostics.error_count == 0
         self.kind = kind = kind.of_component(parameters)
         value_index = {port.name: number for number, port in enumerate(kind.topic_ports, component.first_index or 0)}

@@ -42,7 +42,7 @@ static void write_bits(epg_cdr_writer_t *writer, uint64_t bits, size_t size)
     }
 }
 
-static uint64_t read_bits(epg_cdr_reader_t *reader, size_t size)
+uint64_t epg_cdr_read_bits(epg_cdr_reader_t *reader, size_t size)
 {
     const unsigned char *place = take(reader, size, size);
     uint64_t bits = 0;
@@ -93,17 +93,17 @@ void epg_cdr_write_string(epg_cdr_writer_t *writer, const char *text)
 
 uint8_t epg_cdr_read_u8(epg_cdr_reader_t *reader)
 {
-    return (uint8_t)read_bits(reader, sizeof(uint8_t));
+    return (uint8_t)epg_cdr_read_bits(reader, sizeof(uint8_t));
 }
 
 uint32_t epg_cdr_read_u32(epg_cdr_reader_t *reader)
 {
-    return (uint32_t)read_bits(reader, sizeof(uint32_t));
+    return (uint32_t)epg_cdr_read_bits(reader, sizeof(uint32_t));
 }
 
 int32_t epg_cdr_read_i32(epg_cdr_reader_t *reader)
 {
-    const uint32_t bits = (uint32_t)read_bits(reader, sizeof bits);
+    const uint32_t bits = (uint32_t)epg_cdr_read_bits(reader, sizeof bits);
     int32_t value;
     memcpy(&value, &bits, sizeof value);
     return value;
@@ -111,7 +111,7 @@ int32_t epg_cdr_read_i32(epg_cdr_reader_t *reader)
 
 float epg_cdr_read_f32(epg_cdr_reader_t *reader)
 {
-    const uint32_t bits = (uint32_t)read_bits(reader, sizeof bits);
+    const uint32_t bits = (uint32_t)epg_cdr_read_bits(reader, sizeof bits);
     float value;
     memcpy(&value, &bits, sizeof value);
     return value;
@@ -119,10 +119,17 @@ float epg_cdr_read_f32(epg_cdr_reader_t *reader)
 
 double epg_cdr_read_f64(epg_cdr_reader_t *reader)
 {
-    const uint64_t bits = read_bits(reader, sizeof bits);
+    const uint64_t bits = epg_cdr_read_bits(reader, sizeof bits);
     double value;
     memcpy(&value, &bits, sizeof value);
     return value;
+}
+
+void epg_cdr_skip(epg_cdr_reader_t *reader, size_t size, uint16_t count)
+{
+    if (count > 0) {
+        (void)take(reader, size * count, size);
+    }
 }
 
 size_t epg_cdr_read_sequence(epg_cdr_reader_t *reader, size_t size, size_t *first)

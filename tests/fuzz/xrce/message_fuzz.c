@@ -22,6 +22,33 @@ static const epg_message_layout_t two = {.fields = twist_fields, .count = 6, .fr
 static const epg_message_layout_t six = {.fields = all_fields, .count = 6, .frame_id = ""};
 static const epg_message_layout_t of_joints = {.fields = joint_fields, .count = 3, .names = joints, .frame_id = ""};
 
+/* int16, string[], bool, float32[], a stamp, string, int32, float32; texts and sequences are sent empty */
+static const epg_message_step_t steps[] = {
+    {.type = EPG_FIELD_INT16, .count = 1, .value = 0},
+    {.type = EPG_FIELD_STRING, .sequence = true, .value = EPG_STEP_SKIP},
+    {.type = EPG_FIELD_BOOL, .count = 1, .value = 1},
+    {.type = EPG_FIELD_FLOAT32, .sequence = true, .value = EPG_STEP_SKIP},
+    {.type = EPG_FIELD_UINT32, .count = 2, .value = EPG_STEP_SKIP},
+    {.type = EPG_FIELD_STRING, .count = 1, .value = EPG_STEP_SKIP},
+    {.type = EPG_FIELD_INT32, .count = 1, .value = 2},
+    {.type = EPG_FIELD_FLOAT32, .count = 1, .value = 3},
+};
+static const uint8_t table_data[40] = {[24] = 1};
+static const epg_message_place_t places[] = {
+    {.offset = 0, .type = EPG_FIELD_INT16},  {.offset = 8, .type = EPG_FIELD_BOOL},
+    {.offset = 32, .type = EPG_FIELD_INT32}, {.offset = 36, .type = EPG_FIELD_FLOAT32},
+    {.offset = 16, .type = EPG_FIELD_STAMP},
+};
+static const epg_message_table_t table = {
+    .message = {.type = "t", .hash = "", .write = epg_message_table_write, .read = epg_message_table_read},
+    .data = table_data,
+    .size = sizeof table_data,
+    .places = places,
+    .place_count = 5,
+    .steps = steps,
+    .step_count = 8,
+};
+
 static const epg_topic_t topics[] = {
     {.name = "a", .message = &epg_message_float64, .count = 1},
     {.name = "b", .message = &epg_message_float32, .count = 1},
@@ -31,6 +58,7 @@ static const epg_topic_t topics[] = {
     {.name = "f", .message = &epg_message_twist, .layout = &six, .count = 6},
     {.name = "g", .message = &epg_message_twist_stamped, .layout = &two, .count = 2},
     {.name = "h", .message = &epg_message_joint_state, .layout = &of_joints, .count = 4},
+    {.name = "i", .message = &table.message, .count = 4},
 };
 
 static void write_again(const epg_topic_t *topic, const double *values)

@@ -342,8 +342,8 @@ static size_t message_size(const epg_topic_t *topic, const double *numbers, unsi
 TEST(messages_are_as_large_as_kinds_say)
 {
     const double numbers[6] = {0};
-    static const epg_topic_t *const topics[] = {&publisher_topic,  &flag_topic,      &array_out_topic,
-                                                &joints_out_topic, &twist_out_topic, &answer_topic};
+    static const epg_topic_t *const topics[] = {&publisher_topic, &flag_topic,      &array_out_topic, &joints_out_topic,
+                                                &twist_out_topic, &range_out_topic, &answer_topic};
     for (size_t i = 0; i < sizeof topics / sizeof topics[0]; i++) {
         unsigned char bytes[512];
         const size_t size = message_size(topics[i], numbers, bytes);
@@ -354,7 +354,7 @@ TEST(messages_are_as_large_as_kinds_say)
 
 TEST(values_of_messages_are_where_their_ports_say)
 {
-    double values[18] = {0};
+    double values[24] = {0};
     double read[6] = {0};
     unsigned char bytes[512];
     joints_out_monitor_pan_position(values, 1.0);
@@ -365,6 +365,12 @@ TEST(values_of_messages_are_where_their_ports_say)
     CHECK_EQUAL(read[5], 2.0);
     twist_out_monitor_angular_z(values, 3.0);
     CHECK_EQUAL(values[17], 3.0);
+    range_out_monitor_radiation_type(values, 1.0);
+    range_out_monitor_variance(values, 0.5);
+    size = message_size(&range_out_topic, &values[18], bytes);
+    CHECK(range_in_topic.message->read(&range_in_topic, bytes, size, read));
+    CHECK_EQUAL(read[0], 1.0);
+    CHECK_EQUAL(read[5], 0.5);
     array_out_monitor_second(values, 4.0);
     size = message_size(&array_out_topic, &values[4], bytes);
     CHECK(array_in_topic.message->read(&array_in_topic, bytes, size, read));

@@ -51,6 +51,10 @@ uint32_t epg_cdr_read_u32(epg_cdr_reader_t *reader);
 int32_t epg_cdr_read_i32(epg_cdr_reader_t *reader);
 float epg_cdr_read_f32(epg_cdr_reader_t *reader);
 double epg_cdr_read_f64(epg_cdr_reader_t *reader);
+/** Reads the bits of a number of `size` bytes: 1, 2, 4 or 8. */
+uint64_t epg_cdr_read_bits(epg_cdr_reader_t *reader, size_t size);
+/** Skips `count` numbers of `size` bytes each. */
+void epg_cdr_skip(epg_cdr_reader_t *reader, size_t size, uint16_t count);
 /**
  * Skips a sequence of numbers of `size` bytes each.  Returns the number of its elements; `*first` is the position of
  * the first one.  If the sequence is longer than the message, the reader fails and the result is 0.

@@ -78,4 +78,62 @@ extern const epg_message_t epg_message_twist_stamped;
  */
 extern const epg_message_t epg_message_joint_state;
 
+/** The type of a field in a message that tables describe. */
+typedef enum epg_field_type {
+    EPG_FIELD_BOOL,
+    EPG_FIELD_INT8,
+    EPG_FIELD_UINT8,
+    EPG_FIELD_INT16,
+    EPG_FIELD_UINT16,
+    EPG_FIELD_INT32,
+    EPG_FIELD_UINT32,
+    EPG_FIELD_INT64,
+    EPG_FIELD_UINT64,
+    EPG_FIELD_FLOAT32,
+    EPG_FIELD_FLOAT64,
+    EPG_FIELD_STRING,
+    EPG_FIELD_STAMP /**< builtin_interfaces/msg/Time: the time of the control cycle */
+} epg_field_type_t;
+
+/** The place of a number or of a stamp in a message that is sent. */
+typedef struct epg_message_place {
+    uint16_t offset; /**< from the start of the message, in bytes */
+    uint8_t type;    /**< epg_field_type_t */
+} epg_message_place_t;
+
+/** The `value` of a step whose numbers are not values of the topic. */
+#define EPG_STEP_SKIP UINT16_MAX
+
+/** One step of reading a message that is received. */
+typedef struct epg_message_step {
+    uint8_t type;   /**< epg_field_type_t, not EPG_FIELD_STAMP */
+    bool sequence;  /**< a sequence of this type, of any length, which is skipped */
+    uint16_t count; /**< number of elements; 1 for a single field */
+    uint16_t value; /**< index of the value that the number gives, or EPG_STEP_SKIP */
+} epg_message_step_t;
+
+/**
+ * A message of any type, described by constant tables.
+ *
+ * The first member is the message of its topics.  A message that is sent is `data`, with the values of the topic and the
+ * stamps in their places: first a place for each value, then the stamps.  Texts and sequences are therefore constant.
+ * In a message that is received, texts and sequences can have any length; it is read in steps.
+ */
+typedef struct epg_message_table {
+    epg_message_t message;
+    const uint8_t *data;
+    size_t size;
+    const epg_message_place_t *places;
+    size_t place_count;
+    const epg_message_step_t *steps;
+    size_t step_count;
+} epg_message_table_t;
+
+/** The function `write` of a message in an `epg_message_table_t`. */
+size_t epg_message_table_write(const struct epg_topic *topic, const double *values, epg_stamp_t stamp, void *data,
+                               size_t size);
+
+/** The function `read` of a message in an `epg_message_table_t`.  A Boolean value other than 0 and 1 is malformed. */
+bool epg_message_table_read(const struct epg_topic *topic, const void *data, size_t size, double *values);
+
 #endif
