@@ -30,7 +30,7 @@ IMPLEMENTATIONS = ["rmw_cyclonedds_cpp", "rmw_fastrtps_cpp"]
 SERIALS = (1, 2, 3)
 
 
-def _graph_agent() -> Path:
+def graph_agent() -> Path:
     for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep):
         found = Path(prefix) / "lib" / GRAPH_AGENT / GRAPH_AGENT
         if found.is_file():
@@ -41,7 +41,7 @@ def _graph_agent() -> Path:
 @pytest.fixture(params=[GRAPH_AGENT, "MicroXRCEAgent"])
 def agent(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[RealAgent]:
     try:
-        found = _graph_agent() if request.param == GRAPH_AGENT else program()
+        found = graph_agent() if request.param == GRAPH_AGENT else program()
     except Missing as missing:
         pytest.skip(str(missing))
     with RealAgent.udp(tmp_path, found) as started:
@@ -93,21 +93,32 @@ def nodes():
 """The beginning of a ROS 2 node, which the tests continue.  It prints its result as JSON."""
 
 
-def ask(agent: RealAgent, implementation: str, script: str, *arguments: object) -> object:
-    """Runs a script as a ROS 2 node in the agent's domain; returns its result."""
-    environment = {
+def node_script(agent: RealAgent, implementation: str, script: str, *arguments: object) -> subprocess.Popen[str]:
+    """Starts a script as a ROS 2 node in the agent's domain."""
+    pytest.importorskip("rclpy", reason="ROS 2 is not sourced for this Python: run the tests with the system's")
+    command = [sys.executable, "-c", NODE + script, *map(str, arguments)]
+    return subprocess.Popen(
+        command, env=environment(agent, implementation), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+
+
+def environment(agent: RealAgent, implementation: str) -> dict[str, str]:
+    """The environment of ROS 2 in the agent's domain."""
+    return {
         **os.environ,
         "RMW_IMPLEMENTATION": implementation,
         "ROS_DOMAIN_ID": str(agent.domain),
         "CYCLONEDDS_URI": CYCLONE,
         "FASTRTPS_DEFAULT_PROFILES_FILE": str(agent.folder / "fast_dds.xml"),
     }
-    command = [sys.executable, "-c", NODE + script, *map(str, arguments)]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False, timeout=120)
-    if "No module named 'rclpy'" in done.stderr:
-        pytest.skip("ROS 2 is not sourced for this Python: run the tests with the system's")
-    assert done.returncode == 0, done.stderr
-    result: object = json.loads(done.stdout)
+
+
+def ask(agent: RealAgent, implementation: str, script: str, *arguments: object) -> object:
+    """Runs a script as a ROS 2 node in the agent's domain; returns its result."""
+    process = node_script(agent, implementation, script, *arguments)
+    output, errors = process.communicate(timeout=120)
+    assert process.returncode == 0, errors
+    result: object = json.loads(output)
     return result
 
 

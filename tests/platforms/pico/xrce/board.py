@@ -62,8 +62,13 @@ class Jiwy:
         assert self.pico.call("usb")["state"] == "configured"
         self.pico.call("usb_open", port=CONSOLE_PORT)
         self.pico.run(milliseconds=5)
-        self.agent = BoardAgent(self.pico)
-        self.agent.wait_for("rt/pan_publisher")
+        self.agent = self.connect()
+
+    def connect(self) -> BoardAgent:
+        """The agent, after the first message of the board."""
+        agent = BoardAgent(self.pico)
+        agent.wait_for("rt/pan_publisher")
+        return agent
 
     def __enter__(self) -> Jiwy:
         return self

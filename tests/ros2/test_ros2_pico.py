@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The Pico's image in the emulator, on a real agent, moved and tuned by ROS 2 itself.
+
+The emulator is slower than the chip.  Times of the control loop are those of the emulated chip; ROS 2 and the agent run
+in real time.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import select
+import signal
+import subprocess
+import tty
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.emulator.emulator import CYCLES_PER_MILLISECOND, Emulator
+from tests.platforms.pico.images import skip_unless_emulated
+from tests.platforms.pico.xrce.agent import BoardAgent
+from tests.platforms.pico.xrce.board import AGENT_PORT, Jiwy
+from tests.platforms.pico.xrce.checks import assert_undisturbed
+from tests.ros2.test_ros2_agent import GRAPH_AGENT, graph_agent, node_script
+from tests.xrce_agent.real_agent import RealAgent, free_domain
+
+STEP = 1.0  # ms of the emulated chip between two exchanges of bytes
+LONGEST = 60_000.0  # ms of the emulated chip
+
+
+class Line:
+    """A pseudo terminal for the agent at one end, and the board's USB port at the other."""
+
+    def __init__(self, pico: Emulator) -> None:
+        self.pico = pico
+        self._master, self._slave = os.openpty()
+        tty.setraw(self._slave)
+        os.set_blocking(self._master, False)
+        self.path = os.ttyname(self._slave)
+        pico.call("usb_open", port=AGENT_PORT)
+
+    def run(self, milliseconds: float) -> None:
+        self.run_until(lambda: False, milliseconds)
+
+    def run_until(self, condition: Callable[[], bool], milliseconds: float) -> bool:
+        """Lets time pass on the chip until ``condition`` is true, at most this long; True if it became true."""
+        end = self.pico.cycle + round(milliseconds * CYCLES_PER_MILLISECOND)
+        while not condition():
+            if self.pico.cycle >= end:
+                return False
+            if select.select([self._master], [], [], 0)[0]:
+                self.pico.send(os.read(self._master, 4096), port=AGENT_PORT)
+            self.pico.run(milliseconds=STEP)
+            data = self.pico.receive_bytes(port=AGENT_PORT)
+            with contextlib.suppress(OSError):  # bytes that the agent does not read are lost
+                os.write(self._master, data)
+        return True
+
+    def close(self) -> None:
+        os.close(self._master)
+        os.close(self._slave)
+
+
+class LiveJiwy(Jiwy):
+    """A board that is connected to an agent outside the emulator."""
+
+    def connect(self) -> BoardAgent:
+        return Line(self.pico)  # type: ignore[return-value]
+
+    @property
+    def path(self) -> str:
+        """The serial port for the agent."""
+        return str(self.agent.path)  # type: ignore[attr-defined]
+
+
+@pytest.fixture
+def live(tmp_path: Path) -> Iterator[tuple[LiveJiwy, RealAgent]]:
+    skip_unless_emulated("bare_metal")
+    program = graph_agent()
+    with LiveJiwy("bare_metal") as jiwy:
+        device = ["serial", "-b", "115200", "--dev", jiwy.path]
+        with RealAgent(device, free_domain(), tmp_path, program) as agent:
+            yield jiwy, agent
+
+
+MOVE = """
+angle = float(sys.argv[1])
+heard = []
+node.create_subscription(Float64, "/pan_publisher", heard.append, qos_profile_sensor_data)
+setpoint = node.create_publisher(Float64, "/pan_subscriber", qos_profile_sensor_data)
+assert wait(lambda: len(heard) > 3 and setpoint.get_subscription_count() == 1, 60) is not None, nodes()
+
+def follow():
+    setpoint.publish(Float64(data=angle))
+    return abs(heard[-1].data - angle) < 0.03
+
+moved = wait(follow, 60)
+print(json.dumps({"nodes": nodes(), "moved": moved, "position": heard[-1].data}))
+"""
+
+
+def finish(jiwy: LiveJiwy, process: subprocess.Popen[str]) -> str:
+    """Lets the chip run until the process has ended; returns its output."""
+    if not jiwy.agent.run_until(lambda: process.poll() is not None, LONGEST):
+        process.send_signal(signal.SIGKILL)
+    output, errors = process.communicate(timeout=30)
+    assert process.returncode == 0, output + errors
+    return output
+
+
+@pytest.mark.parametrize("implementation", ["rmw_cyclonedds_cpp", "rmw_fastrtps_cpp"])
+def test_ros_moves_the_image(live: tuple[LiveJiwy, RealAgent], implementation: str) -> None:
+    jiwy, agent = live
+    jiwy.home()
+    jiwy.begin()
+    told = finish(jiwy, node_script(agent, implementation, MOVE, 0.5))
+    assert '"/JIWY_node"' in told and '"moved": null' not in told, told
+    assert jiwy.angle("pan") == pytest.approx(0.5, abs=0.05)
+    stats = assert_undisturbed(jiwy)
+    assert (stats["malformed"], GRAPH_AGENT) == ("0", agent.agent.name if agent.agent else "")
