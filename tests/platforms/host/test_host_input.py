@@ -61,17 +61,13 @@ def test_unknown_topic_lists_the_known_ones(motor: Program, tmp_path: Path) -> N
     )
 
 
-def test_a_name_that_is_wrong_in_many_rows_is_one_mistake(motor: Program, tmp_path: Path) -> None:
-    events = [f"{k / 100},{name},1" for k in range(50) for name in ("motor_speed", "$component:emergency")]
-    run = motor.run(tmp_path, 0.2, rows(*events))
+def test_an_unknown_digital_input_lists_the_known_ones(motor: Program, tmp_path: Path) -> None:
+    run = motor.run(tmp_path, 0.2, rows("0.05,$component:emergency,1"))
     assert run.status == 2
-    assert [line.split(": ", 1)[1] for line in run.stderr.splitlines()] == [
-        "error: unknown topic 'motor_speed'",
-        "the target subscribes to 'motor_setpoint', 'motor_enable', and has '$enable', '$component:<name>' and "
-        "'$stall'",
-        "error: the target has no digital input 'emergency'",
-        "its digital inputs: 'emergency_stop'",
-    ]
+    assert run.stderr == (
+        f"{tmp_path / 'setpoints.csv'}:2: error: the target has no digital input 'emergency'\n"
+        "hint: its digital inputs: 'emergency_stop'\n"
+    )
 
 
 def test_names_for_programs(motor: Program) -> None:
@@ -99,13 +95,17 @@ def test_header_is_required(motor: Program, tmp_path: Path, text: str) -> None:
     assert run.stderr == f"{tmp_path / 'setpoints.csv'}:1: error: the first line must be 'time,topic,value'\n"
 
 
-def test_all_errors_at_once_but_not_thousands(motor: Program, tmp_path: Path) -> None:
+def test_the_first_wrong_line_is_the_only_message(motor: Program, tmp_path: Path) -> None:
     run = motor.run(tmp_path, 0.2, rows(*(f"{k},motor_setpoint,x" for k in range(100))))
     assert run.status == 2
-    lines = run.stderr.splitlines()
-    assert len(lines) == 21
-    assert lines[19] == f"{tmp_path / 'setpoints.csv'}:21: error: 'x' is not a number"
-    assert lines[20] == f"{tmp_path / 'setpoints.csv'}: error: 80 more wrong lines"
+    assert run.stderr == f"{tmp_path / 'setpoints.csv'}:2: error: 'x' is not a number\n"
+
+
+def test_a_row_without_end_is_wrong(motor: Program, tmp_path: Path) -> None:
+    """Such a row is longer than the reader's buffer."""
+    run = motor.run(tmp_path, 0.2, rows(f"0.1,motor_setpoint,{'1' * 3000}"))
+    assert run.status == 2
+    assert f"{tmp_path / 'setpoints.csv'}:2: error: " in run.stderr
 
 
 def test_files_of_other_systems_are_read(motor: Program, tmp_path: Path) -> None:
@@ -124,10 +124,6 @@ def test_setpoint_file_that_cannot_be_read(motor: Program, tmp_path: Path) -> No
     assert (status, stderr) == (2, f"{missing}: error: cannot read the setpoint file: No such file or directory\n")
     status, _, stderr = call(motor, "--duration", "1", "--setpoints", str(tmp_path))
     assert (status, stderr) == (2, f"{tmp_path}: error: cannot read the setpoint file: Is a directory\n")
-    binary = tmp_path / "binary.csv"
-    binary.write_bytes(b"time,topic,value\n\0\1\2")
-    status, _, stderr = call(motor, "--duration", "1", "--setpoints", str(binary))
-    assert (status, stderr) == (2, f"{binary}: error: cannot read the setpoint file: it is not a text file\n")
 
 
 @pytest.mark.parametrize("option", ["--topics", "--trace", "--statistics"])

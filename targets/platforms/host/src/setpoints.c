@@ -15,7 +15,8 @@
 #include "epg/plant.h"
 #include "number.h"
 
-enum { ERRORS_SHOWN = 20, FIELDS = 3 };
+/** Number of fields in a row, and bytes of the longest row with its end and a zero.  The rest of it would be a row. */
+enum { FIELDS = 3, LINE_SIZE = 1024 };
 
 static const char header[] = "time,topic,value";
 
@@ -25,73 +26,29 @@ typedef struct reader {
     const epg_host_target_t *host;
     bool realtime;
     unsigned line;
-    unsigned errors;
     uint64_t previous_ns;
-    const char *unknown[ERRORS_SHOWN]; /* unknown names that were reported already */
-    size_t unknown_count;
 } reader_t;
 
 #if defined(__GNUC__)
 __attribute__((format(printf, 2, 3)))
 #endif
 static bool
-fail(reader_t *reader, const char *format, ...)
+fail(const reader_t *reader, const char *format, ...)
 {
-    reader->errors++;
-    if (reader->errors <= ERRORS_SHOWN) {
-        va_list arguments;
-        va_start(arguments, format);
-        fprintf(stderr, "%s:%u: error: ", reader->path, reader->line);
-        vfprintf(stderr, format, arguments);
-        fputc('\n', stderr);
-        va_end(arguments);
-    }
+    va_list arguments;
+    va_start(arguments, format);
+    fprintf(stderr, "%s:%u: error: ", reader->path, reader->line);
+    vfprintf(stderr, format, arguments);
+    fputc('\n', stderr);
+    va_end(arguments);
     return false;
-}
-
-/** Reads the whole file into a string on the heap.  Returns NULL, with a message, if it cannot be read. */
-static char *read_text(const char *path)
-{
-    FILE *file = fopen(path, "rb");
-    if (file == NULL) {
-        fprintf(stderr, "%s: error: cannot read the setpoint file: %s\n", path, strerror(errno));
-        return NULL;
-    }
-    size_t capacity = 1U << 16;
-    size_t size = 0;
-    char *text = malloc(capacity);
-    while (text != NULL) {
-        size += fread(text + size, 1, capacity - size - 1, file);
-        if (size < capacity - 1) {
-            break;
-        }
-        char *larger = realloc(text, capacity *= 2);
-        if (larger == NULL) {
-            free(text);
-        }
-        text = larger;
-    }
-    const char *problem = text == NULL ? "not enough memory" : NULL;
-    if (ferror(file)) {
-        problem = strerror(errno); /* for example of a folder, which can be opened but not read */
-    } else if (problem == NULL && memchr(text, '\0', size) != NULL) {
-        problem = "it is not a text file";
-    }
-    fclose(file);
-    if (problem != NULL) {
-        fprintf(stderr, "%s: error: cannot read the setpoint file: %s\n", path, problem);
-        free(text);
-        return NULL;
-    }
-    text[size] = '\0';
-    return text;
 }
 
 static char *trim(char *text)
 {
     text += strspn(text, " \t");
     size_t length = strlen(text);
-    while (length > 0 && strchr(" \t\r", text[length - 1]) != NULL) {
+    while (length > 0 && strchr(" \t\r\n", text[length - 1]) != NULL) {
         length--;
     }
     text[length] = '\0';
@@ -116,55 +73,31 @@ static size_t split(char *line, char *fields[FIELDS])
     return count;
 }
 
-/** True if `name` was not reported before.  A wrong name in thousands of rows is reported once. */
-static bool is_new(reader_t *reader, const char *name)
-{
-    for (size_t i = 0; i < reader->unknown_count; i++) {
-        if (strcmp(reader->unknown[i], name) == 0) {
-            return false;
-        }
-    }
-    if (reader->unknown_count < ERRORS_SHOWN) {
-        reader->unknown[reader->unknown_count++] = name;
-    }
-    return true;
-}
-
 /** Reports an unknown topic, with the names of all subscriptions as the hint. */
-static bool fail_topic(reader_t *reader, const char *topic)
+static bool fail_topic(const reader_t *reader, const char *topic)
 {
     const epg_target_t *target = reader->host->target;
-    if (!is_new(reader, topic)) {
-        return false;
-    }
     fail(reader, "unknown topic '%s'", topic);
-    if (reader->errors <= ERRORS_SHOWN) {
-        fputs("hint: the target subscribes to ", stderr);
-        for (size_t i = 0; i < target->subscription_count; i++) {
-            const epg_topic_t *subscription = &target->subscriptions[i];
-            for (size_t k = 0; k < subscription->count; k++) {
-                fprintf(stderr, "'%s', ", epg_topic_value_name(subscription, k));
-            }
+    fputs("hint: the target subscribes to ", stderr);
+    for (size_t i = 0; i < target->subscription_count; i++) {
+        const epg_topic_t *subscription = &target->subscriptions[i];
+        for (size_t k = 0; k < subscription->count; k++) {
+            fprintf(stderr, "'%s', ", epg_topic_value_name(subscription, k));
         }
-        fputs("and has '$enable', '$component:<name>' and '$stall'\n", stderr);
     }
+    fputs("and has '$enable', '$component:<name>' and '$stall'\n", stderr);
     return false;
 }
 
-static bool fail_component(reader_t *reader, const char *name)
+static bool fail_component(const reader_t *reader, const char *name)
 {
     const epg_host_target_t *host = reader->host;
-    if (!is_new(reader, name)) {
-        return false;
-    }
     fail(reader, "the target has no digital input '%s'", name);
-    if (reader->errors <= ERRORS_SHOWN) {
-        fputs(host->input_count > 0 ? "hint: its digital inputs: " : "hint: it has no digital inputs", stderr);
-        for (size_t i = 0; i < host->input_count; i++) {
-            fprintf(stderr, "%s'%s'", i > 0 ? ", " : "", host->inputs[i].name);
-        }
-        fputc('\n', stderr);
+    fputs(host->input_count > 0 ? "hint: its digital inputs: " : "hint: it has no digital inputs", stderr);
+    for (size_t i = 0; i < host->input_count; i++) {
+        fprintf(stderr, "%s'%s'", i > 0 ? ", " : "", host->inputs[i].name);
     }
+    fputc('\n', stderr);
     return false;
 }
 
@@ -179,7 +112,7 @@ static const epg_host_input_t *find_input(const reader_t *reader, const char *na
 }
 
 /** Reads a row with `$component:<name>`: the level of a digital input, in place of the plant's. */
-static bool read_force(reader_t *reader, const char *name, const char *text, epg_host_event_t *event)
+static bool read_force(const reader_t *reader, const char *name, const char *text, epg_host_event_t *event)
 {
     const epg_host_input_t *input = find_input(reader, name);
     double level = 0.0;
@@ -202,7 +135,7 @@ static bool read_force(reader_t *reader, const char *name, const char *text, epg
 }
 
 /** Finds the kind and the index of the event that a row with `topic` describes. */
-static bool read_topic(reader_t *reader, const char *topic, epg_host_event_t *event)
+static bool read_topic(const reader_t *reader, const char *topic, epg_host_event_t *event)
 {
     const epg_target_t *target = reader->host->target;
     for (size_t i = 0; i < target->subscription_count; i++) {
@@ -226,7 +159,7 @@ static bool read_topic(reader_t *reader, const char *topic, epg_host_event_t *ev
     return fail_topic(reader, topic);
 }
 
-static bool read_value(reader_t *reader, const char *text, epg_host_event_t *event)
+static bool read_value(const reader_t *reader, const char *text, epg_host_event_t *event)
 {
     uint64_t stall_ns = 0;
     if (!epg_host_parse_number(text, &event->value)) {
@@ -259,7 +192,6 @@ static bool read_event(reader_t *reader, char *line, epg_host_event_t *event)
         return fail(reader, "time %s is earlier than in the row above", fields[0]);
     }
     reader->previous_ns = event->time_ns;
-    event->line = reader->line;
     static const char component[] = "$component:";
     if (strncmp(fields[1], component, strlen(component)) == 0) {
         return read_force(reader, fields[1] + strlen(component), fields[2], event);
@@ -283,57 +215,63 @@ static void mark_published(epg_host_events_t *events)
     }
 }
 
-static size_t count_lines(const char *text)
+/** Adds an event to the list, whose memory is doubled whenever the count has reached a power of two. */
+static bool add(epg_host_events_t *events, const epg_host_event_t *event)
 {
-    size_t count = 1;
-    for (; *text != '\0'; text++) {
-        count += *text == '\n' ? 1 : 0;
+    if ((events->count & (events->count - 1)) == 0) {
+        const size_t capacity = events->count == 0 ? 1 : 2 * events->count;
+        epg_host_event_t *larger = realloc(events->events, capacity * sizeof *larger);
+        if (larger == NULL) {
+            fputs("error: not enough memory for the setpoints\n", stderr);
+            return false;
+        }
+        events->events = larger;
     }
-    return count;
+    events->events[events->count++] = *event;
+    return true;
 }
 
-static void read_lines(reader_t *reader, char *text, epg_host_events_t *events)
+static char *next_line(reader_t *reader, FILE *file, char line[LINE_SIZE])
+{
+    reader->line++;
+    return fgets(line, LINE_SIZE, file) == NULL ? NULL : trim(line);
+}
+
+/** Reads up to the end of the file, or until it cannot be read.  Returns false at the first mistake in it. */
+static bool read_lines(reader_t *reader, FILE *file, epg_host_events_t *events)
 {
     static const char byte_order_mark[] = "\xef\xbb\xbf";
-    char *line = text + (strncmp(text, byte_order_mark, 3) == 0 ? 3 : 0);
-    while (line != NULL) {
-        char *end = strchr(line, '\n');
-        if (end != NULL) {
-            *end = '\0';
-        }
-        reader->line++;
-        line = trim(line);
-        if (reader->line == 1 && strcmp(line, header) != 0) {
-            fail(reader, "the first line must be '%s'", header);
-        } else if (reader->line > 1 && line[0] != '\0') {
-            epg_host_event_t *event = &events->events[events->count];
-            *event = (epg_host_event_t){0};
-            events->count += read_event(reader, line, event) ? 1 : 0;
-        }
-        line = end == NULL ? NULL : end + 1;
+    char line[LINE_SIZE];
+    char *text = next_line(reader, file, line);
+    if (text != NULL && strncmp(text, byte_order_mark, 3) == 0) {
+        text += 3;
     }
+    if (ferror(file) == 0 && (text == NULL || strcmp(text, header) != 0)) {
+        return fail(reader, "the first line must be '%s'", header);
+    }
+    while ((text = next_line(reader, file, line)) != NULL) {
+        epg_host_event_t event = {0};
+        if (text[0] != '\0' && !(read_event(reader, text, &event) && add(events, &event))) {
+            return false;
+        }
+    }
+    return true;
 }
 
 bool epg_host_read_setpoints(const char *path, const epg_host_target_t *host, bool realtime, epg_host_events_t *events)
 {
     *events = (epg_host_events_t){0};
-    char *text = read_text(path);
-    if (text == NULL) {
-        return false;
-    }
-    events->events = malloc(count_lines(text) * sizeof events->events[0]);
-    if (events->events == NULL) {
-        fprintf(stderr, "%s: error: not enough memory for the setpoints\n", path);
-        free(text);
-        return false;
-    }
     reader_t reader = {.path = path, .host = host, .realtime = realtime};
-    read_lines(&reader, text, events);
-    free(text);
-    if (reader.errors > ERRORS_SHOWN) {
-        fprintf(stderr, "%s: error: %u more wrong lines\n", path, reader.errors - ERRORS_SHOWN);
+    FILE *file = fopen(path, "rb");
+    bool good = file != NULL && read_lines(&reader, file, events);
+    if (file == NULL || ferror(file) != 0) { /* a folder can be opened but not read */
+        fprintf(stderr, "%s: error: cannot read the setpoint file: %s\n", path, strerror(errno));
+        good = false;
     }
-    if (reader.errors > 0) {
+    if (file != NULL) {
+        fclose(file);
+    }
+    if (!good) {
         epg_host_free_setpoints(events);
         return false;
     }

@@ -38,7 +38,6 @@ typedef struct epg_host_event {
     size_t index; /**< value index of a setpoint, or pin of a digital input */
     double value; /**< value of a setpoint, 0 or 1 to enable, seconds of a stall, or epg_plant_force_t of a pin */
     bool publish; /**< of a setpoint: true if it is the last finite one at this time */
-    unsigned line;
 } epg_host_event_t;
 
 /** All events of a file.  `events` is on the heap.  Zero-initialised memory is an empty list. */
@@ -50,8 +49,7 @@ typedef struct epg_host_events {
 /**
  * Reads the file `path` for the target `host`.  If `realtime` is true, events that need simulated time are errors.
  *
- * Returns false if the file is wrong, after a message `path:line: error: ...` to stderr for each of the first 20 wrong
- * lines.
+ * Returns false if the file is wrong, after a message `path:line: error: ...` to stderr about the first wrong line.
  */
 bool epg_host_read_setpoints(const char *path, const epg_host_target_t *host, bool realtime, epg_host_events_t *events);
 
