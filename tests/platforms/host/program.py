@@ -42,9 +42,10 @@ def compile_program(
     return output
 
 
-def platform_sources(*, main: bool = True) -> list[Path]:
+def platform_sources(*, main: bool = True, system: str = "linux") -> list[Path]:
     """All sources of the runtime and the host platform, as the build system would compile them."""
-    sources = sorted((RUNTIME / "src").glob("*.c")) + sorted((HOST / "src").glob("*.c"))
+    folders = (RUNTIME / "src", HOST / "src", HOST / "src" / system)
+    sources = [source for folder in folders for source in sorted(folder.glob("*.c"))]
     return [source for source in sources if main or source.name != "main.c"]
 
 

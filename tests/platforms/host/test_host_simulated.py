@@ -273,7 +273,7 @@ def test_without_plant_sensors_stand_still(tmp_path: Path) -> None:
 
 def test_simulated_time_needs_no_linux(tmp_path: Path) -> None:
     """The sources as on a system without Linux: simulated time works; real time reports that it needs Linux."""
-    sources = [PROGRAMS / "motor.c", *platform_sources()]
+    sources = [PROGRAMS / "motor.c", *platform_sources(system="elsewhere")]
     flags = ["-U__linux__", "-U__linux", "-Ulinux", "-D_POSIX_C_SOURCE=200809L"]
     program = Program(compile_program(tmp_path / "motor", sources, sanitize=flags))
     assert program.run_good(tmp_path / "run", 0.1).statistics["cycles"] == 100

@@ -13,36 +13,6 @@
 
 static epg_host_services_t services;
 
-/* A stream without connection -------------------------------------------------------------------------------------- */
-
-static bool never_connected(void *context)
-{
-    ARG_UNUSED(context);
-    return false;
-}
-
-static size_t read_nothing(void *context, void *data, size_t size)
-{
-    ARG_UNUSED(context);
-    ARG_UNUSED(data);
-    ARG_UNUSED(size);
-    return 0;
-}
-
-static size_t write_nothing(void *context, const void *data, size_t size)
-{
-    ARG_UNUSED(context);
-    ARG_UNUSED(data);
-    ARG_UNUSED(size);
-    return 0;
-}
-
-static size_t no_room(void *context)
-{
-    ARG_UNUSED(context);
-    return 0;
-}
-
 static bool start(void *context, const char *title)
 {
     ARG_UNUSED(context);
@@ -50,25 +20,19 @@ static bool start(void *context, const char *title)
     return true; /* the streams were opened before Zephyr was booted */
 }
 
-#define NOBODY                                                                                                         \
-    {                                                                                                                  \
-        .connected = never_connected, .read = read_nothing, .write = write_nothing, .writable = no_room                \
-    }
-
-epg_transport_t epg_native_sim_agent = {.start = start, .stream = NOBODY};
-epg_transport_t epg_native_sim_terminal = {.start = start, .stream = NOBODY};
+epg_transport_t epg_native_sim_agent = {.start = start};
+epg_transport_t epg_native_sim_terminal = {.start = start};
 
 /* Start and end -------------------------------------------------------------------------------------------------- */
 
 int epg_native_sim_open_transports(void)
 {
+    static epg_host_link_t nobody; /* a terminal that is never opened */
     const int status = epg_host_services_open(&services, epg_native_sim_target, &epg_native_sim_options);
-    if (services.link != NULL) {
-        epg_native_sim_agent.stream = services.link->stream;
-    }
-    if (services.terminal != NULL) {
-        epg_native_sim_terminal.stream = services.terminal->stream;
-    }
+    epg_host_link_serial(&nobody, NULL, 0);
+    nobody.retry_ns = UINT64_MAX;
+    epg_native_sim_agent.stream = services.link != NULL ? services.link->stream : nobody.stream;
+    epg_native_sim_terminal.stream = services.terminal != NULL ? services.terminal->stream : nobody.stream;
     return status;
 }
 

@@ -3,28 +3,22 @@
  * @file
  * Streams to the user at the computer: standard input and output, or a pseudo-terminal.
  */
-#if defined(__linux__)
-#undef _XOPEN_SOURCE /* the build may have defined an older one */
-#define _XOPEN_SOURCE 700
-#endif
+#define _GNU_SOURCE /* for pseudo-terminals and cfmakeraw() */
 
-#include "terminal.h"
-
-#include <stdio.h>
-
-#if defined(__linux__)
+#include "../terminal.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <termios.h>
 #include <unistd.h>
 
-#include "clock.h"
+#include "../clock.h"
 
 enum {
     CHUNK = 1024,                /* bytes of one write(): a pipe that is ready takes 4096 without blocking (pipe(7)) */
@@ -129,10 +123,7 @@ static bool make_raw(const char *name)
         return false;
     }
     const bool good = tcgetattr(file, &settings) == 0;
-    settings.c_iflag &= ~(tcflag_t)(IGNBRK | BRKINT | PARMRK | ISTRIP | INLCR | IGNCR | ICRNL | IXON);
-    settings.c_oflag &= ~(tcflag_t)OPOST;
-    settings.c_lflag &= ~(tcflag_t)(ECHO | ECHONL | ICANON | ISIG | IEXTEN);
-    settings.c_cflag = (settings.c_cflag & ~(tcflag_t)(CSIZE | PARENB)) | CS8;
+    cfmakeraw(&settings);
     const bool set = good && tcsetattr(file, TCSANOW, &settings) == 0;
     close(file);
     return set;
@@ -192,37 +183,3 @@ void epg_host_terminal_close(epg_host_terminal_t *terminal)
         unlink(terminal->path);
     }
 }
-
-#else /* not Linux: there is no real time, so these functions are not called */
-
-void epg_host_terminal_standard(epg_host_terminal_t *terminal)
-{
-    *terminal = (epg_host_terminal_t){.lost = true};
-}
-
-bool epg_host_terminal_open(epg_host_terminal_t *terminal, const char *path)
-{
-    *terminal = (epg_host_terminal_t){.lost = true};
-    fprintf(stderr, "%s: error: --console-pty needs Linux\n", path);
-    return false;
-}
-
-bool epg_host_terminal_listens(const epg_host_terminal_t *terminal)
-{
-    (void)terminal;
-    return false;
-}
-
-bool epg_host_terminal_ended(const epg_host_terminal_t *terminal, uint64_t now_ns)
-{
-    (void)terminal;
-    (void)now_ns;
-    return true;
-}
-
-void epg_host_terminal_close(epg_host_terminal_t *terminal)
-{
-    (void)terminal;
-}
-
-#endif

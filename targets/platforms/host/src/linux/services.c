@@ -3,16 +3,16 @@
  * @file
  * The middlewares that run beside the control loop in real time: services.h.
  */
-#if defined(__linux__)
 #define _POSIX_C_SOURCE 200809L
-#endif
 
-#include "services.h"
+#include "../services.h"
 
-#include "clock.h"
+#include <poll.h>
+
+#include "../clock.h"
 #include "epg/port.h"
 
-enum { LONGEST_SLEEP_NS = 1000 * 1000 };
+enum { MS = 1000 * 1000, LONGEST_SLEEP_NS = MS, MOST_FILES = 2 };
 
 /** The target's middleware if it has a connection other than the terminal; NULL otherwise. */
 static const epg_middleware_t *connected(const epg_host_services_t *services)
@@ -46,12 +46,6 @@ void epg_host_services_start(const epg_host_services_t *services)
     }
 }
 
-#if defined(__linux__)
-
-#include <poll.h>
-
-enum { MS = 1000 * 1000, MOST_FILES = 2 };
-
 /** Sleeps until `time_ns`, or until bytes arrive at the link or the terminal. */
 static void wait_for_files(const epg_host_services_t *services, uint64_t time_ns)
 {
@@ -67,16 +61,6 @@ static void wait_for_files(const epg_host_services_t *services, uint64_t time_ns
     }
     (void)poll(entries, count, timeout_ms);
 }
-
-#else
-
-static void wait_for_files(const epg_host_services_t *services, uint64_t time_ns)
-{
-    (void)services;
-    (void)time_ns;
-}
-
-#endif
 
 void epg_host_services_serve(epg_host_services_t *services, uint64_t time_ns)
 {

@@ -3,7 +3,7 @@
  * @file
  * The connections of a target's middlewares: by themselves, to an agent, or to a terminal.
  */
-#include "services.h"
+#include "../services.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -3,15 +3,20 @@
  * @file
  * A link by UDP.
  */
-#if defined(__linux__)
 #define _POSIX_C_SOURCE 200809L
-#endif
 
+#include <errno.h>
+#include <netdb.h>
+#include <netinet/in.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
-#include "link.h"
+#include "../link.h"
+
+enum { LARGEST_PACKET = 65507, HOST_SIZE = 256 };
 
 bool epg_host_link_is_address(const char *text)
 {
@@ -32,16 +37,6 @@ bool epg_host_link_open(epg_host_link_t *link, const char *agent, uint32_t baud_
     epg_host_link_serial(link, agent, baud_rate);
     return true;
 }
-
-#if defined(__linux__)
-
-#include <errno.h>
-#include <netdb.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <unistd.h>
-
-enum { LARGEST_PACKET = 65507, HOST_SIZE = 256 };
 
 static bool connected(void *context)
 {
@@ -127,14 +122,3 @@ bool epg_host_link_udp(epg_host_link_t *link, const char *address)
     freeaddrinfo(found);
     return link->file >= 0;
 }
-
-#else /* not Linux: there is no real time, so these functions are not called */
-
-bool epg_host_link_udp(epg_host_link_t *link, const char *address)
-{
-    *link = (epg_host_link_t){.file = -1};
-    fprintf(stderr, "error: the agent at '%s' needs Linux\n", address);
-    return false;
-}
-
-#endif

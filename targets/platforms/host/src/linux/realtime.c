@@ -2,32 +2,24 @@
 /**
  * @file
  * Real time: a control thread, which wakes up at absolute times of the monotonic clock.
- *
- * It needs Linux; on other systems all functions fail with a message.
  */
-#if defined(__linux__)
 #define _POSIX_C_SOURCE 200809L
-#endif
-
-#include <stdio.h>
-
-#include "epg/host.h"
-#include "run.h"
-
-#if defined(__linux__)
 
 #include <errno.h>
 #include <pthread.h>
 #include <sched.h>
 #include <semaphore.h>
 #include <stdatomic.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <time.h>
 
-#include "clock.h"
+#include "../clock.h"
+#include "../run.h"
+#include "epg/host.h"
 
 enum {
     PRIORITY = 80,                       /* above threaded interrupts (50), below the kernel's own threads (99) */
@@ -299,30 +291,3 @@ bool epg_host_stop(void)
     }
     return true;
 }
-
-#else /* not Linux */
-
-static bool unavailable(void)
-{
-    fputs("error: real time on the host needs Linux\nhint: remove --realtime to run in simulated time\n", stderr);
-    return false;
-}
-
-bool epg_host_run_realtime(epg_host_run_t *run)
-{
-    (void)run;
-    return unavailable();
-}
-
-bool epg_host_start(const epg_host_target_t *host)
-{
-    (void)host;
-    return unavailable();
-}
-
-bool epg_host_stop(void)
-{
-    return true;
-}
-
-#endif

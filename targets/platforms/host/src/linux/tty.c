@@ -3,13 +3,9 @@
  * @file
  * A link by a terminal: a serial port, or a pseudo-terminal that another program has made.
  */
-#if defined(__linux__)
 #define _DEFAULT_SOURCE /* for baud rates above those of POSIX */
-#endif
 
-#include "link.h"
-
-#if defined(__linux__)
+#include "../link.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -18,7 +14,7 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include "clock.h"
+#include "../clock.h"
 
 static const uint64_t RETRY_NS = 200000000; /* from one attempt to open a terminal to the next */
 
@@ -158,17 +154,3 @@ void epg_host_link_close(epg_host_link_t *link)
     }
     link->file = -1;
 }
-
-#else /* not Linux: there is no real time, so these functions are not called */
-
-void epg_host_link_serial(epg_host_link_t *link, const char *device, uint32_t baud_rate)
-{
-    *link = (epg_host_link_t){.file = -1, .device = device, .baud_rate = baud_rate};
-}
-
-void epg_host_link_close(epg_host_link_t *link)
-{
-    (void)link;
-}
-
-#endif
