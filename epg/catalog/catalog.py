@@ -157,10 +157,11 @@ class Catalog:
         """Reports a platform whose board, or a board whose chip, has no folder."""
         category, node = ("soc", board.node["soc"]) if board else ("board", platform.node.get("board"))
         if node is not None and str(node.value) not in self._paths(category):
-            hint = not_found_hint(str(node.value), self.names(category), f"in {FOLDERS[category]}/")
-            self._diagnostics.error(
-                f"unknown-{category}", node.span, f"there is no {category} '{node.value}'", hint=hint
-            )
+            self._report_unknown(category, node)
+
+    def _report_unknown(self, category: str, name: YamlNode) -> None:
+        hint = not_found_hint(str(name.value), self.names(category), f"in {FOLDERS[category]}/")
+        self._diagnostics.error(f"unknown-{category}", name.span, f"there is no {category} '{name.value}'", hint=hint)
 
     def _paths(self, category: str) -> dict[str, list[Path]]:
         """The files of all items of a category, by name; several files if several roots have the same item."""
@@ -185,8 +186,8 @@ class Catalog:
         node = load_yaml(paths[0], self._diagnostics)
         if node is not None and category == "component":
             node = with_shared_parameters(node, self.roots, self._diagnostics)
-        elif node is not None and category == "board":
-            node = self._with_extended(node)
+        elif node is not None and category in ("board", "soc"):
+            node = self._with_extended(category, node)
         if node is None or not check_file(category, node, name, self.names("platform"), self._diagnostics):
             return None
         if len(paths) > 1:
@@ -195,20 +196,19 @@ class Catalog:
             self._diagnostics.warning("shadowed-item", node[_NAME_KEYS[category]].span, message, hint=hint)
         return make(node, paths[0].parent)
 
-    def _with_extended(self, node: YamlNode) -> YamlNode | None:
-        """A ``board.yaml`` with the values of the boards that it extends; None after reporting mistakes."""
+    def _with_extended(self, category: str, node: YamlNode) -> YamlNode | None:
+        """The file of an item with the values of the items that it extends; None after reporting mistakes."""
         merged = node
         read: list[str] = []
         while (extends := node.get("extends")) is not None:
             name = str(extends.value)
-            paths = self._paths("board").get(name, [])
+            paths = self._paths(category).get(name, [])
             if name in read:
                 message = f"'{name}' extends itself"
                 self._diagnostics.error("extends-loop", extends.span, message, hint="remove this 'extends'")
                 return None
             if not paths:
-                hint = not_found_hint(name, self.names("board"), "in boards/")
-                self._diagnostics.error("unknown-board", extends.span, f"there is no board '{name}'", hint=hint)
+                self._report_unknown(category, extends)
                 return None
             extended = load_yaml(paths[0], self._diagnostics)
             if extended is None:

@@ -124,7 +124,7 @@ class Soc:
     automatic_pins: int
     peripherals: Mapping[str, Peripheral]
     classes: Mapping[str, ResourceClass]
-    folder: Path
+    files: tuple[Path, ...]  # its own, and those of the chips that it extends
     span: Span
 
     @cached_property
@@ -193,7 +193,7 @@ class Target:
         return (
             *self.board.files,
             self.platform.folder / "platform.yaml",
-            self.soc.folder / "soc.yaml",
+            *self.soc.files,
             *(() if self.platform.family is None else (self.platform.family.folder / "family.yaml",)),
         )
 
@@ -228,7 +228,7 @@ def make_soc(node: YamlNode, folder: Path) -> Soc:
         automatic_pins=count,
         peripherals=MappingProxyType(peripherals),
         classes=MappingProxyType(classes),
-        folder=folder,
+        files=_files(node, folder / "soc.yaml"),
         span=node["soc"].span,
     )
 
@@ -258,14 +258,20 @@ def make_board(node: YamlNode, folder: Path) -> Board:
         console=text_of(devicetree, "console") if devicetree is not None else "",
         layout=make_layout(node, pin_names(node.get("pins"))),
         node=node,
-        files=tuple(sorted({folder / "board.yaml", *(Path(file) for file in _files(node))})),
+        files=_files(node, folder / "board.yaml"),
         span=node["board"].span,
     )
 
 
-def _files(node: YamlNode) -> set[str]:
-    """The files in which the values of ``node`` are written."""
-    return {node.span.file}.union(*(_files(child) for _, child in node.items()))
+def _files(node: YamlNode, own: Path) -> tuple[Path, ...]:
+    """An item's ``own`` file, and the other files in which the values of ``node`` are written."""
+    files = {own}
+    nodes = [node]
+    while nodes:
+        node = nodes.pop()
+        files.add(Path(node.span.file))
+        nodes += (child for _, child in node.items())
+    return tuple(sorted(files))
 
 
 def _peripheral(name: str, node: YamlNode, soc: YamlNode) -> Peripheral:

@@ -258,7 +258,7 @@ def test_only_what_is_asked_for_is_read(monkeypatch: pytest.MonkeyPatch) -> None
     catalog.find_target("rpi_pico2_freertos")
     catalog.find_kind("pwm")
     catalog.find_kind("pwm")
-    assert sorted(read) == ["freertos", "pwm", "rp2", "rp2350", "rpi_pico", "rpi_pico2"]
+    assert sorted(read) == ["freertos", "pwm", "rp2", "rp2040", "rp2350", "rpi_pico", "rpi_pico2"]
 
 
 def test_a_board_that_extends_others() -> None:
@@ -269,6 +269,10 @@ def test_a_board_that_extends_others() -> None:
     assert (board.names, board.onboard, sorted(board.reserved)) == ({}, {}, ["23", "24", "25", "29"])
     assert board.sdks == {"pico_sdk": "pico2_w", "zephyr": "rpi_pico2/rp2350a/m33"}
     assert sorted(board.devicetree) == ["adc", "i2c0", "i2c1", "uart0"]
+    assert [path.parent.name for path in builtin()[0].find_target("mps2_an385_zephyr").soc.files] == [
+        "emulated",
+        "native_sim",
+    ]
 
 
 def test_a_kind_of_a_user_shares_parameters_with_those_of_epg(tmp_path: Path) -> None:

@@ -105,10 +105,11 @@ def test_predefined_configurations_are_right(path: Path) -> None:
     ],
 )
 def test_files_of_this_repository_are_right(name: str, pattern: str) -> None:
-    files = sorted(ROOT.glob(pattern))
+    """EPG compares a file that extends another one with its schema after the merge."""
+    files = [file for file in map(plain, sorted(ROOT.glob(pattern))) if "extends" not in file]
     assert files
-    for path in files:
-        jsonschema.Draft202012Validator(SCHEMAS[name]).validate(plain(path))
+    for file in files:
+        jsonschema.Draft202012Validator(SCHEMAS[name]).validate(file)
 
 
 def test_the_files_of_the_tests_of_messages_are_right() -> None:
