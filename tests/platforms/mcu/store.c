@@ -6,11 +6,12 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "epg/family.h"
 #include "epg/port.h"
+#include "epg/sectors.h"
 #include "epg/ticks.h"
 
-#define SECTOR (EPG_FAMILY_STORE_CAPACITY + 16U)
+#define CAPACITY 96U
+#define SECTOR (CAPACITY + 16U)
 
 static uint8_t sectors[2][SECTOR];
 static bool readable[2];
@@ -26,9 +27,16 @@ static void require(bool good, int line)
 }
 #define REQUIRE(condition) require(condition, __LINE__)
 
-const uint8_t *epg_family_store_sector(uint32_t index)
+size_t epg_sectors_capacity(void)
 {
-    return readable[index] ? sectors[index] : NULL;
+    return CAPACITY;
+}
+
+bool epg_sectors_read(uint32_t index, size_t at, void *data, size_t size)
+{
+    REQUIRE(at + size <= SECTOR);
+    memcpy(data, sectors[index] + at, size);
+    return readable[index];
 }
 
 static bool program(uint8_t *to, const uint8_t *from, size_t size)
@@ -43,15 +51,15 @@ static bool program(uint8_t *to, const uint8_t *from, size_t size)
     return true;
 }
 
-bool epg_family_store_write(uint32_t index, const void *data, size_t size, const void *head, size_t head_size)
+bool epg_sectors_write(uint32_t index, const void *data, size_t size, const void *head, size_t head_size)
 {
     if (!permitted) {
         return false;
     }
-    REQUIRE(size <= EPG_FAMILY_STORE_CAPACITY && head_size <= 16U);
+    REQUIRE(size <= CAPACITY && head_size <= 16U);
     memset(sectors[index], 0xFF, SECTOR);
     readable[index] = true;
-    return program(sectors[index], data, size) && program(sectors[index] + EPG_FAMILY_STORE_CAPACITY, head, head_size);
+    return program(sectors[index], data, size) && program(sectors[index] + CAPACITY, head, head_size);
 }
 
 static void begin(void)
@@ -104,7 +112,7 @@ static void power_cut(void)
 
 static void refusals(void)
 {
-    char large[EPG_FAMILY_STORE_CAPACITY + 1U] = {0};
+    char large[CAPACITY + 1U] = {0};
     begin();
     REQUIRE(write_text("kept"));
     REQUIRE(!epg_port_store_write(large, sizeof large));

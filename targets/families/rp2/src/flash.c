@@ -27,8 +27,8 @@
 /** Time for core 1 to end its present cycle and answer. */
 #define HOLD_TIMEOUT_MS 300U
 
-static_assert(EPG_FAMILY_STORE_CAPACITY == FLASH_SECTOR_SIZE - FLASH_PAGE_SIZE,
-              "the head has the last page of a sector");
+/** Bytes of data in a sector: the last page of 256 bytes contains the head. */
+#define CAPACITY (FLASH_SECTOR_SIZE - FLASH_PAGE_SIZE)
 
 typedef struct job {
     uint32_t offset; /* of the sector */
@@ -78,9 +78,20 @@ flash_safety_helper_t *get_flash_safety_helper(void)
 
 /* The store ------------------------------------------------------------------------------------------------------ */
 
-const uint8_t *epg_family_store_sector(uint32_t index)
+size_t epg_sectors_capacity(void)
+{
+    return CAPACITY;
+}
+
+static const uint8_t *sector(uint32_t index)
 {
     return (const uint8_t *)(XIP_BASE + EPG_PICO_STORE_OFFSET + index * FLASH_SECTOR_SIZE);
+}
+
+bool epg_sectors_read(uint32_t index, size_t at, void *data, size_t size)
+{
+    memcpy(data, sector(index) + at, size);
+    return true;
 }
 
 /**
@@ -103,12 +114,12 @@ static void run(void *argument)
     const job_t *job = argument;
     flash_range_erase(job->offset, FLASH_SECTOR_SIZE);
     program(job->offset, job->data, job->size);
-    program(job->offset + EPG_FAMILY_STORE_CAPACITY, job->head, job->head_size);
+    program(job->offset + CAPACITY, job->head, job->head_size);
 }
 
-bool epg_family_store_write(uint32_t index, const void *data, size_t size, const void *head, size_t head_size)
+bool epg_sectors_write(uint32_t index, const void *data, size_t size, const void *head, size_t head_size)
 {
-    if ((uintptr_t)&__flash_binary_end > (uintptr_t)epg_family_store_sector(0)) {
+    if ((uintptr_t)&__flash_binary_end > (uintptr_t)sector(0)) {
         return false;
     }
     job_t job = {

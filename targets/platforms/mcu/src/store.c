@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * A small store in flash.
+ * A small store in flash, on the platforms bare_metal, freertos and zephyr.
  *
  * It uses two sectors in turn.  Each sector holds one record: data, and a head with number, size and checksum.  The
  * valid record with the higher number is the current one.
@@ -11,11 +11,9 @@
  * there, and programs the head last.  Without a complete head the new record is not valid, and the old one stays
  * current.
  */
-#include <string.h>
-
 #include "epg/adler32.h"
-#include "epg/family.h"
 #include "epg/port.h"
+#include "epg/sectors.h"
 
 #define MAGIC 0x53475045U /* "EPGS" */
 #define SECTORS 2U
@@ -27,22 +25,31 @@ typedef struct head {
     uint32_t check;  /* Adler-32 of number, size and data */
 } head_t;
 
-static uint32_t check_of(const head_t *head, const uint8_t *data)
+/** Bytes that are read at once to compute a checksum. */
+#define PIECE 64U
+
+static uint32_t check_of_head(const head_t *head)
 {
-    const uint32_t sum =
-        epg_adler32(epg_adler32(1U, &head->number, sizeof head->number), &head->size, sizeof head->size);
-    return epg_adler32(sum, data, head->size);
+    return epg_adler32(epg_adler32(1U, &head->number, sizeof head->number), &head->size, sizeof head->size);
 }
 
 /** Copies the head of a sector into `*head`.  False if the sector has no valid record. */
 static bool valid_head(uint32_t index, head_t *head)
 {
-    const uint8_t *sector = epg_family_store_sector(index);
-    if (sector == NULL) {
+    const size_t capacity = epg_sectors_capacity();
+    if (!epg_sectors_read(index, capacity, head, sizeof *head) || head->magic != MAGIC || head->size > capacity) {
         return false;
     }
-    memcpy(head, sector + EPG_FAMILY_STORE_CAPACITY, sizeof *head);
-    return head->magic == MAGIC && head->size <= EPG_FAMILY_STORE_CAPACITY && head->check == check_of(head, sector);
+    uint8_t piece[PIECE];
+    uint32_t sum = check_of_head(head);
+    for (size_t done = 0; done < head->size; done += sizeof piece) {
+        const size_t size = head->size - done < sizeof piece ? head->size - done : sizeof piece;
+        if (!epg_sectors_read(index, done, piece, size)) {
+            return false;
+        }
+        sum = epg_adler32(sum, piece, size);
+    }
+    return sum == head->check;
 }
 
 /** Finds the sector of the current record.  False if nothing is stored. */
@@ -67,13 +74,12 @@ size_t epg_port_store_read(void *data, size_t size)
         return 0;
     }
     const size_t count = head.size < size ? head.size : size;
-    memcpy(data, epg_family_store_sector(index), count);
-    return count;
+    return epg_sectors_read(index, 0, data, count) ? count : 0U;
 }
 
 bool epg_port_store_write(const void *data, size_t size)
 {
-    if (size > EPG_FAMILY_STORE_CAPACITY) {
+    if (size > epg_sectors_capacity()) {
         return false;
     }
     uint32_t index = 1U;
@@ -81,8 +87,8 @@ bool epg_port_store_write(const void *data, size_t size)
     (void)newest(&index, &head);
     const uint32_t other = 1U - index;
     head_t next = {.magic = MAGIC, .number = head.number + 1U, .size = (uint32_t)size};
-    next.check = check_of(&next, data);
-    if (!epg_family_store_write(other, data, size, &next, sizeof next)) {
+    next.check = epg_adler32(check_of_head(&next), data, size);
+    if (!epg_sectors_write(other, data, size, &next, sizeof next)) {
         return false;
     }
     return valid_head(other, &head) && head.number == next.number;

@@ -31,9 +31,6 @@ typedef epg_pico_target_t epg_family_target_t;
 #define EPG_FAMILY_FPU_FRAME 72
 #endif
 
-/** A sector of flash has 4096 bytes.  Its last page of 256 bytes contains the head of a record: flash.c. */
-#define EPG_FAMILY_STORE_CAPACITY (4096U - 256U)
-
 /* The SDK's panic() makes the outputs safe first, because the linker redirects it (--wrap): safe_state.c. */
 #define epg_family_panic panic
 #define epg_family_sleep __wfi

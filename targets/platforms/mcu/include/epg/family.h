@@ -7,7 +7,7 @@
  * side, measure the use of the stacks, and manage the records of the store.
  *
  * A family brings everything that depends on registers: the tick and its interrupt, in which the control cycle runs;
- * pins and peripherals (`epg/port.h`); safe outputs; the watchdog; flash; transports.
+ * pins and peripherals (`epg/port.h`); safe outputs; the watchdog; flash (`epg/sectors.h`); transports.
  *
  * The family also chooses where the two sides run.  On RP2040 and RP2350 the control side has core 1 to itself, and
  * the communication side runs on core 0.  On a chip with one core, the control side is the interrupt of the highest
@@ -24,7 +24,6 @@
  * - `EPG_FAMILY_FPU_FRAME`: bytes that the registers of an FPU add to the stack frame of an exception; 0 without FPU
  * - `EPG_FAMILY_SERVICE_TIMEOUT_MS`: milliseconds without a turn of the communication side after which the watchdog
  *   is no longer fed
- * - `EPG_FAMILY_STORE_CAPACITY`: bytes of data that one sector of the store can hold, before its head
  * - `epg_family_panic(format, ...)`: makes the outputs safe, reports the reason if it can (NULL: no reason), and
  *   never returns
  * - `epg_family_sleep()`: sleeps until the next interrupt
@@ -44,6 +43,7 @@
 #include "epg/family_port.h"
 #include "epg/fault.h"
 #include "epg/mcu.h"
+#include "epg/sectors.h"
 
 /** A stack: the words from `bottom` up to, but not including, `top`.  It is filled from the top downwards. */
 typedef struct epg_mcu_stack {
@@ -119,27 +119,6 @@ void epg_family_service_release(void);
 
 /** Makes the claimed interrupt pending.  May be called from every interrupt. */
 void epg_family_service_pend(void);
-
-/* Brought by a family: two sectors of flash ------------------------------------------------------------------------ */
-
-/*
- * Flash keeps its contents without power.  It is erased in whole sectors, after which every bit is 1; programming a
- * byte can only clear bits.  The store uses two sectors in turn (store.c), so that the old data stay until the new
- * are complete.  A sector holds EPG_FAMILY_STORE_CAPACITY bytes of data, then the head.
- */
-
-/**
- * The contents of sector `index`, 0 or 1: the data, then the head.  NULL if a read would cause a fault.  This happens
- * on flash with ECC, if the power failed while a word was being programmed.
- */
-const uint8_t *epg_family_store_sector(uint32_t index);
-
-/**
- * Erases sector `index`, programs `size` bytes of `data`, and the head last.  No place is programmed twice.
- *
- * Returns false if the flash must not be written: the target is enabled, or the sector is a part of the program.
- */
-bool epg_family_store_write(uint32_t index, const void *data, size_t size, const void *head, size_t head_size);
 
 /* Functions that a family can call -------------------------------------------------------------------------------- */
 

@@ -22,7 +22,6 @@ typedef struct epg_family_target {
 #define EPG_FAMILY_MIDDLEWARE_STACK 2048
 #define EPG_FAMILY_FPU_FRAME 72
 #define EPG_FAMILY_SERVICE_TIMEOUT_MS 500
-#define EPG_FAMILY_STORE_CAPACITY 96U
 
 void epg_family_panic(const char *format, ...) __attribute__((noreturn));
 void epg_family_sleep(void);
