@@ -26,6 +26,7 @@ enum {
 };
 
 #define SIGN ((uint64_t)1 << 63)
+#define NS_PER_S 1000000000U
 
 static size_t put(char *text, size_t length, const char *more)
 {
@@ -264,19 +265,13 @@ size_t epg_decimal_write(char *text, double value)
 
 size_t epg_decimal_write_seconds(char *text, uint64_t time_ns)
 {
-    size_t length = put_whole(text, 0, time_ns / 1000000000U);
-    const uint64_t rest = time_ns % 1000000000U;
+    size_t length = put_whole(text, 0, time_ns / NS_PER_S);
+    uint64_t rest = time_ns % NS_PER_S;
     if (rest != 0) {
-        char digits[20];
-        digits_of(digits, 1000000000U + rest); /* a 1 before the nine decimal places keeps their leading zeros */
-        size_t end = sizeof digits;
-        while (digits[end - 1] == '0') {
-            end--;
-        }
         text[length++] = '.';
-        for (size_t i = sizeof digits - 9; i < end; i++) {
-            text[length++] = digits[i];
-        }
+    }
+    for (; rest != 0; rest = rest * 10U % NS_PER_S) {
+        text[length++] = (char)('0' + (int)(rest * 10U / NS_PER_S));
     }
     return length;
 }
