@@ -18,6 +18,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+import yaml
 
 from epg.cli.main import main
 from tests.ros2.build import Build
@@ -86,6 +87,18 @@ def test_ros2_echoes_positions_and_publishes_setpoints(robot: Path, ros: dict[st
         ros, "topic", "pub", "-t", "3", "-w", "1", "/robot_7/pan_subscriber", "std_msgs/msg/Float64", "data: 0.5"
     )
     assert "publishing #3" in printed
+
+
+def test_ros2_echoes_a_message_of_any_type(ros: dict[str, str], net: Network, build: Build) -> None:
+    with running([net.run(build("sensors"), "--quiet", "--serial", "7", "--duration", "60")]):
+        echoed = ask(ros, "topic", "echo", "--once", "/robot_7/imu/data", "sensor_msgs/msg/Imu")
+        told = ask(ros, "topic", "info", "--verbose", "/robot_7/imu/data", "--no-daemon", "--spin-time", "4")
+    message = yaml.safe_load(echoed.partition("---")[0])
+    assert message["header"]["frame_id"] == "imu_link" and message["orientation"]["w"] == 1.0
+    assert abs(message["header"]["stamp"]["sec"] - time.time()) < 100.0
+    assert message["orientation_covariance"] == [-1.0] + [0.0] * 8
+    assert message["angular_velocity_covariance"][4] == 0.01
+    assert "Topic type: sensor_msgs/msg/Imu" in told and type_hash("sensor_msgs/msg/Imu") in told
 
 
 RCLPY = """
