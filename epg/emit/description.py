@@ -14,6 +14,7 @@ from epg import __version__
 from epg.emit.application import Emitter
 from epg.emit.cmake import PathNames
 from epg.emit.topics import TopicView
+from epg.messages.layout import MessageType
 from epg.models.model import Model
 from epg.resolve.allocation import Assignment
 from epg.resolve.application import Application, ResolvedComponent, Step, Wire
@@ -60,6 +61,8 @@ def describe(emitter: Emitter, names: PathNames, hash: str = "") -> str:
         "subscriptions": [_topic(view) for view in topics.subscriptions],
         "publications": [_topic(view) for view in topics.publications],
     }
+    if messages := _messages(app):
+        data["messages"] = messages
     if app.plant is not None:
         data["plant"] = {
             "model": _model(app.plant.model, names),
@@ -135,6 +138,12 @@ def _topic(view: TopicView) -> dict[str, Any]:
         "elements": [port.name for port in topic.component.kind.topic_ports] if topic.component else [],
         **({"timeout": float(setpoint.timeout), "on_timeout": setpoint.on_timeout} if setpoint else {}),
     }
+
+
+def _messages(app: Application) -> dict[str, str]:
+    """The complete definitions of messages of any type, by type, for programs that record them."""
+    values = (value for component in app.components for value in component.parameters.values())
+    return {v.ros_type: v.definition for v in values if isinstance(v, MessageType)}
 
 
 def _wire(wire: Wire, section: str, app: Application, names: PathNames) -> dict[str, Any]:

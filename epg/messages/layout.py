@@ -19,7 +19,7 @@ from pathlib import Path
 from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.messages.constants import Constant, default_of, number_of
 from epg.messages.definition import Field, Message
-from epg.messages.library import Library
+from epg.messages.library import Library, complete_definition
 from epg.messages.type_hash import type_hash
 from epg.source import Span
 
@@ -106,6 +106,7 @@ class MessageType:
     steps: tuple[Step, ...]
     largest: int
     files: tuple[Path, ...]
+    definition: str  # complete, with those of the messages in it
 
 
 def message_type(
@@ -153,6 +154,7 @@ def message_type(
         steps=tuple(_step(item) for item in items),
         largest=_largest(items),
         files=library.files,
+        definition=complete_definition(library, name),
     )
 
 

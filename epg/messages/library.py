@@ -83,6 +83,21 @@ class Library:
         diagnostics.error("unknown-message", wanted_by, f"EPG does not know the message {name}", hint=hint)
         return None
 
+    def add(self, name: str, text: str) -> bool:
+        """Adds the message ``name`` and those in it, from a complete definition.  False if the text is not one."""
+        first, *others = re.split(r"^={80}\n", text, flags=re.MULTILINE)
+        parts = {name: first}
+        for other in others:
+            head, _, body = other.partition("\n")
+            parts[full_name(head.removeprefix("MSG:").strip()) or head] = body
+        diagnostics = Diagnostics()
+        for one, body in parts.items():
+            message = parse_message(one, body, Path(one), diagnostics)
+            if message is not None:
+                self._messages[one] = message
+        needed = {name, *(other for one in self._messages.values() for other in one.dependencies)}
+        return not diagnostics.has_errors and needed <= self._messages.keys()
+
     def __getitem__(self, name: str) -> Message:
         """A message that has been loaded."""
         return self._messages[name]

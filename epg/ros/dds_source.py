@@ -12,7 +12,7 @@ from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
-from epg.ros.dds_types import TYPES
+from epg.ros.dds_types import dds_type
 from epg.ros.source import Sample, Subscription
 
 _TAKE = 256  # the largest number of samples that are taken at once
@@ -29,7 +29,8 @@ class DdsSource:
         every = SampleState.Any | ViewState.Any | InstanceState.Any
         for subscription, listener in zip(subscriptions, self._listeners):
             # In DDS, the names of ROS 2 topics begin with "rt".
-            topic = Topic(self._participant, f"rt{subscription.name}", TYPES[subscription.type])
+            type_ = dds_type(subscription.library, subscription.type)
+            topic = Topic(self._participant, f"rt{subscription.name}", type_)
             reader = DataReader(self._participant, topic, qos=_qos(subscription.reliable), listener=listener)
             self._waitset.attach(ReadCondition(reader, every))
             self._readers.append(reader)

@@ -4,7 +4,7 @@
 The messages can be objects of CycloneDDS, of rclpy, or any other objects with the fields of the message.
 
 >>> from types import SimpleNamespace as Message
->>> topic = Topic("joints", "sensor_msgs/msg/JointState", "reliable", "values", ("joints/pan.position",), ())
+>>> topic = RobotTopic("joints", "sensor_msgs/msg/JointState", "reliable", "values", ("joints/pan.position",), ())
 >>> numbers(topic, Message(name=["tilt", "pan"], position=[2.0, 1.0], velocity=[], effort=[]))
 [1.0]
 """
@@ -13,7 +13,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from epg.ros.robot import RobotTopic
+from epg.diagnostics import Diagnostics
+from epg.messages.library import Library, full_name
+from epg.ros.robot import Robot, RobotTopic
+from epg.source import Span
 
 SCALARS = ("std_msgs/msg/Float64", "std_msgs/msg/Float32", "std_msgs/msg/Int32", "std_msgs/msg/Bool")
 TYPES = (
@@ -23,7 +26,16 @@ TYPES = (
     "geometry_msgs/msg/Twist",
     "geometry_msgs/msg/TwistStamped",
 )
-"""The types of messages that can be recorded."""
+"""The types of messages whose values have names other than those of their fields, or a single value."""
+
+
+def library_of(robot: Robot, type_: str) -> Library | None:
+    """A library with the message ``type_`` of a robot.  None if it is not known."""
+    library = Library()
+    if type_ in robot.messages:
+        return library if full_name(type_) == type_ and library.add(type_, robot.messages[type_]) else None
+    known = full_name(type_) == type_ and library.load(type_, Span(type_), Diagnostics()) is not None
+    return library if known else None
 
 
 def numbers(topic: RobotTopic, message: Any) -> list[float | None]:
@@ -35,6 +47,8 @@ def numbers(topic: RobotTopic, message: Any) -> list[float | None]:
         return [_element(message, topic.elements.index(field)) for field in fields]
     if topic.type == "sensor_msgs/msg/JointState":
         return [_joint(message, field) for field in fields]
+    if topic.type not in TYPES:
+        return [_field(message, field) for field in fields]
     twist = message.twist if topic.type == "geometry_msgs/msg/TwistStamped" else message
     return [_component(twist, field) for field in fields]
 
@@ -54,6 +68,16 @@ def _joint(message: Any, field: str) -> float | None:
     try:
         return float(getattr(message, quantity)[list(message.name).index(joint)])
     except (ValueError, IndexError):
+        return None
+
+
+def _field(message: Any, path: str) -> float | None:
+    """The number at a path such as ``angular_velocity.x`` or ``force.1``."""
+    try:
+        for part in path.split("."):
+            message = message[int(part)] if part.isdigit() else getattr(message, part)
+        return float(message)
+    except (AttributeError, IndexError, TypeError, ValueError):
         return None
 
 

@@ -12,10 +12,8 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from epg.ros.messages import SCALARS, fields_of
+from epg.ros.messages import SCALARS, fields_of, library_of
 from epg.ros.robot import Robot, RobotTopic
-
-_STAMPED = ("sensor_msgs/msg/JointState", "geometry_msgs/msg/TwistStamped")
 
 
 @dataclass(frozen=True)
@@ -70,19 +68,16 @@ def _series(robot: Robot, topics: Iterable[RobotTopic]) -> list[Series]:
         if topic.role != "values":
             continue
         for value, field in zip(topic.values, fields_of(topic)):
-            place = _place(topic, field)
-            if place is None:
-                continue
+            path, joint = _place(topic, field)
             wire = robot.wires.get((topic.component, field or topic.elements[0]))
             port, unit = wire or ("", "")
             words = frozenset(word for name in (topic.component, field, port) for word in _words(name))
-            path, joint = place
-            result.append(Series(robot.topic(topic), path, joint, topic.type in _STAMPED, value, unit, words))
+            result.append(Series(robot.topic(topic), path, joint, _is_stamped(robot, topic.type), value, unit, words))
     return result
 
 
-def _place(topic: RobotTopic, field: str) -> tuple[tuple[str | int, ...], str] | None:
-    """The path to a value in its message, and its joint.  None for messages that EPG does not know."""
+def _place(topic: RobotTopic, field: str) -> tuple[tuple[str | int, ...], str]:
+    """The path to a value in its message, and its joint."""
     if topic.type in SCALARS:
         return ("data",), ""
     if topic.type == "std_msgs/msg/Float64MultiArray":
@@ -93,8 +88,14 @@ def _place(topic: RobotTopic, field: str) -> tuple[tuple[str | int, ...], str] |
         return (quantity, joints.index(joint)), joint
     if topic.type in ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"):
         vector, _, axis = field.partition("_")
-        return (*(["twist"] if topic.type in _STAMPED else []), vector, axis), ""
-    return None
+        return (*(["twist"] if topic.type.endswith("Stamped") else []), vector, axis), ""
+    return tuple(int(part) if part.isdigit() else part for part in field.split(".")), ""
+
+
+def _is_stamped(robot: Robot, type_: str) -> bool:
+    """True if the message has a header."""
+    library = library_of(robot, type_)
+    return library is not None and any(f.name == "header" for f in library[type_].fields)
 
 
 def _special_words(setpoints: Sequence[Series]) -> list[frozenset[str]]:

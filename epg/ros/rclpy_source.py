@@ -15,13 +15,14 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.serialization import deserialize_message
 from rosidl_runtime_py.utilities import get_message
 
+from epg.bootstrap import MissingPackages
 from epg.ros.source import Sample, Subscription
 
 _DEPTH = 256
 
 
 class RclpySource:
-    """See :class:`epg.ros.source.Source`."""
+    """See :class:`epg.ros.source.Source`.  Raises :class:`epg.bootstrap.MissingPackages` for an unknown message."""
 
     def __init__(self, subscriptions: Sequence[Subscription], domain: int) -> None:
         self._context = Context()
@@ -30,7 +31,7 @@ class RclpySource:
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self._node)
         self._samples: list[Sample] = []
-        self._types = [get_message(subscription.type) for subscription in subscriptions]
+        self._types = [_class(subscription.type) for subscription in subscriptions]
         self._names = [subscription.name for subscription in subscriptions]
         for number, subscription in enumerate(subscriptions):
             reliability = ReliabilityPolicy.RELIABLE if subscription.reliable else ReliabilityPolicy.BEST_EFFORT
@@ -58,3 +59,11 @@ class RclpySource:
     def close(self) -> None:
         self._node.destroy_node()
         self._context.try_shutdown()
+
+
+def _class(type_: str) -> Any:
+    try:
+        return get_message(type_)
+    except (AttributeError, LookupError, ModuleNotFoundError, ValueError):
+        remedy = "source the workspace with its package, or add --through dds"
+        raise MissingPackages(f"ROS 2 does not have the message {type_}\nhint: {remedy}") from None

@@ -18,8 +18,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TextIO
 
-from epg.messages.library import known_message
-from epg.ros.messages import TYPES, numbers
+from epg.messages.library import Library
+from epg.ros.messages import library_of, numbers
 from epg.ros.robot import Robot, RobotTopic
 from epg.ros.source import Sample, Source, Subscription
 
@@ -36,11 +36,12 @@ A board whose clock has not been set counts from its start, and a simulated robo
 
 @dataclass(frozen=True)
 class Channel:
-    """A topic to record, its full name, and the file for its values."""
+    """A topic to record, its full name, the file for its values, and the library with its type."""
 
     topic: RobotTopic
     name: str
     file: str
+    library: Library
 
     @property
     def subscription(self) -> Subscription:
@@ -49,7 +50,8 @@ class Channel:
         For setpoints it is best effort, because any node can publish them, with any QoS.  For topics of the target it
         is reliable if the target publishes reliably.
         """
-        return Subscription(self.name, self.topic.type, self.file == TOPICS and self.topic.qos == "reliable")
+        reliable = self.file == TOPICS and self.topic.qos == "reliable"
+        return Subscription(self.name, self.topic.type, reliable, self.library)
 
 
 @dataclass(frozen=True)
@@ -78,10 +80,11 @@ def channels_of(robot: Robot) -> tuple[list[Channel], list[RobotTopic]]:
         for topic in topics:
             if topic.role != "values":
                 continue
-            if topic.type in TYPES:
-                channels.append(Channel(topic, robot.topic(topic), file))
-            else:
+            library = library_of(robot, topic.type)
+            if library is None:
                 unknown.append(topic)
+            else:
+                channels.append(Channel(topic, robot.topic(topic), file, library))
     return channels, unknown
 
 
@@ -148,9 +151,7 @@ class _Messages:
         # One reading of the clock: the times of a recording do not jump when the computer's clock is set.
         self._to_wall = time.time_ns() - time.monotonic_ns()
         self._file = McapFile(path)
-        self._channels = [
-            self._file.add_channel(c.name, c.topic.type, c.topic.qos, known_message(c.topic.type)) for c in channels
-        ]
+        self._channels = [self._file.add_channel(c.name, c.topic.type, c.topic.qos, c.library) for c in channels]
 
     def write(self, sample: Sample) -> None:
         arrival = sample.time_ns + self._to_wall

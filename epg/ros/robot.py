@@ -76,6 +76,8 @@ class Robot:
     """The serial number that its ``.tcf`` gives to its USB device.  None if the device has the number of the board."""
     subscriptions: tuple[RobotTopic, ...]
     publications: tuple[RobotTopic, ...]
+    messages: Mapping[str, str]
+    """The complete definitions of messages that components name, by type."""
     wires: Mapping[tuple[str, str], tuple[str, str]]
     """The model's port and the unit of each port of a component that is bound: (component, port) -> (port, unit)."""
 
@@ -171,6 +173,7 @@ def _robot(file: Path, data: dict[str, Any]) -> Robot:
         usb_serial=udev_name(usb["serial"]) if "serial" in usb else None,
         subscriptions=tuple(_topic(topic) for topic in data["subscriptions"]),
         publications=tuple(_topic(topic) for topic in data["publications"]),
+        messages={str(name): str(text) for name, text in data.get("messages", {}).items()},
         wires={
             (wire["component"], wire["component_port"]): (
                 str(wire["port"]),

@@ -7,18 +7,21 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Protocol
 
+from epg.messages.library import Library
+
 
 @dataclass(frozen=True)
 class Subscription:
     """A topic to subscribe to.
 
-    ``name`` is the full name in ROS, ``type`` the type as in ``ros2 topic list -t``.  ``reliable`` is True for the QoS
-    reliable, False for best effort.
+    ``name`` is the full name in ROS, ``type`` the type as in ``ros2 topic list -t``, which ``library`` has loaded.
+    ``reliable`` is True for the QoS reliable, False for best effort.
     """
 
     name: str
     type: str
     reliable: bool
+    library: Library
 
 
 @dataclass(frozen=True)

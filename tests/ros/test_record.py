@@ -30,18 +30,18 @@ from cyclonedds.util import duration
 from mcap.reader import make_reader
 
 from epg.cli.main import main
-from epg.ros import dds_types as msg
 from tests.ros2.definitions import type_hash
 from tests.ros2.network import Network
 
 from .description import topic, write_description
+from .types import TYPES, msg
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 RELIABLE = Qos(Policy.Reliability.Reliable(duration(seconds=1)), Policy.History.KeepLast(10))
 BEST_EFFORT = Qos(Policy.Reliability.BestEffort, Policy.History.KeepLast(10))
 
 
-def header() -> msg.Header:
+def header() -> Any:
     return msg.Header(msg.Time(1, 2), "")
 
 
@@ -74,7 +74,7 @@ MESSAGES: dict[str, tuple[Callable[[int], Any], dict[str, Callable[[int], float]
 def publishing(net: Network, topics: dict[str, str], qos: Qos = RELIABLE) -> Iterator[None]:
     """Publishes messages 1, 2, 3 ... every 10 ms on each topic (DDS name: type) during the block."""
     participant = DomainParticipant(net.domain)
-    writers = {n: DataWriter(participant, Topic(participant, n, msg.TYPES[t]), qos=qos) for n, t in topics.items()}
+    writers = {n: DataWriter(participant, Topic(participant, n, TYPES[t]), qos=qos) for n, t in topics.items()}
     stop = threading.Event()
 
     def publish() -> None:
@@ -294,6 +294,20 @@ def test_an_interrupted_recording_is_complete(net: Network, tmp_path: Path, numb
     with (tmp_path / "recording.mcap").open("rb") as file:
         summary = make_reader(file).get_summary()
     assert summary and summary.statistics and summary.statistics.message_count == len(recorded)
+
+
+def test_rclpy_without_the_message(
+    net: Network, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("rclpy", reason="ROS 2 is not sourced: install ROS 2 Jazzy and '. /opt/ros/jazzy/setup.bash'")
+    monkeypatch.setenv("RMW_IMPLEMENTATION", "rmw_cyclonedds_cpp")  # a process loads one implementation, once
+    robot = write_description(
+        tmp_path / "robot.json", publications=[topic("own", "robot_msgs/msg/Own", values=["own/x"])]
+    )
+    data = json.loads(robot.read_text(encoding="utf-8")) | {"messages": {"robot_msgs/msg/Own": "float64 x\n"}}
+    robot.write_text(json.dumps(data), encoding="utf-8")
+    assert record(robot, "--output", tmp_path, "--duration", "1", "--through", "rclpy") == 4
+    assert "ROS 2 does not have the message robot_msgs/msg/Own" in capsys.readouterr().err
 
 
 def test_rclpy_hears_the_same(net: Network, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
