@@ -11,7 +11,7 @@ from epg.diagnostics import Diagnostics, did_you_mean
 from epg.documents.items import map_of, texts_of
 from epg.source import YamlNode
 
-COMMON_OPTIONS = ("middleware", "transport", "period", "domain", "diagnostics", "console", "usb")
+COMMON_OPTIONS = ("middleware", "transport", "period", "domain", "diagnostics", "parameters", "console", "usb")
 """Keys of ``communication`` that do not depend on the middleware."""
 
 

@@ -14,6 +14,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from epg.diagnostics import Diagnostics
+from epg.documents.items import text_of
 from epg.documents.schema import load_schema, validate
 from epg.documents.text_file import NO_DRAFTS, Drafts
 from epg.documents.yaml_file import load_yaml
@@ -48,6 +49,21 @@ class Binding:
 
 
 @dataclass(frozen=True)
+class ParameterSetting:
+    """What a bindings file states about a parameter of the model.
+
+    ``value`` is None if the exported value stays.  A limit that is not stated is infinite.  ``span`` is the position of
+    the parameter's name.
+    """
+
+    value: float | None
+    minimum: float
+    maximum: float
+    description: str
+    span: Span
+
+
+@dataclass(frozen=True)
 class Bindings:
     """A bindings file.  ``inputs`` and ``outputs`` map model ports to the position of the name, and the bindings."""
 
@@ -56,7 +72,7 @@ class Bindings:
     model_span: Span
     inputs: Mapping[str, tuple[Span, Binding]]
     outputs: Mapping[str, tuple[Span, tuple[Binding, ...]]]  # empty tuple: unconnected on purpose
-    parameters: Mapping[str, tuple[Span, float, Span]]  # name -> (its span, value, value's span)
+    parameters: Mapping[str, ParameterSetting]
     root: YamlNode
 
 
@@ -150,14 +166,40 @@ def _binding(node: YamlNode, key: str, diagnostics: Diagnostics) -> Binding:
     return Binding(component, port or None, conversion, reference.span)
 
 
-def _parameters(node: YamlNode, diagnostics: Diagnostics) -> list[tuple[str, tuple[Span, float, Span]]]:
+def _parameters(node: YamlNode, diagnostics: Diagnostics) -> list[tuple[str, ParameterSetting]]:
     section = node.get("parameters")
     if section is None:
         return []
-    for _, value in section.items():
-        if not math.isfinite(_float(value)):
-            diagnostics.error("wrong-value", value.span, "this number must be finite")
-    return [(name, (section.key_span(name), _float(value), value.span)) for name, value in section.items()]
+    return [(name, _setting(section.key_span(name), value, diagnostics)) for name, value in section.items()]
+
+
+def _setting(span: Span, node: YamlNode, diagnostics: Diagnostics) -> ParameterSetting:
+    """The setting of one parameter: a number, or a map.  Reports numbers that do not fit together."""
+    if not node.is_mapping:
+        return ParameterSetting(_finite(node, diagnostics), -math.inf, math.inf, "", span)
+    value, minimum, maximum = (
+        _finite(found, diagnostics) if (found := node.get(key)) is not None else None
+        for key in ("value", "minimum", "maximum")
+    )
+    low = -math.inf if minimum is None else minimum
+    high = math.inf if maximum is None else maximum
+    if low > high:
+        message = f"the minimum {low:g} is greater than the maximum {high:g}"
+        diagnostics.error("wrong-value", node["minimum"].span, message)
+    elif value is not None and not low <= value <= high:
+        message = f"the value {value:g} is outside of its limits"
+        range_ = f"of at least {low:g}" if high == math.inf else f"of at most {high:g}" if low == -math.inf else ""
+        hint = f"write a value {range_ or f'from {low:g} to {high:g}'}, or other limits"
+        diagnostics.error("out-of-range", node["value"].span, message, hint=hint)
+    return ParameterSetting(value, low, high, text_of(node, "description"), span)
+
+
+def _finite(node: YamlNode, diagnostics: Diagnostics) -> float:
+    value = _float(node)
+    if not math.isfinite(value):
+        diagnostics.error("wrong-value", node.span, "this number must be finite")
+        return 0.0
+    return value
 
 
 def _float(node: YamlNode) -> float:

@@ -52,6 +52,8 @@ class Communication:
     period: Fraction
     domain: int | None  # None: the domain of the agent or of the environment
     diagnostics: Fraction  # seconds between two messages; 0: no messages
+    parameters: bool  # the model's parameters are those of a ROS 2 node, if the middleware serves them
+    parameter_request: int | None  # bytes of the buffer for requests; None: as many as the parameters need
     console: Middleware | None  # the console that runs beside the middleware
     console_options: Mapping[str, object]
     options: Mapping[str, object]
@@ -97,6 +99,8 @@ def check_communication(
         period=period,
         domain=domain.value if domain is not None and isinstance(domain.value, int) else None,
         diagnostics=_diagnostics(root.get("communication", "diagnostics"), found, diagnostics),
+        parameters=(parameters := root.get("communication", "parameters")) is None or parameters.value is not False,
+        parameter_request=_request(parameters),
         console=beside,
         console_options=console_options,
         options=typed_options(found, node, diagnostics),
@@ -161,6 +165,11 @@ def _diagnostics(node: YamlNode | None, middleware: Middleware, diagnostics: Dia
     """
     seconds = _seconds(node, Fraction(1), _DIAGNOSTICS, diagnostics)
     return seconds if middleware.is_node else Fraction(0)
+
+
+def _request(node: YamlNode | None) -> int | None:
+    request = node.get("request") if node is not None and node.is_mapping else None
+    return request.value if request is not None and isinstance(request.value, int) else None
 
 
 def _console(

@@ -124,6 +124,14 @@ def topic_problem(name: str) -> str | None:
     return _path_problem(name.removeprefix("/"), "topic", _TOPIC_SIZE)
 
 
+def ros_parameter_name(name: str) -> str:
+    """The name of a model's parameter in ROS 2: ``Pan.PID.kp`` for ``Pan\\PID\\kp``.
+
+    Blanks, the characters ``=<>,`` and those beyond ASCII become ``_``, as in the console.
+    """
+    return re.sub(r"[\s=<>,]|[^\x21-\x7e]", "_", name.replace("\\", "."))
+
+
 def absolute_topic(topic: str, namespace: str, node: str) -> str:
     """The full name of ``topic``.
 

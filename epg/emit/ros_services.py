@@ -6,10 +6,13 @@ A middleware serves them if its ``uses`` names ``services``.  Other middlewares 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
+from epg.emit.parameter_sizes import names_size, request_size
 from epg.emit.text import Code
 from epg.resolve.application import Application
+from epg.resolve.parameters import RosParameters
 
 _EMPTY = 8
 """Bytes for the request of a service of std_srvs, whose content is one byte at most, with padding."""
@@ -38,4 +41,22 @@ def ros_services_of(app: Application) -> tuple[RosService, ...]:
     return (
         *(RosService(name, Code("epg_service_enable"), _EMPTY) for name in enable),
         RosService("~/reset", Code("epg_service_reset"), _EMPTY),
+        *(_parameter_services(app.ros_parameters) if app.ros_parameters else ()),
     )
+
+
+def _parameter_services(parameters: RosParameters) -> Iterator[RosService]:
+    limit = parameters.request
+    names, values = (
+        size if limit is None else min(size, limit) for size in (names_size(parameters), request_size(parameters))
+    )
+    for name, size in (
+        ("list_parameters", names),
+        ("get_parameters", names),
+        ("get_parameter_types", names),
+        ("describe_parameters", names),
+        ("set_parameters", values),
+        ("set_parameters_atomically", values),
+        ("store_parameters", _EMPTY),
+    ):
+        yield RosService(f"~/{name}", Code(f"epg_service_{name}"), size)

@@ -9,15 +9,17 @@ A middleware can have a ``code.c.j2`` with a macro ``globals(m)``.  Its argument
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from epg.catalog.middleware import Middleware
-from epg.check.names import absolute_topic
-from epg.emit.text import Code, identifier
+from epg.check.names import absolute_topic, ros_parameter_name
+from epg.emit.text import Code, double, identifier
 from epg.emit.topics import Macro
 from epg.resolve.application import Application, ResolvedComponent
+from epg.resolve.parameters import is_limited
 
 
 @dataclass(frozen=True)
@@ -33,11 +35,18 @@ class SignalView:
 
 @dataclass(frozen=True)
 class ParameterView:
-    """A parameter of the model, with its generated value."""
+    """A parameter of the model, with its generated value.
+
+    ``limits`` are C expressions for its lowest and highest value.  ``ros_name`` is its name in ROS 2, where the
+    ``description`` contains the unit.
+    """
 
     name: str
     unit: str
     value: float
+    limits: tuple[Code, Code]
+    ros_name: str
+    description: str
 
 
 @dataclass(frozen=True)
@@ -101,6 +110,7 @@ class Service:
     node: bool
     store: bool
     parameters: tuple[ParameterView, ...]
+    has_limits: bool  # at least one parameter has a limit
     capture: int
     actuators: tuple[ActuatorView, ...]
     encoders: tuple[EncoderView, ...]
@@ -111,7 +121,8 @@ def service_of(app: Application, macro: Macro, symbols: Mapping[str, Code]) -> S
     """The services that the middleware of ``app``, and the console beside it, use."""
     communication = app.communication
     middleware, options, console = communication.middleware, communication.options, communication.console
-    uses = {*middleware.uses, *(console.uses if console else ())}
+    own = set(middleware.uses) - ({"parameters"} if middleware.is_node else set())  # as the target's configuration says
+    uses = {*own, *(console.uses if console else ())}
     published = sum(len(topic.values) for topic in app.publications)
     signals = tuple(_signals(app, published)) if "signals" in uses else ()
     node = "node" in uses
@@ -128,7 +139,8 @@ def service_of(app: Application, macro: Macro, symbols: Mapping[str, Code]) -> S
         monitor_count=monitor_count,
         node=node,
         store=node or "parameters" in uses,
-        parameters=tuple(_parameters(app)) if "parameters" in uses else (),
+        parameters=tuple(_parameters(app)) if "parameters" in uses or app.ros_parameters else (),
+        has_limits=any(is_limited(setting) for setting in app.parameter_settings.values()),
         capture=max((size for size in captures if isinstance(size, int)), default=0),
         actuators=tuple(a for c in app.components for a in _actuators(c, macro, symbols[c.name])) if jog else (),
         encoders=tuple(e for c in app.components for e in _encoders(c, macro, symbols[c.name])) if jog else (),
@@ -175,7 +187,26 @@ def _parameters(app: Application) -> Iterable[ParameterView]:
         if not parameter.tunable:  # these come last, so that the index of a parameter is that of the C enumeration
             continue
         value = app.parameters.get(parameter.name, parameter.value)
-        yield ParameterView(_word(parameter.name, names), _word(parameter.unit), value)
+        setting = app.parameter_settings.get(parameter.name)
+        text = setting.description if setting else ""
+        yield ParameterView(
+            name=_word(parameter.name, names),
+            unit=_word(parameter.unit),
+            value=value,
+            limits=(
+                _limit(setting.minimum if setting else -math.inf),
+                _limit(setting.maximum if setting else math.inf),
+            ),
+            ros_name=ros_parameter_name(parameter.name),
+            description=" ".join([*([text] if text else []), *([f"[{parameter.unit}]"] if parameter.unit else [])]),
+        )
+
+
+def _limit(value: float) -> Code:
+    """A C expression for a limit, which can be infinite."""
+    if math.isinf(value):
+        return Code("INFINITY" if value > 0 else "-INFINITY")
+    return double(value)
 
 
 def _actuators(component: ResolvedComponent, macro: Macro, symbol: Code) -> Iterable[ActuatorView]:

@@ -11,8 +11,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
+from epg.emit.parameter_sizes import event_size
 from epg.emit.text import Code
 from epg.resolve.application import Application, ResolvedComponent, Topic
+from epg.resolve.parameters import RosParameters
 
 Macro = Callable[..., Code]
 """``macro(component, name, *arguments)``: the text of a macro of the component's kind; empty if the kind has none."""
@@ -72,10 +74,13 @@ _FIXED = {
 }
 
 
+_EVENT = Code("epg_message_parameter_event")
+
+
 def topics_of(app: Application, macro: Macro) -> Topics:
     """The topics of ``app`` with their messages.  ``macro`` gives the texts of the kinds' macros."""
-    subscriptions = tuple(_view(topic, macro) for topic in app.subscriptions)
-    publications = tuple(_view(topic, macro) for topic in app.publications)
+    subscriptions = tuple(_view(topic, macro, app.ros_parameters) for topic in app.subscriptions)
+    publications = tuple(_view(topic, macro, app.ros_parameters) for topic in app.publications)
     return Topics(
         subscriptions=subscriptions,
         publications=publications,
@@ -87,7 +92,10 @@ def topics_of(app: Application, macro: Macro) -> Topics:
     )
 
 
-def _view(topic: Topic, macro: Macro) -> TopicView:
+def _view(topic: Topic, macro: Macro, parameters: RosParameters | None) -> TopicView:
+    if topic.role == "parameters":
+        size = Code(str(event_size(parameters)))
+        return TopicView(topic, _EVENT, "rcl_interfaces/msg/ParameterEvent", size, Code("&parameter_event"))
     if topic.component is None:
         message, ros_type, size = _FIXED[topic.role]
         return TopicView(topic, message, ros_type, size, Code(""))

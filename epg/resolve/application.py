@@ -9,11 +9,13 @@ from fractions import Fraction
 from pathlib import Path
 
 from epg.catalog.catalog import Kind, KindPort, Target
+from epg.check.bindings import ParameterSetting
 from epg.check.communication import Communication
 from epg.check.configuration import Control
 from epg.check.uses import Used
 from epg.models.model import Model, Port
 from epg.resolve.allocation import Assignment
+from epg.resolve.parameters import RosParameters
 from epg.source import Span
 
 
@@ -92,9 +94,9 @@ class TopicValue:
 class Topic:
     """One topic.  ``key`` is the key of the ``.tcf`` that makes it: ``components.pan_publisher``.
 
-    ``role`` is "values", "enable", "diagnostics" or "echo".  ``index`` is the index of the first value; for the
-    subscription of an echo, it is the number of the publication that answers.  ``trigger`` is "period" (``period`` in
-    seconds), "cycles" (every ``cycles`` control cycles) or "change".
+    ``role`` is "values", "enable", "diagnostics", "parameters" or "echo".  ``index`` is the index of the first value;
+    for the subscription of an echo, it is the number of the publication that answers.  ``trigger`` is "period"
+    (``period`` in seconds), "cycles" (every ``cycles`` control cycles) or "change".
     """
 
     name: str
@@ -126,6 +128,7 @@ class Application:
     """One target, ready to be emitted.
 
     ``period`` is the control period in seconds.  The model runs in every ``step_divider``-th control cycle.
+    ``parameters`` are the values that replace exported ones.  ``ros_parameters`` is None if the target serves none.
     """
 
     name: str
@@ -140,6 +143,8 @@ class Application:
     inputs: tuple[Wire, ...]
     outputs: tuple[Wire, ...]
     parameters: Mapping[str, float]
+    parameter_settings: Mapping[str, ParameterSetting]
+    ros_parameters: RosParameters | None
     subscriptions: tuple[Topic, ...]
     publications: tuple[Topic, ...]
     fail_safe: ResolvedComponent | None

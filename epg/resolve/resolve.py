@@ -17,8 +17,9 @@ from epg.quantity import parse_quantity, show
 from epg.resolve.allocation import Assignment, allocate
 from epg.resolve.application import Application, Plant, ResolvedComponent, Wire
 from epg.resolve.claims import TICK, component_claims, tick_claims
+from epg.resolve.parameters import parameter_settings, parameter_values, ros_parameters
 from epg.resolve.topics import publications_of, subscriptions_of, value_indices_of
-from epg.resolve.wires import input_wires, output_wires, parameter_overrides
+from epg.resolve.wires import input_wires, output_wires
 
 _SHORTEST, _LONGEST = Fraction(1, 1_000_000), Fraction(3600)
 """The limits of control periods in seconds.  The timer of a target can have narrower limits."""
@@ -49,7 +50,8 @@ def resolve(
     components = _components(configuration, assignments or {}, indices)
     inputs = input_wires(bindings, model, configuration.components, components, diagnostics)
     outputs = output_wires(bindings, model, configuration.components, components, diagnostics)
-    parameters = parameter_overrides(bindings, model, diagnostics)
+    settings = parameter_settings(bindings, model, diagnostics)
+    served = ros_parameters(configuration.communication, model, diagnostics)
     simulated = _plant(plant, configuration, components, period, diagnostics) if plant else None
     _bound_ports(configuration.components, outputs, diagnostics)
     fail_safe = configuration.control.fail_safe
@@ -76,9 +78,11 @@ def resolve(
         model=model,
         inputs=inputs,
         outputs=outputs,
-        parameters=parameters,
+        parameters=parameter_values(settings),
+        parameter_settings=settings,
+        ros_parameters=served,
         subscriptions=subscriptions_of(components, configuration, inputs),
-        publications=publications_of(components, configuration),
+        publications=publications_of(components, configuration, parameters=served is not None),
         fail_safe=components[fail_safe] if fail_safe else None,
         tick=assignments.get(TICK),
         plant=simulated,
@@ -225,7 +229,7 @@ def _plant(
     physical = {name: c for name, c in configuration.components.items() if not c.kind.communication}
     inputs = input_wires(bindings, model, physical, components, diagnostics, direction="sink")
     outputs = output_wires(bindings, model, physical, components, diagnostics, direction="source")
-    parameters = parameter_overrides(bindings, model, diagnostics)
+    parameters = parameter_values(parameter_settings(bindings, model, diagnostics))
     return Plant(model, inputs, outputs, parameters, max(1, ratio.numerator // ratio.denominator))
 
 

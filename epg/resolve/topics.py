@@ -21,6 +21,11 @@ HISTORY = 10
 """The number of messages that a publication keeps, if ``depth`` is not stated: the default of rclcpp and rclpy."""
 
 
+PARAMETER_EVENTS = "/parameter_events"
+PARAMETER_EVENTS_DEPTH = 1000
+"""The topic of changed parameters, and its depth in ROS 2 (rmw_qos_profile_parameter_events)."""
+
+
 def value_indices_of(components: Mapping[str, Component], bindings: Bindings) -> dict[str, dict[str, int]]:
     """The value indices of each component, by its ports, counted per direction in the order of the components.
 
@@ -86,8 +91,13 @@ def subscriptions_of(
     return tuple(result)
 
 
-def publications_of(components: Mapping[str, ResolvedComponent], configuration: Configuration) -> tuple[Topic, ...]:
-    """The topics that a target publishes: monitoring values, then echoes, then state and statistics."""
+def publications_of(
+    components: Mapping[str, ResolvedComponent], configuration: Configuration, *, parameters: bool
+) -> tuple[Topic, ...]:
+    """The topics that a target publishes: monitoring values, then echoes, then state and statistics.
+
+    With ``parameters``, changes of parameters follow.
+    """
     communication = configuration.communication
     result = []
     for component in components.values():
@@ -117,6 +127,20 @@ def publications_of(components: Mapping[str, ResolvedComponent], configuration: 
     if every:
         key = "communication.diagnostics"
         result.append(Topic(DIAGNOSTICS_TOPIC, key, "diagnostics", "reliable", 1, None, (), 0, period=every))
+    if parameters:
+        result.append(
+            Topic(
+                PARAMETER_EVENTS,
+                "communication.parameters",
+                "parameters",
+                "reliable",
+                PARAMETER_EVENTS_DEPTH,
+                None,
+                (),
+                0,
+                period=communication.period,
+            )
+        )
     return tuple(result)
 
 

@@ -117,25 +117,6 @@ def output_wires(
     return tuple(wires)
 
 
-def parameter_overrides(bindings: Bindings, model: Model, diagnostics: Diagnostics) -> dict[str, float]:
-    """The values that replace exported parameters, by the model's own names.  Bindings can write ``.`` for ``\\``."""
-    names = {parameter.name: parameter.name for parameter in model.parameters}
-    for parameter in model.parameters:
-        names.setdefault(parameter.name.replace("\\", "."), parameter.name)
-    result: dict[str, float] = {}
-    for written, (span, value, _) in bindings.parameters.items():
-        if written not in names:
-            hint = _nearest(
-                written, lambda: (p.name for p in model.parameters), f"parameters of {model.name}", diagnostics
-            )
-            diagnostics.error("unknown-parameter", span, f"{model.name} has no parameter '{written}'", hint=hint)
-        elif names[written] in result:
-            diagnostics.error("bound-twice", span, f"parameter '{names[written]}' is set twice")
-        else:
-            result[names[written]] = value
-    return result
-
-
 def _unknown_ports(
     bound: Iterable[str] | Mapping[str, tuple[Span, object]],
     ports: tuple[Port, ...],

@@ -43,6 +43,33 @@ DEFINITIONS = {
     "std_srvs/srv/SetBool_Response": "bool success, string message",
     "std_srvs/srv/Trigger_Request": "uint8 structure_needs_at_least_one_member",
     "std_srvs/srv/Trigger_Response": "bool success, string message",
+    "rcl_interfaces/msg/ParameterValue": "uint8 type, bool bool_value, int64 integer_value, float64 double_value, "
+    "string string_value, byte[] byte_array_value, bool[] bool_array_value, int64[] integer_array_value, "
+    "float64[] double_array_value, string[] string_array_value",
+    "rcl_interfaces/msg/Parameter": "string name, rcl_interfaces/msg/ParameterValue value",
+    "rcl_interfaces/msg/ParameterEvent": "builtin_interfaces/msg/Time stamp, string node, "
+    "rcl_interfaces/msg/Parameter[] new_parameters, rcl_interfaces/msg/Parameter[] changed_parameters, "
+    "rcl_interfaces/msg/Parameter[] deleted_parameters",
+    "rcl_interfaces/msg/FloatingPointRange": "float64 from_value, float64 to_value, float64 step",
+    "rcl_interfaces/msg/IntegerRange": "int64 from_value, int64 to_value, uint64 step",
+    "rcl_interfaces/msg/ParameterDescriptor": "string name, uint8 type, string description, "
+    "string additional_constraints, bool read_only, bool dynamic_typing, "
+    "rcl_interfaces/msg/FloatingPointRange[<=1] floating_point_range, "
+    "rcl_interfaces/msg/IntegerRange[<=1] integer_range",
+    "rcl_interfaces/msg/ListParametersResult": "string[] names, string[] prefixes",
+    "rcl_interfaces/msg/SetParametersResult": "bool successful, string reason",
+    "rcl_interfaces/srv/ListParameters_Request": "string[] prefixes, uint64 depth",
+    "rcl_interfaces/srv/ListParameters_Response": "rcl_interfaces/msg/ListParametersResult result",
+    "rcl_interfaces/srv/GetParameters_Request": "string[] names",
+    "rcl_interfaces/srv/GetParameters_Response": "rcl_interfaces/msg/ParameterValue[] values",
+    "rcl_interfaces/srv/GetParameterTypes_Request": "string[] names",
+    "rcl_interfaces/srv/GetParameterTypes_Response": "uint8[] types",
+    "rcl_interfaces/srv/DescribeParameters_Request": "string[] names",
+    "rcl_interfaces/srv/DescribeParameters_Response": "rcl_interfaces/msg/ParameterDescriptor[] descriptors",
+    "rcl_interfaces/srv/SetParameters_Request": "rcl_interfaces/msg/Parameter[] parameters",
+    "rcl_interfaces/srv/SetParameters_Response": "rcl_interfaces/msg/SetParametersResult[] results",
+    "rcl_interfaces/srv/SetParametersAtomically_Request": "rcl_interfaces/msg/Parameter[] parameters",
+    "rcl_interfaces/srv/SetParametersAtomically_Response": "rcl_interfaces/msg/SetParametersResult result",
     "rmw_dds_common/msg/Gid": "uint8[16] data",  # char[16], which is uint8 in IDL
     "rmw_dds_common/msg/NodeEntitiesInfo": "string<=256 node_namespace, string<=256 node_name, "
     "rmw_dds_common/msg/Gid[] reader_gid_seq, rmw_dds_common/msg/Gid[] writer_gid_seq",
@@ -55,6 +82,8 @@ _NUMBERS = {
     "int16": 4,
     "int32": 6,
     "uint32": 7,
+    "int64": 8,
+    "uint64": 9,
     "float32": 10,
     "float64": 11,
     "uint8": 3,
@@ -62,7 +91,7 @@ _NUMBERS = {
     "byte": 16,
     "string": 17,
 }
-_NESTED, _BOUNDED_STRING, _ARRAY, _SEQUENCE = 1, 21, 48, 144
+_NESTED, _BOUNDED_STRING, _ARRAY, _BOUNDED_SEQUENCE, _SEQUENCE = 1, 21, 48, 96, 144
 
 
 def fields_of(type_: str) -> list[tuple[str, str]]:
@@ -82,8 +111,8 @@ def _field(name: str, type_: str) -> dict[str, object]:
     else:
         number = _NUMBERS[base]
     if bracket:
-        capacity = int(size.rstrip("]") or 0)
-        number += _ARRAY if capacity else _SEQUENCE
+        capacity = int(size.removeprefix("<=").rstrip("]") or 0)
+        number += _BOUNDED_SEQUENCE if size.startswith("<=") else _ARRAY if capacity else _SEQUENCE
     described = {
         "type_id": number,
         "capacity": capacity,

@@ -74,7 +74,7 @@ def _idl_type(text: str) -> Any:
     one = _struct(base) if "/" in base else _IDL[base.partition("<=")[0]]
     if not bracket:
         return one
-    return array[one, int(size.rstrip("]"))] if size != "]" else sequence[one]
+    return sequence[one] if size == "]" or size.startswith("<=") else array[one, int(size.rstrip("]"))]
 
 
 def _idl_struct(type_: str, fields: dict[str, Any]) -> Any:
@@ -109,6 +109,9 @@ Gripper_ = _struct("robot_msgs/msg/Gripper")
 Header_ = _struct("std_msgs/msg/Header")
 Time_ = _struct("builtin_interfaces/msg/Time")
 DiagnosticArray_ = _struct("diagnostic_msgs/msg/DiagnosticArray")
+Parameter_ = _struct("rcl_interfaces/msg/Parameter")
+ParameterEvent_ = _struct("rcl_interfaces/msg/ParameterEvent")
+ParameterValue_ = _struct("rcl_interfaces/msg/ParameterValue")
 Gid_ = _struct("rmw_dds_common/msg/Gid")
 NodeEntitiesInfo_ = _struct("rmw_dds_common/msg/NodeEntitiesInfo")
 ParticipantEntitiesInfo_ = _struct("rmw_dds_common/msg/ParticipantEntitiesInfo")

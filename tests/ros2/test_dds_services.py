@@ -9,7 +9,8 @@ import pytest
 
 pytest.importorskip("tests.ros2.packages", exc_type=ImportError)
 
-from tests.ros2.messages import DiagnosticArray_
+from tests.ros2.build import Build
+from tests.ros2.messages import DiagnosticArray_, Parameter_, ParameterEvent_, ParameterValue_
 from tests.ros2.network import Network
 from tests.ros2.peer import Client, Peer, user_data
 from tests.ros2.test_dds_node import NODE, jiwy, meet, robot
@@ -53,7 +54,7 @@ def test_both_endpoints_of_a_service_belong_to_the_node(jiwy: Path, net: Network
                     ids[sample.topic_name] = user_data(sample.qos)["serviceid"]
         assert ids[f"rq{NODE}/enableRequest"] == ids[f"rr{NODE}/enableReply"]
         assert ids[f"rq{NODE}/resetRequest"] == ids[f"rr{NODE}/resetReply"]
-        assert len(set(ids.values())) == 2
+        assert len(ids) == 2 * len(set(ids.values()))
 
 
 def test_requests_of_two_clients_are_answered_one_after_the_other(jiwy: Path, net: Network, tmp_path: Path) -> None:
@@ -75,3 +76,100 @@ def test_a_request_without_the_header_of_rmw_cyclonedds_is_malformed(jiwy: Path,
         assert foreign.reply(numbers[-1], timeout=1.0) is None
         assert malformed(peer) >= 10  # the reader keeps the last ten
         assert client(peer, "enable", "std_srvs/srv/SetBool").call(True).success
+
+
+# Parameters
+
+DOUBLE, INTEGER = 3, 2
+KP = "Pan.PID.kp"
+
+
+def value(number: float, type_: int = DOUBLE) -> object:
+    return ParameterValue_(type_, False, int(number) if type_ == INTEGER else 0, number, "", [], [], [], [], [])
+
+
+def parameter(name: str, number: float, type_: int = DOUBLE) -> object:
+    return Parameter_(name, value(number, type_))
+
+
+def numbers_of(peer: Peer, names: list[str]) -> list[float]:
+    return [
+        v.double_value for v in client(peer, "get_parameters", "rcl_interfaces/srv/GetParameters").call(names).values
+    ]
+
+
+def test_parameters_are_listed_described_read_and_set(jiwy: Path, net: Network, tmp_path: Path) -> None:
+    with robot(net, jiwy, tmp_path), Peer(net.domain, "tool") as peer:
+        listed = client(peer, "list_parameters", "rcl_interfaces/srv/ListParameters").call([], 0).result
+        assert len(listed.names) == 30
+        assert KP in listed.names
+        assert sorted(listed.prefixes) == [
+            f"{axis}.{part}" for axis in ("Pan", "Tilt") for part in ("Homing", "Limiter", "PID", "Reference")
+        ]
+        assert client(peer, "get_parameter_types", "rcl_interfaces/srv/GetParameterTypes").call(listed.names).types == (
+            [DOUBLE] * 30
+        )
+        described = client(peer, "describe_parameters", "rcl_interfaces/srv/DescribeParameters").call([KP])
+        (found,) = described.descriptors
+        assert (found.name, found.type, found.description, found.read_only) == (
+            KP,
+            DOUBLE,
+            "gain of the pan axis",
+            False,
+        )
+        (limits,) = found.floating_point_range
+        assert (limits.from_value, limits.to_value, limits.step) == (0.0, 20.0, 0.0)
+        assert numbers_of(peer, [KP]) == [2.6]
+
+        events = peer.subscription("/parameter_events", ParameterEvent_)
+        assert peer.spin_until(lambda: bool(events.reader.get_matched_publications()))
+        peer.spin(0.3)
+        wanted = [parameter(KP, 3.5), parameter(KP, 21.0), parameter(KP, 3, INTEGER), parameter("Tilt.PID.kp", 4.5)]
+        results = client(peer, "set_parameters", "rcl_interfaces/srv/SetParameters").call(wanted).results
+        assert [result.successful for result in results] == [True, False, False, True]
+        assert numbers_of(peer, [KP, "Tilt.PID.kp"]) == [3.5, 4.5]
+        assert peer.spin_until(lambda: bool(events.received))
+        (event,) = events.messages
+        assert (event.node, event.new_parameters, event.deleted_parameters) == (NODE, [], [])
+        assert [(p.name, p.value.double_value) for p in event.changed_parameters] == [(KP, 3.5), ("Tilt.PID.kp", 4.5)]
+
+
+def test_all_parameters_in_one_request(jiwy: Path, net: Network, tmp_path: Path) -> None:
+    """`ros2 param dump` and `load` send all names in one request."""
+    with robot(net, jiwy, tmp_path), Peer(net.domain, "tool") as peer:
+        names = client(peer, "list_parameters", "rcl_interfaces/srv/ListParameters").call([], 0).result.names
+        before = numbers_of(peer, names)
+        wanted = [parameter(name, number + 0.001) for name, number in zip(names, before, strict=True)]
+        atomically = client(peer, "set_parameters_atomically", "rcl_interfaces/srv/SetParametersAtomically")
+        assert atomically.call(wanted).result.successful
+        assert numbers_of(peer, names) == [number + 0.001 for number in before]
+        refused = atomically.call([*wanted[:-1], parameter(KP, -1.0)]).result
+        assert (refused.successful, refused.reason) == (
+            False,
+            "Parameter {Pan.PID.kp} doesn't comply with floating point range.",
+        )
+        assert numbers_of(peer, names) == [number + 0.001 for number in before]
+        assert malformed(peer) == 0
+
+
+def test_stored_parameters_are_back_after_a_restart(jiwy: Path, net: Network, tmp_path: Path) -> None:
+    store = ("--store", str(tmp_path / "store"))
+    trigger = "std_srvs/srv/Trigger"
+    with robot(net, jiwy, tmp_path, *store) as board, Peer(net.domain, "tool") as peer:
+        assert client(peer, "set_parameters", "rcl_interfaces/srv/SetParameters").call([parameter(KP, 3.5)]).results
+        refused = client(peer, "store_parameters", trigger).call(0)
+        assert (refused.success, refused.message) == (False, "the actuators must be off: disable first")
+        assert client(peer, "enable", "std_srvs/srv/SetBool").call(False).success
+        stored = client(peer, "store_parameters", trigger).call(0)
+        assert (stored.success, stored.message) == (True, "1 value is stored")
+        board.end()
+    with robot(net, jiwy, tmp_path, *store), Peer(net.domain, "tool") as peer:
+        assert numbers_of(peer, [KP]) == [3.5]
+
+
+def test_a_target_without_parameters_serves_none(build_checked: Build, net: Network, tmp_path: Path) -> None:
+    with robot(net, build_checked("follower"), tmp_path), Peer(net.domain, "monitor") as peer:
+        meet(peer)
+        requests = {r.topic_name for r in peer.graph.readers.values() if r.topic_name.startswith("rq/")}
+        assert requests == {f"rq{NODE}/enableRequest", f"rq{NODE}/resetRequest"}
+        assert "/parameter_events" not in {endpoint.topic for endpoint in peer.graph.publications()}

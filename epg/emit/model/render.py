@@ -29,6 +29,8 @@ def render(model: Model, name: str, values: Mapping[str, float], instances: int)
         "name": Code(name),
         "instances": instances,
         "parameters": list(zip(parameter_constants(name, model.parameters), model.parameters)),
+        "tunable": sum(parameter.tunable for parameter in model.parameters),
+        "derives": _derives(model),
         "e": model.details,
         "hand_written": isinstance(model.details, HandWritten),
         "fmu": isinstance(model.details, FmuExport),
@@ -69,8 +71,16 @@ def render(model: Model, name: str, values: Mapping[str, float], instances: int)
     return files
 
 
+def _derives(model: Model) -> bool:
+    """True if values that are derived from parameters are computed only at the start and after a change."""
+    details = model.details
+    return isinstance(details, TokensExport) or (
+        isinstance(details, CFunctionExport) and bool(details.calculate_static)
+    )
+
+
 _PUBLIC = """t inputs inputs_t outputs outputs_t parameter parameter_t instance init step terminate stopped finite
-get_parameter set_parameter heap_used""".split()
+get_parameter set_parameter set_parameters heap_used""".split()
 """The parts after ``<name>_`` in the names of the types and functions of a library."""
 
 

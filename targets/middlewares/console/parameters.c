@@ -134,11 +134,11 @@ void epg_console_set(epg_console_session_t *session, const epg_console_command_t
         return;
     }
     epg_parameters_t *parameters = parameters_of(session, "set");
-    epg_parameter_change_t changes[EPG_PARAMETER_CHANGES];
+    epg_parameter_change_t changes[EPG_CONSOLE_CHANGES];
     if (parameters == NULL) {
         return;
     }
-    if (command->count == 1 || command->count - 1U > EPG_PARAMETER_CHANGES) {
+    if (command->count == 1 || command->count - 1U > EPG_CONSOLE_CHANGES) {
         epg_console_error(session, "set", "use <parameter>=<number>, 1 to 8 times", NULL);
         return;
     }
@@ -153,6 +153,10 @@ void epg_console_set(epg_console_session_t *session, const epg_console_command_t
         }
         if (text == NULL || !epg_console_number(text, &value)) {
             epg_console_error(session, "set", "this is not a number:", text == NULL ? "" : text);
+            return;
+        }
+        if (!epg_parameters_can_be(parameters, index, value)) {
+            epg_console_error(session, "set", "this number is outside of the limits:", text);
             return;
         }
         changes[i - 1U] = (epg_parameter_change_t){.index = index, .value = value};

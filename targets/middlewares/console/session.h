@@ -16,6 +16,7 @@
 enum {
     EPG_CONSOLE_LINE = 256,  /**< bytes of the longest command */
     EPG_CONSOLE_WORDS = 24,  /**< largest number of words in a command */
+    EPG_CONSOLE_CHANGES = 8, /**< largest number of parameters in a set command */
     EPG_CONSOLE_WATCHED = 32 /**< largest number of values in a watch line */
 };
 

@@ -12,23 +12,29 @@ void epg_parameters_apply(epg_parameters_t *parameters, bool running)
     if (!epg_handover_there(&parameters->handover)) {
         return;
     }
-    for (size_t i = 0; i < parameters->change_count; i++) {
-        const epg_parameter_change_t *change = &parameters->changes[i];
-        parameters->applied[change->index] = change->value;
-        parameters->changed[change->index] = true;
-        if (running) {
-            parameters->set(change->index, change->value);
+    for (size_t i = 0; i < parameters->count; i++) {
+        if (parameters->wanted[i]) {
+            parameters->applied[i] = parameters->values[i];
+            parameters->changed[i] = true;
         }
+    }
+    if (running) {
+        parameters->set(parameters->applied, parameters->wanted);
+    }
+    for (size_t i = 0; i < parameters->count; i++) {
+        parameters->wanted[i] = false;
     }
     epg_handover_return(&parameters->handover);
 }
 
 void epg_parameters_restore(const epg_parameters_t *parameters)
 {
+    bool any = false;
     for (size_t i = 0; i < parameters->count; i++) {
-        if (parameters->changed[i]) {
-            parameters->set(i, parameters->applied[i]);
-        }
+        any = any || parameters->changed[i];
+    }
+    if (any) {
+        parameters->set(parameters->applied, parameters->changed);
     }
 }
 
@@ -39,22 +45,43 @@ bool epg_parameters_idle(epg_parameters_t *parameters)
     return epg_handover_here(&parameters->handover);
 }
 
+bool epg_parameters_can_be(const epg_parameters_t *parameters, size_t index, double value)
+{
+    if (index >= parameters->count || !epg_is_finite(value)) {
+        return false;
+    }
+    const epg_parameter_limits_t *limits = parameters->limits;
+    return limits == NULL || (value >= limits[index].minimum && value <= limits[index].maximum);
+}
+
+void epg_parameters_prepare(epg_parameters_t *parameters, size_t index, double value)
+{
+    parameters->values[index] = value;
+    parameters->wanted[index] = true;
+    if (parameters->news != NULL) {
+        parameters->news[index] = EPG_PARAMETER_NEW;
+    }
+}
+
+void epg_parameters_request(epg_parameters_t *parameters)
+{
+    epg_handover_give(&parameters->handover);
+}
+
 bool epg_parameters_change(epg_parameters_t *parameters, const epg_parameter_change_t *changes, size_t count)
 {
-    if (count == 0 || count > EPG_PARAMETER_CHANGES || !epg_handover_here(&parameters->handover)) {
+    if (count == 0 || !epg_handover_here(&parameters->handover)) {
         return false;
     }
     for (size_t i = 0; i < count; i++) {
-        if (changes[i].index >= parameters->count || !epg_is_finite(changes[i].value)) {
+        if (!epg_parameters_can_be(parameters, changes[i].index, changes[i].value)) {
             return false;
         }
     }
     for (size_t i = 0; i < count; i++) {
-        parameters->changes[i] = changes[i];
-        parameters->values[changes[i].index] = changes[i].value;
+        epg_parameters_prepare(parameters, changes[i].index, changes[i].value);
     }
-    parameters->change_count = count;
-    epg_handover_give(&parameters->handover);
+    epg_parameters_request(parameters);
     return true;
 }
 

@@ -56,7 +56,27 @@ void epg_reply_f64(epg_reply_t *reply, double value)
 
 void epg_reply_string(epg_reply_t *reply, const char *text)
 {
-    const size_t size = strlen(text) + 1;
-    epg_reply_u32(reply, (uint32_t)size);
-    put(reply, text, size);
+    epg_reply_text(reply, text, strlen(text));
+}
+
+void epg_reply_text(epg_reply_t *reply, const char *text, size_t length)
+{
+    epg_reply_u32(reply, (uint32_t)length + 1U);
+    put(reply, text, length);
+    put(reply, "", 1);
+}
+
+void epg_reply_pieces(epg_reply_t *reply, const char *first, const char *second, const char *third, const char *fourth,
+                      const char *fifth)
+{
+    const char *const pieces[] = {first, second, third, fourth, fifth};
+    size_t length = 0;
+    for (size_t i = 0; i < sizeof pieces / sizeof pieces[0]; i++) {
+        length += strlen(pieces[i]);
+    }
+    epg_reply_u32(reply, (uint32_t)length + 1U);
+    for (size_t i = 0; i < sizeof pieces / sizeof pieces[0]; i++) {
+        put(reply, pieces[i], strlen(pieces[i]));
+    }
+    put(reply, "", 1);
 }

@@ -24,5 +24,10 @@ void epg_reply_u64(epg_reply_t *reply, uint64_t value);
 void epg_reply_f64(epg_reply_t *reply, double value);
 /** Writes a text with its length and its terminating zero. */
 void epg_reply_string(epg_reply_t *reply, const char *text);
+/** Writes the first `length` characters of a text. */
+void epg_reply_text(epg_reply_t *reply, const char *text, size_t length);
+/** Writes a text of five pieces. */
+void epg_reply_pieces(epg_reply_t *reply, const char *first, const char *second, const char *third, const char *fourth,
+                      const char *fifth);
 
 #endif

@@ -1,15 +1,29 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The services that change the state of a target: SetBool to enable or disable it, Trigger to clear a fault.
+ * The services that change the state of a target: SetBool to enable or disable it, Trigger to clear a
+ * fault and to store parameters.
  *
  * A control cycle that was under way when a request was made may end without it.  The cycle after that has seen the
  * request, so the result is known after two cycles.
  */
 #include <string.h>
 
-#include "epg/service.h"
+#include "epg/decimal.h"
+#include "epg/parameter_services.h"
+#include "epg/store.h"
 #include "reply.h"
+
+#define TRIGGER_REQUEST                                                                                                \
+    {                                                                                                                  \
+        .type = "std_srvs::srv::dds_::Trigger_Request_",                                                               \
+        .hash = "RIHS01_d010825374ce8918e72bfd826c82603e60f45419e932ea976f807b74a863a199"                              \
+    }
+#define TRIGGER_REPLY                                                                                                  \
+    {                                                                                                                  \
+        .type = "std_srvs::srv::dds_::Trigger_Response_",                                                              \
+        .hash = "RIHS01_2d946c21e2fc3f1e9ca6986a8191d85fcc70097a8bb7771a053564bc47009cdf"                              \
+    }
 
 /** Begins to count control cycles. */
 static void begin(epg_node_t *node)
@@ -149,11 +163,48 @@ static bool reset_ready(epg_node_t *node, bool late)
 }
 
 const epg_service_kind_t epg_service_reset = {
-    .request = {.type = "std_srvs::srv::dds_::Trigger_Request_",
-                .hash = "RIHS01_d010825374ce8918e72bfd826c82603e60f45419e932ea976f807b74a863a199"},
-    .reply = {.type = "std_srvs::srv::dds_::Trigger_Response_",
-              .hash = "RIHS01_2d946c21e2fc3f1e9ca6986a8191d85fcc70097a8bb7771a053564bc47009cdf"},
+    .request = TRIGGER_REQUEST,
+    .reply = TRIGGER_REPLY,
     .take = take_reset,
     .ready = reset_ready,
+    .write = write_result,
+};
+
+/* Store -------------------------------------------------------------------------------------------------------- */
+
+static bool take_store(epg_node_t *node, epg_cdr_reader_t *request)
+{
+    (void)request;
+    begin(node);
+    return true;
+}
+
+static bool store_ready(epg_node_t *node, bool late)
+{
+    epg_store_t *store = node->target->store;
+    epg_jog_t *jog = node->target->application->jog;
+    char number[EPG_DECIMAL_SIZE + 1];
+    size_t count = 0;
+    epg_status_t status;
+    if (!cycled(node, &status)) {
+        return fail_without_loop(node, late);
+    }
+    if (status.enabled || (jog != NULL && !epg_jog_idle(jog))) {
+        conclude(node, false, "the actuators must be off: disable first", NULL);
+    } else if (store == NULL || !epg_store_save(store, &count)) {
+        conclude(node, false, "this target cannot store parameters", NULL);
+    } else {
+        number[epg_decimal_write_integer(number, (int64_t)count)] = '\0';
+        conclude(node, true, number, &status);
+        add(node->target->service_state, count == 1 ? " value is stored" : " values are stored");
+    }
+    return true;
+}
+
+const epg_service_kind_t epg_service_store_parameters = {
+    .request = TRIGGER_REQUEST,
+    .reply = TRIGGER_REPLY,
+    .take = take_store,
+    .ready = store_ready,
     .write = write_result,
 };

@@ -22,7 +22,6 @@
 
 #include <string.h>
 
-#include "epg/finite.h"
 #include "epg/names.h"
 #include "epg/port.h"
 
@@ -110,12 +109,12 @@ static size_t whole(const unsigned char *bytes, size_t size)
     return is_sealed(bytes, HEADER + count * ENTRY) ? count : SIZE_MAX;
 }
 
-/** Returns true if every entry has the index of a parameter and a finite value. */
+/** Returns true if every entry has the index of a parameter and a value that it can have. */
 static bool sound(const epg_store_t *store, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         const unsigned char *entry = store->bytes + HEADER + i * ENTRY;
-        if (get(entry, 4) >= store->parameters->count || !epg_is_finite(get_value(entry + 4))) {
+        if (!epg_parameters_can_be(store->parameters, (size_t)get(entry, 4), get_value(entry + 4))) {
             return false;
         }
     }
@@ -143,6 +142,7 @@ static void load_parameters(epg_store_t *store, size_t size)
     for (size_t i = 0; i < parameters->count; i++) {
         parameters->values[i] = parameters->table[i].value;
         parameters->changed[i] = false;
+        parameters->wanted[i] = false;
     }
     parameters->stored = judge(store, size, &count);
     for (size_t i = 0; i < count && parameters->stored == EPG_STORED_LOADED; i++) {

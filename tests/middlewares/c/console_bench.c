@@ -4,6 +4,8 @@
  */
 #include "console_bench.h"
 
+#include <math.h>
+
 #include "check.h"
 #include "fake_application.h"
 #include "fake_port.h"
@@ -58,12 +60,16 @@ static const epg_parameter_t table[BENCH_PARAMETERS] = {
     {"p6", "", 0.0},      {"p7", "", 0.0},          {"p8", "", 0.0}, {"p9", "", 0.0}, {"pa", "", 0.0}, {"pb", "", 0.0}};
 static double values[BENCH_PARAMETERS];
 static double applied[BENCH_PARAMETERS];
+static bool wanted[BENCH_PARAMETERS];
+static epg_parameter_limits_t limits[BENCH_PARAMETERS];
 static bool changed[BENCH_PARAMETERS];
 static unsigned char store_bytes[EPG_STORE_SIZE(BENCH_PARAMETERS)];
 
-static void set(size_t index, double value)
+static void set(const double *new_values, const bool *which)
 {
-    bench.model[index] = value;
+    for (size_t i = 0; i < BENCH_PARAMETERS; i++) {
+        bench.model[i] = which[i] ? new_values[i] : bench.model[i];
+    }
 }
 
 static void drive(double duty)
@@ -119,6 +125,10 @@ static void monitor(double *monitored)
 void bench_start(bool enabled)
 {
     fake_reset();
+    for (size_t i = 0; i < BENCH_PARAMETERS; i++) {
+        limits[i] = (epg_parameter_limits_t){-INFINITY, INFINITY};
+    }
+    limits[BENCH_PARAMETERS - 1] = (epg_parameter_limits_t){0.0, 1.0};
     bench = (bench_t){
         .target = {.control = &fake.control,
                    .application = &fake.application,
@@ -149,6 +159,8 @@ void bench_start(bool enabled)
                        .model = 77,
                        .set = set,
                        .values = values,
+                       .wanted = wanted,
+                       .limits = limits,
                        .applied = applied,
                        .changed = changed},
         .store = {.bytes = store_bytes, .parameters = &bench.parameters},

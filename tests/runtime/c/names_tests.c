@@ -115,10 +115,10 @@ TEST(names_that_are_saved_are_back_after_a_restart)
     CHECK(strcmp(epg_names_space(&target), "") == 0);
 }
 
-static void set_parameter(size_t index, double value)
+static void set_parameters(const double *values, const bool *which)
 {
-    (void)index;
-    (void)value;
+    (void)values;
+    (void)which;
 }
 
 TEST(names_outlive_the_model)
@@ -126,13 +126,15 @@ TEST(names_outlive_the_model)
     static const epg_parameter_t table[2] = {{"a", "", 1.0}, {"b", "", 2.0}};
     static double values[2];
     static double applied[2];
+    static bool wanted[2];
     static bool changed[2];
     static unsigned char more[EPG_STORE_SIZE(2)];
     epg_parameters_t parameters = {.count = 2,
                                    .table = table,
                                    .model = 5,
-                                   .set = set_parameter,
+                                   .set = set_parameters,
                                    .values = values,
+                                   .wanted = wanted,
                                    .applied = applied,
                                    .changed = changed};
     size_t count;

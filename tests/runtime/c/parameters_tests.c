@@ -17,10 +17,11 @@ static double model[COUNT]; /* the model's parameters */
 static unsigned int sets;   /* calls of set() */
 static unsigned int steps_at_set;
 
-static void set(size_t index, double value)
+static void set(const double *new_values, const bool *which)
 {
-    CHECK(index < COUNT);
-    model[index] = value;
+    for (size_t i = 0; i < COUNT; i++) {
+        model[i] = which[i] ? new_values[i] : model[i];
+    }
     sets++;
     steps_at_set = fake.steps;
 }
@@ -31,6 +32,8 @@ static const epg_parameter_t table[COUNT] = {
 };
 static double values[COUNT];
 static double applied[COUNT];
+static bool wanted[COUNT];
+static epg_parameter_limits_t limits[COUNT];
 static bool changed[COUNT];
 static unsigned char bytes[EPG_STORE_SIZE(COUNT)];
 static epg_parameters_t parameters;
@@ -47,6 +50,7 @@ static void make(uint64_t model_id)
                                     .model = model_id,
                                     .set = set,
                                     .values = values,
+                                    .wanted = wanted,
                                     .applied = applied,
                                     .changed = changed};
     store = (epg_store_t){.bytes = bytes, .parameters = &parameters};
@@ -79,19 +83,19 @@ TEST(changes_act_between_two_steps_and_all_in_one_cycle)
     CHECK_EQUAL(model[0], 3.5);
     CHECK_EQUAL(steps_at_set, 3);
 
-    epg_parameter_change_t several[EPG_PARAMETER_CHANGES];
-    for (size_t i = 0; i < EPG_PARAMETER_CHANGES; i++) {
-        several[i] = (epg_parameter_change_t){i + 1, 100.0 + (double)i};
+    epg_parameter_change_t all[COUNT];
+    for (size_t i = 0; i < COUNT; i++) {
+        all[i] = (epg_parameter_change_t){i, 100.0 + (double)i};
     }
-    CHECK(epg_parameters_change(&parameters, several, EPG_PARAMETER_CHANGES));
+    CHECK(epg_parameters_change(&parameters, all, COUNT));
     fake_cycle();
-    for (size_t i = 0; i < EPG_PARAMETER_CHANGES; i++) {
-        CHECK_EQUAL(model[i + 1], 100.0 + (double)i);
-        CHECK_EQUAL(epg_parameters_value(&parameters, i + 1), 100.0 + (double)i);
+    for (size_t i = 0; i < COUNT; i++) {
+        CHECK_EQUAL(model[i], 100.0 + (double)i);
+        CHECK_EQUAL(epg_parameters_value(&parameters, i), 100.0 + (double)i);
     }
-    CHECK_EQUAL(sets, 1 + EPG_PARAMETER_CHANGES);
+    CHECK_EQUAL(sets, 2); /* the model derives its values once per request */
     fake_cycles(5);
-    CHECK_EQUAL(sets, 1 + EPG_PARAMETER_CHANGES);
+    CHECK_EQUAL(sets, 2);
 }
 
 TEST(all_changes_or_none)
@@ -101,16 +105,37 @@ TEST(all_changes_or_none)
     const epg_parameter_change_t with_nan[2] = {{0, 1.0}, {1, NAN}};
     const epg_parameter_change_t with_infinity[2] = {{0, 1.0}, {1, -INFINITY}};
     const epg_parameter_change_t unknown[2] = {{0, 1.0}, {COUNT, 1.0}};
-    epg_parameter_change_t many[EPG_PARAMETER_CHANGES + 1] = {{0, 1.0}};
+    const epg_parameter_change_t none[1] = {{0, 1.0}};
     CHECK(!epg_parameters_change(&parameters, with_nan, 2));
     CHECK(!epg_parameters_change(&parameters, with_infinity, 2));
     CHECK(!epg_parameters_change(&parameters, unknown, 2));
-    CHECK(!epg_parameters_change(&parameters, many, EPG_PARAMETER_CHANGES + 1));
-    CHECK(!epg_parameters_change(&parameters, many, 0));
+    CHECK(!epg_parameters_change(&parameters, none, 0));
     fake_cycles(2);
     CHECK_EQUAL(model[0], 2.6);
     CHECK_EQUAL(epg_parameters_value(&parameters, 0), 2.6);
     CHECK_EQUAL(sets, 0);
+}
+
+TEST(limits_are_possible_values_and_others_are_refused)
+{
+    begin();
+    for (size_t i = 0; i < COUNT; i++) {
+        limits[i] = (epg_parameter_limits_t){-INFINITY, INFINITY};
+    }
+    limits[1] = (epg_parameter_limits_t){0.0, 2.0};
+    parameters.limits = limits;
+    const epg_parameter_change_t with_high[2] = {{0, 1.0}, {1, nextafter(2.0, 3.0)}};
+    CHECK(!epg_parameters_change(&parameters, with_high, 2));
+    CHECK(!change(1, -1e-300));
+    CHECK(change(1, 2.0));
+    fake_cycle();
+    CHECK(change(1, 0.0));
+    fake_cycle();
+    CHECK(change(0, -1e300));
+    fake_cycle();
+    CHECK_EQUAL(sets, 3);
+    CHECK_EQUAL(model[0], -1e300);
+    CHECK(!epg_parameters_can_be(&parameters, COUNT, 1.0));
 }
 
 TEST(a_change_waits_for_the_one_before)
@@ -195,7 +220,24 @@ TEST(stored_values_are_back_after_a_restart)
     fake_cycle();
     CHECK_EQUAL(model[0], 0.1); /* from the first cycle on */
     CHECK_EQUAL(model[9], -1e-300);
-    CHECK_EQUAL(sets, 2);
+    CHECK_EQUAL(sets, 1);
+}
+
+TEST(stored_values_outside_of_new_limits_are_refused)
+{
+    size_t stored;
+    begin();
+    CHECK(change(0, 5.0));
+    fake_cycle();
+    CHECK(epg_store_save(&store, &stored));
+    make(1);
+    for (size_t i = 0; i < COUNT; i++) {
+        limits[i] = (epg_parameter_limits_t){-4.0, 4.0};
+    }
+    parameters.limits = limits;
+    epg_store_load(&store);
+    CHECK(parameters.stored == EPG_STORED_NOTHING);
+    CHECK_EQUAL(epg_parameters_value(&parameters, 0), 2.6);
 }
 
 TEST(a_value_that_is_as_generated_again_is_not_stored)
@@ -304,6 +346,7 @@ TEST(a_change_that_a_stop_has_left_is_forgotten)
 }
 
 RUN(ENTRY(changes_act_between_two_steps_and_all_in_one_cycle), ENTRY(all_changes_or_none),
+    ENTRY(limits_are_possible_values_and_others_are_refused), ENTRY(stored_values_outside_of_new_limits_are_refused),
     ENTRY(a_change_waits_for_the_one_before), ENTRY(changes_outlive_enabling),
     ENTRY(a_model_that_rests_is_not_touched_until_it_is_initialised), ENTRY(stored_values_are_back_after_a_restart),
     ENTRY(a_value_that_is_as_generated_again_is_not_stored), ENTRY(values_of_another_model_are_refused),

@@ -25,7 +25,7 @@ void epg_host_print_help(const char *name)
         "  --console-pty PATH   the same on a terminal with this name, like the serial port of a board\n"
         "  --agent HOST:PORT    address of the ROS 2 agent (real time; default: as in the .tcf)\n"
         "  --serial-device PATH serial device of the ROS 2 agent, such as /dev/ttyUSB0\n"
-        "  --store FILE         file in which the console's 'save' stores parameters\n"
+        "  --store FILE         file in which the console and ROS 2 store parameters\n"
         "  --serial WORD        replaces '$serial' in the names of node and namespace; default: host\n"
         "  --setpoints FILE     reads setpoints from a CSV file with rows time,topic,value\n"
         "  --topics FILE        writes all published values in the same form\n"

@@ -138,6 +138,12 @@ bool epg_host_ros_take_value(const epg_host_ros_value_t *value)
         fprintf(stderr, "parameter '%s' must be finite, not %s\n", value->name, value->text);
         return false;
     }
+    if (!epg_parameters_can_be(read.parameters, index, number)) {
+        begin(value, "error");
+        fprintf(stderr, "parameter '%s' must be from %g to %g, not %s\n", value->name,
+                read.parameters->limits[index].minimum, read.parameters->limits[index].maximum, value->text);
+        return false;
+    }
     read.values[index] = number;
     read.given[index] = true;
     return true;
@@ -189,26 +195,17 @@ bool epg_host_ros_read_parameters(const epg_host_ros_t *ros, const epg_target_t 
     return good;
 }
 
-/** Passes changes to the control side, which has not begun its cycles: this thread takes its part, too. */
-static void change(const epg_target_t *target, const epg_parameter_change_t *changes, size_t count)
-{
-    if (count > 0 && epg_parameters_change(read.parameters, changes, count)) {
-        epg_parameters_apply(read.parameters, target->control->model_valid);
-    }
-}
-
+/** Passes the changes to the control side, which has not begun its cycles: this thread takes its part, too. */
 void epg_host_ros_set_parameters(const epg_target_t *target)
 {
-    epg_parameter_change_t changes[EPG_PARAMETER_CHANGES];
-    size_t count = 0;
-    for (size_t i = 0; read.parameters != NULL && i < read.parameters->count; i++) {
+    if (read.parameters == NULL || !epg_parameters_idle(read.parameters)) {
+        return;
+    }
+    for (size_t i = 0; i < read.parameters->count; i++) {
         if (read.given[i]) {
-            changes[count++] = (epg_parameter_change_t){.index = i, .value = read.values[i]};
-        }
-        if (count == EPG_PARAMETER_CHANGES) {
-            change(target, changes, count);
-            count = 0;
+            epg_parameters_prepare(read.parameters, i, read.values[i]);
         }
     }
-    change(target, changes, count);
+    epg_parameters_request(read.parameters);
+    epg_parameters_apply(read.parameters, target->control->model_valid);
 }

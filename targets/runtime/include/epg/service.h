@@ -62,8 +62,10 @@ typedef struct epg_service {
 
 typedef struct epg_service_state {
     /* The generator sets these members. */
-    unsigned char *request; /**< room for the largest request of all services */
-    size_t request_size;    /**< its size in bytes */
+    unsigned char *request;                 /**< room for the largest request of all services */
+    size_t request_size;                    /**< its size in bytes */
+    const struct epg_parameter_text *texts; /**< texts of the parameters (epg/parameter_services.h); NULL: none */
+    double *copy; /**< room for the values of all parameters, so that those of one reply are consistent */
 
     /* These members belong to the services. */
     const epg_service_t *service; /**< the service whose request is in work; NULL: none */
@@ -74,10 +76,14 @@ typedef struct epg_service_state {
     size_t part; /**< the reply is continued at this part, which begins at byte `position` */
     size_t position;
 
-    bool observed;                          /**< `cycles` is valid */
-    bool enable;                            /**< the request to enable or to disable */
-    uint64_t cycles;                        /**< number of control cycles when the request was taken */
-    bool success;                           /**< the result that the reply reports */
+    bool observed;   /**< `cycles` is valid */
+    bool enable;     /**< the request to enable or to disable */
+    uint64_t cycles; /**< number of control cycles when the request was taken */
+    bool success;    /**< the result that the reply reports */
+    bool staged;     /**< changes of parameters have been requested, or refused as a whole */
+    size_t entries;  /**< number of elements in the reply */
+    size_t entry;    /**< the request is read on at this element, at byte `entry_position` */
+    size_t entry_position;
     char message[EPG_SERVICE_MESSAGE_SIZE]; /**< its reason, or its number */
 } epg_service_state_t;
 

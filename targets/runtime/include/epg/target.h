@@ -23,6 +23,7 @@ typedef enum epg_topic_role {
     EPG_TOPIC_VALUES,      /**< setpoints or monitoring values */
     EPG_TOPIC_ENABLE,      /**< subscription: a Bool that enables or disables the target */
     EPG_TOPIC_DIAGNOSTICS, /**< publication: status and statistics, at `period_ns` */
+    EPG_TOPIC_PARAMETERS,  /**< publication: changed parameters, looked for at `period_ns` */
     EPG_TOPIC_ECHO         /**< subscription: each message is sent at once as publication `index`, of the same type;
                                 publication: the messages that such a subscription sends */
 } epg_topic_role_t;

@@ -51,18 +51,22 @@ enum { PARAMETERS = sizeof parameter_table / sizeof parameter_table[0] };
 static double gains[PARAMETERS];
 static double requested[PARAMETERS];
 static double applied[PARAMETERS];
+static bool wanted[PARAMETERS];
 static bool changed[PARAMETERS];
 
-static void set_gain(size_t index, double value)
+static void set_gains(const double *values, const bool *which)
 {
-    gains[index] = value;
+    for (size_t i = 0; i < PARAMETERS; i++) {
+        gains[i] = which[i] ? values[i] : gains[i];
+    }
 }
 
 static epg_parameters_t parameters = {.count = PARAMETERS,
                                       .table = parameter_table,
                                       .model = 1,
-                                      .set = set_gain,
+                                      .set = set_gains,
                                       .values = requested,
+                                      .wanted = wanted,
                                       .applied = applied,
                                       .changed = changed};
 static unsigned char store_bytes[EPG_STORE_SIZE(PARAMETERS)];
