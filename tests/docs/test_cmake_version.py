@@ -8,7 +8,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = ("cmake", "docs", "examples", "integration", "targets", "tests", "zephyr_module")
-NAMES = ("CMakeLists.txt*", "*.cmake", "*.md", "*.md.j2", "CMakePresets.json")
+NAMES = ("CMakeLists.txt*", "*.cmake", "*.md", "*.md.j2", "CMakePresets.json*")
 REQUIRED = re.compile(r"cmake_minimum_required\(VERSION ([0-9]+[.][0-9]+)|\"cmakeMinimumRequired\": \{([^}]*)\}")
 NEEDED = ("3.22", '"major": 3, "minor": 22, "patch": 0')
 
