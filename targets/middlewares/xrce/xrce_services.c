@@ -54,6 +54,8 @@ void epg_xrce_services_start(epg_xrce_services_t *services)
         .link = services->link,
         .frame = services->frame,
         .frame_size = services->frame_size,
+        .opening = true,
+        .count = 1,
     };
 }
 
@@ -225,7 +227,6 @@ static void begin_reply(epg_xrce_services_t *services)
     services->count = (uint16_t)((length + share - 1) / share);
     services->first = services->next;
     services->missing = 0;
-    services->heartbeat_ns = services->now_ns + HEARTBEAT_NS;
 }
 
 /** Writes `size` bytes of the reply's submessage from byte `offset` on. */
@@ -249,10 +250,10 @@ static void write_reply(const epg_xrce_services_t *services, size_t offset, uint
 /** Sends frame `number` of the reply.  Returns false if the transport has no room for it. */
 static bool send_reply_frame(epg_xrce_services_t *services, uint16_t number)
 {
-    size_t before = 0;
-    const size_t share = reply_share(services, &before);
+    size_t before = HEADER + SUBHEADER;
+    const size_t share = services->opening ? 0 : reply_share(services, &before);
     const size_t offset = share * ahead(services->first, number);
-    const size_t left = reply_length(services) - offset;
+    const size_t left = services->opening ? 0 : reply_length(services) - offset;
     const size_t size = left < share ? left : share;
     uint8_t *frame = services->frame;
     frame[0] = EPG_XRCE_SESSION_ID;
@@ -263,7 +264,9 @@ static bool send_reply_frame(epg_xrce_services_t *services, uint16_t number)
         frame[5] = (uint8_t)(LITTLE_ENDIAN_FLAG | (size == left ? LAST_FRAGMENT_FLAG : 0));
         put_number(frame + 6, (uint16_t)size);
     }
-    write_reply(services, offset, frame + before, size);
+    if (size > 0) {
+        write_reply(services, offset, frame + before, size);
+    }
     return epg_xrce_link_send(services->link, frame, before + size);
 }
 
@@ -294,8 +297,21 @@ static void send_reply(epg_xrce_services_t *services)
     const uint16_t end = (uint16_t)(services->first + services->count);
     if (services->next != end && ahead(services->unacknowledged, services->next) < WINDOW &&
         send_reply_frame(services, services->next)) {
+        if (services->unacknowledged == services->next) {
+            services->heartbeat_ns = services->now_ns + HEARTBEAT_NS;
+        }
         services->next++;
     }
+}
+
+/** Ends a reply that the agent has acknowledged as a whole. */
+static void end_reply(epg_xrce_services_t *services)
+{
+    if (!services->opening) {
+        epg_service_done(services->node);
+    }
+    services->opening = false;
+    services->count = 0;
 }
 
 void epg_xrce_services_poll(epg_xrce_services_t *services, uint64_t now_ns)
@@ -310,8 +326,7 @@ void epg_xrce_services_poll(epg_xrce_services_t *services, uint64_t now_ns)
             send_heartbeat(services);
         }
         if (services->unacknowledged == (uint16_t)(services->first + services->count)) {
-            epg_service_done(services->node);
-            services->count = 0;
+            end_reply(services);
         }
     }
     if (services->acknowledge || (services->held && epg_service_idle(services->node))) {

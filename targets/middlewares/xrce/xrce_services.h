@@ -11,6 +11,8 @@
  *   acknowledged and sends them again, so requests wait at the agent.  The fragments of a request are collected in the
  *   node's buffer for requests.
  * - A reply is written frame by frame.  A frame that was lost is written again from the reply, so no copy is kept.
+ * - An agent that still has an older session of this client keeps the fragments of an unfinished reply.  The first frame
+ *   of a session therefore is an empty last fragment, after which the agent drops them.
  *
  * An object of this type belongs to one session.  Frames are received during the poll and sent at its end.
  */
@@ -46,6 +48,7 @@ typedef struct epg_xrce_services {
     uint8_t head[EPG_XRCE_SERVICE_HEAD]; /**< its first bytes; those after them are in the node's buffer */
 
     /* The reply */
+    bool opening;                           /**< the only frame is the empty fragment that begins a session */
     uint8_t request[EPG_XRCE_SERVICE_HEAD]; /**< `head` of the request in work */
     uint16_t count;                         /**< number of its frames; 0: there is no reply yet */
     uint16_t first;                         /**< number of its first frame */
