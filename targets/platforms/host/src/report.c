@@ -55,18 +55,10 @@ void epg_host_print_interface(const epg_host_target_t *host)
 
 /* JSON --------------------------------------------------------------------------------------------------------- */
 
-static void write_string(FILE *file, const char *key, const char *value)
+/** Writes `value`, which has no quotes and no backslashes: it is a word of the program or a name. */
+static void write_word(FILE *file, const char *key, const char *value)
 {
-    fprintf(file, "  \"%s\": \"", key);
-    for (; *value != '\0'; value++) {
-        const unsigned char letter = (unsigned char)*value;
-        if (letter < 0x20) {
-            fprintf(file, "\\u%04x", letter);
-        } else {
-            fprintf(file, "%s%c", letter == '"' || letter == '\\' ? "\\" : "", letter);
-        }
-    }
-    fputs("\",\n", file);
+    fprintf(file, "  \"%s\": \"%s\",\n", key, value);
 }
 
 static void write_count(FILE *file, const char *key, uint64_t value)
@@ -113,9 +105,9 @@ void epg_host_write_statistics(FILE *file, const epg_host_run_t *run)
     const epg_host_timing_t *timing = &run->timing;
     const epg_statistics_t statistics = counts(run);
     fputs("{\n", file);
-    write_string(file, "name", target->application->name);
-    write_string(file, "mode", strcmp(run->scheduler, "simulated") == 0 ? "simulated" : "realtime");
-    write_string(file, "scheduler", run->scheduler);
+    write_word(file, "name", target->application->name);
+    write_word(file, "mode", strcmp(run->scheduler, "simulated") == 0 ? "simulated" : "realtime");
+    write_word(file, "scheduler", run->scheduler);
     write_flag(file, "memory_locked", run->memory_locked);
     write_time(file, "period", (double)target->application->period_ns);
     write_time(file, "duration", (double)run->ran_ns);
@@ -141,8 +133,8 @@ void epg_host_write_statistics(FILE *file, const epg_host_run_t *run)
     write_count(file, "setpoint_timeouts", statistics.setpoint_timeouts);
     write_count(file, "faults", statistics.faults);
     write_flag(file, "enabled", target->control->enabled);
-    write_string(file, "fault", epg_target_fault(target, target->control->fault));
-    write_string(file, "fault_component", epg_target_component(target, target->control->fault_component));
+    write_word(file, "fault", epg_target_fault(target, target->control->fault));
+    write_word(file, "fault_component", epg_target_component(target, target->control->fault_component));
     write_histogram(file, run);
     fputs("}\n", file);
 }
