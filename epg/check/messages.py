@@ -21,6 +21,8 @@ def with_messages(
 ) -> Mapping[str, object] | None:
     """``parameters`` with a :class:`MessageType` in the place of the name of a message.
 
+    Parameters of the type ``fields`` must be called ``constants`` and ``lengths``.
+
     ``roots`` are the folders of targets; each can have a folder ``messages``.  Returns None after reporting mistakes.
     """
     named = [parameter.name for parameter in kind.parameters if parameter.type == "message"]
@@ -28,9 +30,9 @@ def with_messages(
         return parameters
     (name,) = named
     written = node[name]
-    fields = [parameter.name for parameter in kind.parameters if parameter.type == "fields"]
-    constants = _constants(node.get(fields[0]) if fields else None)
-    found = _message(written, constants, kind.communication == "subscribe", roots, diagnostics)
+    constants, lengths = _constants(node.get("constants")), _constants(node.get("lengths"))
+    received = kind.communication == "subscribe"
+    found = _message(written, constants, lengths, received, roots, diagnostics)
     return None if found is None else MappingProxyType({**parameters, name: found})
 
 
@@ -42,6 +44,7 @@ def message_files(parameters: Mapping[str, object]) -> tuple[Path, ...]:
 def _message(
     written: YamlNode,
     constants: Mapping[str, Constant],
+    lengths: Mapping[str, Constant],
     received: bool,
     roots: Sequence[Path],
     diagnostics: Diagnostics,
@@ -74,7 +77,7 @@ def _message(
     library = Library(folders)
     if library.load(name, written.span, diagnostics) is None:
         return None
-    return message_type(library, name, constants, received, written.span, diagnostics)
+    return message_type(library, name, constants, lengths, received, written.span, diagnostics)
 
 
 def _constants(node: YamlNode | None) -> dict[str, Constant]:

@@ -14,11 +14,12 @@ from __future__ import annotations
 import struct
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 
 from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.messages.constants import Constant, default_of, number_of
-from epg.messages.definition import Field, Message
+from epg.messages.definition import Field, FieldType, Message
 from epg.messages.library import Library, complete_definition
 from epg.messages.type_hash import type_hash
 from epg.source import Span
@@ -46,6 +47,10 @@ _TIME = "builtin_interfaces/msg/Time"
 MOST_VALUES = 256
 """The largest number of values of a message.  The elements of larger arrays have no names of their own."""
 MOST_BYTES = 4096
+_MOST_ITEMS = 4096
+_EMPTY = Field("structure_needs_at_least_one_member", FieldType("uint8", form="array", count=1), "", Span(""))
+"""The field that rosidl puts into a message without fields, because IDL has no empty structures."""
+
 _ANY_TEXT, _ANY_ELEMENTS = 64, 32  # the room for texts and sequences without a bound in a message that is received
 
 
@@ -53,8 +58,9 @@ _ANY_TEXT, _ANY_ELEMENTS = 64, 32  # the room for texts and sequences without a 
 class Item:
     """One number, text, stamp, array or sequence of a message, in the order of its bytes.
 
-    ``base`` is a primitive type, "stamp", or the name of a message.  ``form`` and ``count`` are those of
-    :class:`~epg.messages.definition.FieldType`.  ``message`` is the message with the field.
+    ``base`` is a primitive type, "stamp", "length" (the number of elements of a sequence, ``count``), or the name of a
+    message.  ``form`` and ``count`` are those of :class:`~epg.messages.definition.FieldType`.  ``message`` is the
+    message with the field.  For one number of an array, ``elements`` is the number of its elements; otherwise it is 0.
     """
 
     path: str
@@ -63,6 +69,7 @@ class Item:
     count: int
     field: Field
     message: Message
+    elements: int = 0
 
     @property
     def is_number(self) -> bool:
@@ -113,17 +120,26 @@ def message_type(
     library: Library,
     name: str,
     constants: Mapping[str, Constant],
+    lengths: Mapping[str, Constant],
     received: bool,
     wanted_by: Span,
     diagnostics: Diagnostics,
 ) -> MessageType | None:
     """The loaded message ``name``.  None after reporting what EPG does not support, and wrong ``constants``.
 
-    ``constants`` are the values of fields that the user has written.  ``received`` is True for a subscription.
+    ``constants`` are the values of fields that the user has written, and ``lengths`` the numbers of elements of
+    sequences.  ``received`` is True for a subscription.
     ``wanted_by`` is the position of the name of the message.
     """
     errors = diagnostics.error_count
-    items = list(_items(library, library[name], ""))
+    checked = _lengths(lengths, diagnostics)
+    # The definitions of hostile files can contain each other's arrays without end.
+    items = list(islice(_items(library, library[name], "", checked), _MOST_ITEMS + 1))
+    if len(items) > _MOST_ITEMS:
+        message = f"{name} has more than {_MOST_ITEMS} fields, with those of the messages in it"
+        diagnostics.error("message-unsupported", wanted_by, message)
+        return None
+    _unknown_lengths(lengths, items, diagnostics)
     _unsupported(items, received, wanted_by, diagnostics)
     names = tuple(item.path for item in items if item.is_number)
     if not names:
@@ -158,23 +174,53 @@ def message_type(
     )
 
 
-def _items(library: Library, message: Message, prefix: str) -> Iterator[Item]:
-    for field in message.fields:
+def _items(library: Library, message: Message, prefix: str, lengths: Mapping[str, int]) -> Iterator[Item]:
+    for field in message.fields or (_EMPTY,):
         type_, path = field.type, prefix + field.name
+        form, count = type_.form, type_.count
+        if form in ("bounded", "sequence") and path in lengths:
+            form, count = "array", lengths[path]
+            yield Item(path, "length", "one", count, field, message)
         nested = library[type_.base] if type_.is_message else None
-        if nested is not None and type_.form in ("one", "array") and type_.count <= MOST_VALUES:
-            if type_.base == _TIME and field.name == "stamp" and type_.form == "one":
+        if nested is not None and form in ("one", "array") and count <= MOST_VALUES:
+            if type_.base == _TIME and field.name == "stamp" and form == "one":
                 yield Item(path, "stamp", "one", 0, field, message)
-            elif type_.form == "one":
-                yield from _items(library, nested, f"{path}.")
+            elif form == "one":
+                yield from _items(library, nested, f"{path}.", lengths)
             else:
-                for number in range(type_.count):
-                    yield from _items(library, nested, f"{path}.{number}.")
-        elif nested is None and type_.form == "array" and type_.base in FORMATS and type_.count <= MOST_VALUES:
-            for number in range(type_.count):
-                yield Item(f"{path}.{number}", type_.base, "one", 0, field, message)
+                for number in range(count):
+                    yield from _items(library, nested, f"{path}.{number}.", lengths)
+        elif form == "array" and type_.base in FORMATS and count <= MOST_VALUES and field is not _EMPTY:
+            for number in range(count):
+                yield Item(f"{path}.{number}", type_.base, "one", 0, field, message, count)
         else:
-            yield Item(path, type_.base, type_.form, type_.count, field, message)
+            yield Item(path, type_.base, form, count, field, message)
+
+
+def _lengths(lengths: Mapping[str, Constant], diagnostics: Diagnostics) -> dict[str, int]:
+    """The lengths that are whole numbers.  Reports the others."""
+    result = {}
+    for path, length in lengths.items():
+        if isinstance(length.value, int) and not isinstance(length.value, bool) and 0 <= length.value <= MOST_VALUES:
+            result[path] = length.value
+        else:
+            message = f"the length of '{path}' must be a whole number from 0 to {MOST_VALUES}"
+            diagnostics.error("message-constant", length.span, message)
+    return result
+
+
+def _unknown_lengths(lengths: Mapping[str, Constant], items: list[Item], diagnostics: Diagnostics) -> None:
+    """Reports lengths of fields that are not sequences, or that cannot be so long."""
+    sequences = {item.path: item for item in items if item.base == "length" or item.form in ("bounded", "sequence")}
+    for path, length in lengths.items():
+        if path not in sequences:
+            hint = did_you_mean(path, sorted(sequences), "sequences")
+            diagnostics.error("message-constant", length.key, f"the message has no sequence '{path}'", hint=hint)
+            continue
+        type_ = sequences[path].field.type
+        if type_.form == "bounded" and sequences[path].base == "length" and sequences[path].count > type_.count:
+            message = f"'{path}' must have at most {type_.count} elements"
+            diagnostics.error("message-constant", length.span, message)
 
 
 def _unsupported(items: list[Item], received: bool, wanted_by: Span, diagnostics: Diagnostics) -> None:
@@ -216,9 +262,7 @@ def _unknown_constants(
 
 def _array_of(item: Item) -> str:
     """The path of the array of numbers that ``item`` is an element of; empty if it is not an element."""
-    if item.is_number and item.field.type.form == "array" and item.path.rpartition(".")[2].isdigit():
-        return item.path.rpartition(".")[0]
-    return ""
+    return item.path.rpartition(".")[0] if item.elements else ""
 
 
 class _Writer:
@@ -235,6 +279,8 @@ class _Writer:
         if item.base == "stamp":
             self.stamps.append(Place(self._put("I", 0), "STAMP"))
             self._put("I", 0)
+        elif item.base == "length":
+            self._put("I", item.count)
         elif item.is_number:
             self.places[item.path] = Place(self._put(FORMATS[item.base], self._number(item)), c_type(item.base))
         elif item.base in FORMATS:
@@ -283,7 +329,7 @@ class _Writer:
         return 0 if constant is None else number_of(item.base, constant, item.message, self._diagnostics)
 
     def _element(self, item: Item, listed: Constant, at: int) -> Constant | None:
-        wanted = item.field.type.count
+        wanted = item.elements
         if not isinstance(listed.value, tuple) or len(listed.value) != wanted:
             if at == 0:
                 message = f"'{item.path.rpartition('.')[0]}' must be a list of {wanted} values"

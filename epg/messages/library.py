@@ -59,7 +59,8 @@ class Library:
 
     def _load(self, name: str, wanted_by: Span, outer: tuple[str, ...], diagnostics: Diagnostics) -> Message | None:
         if name in outer or len(outer) > _DEPTH:
-            diagnostics.error("message-definition", wanted_by, f"the message {outer[0]} contains itself")
+            what = "itself" if name in outer else f"more than {_DEPTH} messages inside each other"
+            diagnostics.error("message-definition", wanted_by, f"the message {outer[0]} contains {what}")
             return None
         if name in self._messages:
             return self._messages[name]

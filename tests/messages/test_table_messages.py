@@ -146,12 +146,17 @@ def constant(value: Any) -> Constant:
 
 
 def made(
-    name: str, constants: Mapping[str, Any], folder: Path, received: bool = False
+    name: str,
+    constants: Mapping[str, Any],
+    folder: Path,
+    received: bool = False,
+    lengths: Mapping[str, Any] | None = None,
 ) -> tuple[MessageType | None, Library, Diagnostics]:
     library, diagnostics = Library([folder]), Diagnostics()
     assert library.load(name, HERE, diagnostics), [item.message for item in diagnostics]
     given = {key: constant(value) for key, value in constants.items()}
-    return message_type(library, name, given, received, HERE, diagnostics), library, diagnostics
+    counts = {key: constant(value) for key, value in (lengths or {}).items()}
+    return message_type(library, name, given, counts, received, HERE, diagnostics), library, diagnostics
 
 
 def typestore(library: Library, name: str) -> Any:
@@ -326,6 +331,81 @@ def test_the_runtime_reads_what_another_program_writes(name: str, runtime: ctype
     for size in range(len(data) - 8):
         found = read(runtime, received, names, data[:size])
         assert found is None or name == "sensor_msgs/msg/BatteryState", "a message that ends too early is malformed"
+
+
+def test_sequences_with_a_length_have_ports(runtime: ctypes.CDLL, folder: Path) -> None:
+    """A transform for tf2 is an element of a sequence; so are the voltages of cells."""
+    constants = {"transforms.0.header.frame_id": "odom", "transforms.0.child_frame_id": "base_link"}
+    name = "tf2_msgs/msg/TFMessage"
+    message, library, _ = made(name, constants, folder, lengths={"transforms": 1})
+    assert message is not None
+    place = "transforms.0.transform.translation.x"
+    data = write(runtime, message, {place: 1.5, "transforms.0.transform.rotation.z": 0.5}, (3, 4))
+    (found,) = typestore(library, name).deserialize_cdr(b"\x00\x01\x00\x00" + data, name).transforms
+    assert (found.header.frame_id, found.child_frame_id, found.header.stamp.sec) == ("odom", "base_link", 3)
+    assert (found.transform.translation.x, found.transform.rotation.z, found.transform.rotation.w) == (1.5, 0.5, 1.0)
+
+    name = "sensor_msgs/msg/BatteryState"
+    message, library, _ = made(name, {"cell_voltage": [1, 2, 3]}, folder, lengths={"cell_voltage": 3})
+    assert message is not None
+    data = write(runtime, message, {"cell_voltage.1": 3.5}, (0, 0))
+    state = typestore(library, name).deserialize_cdr(b"\x00\x01\x00\x00" + data, name)
+    assert list(state.cell_voltage) == [1.0, 3.5, 3.0] and len(state.cell_temperature) == 0
+
+    constants = {"names": ["a", "b"]}
+    name = "robot_msgs/msg/Every"
+    message, library, _ = made(name, constants, folder, lengths={"names": 2, "path": 2, "some": 4, "any": 0})
+    assert message is not None
+    data = write(runtime, message, {"path.1.z": 7.0, "some.3": 0.5}, (0, 0))
+    every = typestore(library, name).deserialize_cdr(b"\x00\x01\x00\x00" + data, name)
+    assert every.names == ["a", "b"] and every.path[1].z == 7.0 and list(every.some) == [0, 0, 0, 0.5]
+
+
+@pytest.mark.parametrize(
+    ("lengths", "message"),
+    [
+        ({"sum": 1}, "the message has no sequence 'sum'"),
+        ({"force": 3}, "the message has no sequence 'force'"),
+        ({"some": 5}, "'some' must have at most 4 elements"),
+        ({"any": 0.5}, "the length of 'any' must be a whole number from 0 to 256"),
+        ({"any": 257}, "the length of 'any' must be a whole number from 0 to 256"),
+    ],
+)
+def test_wrong_lengths_are_told(lengths: dict[str, Any], message: str, folder: Path) -> None:
+    found, _, diagnostics = made("robot_msgs/msg/Every", {}, folder, lengths=lengths)
+    assert found is None and [item.message for item in diagnostics] == [message]
+
+
+def test_a_message_without_fields_has_one_byte(runtime: ctypes.CDLL, tmp_path: Path) -> None:
+    path = tmp_path / "robot_msgs/msg"
+    path.mkdir(parents=True)
+    (path / "Nothing.msg").write_text("# no fields\n", encoding="utf-8")
+    (path / "Around.msg").write_text("uint8 before\nNothing nothing\nuint8 behind\n", encoding="utf-8")
+    message, library, _ = made("robot_msgs/msg/Around", {}, tmp_path)
+    assert message is not None and message.names == ("before", "behind")
+    data = write(runtime, message, {"before": 1.0, "behind": 2.0}, (0, 0))
+    assert data == b"\x01\x00\x02"
+    store = typestore(library, "robot_msgs/msg/Around")
+    assert store.deserialize_cdr(b"\x00\x01\x00\x00" + data, "robot_msgs/msg/Around").behind == 2
+
+
+def test_definitions_that_grow_without_end(tmp_path: Path) -> None:
+    """Each message has 200 of the next one: 200 to the power of 12 numbers."""
+    path = tmp_path / "robot_msgs/msg"
+    path.mkdir(parents=True)
+    for number in range(12):
+        (path / f"M{number}.msg").write_text(f"M{number + 1}[200] more\n", encoding="utf-8")
+    (path / "M12.msg").write_text("float64 x\n", encoding="utf-8")
+    assert problems("robot_msgs/msg/M0", {}, tmp_path) == [
+        ("robot.tcf", "robot_msgs/msg/M0 has more than 4096 fields, with those of the messages in it")
+    ]
+    for number in range(12, 20):
+        (path / f"M{number}.msg").write_text(f"M{number + 1} more\n", encoding="utf-8")
+    diagnostics = Diagnostics()
+    assert Library([tmp_path]).load("robot_msgs/msg/M0", HERE, diagnostics) is None
+    assert [item.message for item in diagnostics] == [
+        "the message robot_msgs/msg/M0 contains more than 16 messages inside each other"
+    ]
 
 
 def test_signed_numbers_and_wrong_truth_values(runtime: ctypes.CDLL, tmp_path: Path) -> None:
