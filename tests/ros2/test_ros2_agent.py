@@ -173,6 +173,31 @@ def test_a_killed_board_leaves_the_graph(agent: RealAgent, build: Build, impleme
     assert 3.0 <= told["node"] <= 5.0
 
 
+IMU = """
+from sensor_msgs.msg import Imu
+
+heard = []
+node.create_subscription(Imu, "/robot_1/imu/data", heard.append, 10)
+wait(lambda: len(heard) > 20, 20)
+last = heard[-1]
+print(json.dumps({
+    "frame": last.header.frame_id,
+    "covariance": list(last.orientation_covariance),
+    "w": last.orientation.w,
+    "rising": all(a.header.stamp.nanosec != b.header.stamp.nanosec for a, b in zip(heard, heard[1:])),
+    "messages": len(heard),
+}))
+"""
+
+
+@pytest.mark.parametrize("implementation", IMPLEMENTATIONS)
+def test_a_message_of_any_type(agent: RealAgent, build: Build, implementation: str) -> None:
+    with boards(build("agent_sensors"), agent, 1):
+        told = ask(agent, implementation, IMU)
+    assert isinstance(told, dict) and told.pop("messages") > 20
+    assert told == {"frame": "imu_link", "covariance": [-1.0] + [0.0] * 8, "w": 1.0, "rising": True}
+
+
 DISABLED = """
 heard, told = [], []
 node.create_subscription(Float64, "/robot_1/pan_publisher", heard.append, qos_profile_sensor_data)
