@@ -15,6 +15,7 @@ import json
 DEFINITIONS = {
     "builtin_interfaces/msg/Time": "int32 sec, uint32 nanosec",
     "std_msgs/msg/Header": "builtin_interfaces/msg/Time stamp, string frame_id",
+    "rosgraph_msgs/msg/Clock": "builtin_interfaces/msg/Time clock",
     "std_msgs/msg/String": "string data",
     "std_msgs/msg/Float64": "float64 data",
     "std_msgs/msg/Float32": "float32 data",

@@ -95,6 +95,7 @@ def service_struct(type_: str) -> Any:
     return _idl_struct(type_, header | {name: _idl_type(text) for name, text in fields_of(type_)})
 
 
+Clock_ = _struct("rosgraph_msgs/msg/Clock")
 Float64_ = _struct("std_msgs/msg/Float64")
 Float32_ = _struct("std_msgs/msg/Float32")
 Int32_ = _struct("std_msgs/msg/Int32")

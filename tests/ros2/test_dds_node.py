@@ -27,6 +27,7 @@ from tests.ros2.build import Build
 from tests.ros2.definitions import type_hash
 from tests.ros2.messages import (
     Bool_,
+    Clock_,
     DiagnosticArray_,
     Float64_,
     Float64MultiArray_,
@@ -136,6 +137,35 @@ def test_arguments_of_a_launch_file_rename_the_node_and_its_topics(jiwy: Path, n
         assert {"/fleet/a/go", "/fleet/a/pan_subscriber", "/fleet/a/tilt_subscriber"} <= subscriptions
         pan = peer.subscription("/pan", Float64_)
         assert hear(peer, pan, 3)
+
+
+def test_simulated_time_at_a_pace_is_on_clock(jiwy: Path, net: Network, tmp_path: Path) -> None:
+    """All stamps are simulated time, which begins at 0, and follows real time at the pace."""
+    trace = tmp_path / "trace.csv"
+    command = [str(jiwy), "--pace", "4", "--serial", "7", "--quiet", "--duration", "1000", "--trace", str(trace)]
+    process = subprocess.Popen(command, env=net.environment, stderr=subprocess.PIPE, text=True)
+    with running([process]), Peer(net.domain, "monitor") as peer:
+        clock = peer.subscription("/clock", Clock_, reliable=False)
+        diagnostics = peer.subscription("/diagnostics", DiagnosticArray_)
+        pan = peer.publisher("/robot_7/pan_subscriber", Float64_)
+        meet(peer)
+        clock_endpoint = next(e for e in peer.graph.publications() if e.topic == "/clock")
+        assert clock_endpoint.hash == type_hash("rosgraph_msgs/msg/Clock")
+        assert not clock_endpoint.reliable
+        assert hear(peer, clock, 100) and hear(peer, diagnostics, 2)
+        for _ in range(10):  # the robot may discover the writer later than it is discovered
+            pan.publish(Float64_(0.1))
+            peer.spin(0.033)
+        times = [message.clock.sec + message.clock.nanosec * 1e-9 for message in clock.messages]
+        assert times == sorted(times) and times[0] < 1000.0
+        assert statistics.median(b - a for a, b in itertools.pairwise(times)) == pytest.approx(0.01, abs=0.002)
+        stamp = diagnostics.messages[-1].header.stamp
+        assert stamp.sec <= times[-1] + 1.0, "not since 1970"
+        assert hear(peer, clock, len(clock.received) + 5)
+        process.send_signal(signal.SIGINT)
+        errors = process.communicate(timeout=30)[1]
+    assert errors == "jiwy: simulated time at 4 times real time: this run is not repeatable\n"
+    assert Robot(process, trace).signal("inputs.setpoint_pan")[-1] == 0.1
 
 
 def test_values_come_at_the_communication_period(jiwy: Path, net: Network, tmp_path: Path) -> None:

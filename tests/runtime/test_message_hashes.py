@@ -32,7 +32,7 @@ def test_all_messages_are_found() -> None:
     )
     services = {"SetBool", "Trigger", "ListParameters", "GetParameters", "GetParameterTypes", "DescribeParameters"}
     services |= {"SetParameters", "SetParametersAtomically"}
-    assert declared == 10
+    assert declared == 11
     assert len(messages()) == declared + 2 * len(services)
 
 

@@ -24,10 +24,14 @@ static void take_values(epg_node_t *node)
     }
 }
 
+static epg_stamp_t stamp_at(uint64_t time_ns)
+{
+    return (epg_stamp_t){.seconds = (int32_t)(time_ns / SECOND_NS), .nanoseconds = (uint32_t)(time_ns % SECOND_NS)};
+}
+
 static epg_stamp_t stamp_of(const epg_node_t *node)
 {
-    const uint64_t time_ns = node->time_ns + (uint64_t)node->epoch_ns;
-    return (epg_stamp_t){.seconds = (int32_t)(time_ns / SECOND_NS), .nanoseconds = (uint32_t)(time_ns % SECOND_NS)};
+    return stamp_at(node->time_ns + (uint64_t)node->epoch_ns);
 }
 
 /**
@@ -63,8 +67,11 @@ static bool is_due(epg_node_t *node, const epg_topic_t *topic, epg_node_publicat
     return true;
 }
 
-static size_t write_message(epg_node_t *node, const epg_topic_t *topic)
+static size_t write_message(epg_node_t *node, const epg_topic_t *topic, uint64_t now_ns)
 {
+    if (topic->role == EPG_TOPIC_CLOCK) {
+        return topic->message->write(topic, NULL, stamp_at(now_ns), node->buffer, node->buffer_size);
+    }
     if (topic->role == EPG_TOPIC_DIAGNOSTICS) {
         return epg_diagnostics_write(node, stamp_of(node), node->buffer, node->buffer_size);
     }
@@ -72,11 +79,11 @@ static size_t write_message(epg_node_t *node, const epg_topic_t *topic)
 }
 
 /** Sends publication `index`; if the middleware has no room, the publication waits for the next call. */
-static void publish(epg_node_t *node, size_t index)
+static void publish(epg_node_t *node, size_t index, uint64_t now_ns)
 {
     const epg_topic_t *topic = &node->target->publications[index];
     epg_node_publication_t *state = &node->publications[index];
-    const size_t size = write_message(node, topic);
+    const size_t size = write_message(node, topic, now_ns);
     if (size == 0) {
         state->waiting = false; /* there are no data yet */
         return;
@@ -130,7 +137,7 @@ void epg_node_poll(epg_node_t *node, uint64_t now_ns)
         const bool due = is_due(node, &node->target->publications[i], state, now_ns);
         node->unsent += due && state->waiting ? 1U : 0U;
         if (due || state->waiting) {
-            publish(node, i);
+            publish(node, i, now_ns);
         }
     }
 }
@@ -175,7 +182,9 @@ void epg_node_receive(epg_node_t *node, size_t subscription, const void *data, s
 
 void epg_node_set_time(epg_node_t *node, uint64_t epoch_ns, uint64_t now_ns)
 {
-    node->epoch_ns = (int64_t)(epoch_ns - now_ns);
+    if (!node->target->simulated_time) {
+        node->epoch_ns = (int64_t)(epoch_ns - now_ns);
+    }
 }
 
 size_t epg_node_name(const epg_node_t *node, const char *relative, bool service, char *name, size_t size)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import struct
 import subprocess
 from pathlib import Path
 
@@ -63,6 +64,25 @@ def test_it_says_whether_there_is_an_agent(robot: Path, agent: Agent) -> None:
         finally:
             process.terminate()
         assert process.wait(PATIENCE) == 130
+
+
+def test_simulated_time_at_a_pace_is_on_clock(robot: Path, agent: Agent) -> None:
+    """The session lasts at ten times real time, which its time-outs follow."""
+    command = [str(robot), "--pace", "10", "--agent", agent.address]
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stderr is not None
+        try:
+            note = "robot: simulated time at 10 times real time: this run is not repeatable\n"
+            assert process.stderr.readline() == note
+            assert process.stderr.readline() == f"robot: connected to the agent at {agent.address}\n"
+            assert agent.topics.wait_until(lambda: len(agent.topics.samples("rt/clock")) > 300, PATIENCE)
+            times = [struct.unpack("<iI", sample.data[-8:]) for sample in agent.topics.samples("rt/clock")]
+            assert times == sorted(times) and times[-1][0] < 1000
+            agent.topics.wait_for_sample("rt/lab/cycles_too", PATIENCE, "/lab/robot_host")
+        finally:
+            process.terminate()
+        assert process.wait(PATIENCE) == 130
+        assert process.stderr.read() == "", "the agent was never lost"
 
 
 def test_the_console_beside_it_tells_of_the_connection(spoken_robot: Path, agent: Agent) -> None:

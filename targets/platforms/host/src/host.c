@@ -37,6 +37,7 @@ static int run_target(const epg_host_target_t *host, const epg_host_options_t *o
     const uint64_t cycles = (options->duration_ns - 1) / target->application->period_ns + 1;
     run = (epg_host_run_t){.host = host,
                            .end_ns = options->duration_ns,
+                           .pace = options->pace,
                            .services = *services,
                            .ends_with_input = services->terminal != NULL && options->duration_ns == UINT64_MAX};
     if (!epg_host_communication_start(&run.communication, target, events, run.end_ns, files->topics)) {
@@ -128,6 +129,10 @@ int epg_host_main(const epg_host_target_t *generated, int argc, char **argv)
     if (!prepare_target(&target, &options)) {
         epg_host_free_setpoints(&events);
         return WRONG_INPUT;
+    }
+    if (options.pace > 0.0 && !epg_host_pace_prepare(&target)) {
+        epg_host_free_setpoints(&events);
+        return FAILED;
     }
     epg_host_interrupted = 0;
     signal(SIGINT, on_interrupt);

@@ -11,35 +11,39 @@
 #include "link.h"
 #include "number.h"
 
+/** The range of --pace.  The time-outs of a connection follow simulated time. */
+#define PACE_MIN 0.01
+#define PACE_MAX 100.0
+
 void epg_host_print_help(const char *name)
 {
-    printf(
-        "usage: %s [options] --duration SECONDS\n"
-        "       %s [options] --realtime [--console]\n"
-        "\n"
-        "Runs the target '%s' against its simulated plant.\n"
-        "\n"
-        "  --duration SECONDS   duration of the run; in real time, a console or ROS 2 node needs none\n"
-        "  --realtime           runs in real time (default: simulated time)\n"
-        "  --console            reads commands from standard input, answers on standard output (real time)\n"
-        "  --console-pty PATH   the same on a terminal with this name, like the serial port of a board\n"
-        "  --agent HOST:PORT    address of the ROS 2 agent (real time; default: as in the .tcf)\n"
-        "  --serial-device PATH serial device of the ROS 2 agent, such as /dev/ttyUSB0\n"
-        "  --store FILE         file in which the console and ROS 2 store parameters\n"
-        "  --serial WORD        replaces '$serial' in the names of node and namespace; default: host\n"
-        "  --setpoints FILE     reads setpoints from a CSV file with rows time,topic,value\n"
-        "  --topics FILE        writes all published values in the same form\n"
-        "  --trace FILE         writes all signals, one row per control cycle\n"
-        "  --statistics FILE    writes the run's statistics as JSON\n"
-        "  --quiet              prints no summary\n"
-        "  --interface          prints the names of topics, digital inputs and signals, for programs\n"
-        "  --help               prints this text\n"
-        "  --ros-args ...       the arguments of ROS 2 (-r, -p, --params-file, --log-level), up to --; a ROS 2 node\n"
-        "                       then runs in real time unless --duration is given\n"
-        "\n"
-        "Exit status: 0 done; 1 the run or the writing of a file failed, or the plant diverged;\n"
-        "2 wrong options or setpoint file; 130 interrupted (all files are complete up to this moment).\n",
-        name, name, name);
+    printf("usage: %s [options] --duration SECONDS\n"
+           "       %s [options] --realtime [--console]\n"
+           "       %s [options] --pace FACTOR\n"
+           "\n"
+           "Runs the target '%s' against its simulated plant.\n"
+           "\n"
+           "  --duration SECONDS   duration of the run; in real time, a console or ROS 2 node needs none\n"
+           "  --realtime           runs in real time (default: simulated time)\n"
+           "  --pace FACTOR        simulated time at FACTOR times real time, as a ROS 2 node with /clock\n"
+           "  --console            reads commands from standard input, answers on standard output (real time)\n"
+           "  --console-pty PATH   the same on a terminal with this name, like the serial port of a board\n"
+           "  --agent HOST:PORT    address of the ROS 2 agent (real time; default: as in the .tcf)\n"
+           "  --serial-device PATH serial device of the ROS 2 agent, such as /dev/ttyUSB0\n"
+           "  --store FILE         file in which the console and ROS 2 store parameters\n"
+           "  --serial WORD        replaces '$serial' in the names of node and namespace; default: host\n"
+           "  --setpoints FILE     reads setpoints from a CSV file with rows time,topic,value\n"
+           "  --topics FILE        writes all published values in the same form\n"
+           "  --trace FILE         writes all signals, one row per control cycle\n"
+           "  --statistics FILE    writes the run's statistics as JSON\n"
+           "  --quiet              prints no summary\n"
+           "  --interface          prints the names of topics, digital inputs and signals, for programs\n"
+           "  --help               prints this text\n"
+           "  --ros-args ...       arguments of ROS 2 (-r, -p, --params-file, --log-level), up to --\n"
+           "\n"
+           "Exit status: 0 done; 1 the run or the writing of a file failed, or the plant diverged;\n"
+           "2 wrong options or setpoint file; 130 interrupted (all files are complete up to this moment).\n",
+           name, name, name, name);
 }
 
 /** An option of the command line: a flag, or a text value.  One of the two pointers is NULL. */
@@ -115,8 +119,12 @@ static bool fit_together(const epg_host_options_t *options)
         fputs("error: --agent and --serial-device\nhint: a target has one agent: remove one of the options\n", stderr);
         return false;
     }
-    if ((options->agent != NULL || options->device != NULL) && !options->realtime) {
-        fprintf(stderr, "error: %s without --realtime\nhint: an agent needs real time: add --realtime\n",
+    if (options->pace > 0.0 && options->realtime) {
+        fputs("error: --pace and --realtime\nhint: --pace is for simulated time: remove one of the options\n", stderr);
+        return false;
+    }
+    if ((options->agent != NULL || options->device != NULL) && !epg_host_connects(options)) {
+        fprintf(stderr, "error: %s without --realtime\nhint: an agent needs real time: add --realtime, or --pace\n",
                 options->agent != NULL ? "--agent" : "--serial-device");
         return false;
     }
@@ -128,15 +136,37 @@ static bool fit_together(const epg_host_options_t *options)
     return true;
 }
 
+/** Takes the value of --pace; NULL: not given. */
+static bool take_pace(const char *text, bool connected, epg_host_options_t *options)
+{
+    if (text == NULL) {
+        return true;
+    }
+    if (!epg_host_parse_number(text, &options->pace) || !(options->pace >= PACE_MIN && options->pace <= PACE_MAX)) {
+        fprintf(stderr, "error: --pace '%s' is not a factor from 0.01 to 100\nhint: --pace 1 is as fast as real time\n",
+                text);
+        return false;
+    }
+    if (!connected) {
+        fputs("error: --pace: this target is not a ROS 2 node\nhint: 'communication: {middleware: dds}' in the .tcf "
+              "makes it one; without --pace, simulated time does not wait\n",
+              stderr);
+        return false;
+    }
+    return true;
+}
+
 bool epg_host_read_options(int argc, char **argv, bool connected, epg_host_options_t *options)
 {
     *options = (epg_host_options_t){0};
     const char *duration = NULL;
+    const char *pace = NULL;
     const option_t known[] = {
         {"--help", &options->help, NULL},
         {"--quiet", &options->quiet, NULL},
         {"--realtime", &options->realtime, NULL},
         {"--duration", NULL, &duration},
+        {"--pace", NULL, &pace},
         {"--setpoints", NULL, &options->setpoints},
         {"--topics", NULL, &options->topics},
         {"--trace", NULL, &options->trace},
@@ -166,8 +196,9 @@ bool epg_host_read_options(int argc, char **argv, bool connected, epg_host_optio
         }
     }
     /* `ros2 run` and launch files start a node without options of this program. */
-    options->realtime = options->realtime || (options->ros.given && connected && duration == NULL);
-    return options->help || options->interface || epg_host_complete_options(duration, connected, options);
+    options->realtime = options->realtime || (options->ros.given && connected && duration == NULL && pace == NULL);
+    return options->help || options->interface ||
+           (take_pace(pace, connected, options) && epg_host_complete_options(duration, connected, options));
 }
 
 bool epg_host_complete_options(const char *duration, bool connected, epg_host_options_t *options)
@@ -175,7 +206,7 @@ bool epg_host_complete_options(const char *duration, bool connected, epg_host_op
     if (!fit_together(options)) {
         return false;
     }
-    const bool served = options->console || options->console_pty != NULL || (options->realtime && connected);
+    const bool served = options->console || options->console_pty != NULL || (epg_host_connects(options) && connected);
     if (duration == NULL && served && options->trace == NULL) {
         options->duration_ns = UINT64_MAX;
         return true;

@@ -21,6 +21,7 @@ typedef struct epg_host_options {
     bool realtime;
     bool console;            /**< on standard input and output */
     uint64_t duration_ns;    /**< > 0; UINT64_MAX: until the user ends the run */
+    double pace;             /**< simulated time at this multiple of real time, with a connection; 0: not given */
     const char *agent;       /**< address of the agent, HOST:PORT; NULL: the generated one */
     const char *device;      /**< path of the agent's terminal, in place of an address; NULL: not given */
     const char *console_pty; /**< name of the console's terminal; NULL: none */
@@ -38,6 +39,12 @@ typedef struct epg_host_options {
  * Returns false after a message to stderr that describes the mistake.
  */
 bool epg_host_read_options(int argc, char **argv, bool connected, epg_host_options_t *options);
+
+/** True if a run with these options connects to the target's middleware. */
+static inline bool epg_host_connects(const epg_host_options_t *options)
+{
+    return options->realtime || options->pace > 0.0;
+}
 
 /**
  * The second half of epg_host_read_options(): checks if the options can be combined, and reads `duration` (NULL: not

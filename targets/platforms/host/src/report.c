@@ -107,6 +107,11 @@ void epg_host_write_statistics(FILE *file, const epg_host_run_t *run)
     fputs("{\n", file);
     write_word(file, "name", target->application->name);
     write_word(file, "mode", strcmp(run->scheduler, "simulated") == 0 ? "simulated" : "realtime");
+    if (run->pace > 0.0) {
+        fputs("  \"pace\": ", file);
+        epg_host_write_number(file, run->pace);
+        fputs(",\n", file);
+    }
     write_word(file, "scheduler", run->scheduler);
     write_flag(file, "memory_locked", run->memory_locked);
     write_time(file, "period", (double)target->application->period_ns);

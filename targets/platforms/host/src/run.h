@@ -32,6 +32,8 @@ typedef struct epg_host_run {
     const epg_host_signal_t *diverged; /**< the output of the plant that ended the run; NULL: none */
     double diverged_value;
     uint64_t diverged_ns;         /**< time at which it diverged */
+    double pace;                  /**< simulated time at this multiple of real time, with a connection; 0: no waiting */
+    uint64_t pace_start_ns;       /**< monotonic time of simulated time 0 at this pace */
     const char *scheduler;        /**< "simulated", "SCHED_FIFO", "SCHED_OTHER" or "native_sim" */
     const char *scheduler_reason; /**< the error for which SCHED_FIFO was not used; NULL otherwise */
     bool memory_locked;           /**< the memory could be locked, so the control thread has no page faults */
@@ -76,6 +78,24 @@ void epg_host_run_end(epg_host_run_t *run, uint64_t tick_ns, uint64_t next_ns);
  * simulated time if there is a `$stall` event.
  */
 const epg_application_t *epg_host_prepare_simulated(epg_host_run_t *run);
+
+/**
+ * Prepares a run with `pace` of a ROS 2 node: it gets the topic /clock.  Returns false, with a message, if memory is
+ * short.
+ */
+bool epg_host_pace_prepare(epg_target_t *target);
+
+/** Starts the middlewares of a run with `pace`, and reports that it is not repeatable. */
+void epg_host_pace_start(epg_host_run_t *run);
+
+/**
+ * Serves the middlewares until it is the time for the tick at simulated time `tick_ns`, at least once.  A computer that
+ * is too slow for the pace lets simulated time fall behind; the run does not catch up.
+ */
+void epg_host_pace_wait(epg_host_run_t *run, uint64_t tick_ns);
+
+/** Stops the middlewares. */
+void epg_host_pace_end(epg_host_run_t *run);
 
 /** Runs from time 0 to the end in simulated time. */
 void epg_host_run_simulated(epg_host_run_t *run);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Simulated time: one thread, which does not wait, and gives the same result every time.
+ * Simulated time: one thread, which does not wait, and gives the same result every time.  Only a run with `pace` waits.
  *
  * The result does not depend on the speed of the computer.  A cycle takes no simulated time, except after a `$stall`
  * event.  The computation time in the statistics is measured separately, by the monotonic clock.
@@ -77,8 +77,14 @@ void epg_host_run_simulated(epg_host_run_t *run)
     uint64_t next_ns = 0;
     uint32_t missed = 0;
     run->scheduler = "simulated";
+    if (run->pace > 0.0) {
+        epg_host_pace_start(run);
+    }
     while (next_ns < run->end_ns && !epg_host_interrupted) {
         tick_ns = next_ns;
+        if (run->pace > 0.0) {
+            epg_host_pace_wait(run, tick_ns);
+        }
         move_on(simulation.now_ns > tick_ns ? simulation.now_ns : tick_ns);
         if (!epg_host_plant_is_sound(run, simulation.now_ns)) {
             break;
@@ -90,5 +96,8 @@ void epg_host_run_simulated(epg_host_run_t *run)
     epg_host_run_end(run, tick_ns, next_ns);
     epg_host_communicate_simulated(&run->communication, run->ran_ns);
     run->wall_time_ns = epg_host_monotonic_ns() - entered_ns;
+    if (run->pace > 0.0) {
+        epg_host_pace_end(run);
+    }
     epg_host_clock_real();
 }

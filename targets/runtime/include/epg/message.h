@@ -54,6 +54,8 @@ extern const epg_message_t epg_message_float32; /**< std_msgs/msg/Float32; a val
 extern const epg_message_t epg_message_int32;   /**< std_msgs/msg/Int32; values are rounded and limited to its range */
 extern const epg_message_t epg_message_bool;    /**< std_msgs/msg/Bool; a value above 0.5 is true; true is read as 1 */
 
+extern const epg_message_t epg_message_clock; /**< rosgraph_msgs/msg/Clock; its only content is the stamp */
+
 /**
  * std_msgs/msg/Float64MultiArray.  A field is the index of an element.  Elements without a value are written as 0.  An
  * array is read only if it has exactly `count` elements after its `data_offset`.

@@ -80,7 +80,7 @@ void epg_node_connected(epg_node_t *node, uint64_t now_ns);
 /** Must be called when a message for subscription `subscription` has arrived. */
 void epg_node_receive(epg_node_t *node, size_t subscription, const void *data, size_t size, uint64_t now_ns);
 
-/** Sets the clock: at board time `now_ns` it was `epoch_ns` nanoseconds since 1970. */
+/** Sets the clock: at board time `now_ns` it was `epoch_ns` nanoseconds since 1970.  Ignored in simulated time. */
 void epg_node_set_time(epg_node_t *node, uint64_t epoch_ns, uint64_t now_ns);
 
 /**

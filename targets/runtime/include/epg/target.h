@@ -24,6 +24,7 @@ typedef enum epg_topic_role {
     EPG_TOPIC_ENABLE,      /**< subscription: a Bool that enables or disables the target */
     EPG_TOPIC_DIAGNOSTICS, /**< publication: status and statistics, at `period_ns` */
     EPG_TOPIC_PARAMETERS,  /**< publication: changed parameters, looked for at `period_ns` */
+    EPG_TOPIC_CLOCK,       /**< publication: simulated time, at `period_ns` */
     EPG_TOPIC_ECHO         /**< subscription: each message is sent at once as publication `index`, of the same type;
                                 publication: the messages that such a subscription sends */
 } epg_topic_role_t;
@@ -82,7 +83,8 @@ typedef struct epg_target {
      * replaced.  Only for computers: a launch file gives the names.
      */
     const char *(*rename)(const char *name, bool service);
-    uint8_t domain;                   /**< ROS_DOMAIN_ID; EPG_DOMAIN_DEFAULT: that of the agent or the environment */
+    bool simulated_time; /**< the time is simulated: stamps have this time, and the clock of the network is not used */
+    uint8_t domain;      /**< ROS_DOMAIN_ID; EPG_DOMAIN_DEFAULT: that of the agent or the environment */
     uint64_t communication_period_ns; /**< time between two publications */
     size_t component_count;
     const char *const *components; /**< names of all components; the component of a fault is an index into them */

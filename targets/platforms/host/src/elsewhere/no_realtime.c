@@ -44,6 +44,28 @@ bool epg_host_run_realtime(epg_host_run_t *run)
     return unavailable();
 }
 
+bool epg_host_pace_prepare(epg_target_t *target)
+{
+    (void)target;
+    return unavailable();
+}
+
+void epg_host_pace_start(epg_host_run_t *run)
+{
+    (void)run;
+}
+
+void epg_host_pace_wait(epg_host_run_t *run, uint64_t tick_ns)
+{
+    (void)run;
+    (void)tick_ns;
+}
+
+void epg_host_pace_end(epg_host_run_t *run)
+{
+    (void)run;
+}
+
 bool epg_host_start(const epg_host_target_t *host)
 {
     (void)host;

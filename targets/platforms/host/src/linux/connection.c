@@ -41,7 +41,7 @@ static int open_link(epg_host_services_t *services, const epg_host_target_t *hos
               stderr);
         return WRONG_INPUT;
     }
-    if (host->agent == NULL || !options->realtime) {
+    if (host->agent == NULL || !epg_host_connects(options)) {
         return DONE;
     }
     agent = agent != NULL ? agent : host->agent;

@@ -69,7 +69,9 @@ void epg_host_services_serve(epg_host_services_t *services, uint64_t time_ns)
     const uint64_t soon_ns = epg_host_monotonic_ns() + LONGEST_SLEEP_NS;
     const uint64_t until_ns = time_ns < soon_ns ? time_ns : soon_ns;
     if (middleware != NULL && middleware->wait != NULL) {
-        middleware->wait(until_ns);
+        /* The middleware waits by the port layer's time, which can be simulated. */
+        const uint64_t now_ns = epg_host_monotonic_ns();
+        middleware->wait(epg_port_time_ns() + (until_ns > now_ns ? until_ns - now_ns : 0));
     } else {
         wait_for_files(services, until_ns);
     }
