@@ -59,8 +59,18 @@ def disabling_robot(robot_build: Path) -> Path:
 
 
 @pytest.fixture(scope="session")
-def jiwy(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return build("jiwy", tmp_path_factory.mktemp("xrce_jiwy"), SANITIZERS) / "jiwy_host"
+def jiwy_build(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return build("jiwy", tmp_path_factory.mktemp("xrce_jiwy"), SANITIZERS)
+
+
+@pytest.fixture(scope="session")
+def jiwy(jiwy_build: Path) -> Path:
+    return jiwy_build / "jiwy_host"
+
+
+@pytest.fixture(scope="session")
+def small_jiwy(jiwy_build: Path) -> Path:
+    return jiwy_build / "small_host"
 
 
 @pytest.fixture

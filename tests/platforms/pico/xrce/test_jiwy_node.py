@@ -11,12 +11,17 @@ import pytest
 from tests.platforms.pico.closed_loop.robot import AXES
 from tests.platforms.pico.images import PLATFORMS, skip_unless_emulated
 from tests.xrce_agent.messages import float64, read_diagnostics
+from tests.xrce_agent.parameters import Parameters
 
 from .board import Jiwy
 from .checks import ENDS, assert_it_tracks, assert_undisturbed
 
 PAN, TILT = AXES
-SERVICES = {"rq/JIWY_node/enableRequest", "rq/JIWY_node/resetRequest"}
+EVENTS = {"rt/parameter_events": ("rcl_interfaces::msg::dds_::ParameterEvent_", True)}
+SERVICES = [
+    *("enable", "reset", "list_parameters", "get_parameters", "get_parameter_types", "describe_parameters"),
+    *("set_parameters", "set_parameters_atomically", "store_parameters"),
+]
 STOP, START = 7, 8
 """Orders to the user's program."""
 
@@ -31,8 +36,8 @@ def jiwy(request: pytest.FixtureRequest) -> Iterator[Jiwy]:
 def test_what_it_reads_and_writes(jiwy: Jiwy) -> None:
     jiwy.agent.run(1200)
     ends = {end.topic: (end.type, end.reliable) for end in [*jiwy.agent.topics.readers, *jiwy.agent.topics.writers]}
-    assert {topic: end for topic, end in ends.items() if topic.startswith("rt/")} == ENDS
-    assert {topic for topic in ends if topic.startswith("rq/")} >= SERVICES
+    assert {topic: end for topic, end in ends.items() if topic.startswith("rt/")} == ENDS | EVENTS
+    assert {topic for topic in ends if topic.startswith("rq/")} == {f"rq/JIWY_node/{name}Request" for name in SERVICES}
     said = read_diagnostics(jiwy.agent.heard("rt/diagnostics")[-1].data)
     assert (said.name, said.values["fault"], said.values["overruns"]) == ("JIWY_node", "none", "0")
     assert said.hardware == jiwy.pico.call("usb")["serial"]
@@ -73,6 +78,23 @@ def test_the_service_enables_and_disturbs_no_cycle(jiwy: Jiwy) -> None:
     assert (stats["reconnects"], stats["malformed"]) == ("0", "0")
     assert jiwy.agent.call("/JIWY_node/enable", b"\0")[:1] == b"\1"
     assert jiwy.stats()["enabled"] == "0"
+
+
+def test_parameters_are_set_and_disturb_no_cycle(jiwy: Jiwy) -> None:
+    """All parameters are read, described and set, each in one request, while the robot tracks."""
+    parameters = Parameters(jiwy.agent.call, "/JIWY_node")
+    names = parameters.list()
+    values = dict(zip(names, parameters.get(names), strict=True))
+    assert (len(names), list(parameters.described(names))) == (30, names)
+    jiwy.home()
+    jiwy.begin()
+    assert parameters.set_atomically(values) == (True, "")
+    for factor in (0.9, 1.1, 1.0):
+        assert parameters.set({"Pan.PID.kp": factor * values["Pan.PID.kp"]}) == [(True, "")]
+        assert parameters.get(["Pan.PID.kp"]) == [factor * values["Pan.PID.kp"]]
+    assert_it_tracks(jiwy, 1)
+    stats = assert_undisturbed(jiwy)
+    assert (stats["reconnects"], stats["malformed"]) == ("0", "0")
 
 
 def test_a_value_that_is_none_is_dropped(jiwy: Jiwy) -> None:
