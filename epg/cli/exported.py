@@ -51,6 +51,7 @@ def _forget_people(configuration: Path) -> bool:
 
     The file is replaced atomically.  Returns True if it contained such data.
     """
+    from epg.emit.leftovers import replace_file
     from epg.models.personal import without_personal_data
 
     try:
@@ -59,7 +60,5 @@ def _forget_people(configuration: Path) -> bool:
         return False
     after = without_personal_data(before)
     if after != before:
-        temporary = configuration.with_name(configuration.name + ".new")
-        temporary.write_bytes(after)
-        os.replace(temporary, configuration)
+        replace_file(configuration, after)
     return after != before

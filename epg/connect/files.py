@@ -10,12 +10,11 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Iterable
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 from epg.documents.text_file import MAX_BYTES
-from epg.emit.leftovers import lock, temporary_beside
+from epg.emit.leftovers import replace_file
 
 BOM = b"\xef\xbb\xbf"
 
@@ -71,25 +70,14 @@ def save(before: Snapshot, after: Snapshot, *, project: Path | None = None, anyw
     if not anyway and read_snapshot(target).data != before.data:
         raise Unsavable(f"another program changed '{before.path.name}' after EPG had read it")
     assert after.data is not None
-    temporary = temporary_beside(target)
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
         if target.exists() and not os.access(target, os.W_OK):
             raise Unsavable(f"'{before.path.name}' is write-protected")
-        with temporary.open("xb") as file:
-            lock(file.fileno())
-            file.write(after.data)
-            file.flush()
-            os.fsync(file.fileno())
-        if target.exists():
-            os.chmod(temporary, target.stat().st_mode & 0o7777)
-        os.replace(temporary, target)
+        mode = target.stat().st_mode & 0o7777 if target.exists() else None
+        replace_file(target, after.data, mode, durable=True)
     except OSError as error:
-        _discard(temporary)
         raise Unsavable(f"cannot write '{before.path.name}': {error.strerror or error}") from error
-    except BaseException:
-        _discard(temporary)
-        raise
 
 
 def _check_links(path: Path, target: Path, project: Path | None) -> None:
@@ -101,11 +89,6 @@ def _check_links(path: Path, target: Path, project: Path | None) -> None:
             f"'{path.name}' is a link to '{target}', outside of '{inside}': EPG does not write there; "
             "replace the link by a copy, or name that file itself in CMakeLists.txt"
         )
-
-
-def _discard(temporary: Path) -> None:
-    with suppress(OSError):  # the temporary file may not exist
-        temporary.unlink()
 
 
 class Watch:

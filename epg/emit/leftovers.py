@@ -32,6 +32,27 @@ def lock(file: int) -> None:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
+def replace_file(path: Path, data: bytes, mode: int | None = None, *, durable: bool = False) -> None:
+    """Replaces or creates a file, at once: another program sees the old or the new contents, never a part of them.
+
+    ``mode`` are its permissions; with None they are those of any new file.  ``durable`` holds even if the computer
+    loses its power.  Raises OSError; the file is then unchanged.
+    """
+    temporary = temporary_beside(path)
+    try:
+        with temporary.open("xb") as file:
+            lock(file.fileno())
+            file.write(data)
+            if durable:
+                file.flush()
+                os.fsync(file.fileno())
+        if mode is not None:
+            os.chmod(temporary, mode)
+        os.replace(temporary, path)
+    finally:
+        temporary.unlink(missing_ok=True)  # it exists only after an error
+
+
 @contextmanager
 def held_folder(path: Path) -> Iterator[None]:
     """Creates the folder ``path`` and locks it, so that no other run removes it as the rest of a killed run."""

@@ -8,7 +8,7 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
-from epg.emit.leftovers import lock, remove_leftovers, temporary_beside
+from epg.emit.leftovers import remove_leftovers, replace_file
 
 
 def write_outputs(folder: Path, files: Mapping[str, str]) -> list[str]:
@@ -34,16 +34,7 @@ def write_outputs(folder: Path, files: Mapping[str, str]) -> list[str]:
             pass
         path.parent.mkdir(parents=True, exist_ok=True)
         remove_leftovers(path)
-        temporary = temporary_beside(path)
-        try:
-            with temporary.open("xb") as file:
-                lock(file.fileno())
-                file.write(data)
-            os.chmod(temporary, 0o644)
-            os.replace(temporary, path)
-        except BaseException:
-            temporary.unlink(missing_ok=True)
-            raise
+        replace_file(path, data, 0o644)
         written.append(name)
     return written
 
