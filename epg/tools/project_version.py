@@ -37,21 +37,16 @@ def choose_version(tool: Tool, wanted: str, where: Surroundings, tools: Mapping[
         if place.source == "PATH":
             continue  # A program on PATH needs no variable.
         for folder in place.folders:
-            found = folder if place.stated else _folder_with(tool, folder, where)
-            if found is None:
+            if not place.stated and tool_in(folder, tool, where) is None:
                 continue
-            version = version_of(tool, found) if tool.holds else ""
-            if wanted in found.parts or (version and _same(version, wanted)):
-                return Choice() if place.stated else Choice(tool.variables[0], found.as_posix())
+            version = version_of(tool, folder) if tool.holds else ""
+            if wanted in folder.parts or (version and _same(version, wanted)):
+                return Choice() if place.stated else Choice(tool.variables[0], folder.as_posix())
             if version:
-                others.append((found, version))
+                others.append((folder, version))
             if place.stated:
                 return _other_version(tool, wanted, others, where, tools)
     return _other_version(tool, wanted, others, where, tools)
-
-
-def _folder_with(tool: Tool, folder: Path, where: Surroundings) -> Path | None:
-    return folder if tool_in(folder, tool, where) is not None else None
 
 
 def _without_empty_places(tool: Tool, where: Surroundings) -> Surroundings:

@@ -62,19 +62,17 @@ def _programs(build: Path, target: str, executables: Sequence[str], of_sdk: str)
 
     If that is found, only its file is returned.
     """
-    described = list(_targets(build))
-    programs = [
-        (description["name"], [str(needed["id"]) for needed in description.get("dependencies", [])], paths)
-        for description in described
-        if description.get("type") == "EXECUTABLE"
-        and (paths := [build / artifact["path"] for artifact in description.get("artifacts", [])])
-    ]
-    wanted = [
-        paths[0]
-        for name, needed, paths in programs
-        if name in executables or name == of_sdk or any(id.startswith(f"{target}::@") for id in needed)
-    ]
-    sdk = [paths[0] for name, _, paths in programs if name == of_sdk]
+    wanted: list[Path] = []
+    sdk: list[Path] = []
+    for description in _targets(build):
+        paths = [build / artifact["path"] for artifact in description.get("artifacts", [])]
+        if description.get("type") != "EXECUTABLE" or not paths:
+            continue
+        needed = [str(dependency["id"]) for dependency in description.get("dependencies", [])]
+        if description["name"] == of_sdk:
+            sdk.append(paths[0])
+        elif description["name"] in executables or any(id.startswith(f"{target}::@") for id in needed):
+            wanted.append(paths[0])
     return sdk or wanted
 
 

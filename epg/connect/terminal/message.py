@@ -3,21 +3,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from epg.connect.session import Refused, Session
 from epg.connect.terminal.console import Console
 
-Excerpt = Callable[[Mapping[str, Any]], list[str]]
-
 
 def say_message(message: Mapping[str, Any], session: Session, console: Console) -> None:
-    """Prints a message of the session's state or of its build."""
+    """Prints a message of the session's state or of its build.  Paths in the project are relative to its folder."""
     project = session.state()["project"]
     folder = str(project["folder"]) if project is not None else ""
-    for line in message_lines(message, folder, lambda place: _excerpt(place, session)):
+    id = f" [{message['id']}]" if message.get("id") else ""
+    place = _place(message, folder)
+    first, *rest = str(message["message"]).split("\n")
+    lines = [f"{place}{': ' if place else ''}{message['severity']}: {first}{id}"]
+    lines += [f"  {line}".rstrip() for line in rest]
+    lines += _excerpt(message, session)
+    for note in message.get("notes", ()):
+        lines += [f"{_place(note, folder)}: note: {note['message']}", *_excerpt(note, session)]
+    if message["hint"]:
+        lines.append(f"hint: {message['hint']}")
+    for line in lines:
         console.say(line)
 
 
@@ -38,24 +46,6 @@ def _excerpt(place: Mapping[str, Any], session: Session) -> list[str]:
     text = str(found["lines"][place["line"] - found["first"]]) if found["line"] == place["line"] else ""
     before = "".join("\t" if char == "\t" else " " for char in text[: place["column"] - 1])
     return [f"{place['line']:5d} | {text}", f"{'':5} | {before}^"] if text.isprintable() else []
-
-
-def message_lines(message: Mapping[str, Any], folder: str, excerpts: Excerpt) -> list[str]:
-    """The lines of a message as the command line prints it.  Paths below ``folder`` are relative to it."""
-    place = _place(message, folder)
-    id = f" [{message['id']}]" if message.get("id") else ""
-    first, *rest = f"{message['message']}".split("\n")
-    lines = [
-        f"{place}{': ' if place else ''}{message['severity']}: {first}{id}",
-        *(f"  {line}".rstrip() for line in rest),
-    ]
-    lines += excerpts(message)
-    for note in message.get("notes", ()):
-        lines.append(f"{_place(note, folder)}: note: {note['message']}")
-        lines += excerpts(note)
-    if message["hint"]:
-        lines.append(f"hint: {message['hint']}")
-    return lines
 
 
 def _place(message: Mapping[str, Any], folder: str) -> str:

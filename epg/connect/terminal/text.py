@@ -72,9 +72,6 @@ def candidate_rows(state: State, port: ModelPort) -> Iterator[tuple[str, str, st
     }
     users = users_of(state)
     for number, reference in enumerate(state["candidates"].get(port.name, ()), 1):
-        if reference not in found:
-            yield str(number), reference, ""
-            continue
         component, offered = found[reference]
         unit = f"in {offered['unit']}" if offered["unit"] else ""
         other = [name for name in users.get(reference, ()) if name != port.name]
