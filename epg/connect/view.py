@@ -6,6 +6,7 @@ The messages have the words, positions and order of ``epg check --json``.
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Any
 
 from epg.catalog.kind import KindPort
@@ -134,15 +135,7 @@ def _wire(end: End, name: str, direction: str, loaded: Loaded) -> Data:
         if not end.scale and unit and wanted and unit != wanted:
             between = f"{unit} → {wanted}" if direction == "source" else f"{wanted} → {unit}"
             own = " ".join(part for part in (between, own) if part)
-    return {
-        "reference": end.reference,
-        "scale": end.scale,
-        "offset": end.offset,
-        "limits": list(end.limits) if end.limits is not None else None,
-        "unit": end.unit,
-        "text": own,
-        "from_tcf": given,
-    }
+    return {**asdict(end), "text": own, "from_tcf": given}
 
 
 def _fitting(match: Match, loaded: Loaded) -> list[str]:

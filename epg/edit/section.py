@@ -211,13 +211,13 @@ def _place_of(text: str, section: str, order: Sequence[str]) -> _Place:
     if node is None:
         line = _open_section_of(text, section)
         assert line is not None
-        comments = _comments(text, section, order, line, [])
+        comments = _comments(text, order, line, [])
         return _Place(line, {}, comments, _column(text, section, line))
     colon = yaml_edit.colon_of(text, (section,))
     entries = node.value if isinstance(node, yaml.MappingNode) and not yaml_edit.is_flow(node) else []
     spans = [(yaml_edit.start_of(key), yaml_edit.end_of(text, child)) for key, child in entries]
     head = colon if entries else max(colon, yaml_edit.end_of(text, root if yaml_edit.is_flow(root) else node))
-    comments = _comments(text, section, order, head, spans)
+    comments = _comments(text, order, head, spans)
     column = yaml_edit.column_of(text, spans[0][0]) if spans else _column(text, section, head)
     return _Place(head, {key.value: end for (key, _), (_, end) in zip(entries, spans)}, comments, column)
 
@@ -274,9 +274,7 @@ def _column(text: str, section: str, head: int) -> int:
     return next((depth for depth in depths if depth > base), base + 2)
 
 
-def _comments(
-    text: str, section: str, order: Sequence[str], head: int, taken: Sequence[yaml_edit.Item]
-) -> dict[str, int]:
+def _comments(text: str, order: Sequence[str], head: int, taken: Sequence[yaml_edit.Item]) -> dict[str, int]:
     """Port -> position of its comment of :func:`open_port`, between the section's name and the next key.
 
     ``taken`` are the parts of the text with bound ports, whose comments do not count.

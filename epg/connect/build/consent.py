@@ -18,7 +18,7 @@ import os
 import shlex
 import subprocess
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -45,12 +45,7 @@ class Question:
     key: str
 
     def data(self) -> dict[str, Any]:
-        return {
-            "folder": str(self.folder),
-            "commands": list(self.commands),
-            "programs": list(self.programs),
-            "key": self.key,
-        }
+        return {**asdict(self), "folder": str(self.folder)}
 
     def agree(self) -> None:
         """Notes the user's consent.  If EPG's cache cannot be written, the consent holds until EPG ends."""

@@ -16,7 +16,7 @@ from typing import Any
 from epg.catalog.catalog import load_catalog
 from epg.catalog.hardware import Target
 from epg.connect.build.messages import Message, Messages, plain
-from epg.connect.build.plan import Plan, make_plan
+from epg.connect.build.plan import make_plan
 from epg.connect.build.process import Process
 from epg.connect.build.products import Made, ask, products
 from epg.connect.build.tools import find_tools, missing_tools
@@ -129,7 +129,7 @@ class Build:
             self._messages = messages
         ask(plan.build)
         for step in plan.steps:
-            status = self._run_step(plan, step.name, Process(step.command, step.folder, plan.environment, self._read))
+            status = self._run_step(step.name, Process(step.command, step.folder, plan.environment, self._read))
             if self._cancelled:
                 return "cancelled", messages.finish(failed=False), []
             if status != 0:
@@ -143,7 +143,7 @@ class Build:
         platform = target.platform if target is not None else None
         return "done", messages.finish(failed=False), products(plan.build, request.name, platform, job.executables)
 
-    def _run_step(self, plan: Plan, name: str, process: Process) -> int:
+    def _run_step(self, name: str, process: Process) -> int:
         with self._lock:
             self._process, self._step, self._action = process, name, ""
             self._done = self._total = 0

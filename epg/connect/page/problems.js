@@ -16,8 +16,6 @@ export function counted(diagnostics) {
   return { errors, warnings, text: parts.join(", ") || "No problems" };
 }
 
-const severityIcon = (severity) => icon(severity in { error: 1, warning: 1 } ? severity : "note");
-
 // Messages whose hints only repeat the list of component ports, which is shown beside them.
 const LISTED = new Set(["unbound-input", "unbound-output"]);
 
@@ -31,7 +29,7 @@ export function inline(diagnostics) {
       h(
         "li",
         { class: each.severity },
-        severityIcon(each.severity),
+        icon(each.severity),
         h(
           "span",
           h("span.unseen", `${each.severity}: `),
@@ -70,7 +68,7 @@ export function problem(message) {
     h(
       "button.problem",
       { onclick: () => goTo(message) },
-      severityIcon(message.severity),
+      icon(message.severity),
       h(
         "span.problem-text",
         h("span.unseen", `${message.severity}: `),

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from operator import itemgetter
 from typing import Any
 
 from epg.connect.session import Refused, Session, State
@@ -12,6 +13,7 @@ from epg.connect.terminal.create import Left
 from epg.connect.terminal.message import say_message, say_refused
 from epg.connect.terminal.text import ModelPort
 
+_key = itemgetter("id", "file", "message")
 OF_OPEN_PORTS = frozenset(("unbound-input", "unbound-output", "needs-bound", "unused-component"))
 """Ids of messages that are not shown while the user still connects ports."""
 
@@ -74,7 +76,3 @@ class Talk:
         if not self.console.agree("there are unsaved changes: quit without saving?", "n"):
             return
         raise Left
-
-
-def _key(problem: State) -> tuple[object, ...]:
-    return problem["id"], problem["file"], problem["message"]
