@@ -68,13 +68,10 @@ def _from_files(options: argparse.Namespace, diagnostics: Diagnostics) -> dict[s
 
 def _from_build(path: Path, diagnostics: Diagnostics) -> list[dict[str, Any]]:
     """The descriptions of the generated targets below ``path``, or the one in the file ``path``."""
-    files = (
-        [path]
-        if path.is_file()
-        else sorted({*path.glob("epg/*/*.json"), *path.glob("*/epg/*/*.json"), *path.glob("*/*/epg/*/*.json")})
-    )
+    from epg.ros.robot import description_files
+
     result = []
-    for file in files:
+    for file in [path] if path.is_file() else description_files(path):
         try:
             data = json.loads(file.read_text(encoding="utf-8"))
         except (OSError, ValueError):

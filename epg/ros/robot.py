@@ -118,7 +118,7 @@ def load_robots(paths: list[Path], diagnostics: Diagnostics) -> list[Robot]:
     robots = []
     for path in paths:
         if path.is_dir():
-            found = [robot for file in _descriptions(path) if (robot := _read(file)) is not None]
+            found = [robot for file in description_files(path) if (robot := _read(file)) is not None]
             if not found:
                 hint = "configure and build it first, or name a <name>.json"
                 diagnostics.error("no-description", Span(str(path)), "there is no generated target here", hint=hint)
@@ -134,7 +134,7 @@ def load_robots(paths: list[Path], diagnostics: Diagnostics) -> list[Robot]:
     return robots
 
 
-def _descriptions(folder: Path) -> list[Path]:
+def description_files(folder: Path) -> list[Path]:
     """The JSON files at the places where CMake writes descriptions: in the build folder or those of subprojects."""
     return sorted({*folder.glob("epg/*/*.json"), *folder.glob("*/epg/*/*.json"), *folder.glob("*/*/epg/*/*.json")})
 
