@@ -12,7 +12,7 @@ export function chooseTarget() {
   const inUse = () => current().configurations.find((each) => each.chosen)?.name;
   ui.chosen = inUse();
   openDialog("target", "Target", () => [
-    configurationCards(current(), "other", (each) => each.possible),
+    configurationCards(current(), (each) => each.possible),
     h(
       "div.buttons.sticky",
       h("p.muted", `Changes 'extends' in ${shortFile(current().project?.files.tcf || "")}. You can undo this.`),

@@ -8,15 +8,15 @@ import { change, ui } from "./ui.js";
 
 const NO_ROBOT = "Board only";
 
-// The list of cards. Each is a radio button; ui.chosen is the chosen one. `prefix` keeps the ids of two such lists
-// apart. `only` is a function that returns true for the configurations to list.
-export function configurationCards(state, prefix, only = () => true) {
+// The list of cards. Each is a radio button; ui.chosen is the chosen one. `only` is a function that returns true for the
+// configurations to list.
+export function configurationCards(state, only = () => true) {
   const configurations = state.configurations.filter(only);
   const robots = [...new Set(configurations.map((each) => each.robot || NO_ROBOT))];
   const shown = configurations.filter(isShown);
   return h(
     "div.chooser",
-    filters(robots, prefix),
+    filters(robots),
     h(
       "p.muted",
       { role: "status" },
@@ -29,11 +29,7 @@ export function configurationCards(state, prefix, only = () => true) {
       : shown.length === 0
         ? h("p.empty", "No target matches. Clear the search to see all.")
         : null,
-    h(
-      "div.robots",
-      { role: "radiogroup", "aria-label": "Targets" },
-      grouped(shown).map((group) => robotGroup(group, prefix)),
-    ),
+    h("div.robots", { role: "radiogroup", "aria-label": "Targets" }, grouped(shown).map(robotGroup)),
   );
 }
 
@@ -65,10 +61,10 @@ function grouped(configurations) {
     }));
 }
 
-function filters(robots, prefix) {
+function filters(robots) {
   return h(
     "div.filters",
-    textField(`${prefix}-search`, "Search", {
+    textField("target-search", "Search", {
       type: "search",
       placeholder: "board, robot, RTOS",
       initial: ui.filter.text,
@@ -76,10 +72,10 @@ function filters(robots, prefix) {
     }),
     h(
       "div.field",
-      h("label", { for: `${prefix}-robot` }, "Robot"),
+      h("label", { for: "target-robot" }, "Robot"),
       h(
         "select",
-        { id: `${prefix}-robot`, value: ui.filter.robot, onchange: (event) => filter({ robot: event.target.value }) },
+        { id: "target-robot", value: ui.filter.robot, onchange: (event) => filter({ robot: event.target.value }) },
         h("option", { key: "", value: "" }, "all"),
         robots.map((robot) => h("option", { key: `:${robot}`, value: robot }, robot)),
       ),
@@ -98,8 +94,8 @@ function filters(robots, prefix) {
 
 const filter = (part) => change({ filter: { ...ui.filter, ...part } });
 
-function robotGroup({ robot, boards }, prefix) {
-  const name = id(prefix, "robot", robot);
+function robotGroup({ robot, boards }) {
+  const name = id("robot", robot);
   const summary =
     robot === NO_ROBOT ? "without a robot: every port becomes a topic; you add the components to the .tcf" : "";
   return h(
@@ -111,34 +107,29 @@ function robotGroup({ robot, boards }, prefix) {
         "div.board",
         { key: board, role: "group", "aria-label": `${robot}, ${board}` },
         h("h4", board),
-        h(
-          "div.cards",
-          list.map((each) => card(each, prefix)),
-        ),
+        h("div.cards", list.map(card)),
       ),
     ),
   );
 }
 
-function card(configuration, prefix) {
+function card(configuration) {
   const { name, platform, picture, components, matches, ports, missing, possible, reason, chosen } = configuration;
   const [title, ...more] = platform.split(/[:,] /);
-  const field = id(prefix, name);
+  const field = id("target", name);
   return h(
     "label",
     { class: `card${possible ? "" : " impossible"}`, key: name, for: field },
     h("input", {
       type: "radio",
       id: field,
-      name: `${prefix}-configuration`,
+      name: "configuration",
       value: name,
       checked: ui.chosen === name,
       disabled: !possible,
       onchange: () => change({ chosen: name }),
     }),
-    picture
-      ? wiringPicture(name, { alt: "", width: "84", height: "84" })
-      : h("span.no-picture", { "aria-hidden": "true" }),
+    picture && wiringPicture(name, { alt: "", width: "84", height: "84" }),
     h(
       "span.card-text",
       h("span.card-title", title[0].toUpperCase() + title.slice(1), chosen ? h("span.tag", "in use") : null),

@@ -19,7 +19,7 @@ export function startPage(state) {
       "section.step.step-target",
       { key: "target", "aria-labelledby": "step-target" },
       heading("step-target", 2, "Target", "The robot that the model controls, and the board on which it runs."),
-      configurationCards(state, "start"),
+      configurationCards(state),
     ),
     projectStep(state),
   );
