@@ -191,3 +191,38 @@ def test_the_file_of_epg_launch_starts_a_program_and_ends_it_when_it_hangs(
         assert "escalating to 'SIGTERM'" in output and "escalating to 'SIGKILL'" in output
         with pytest.raises(ProcessLookupError):
             os.kill(process, 0)
+
+
+SIMULATED = """
+import time
+import rclpy
+from rclpy.parameter import Parameter
+
+rclpy.init()
+node = rclpy.create_node("follower", parameter_overrides=[Parameter("use_sim_time", value=True)])
+fired = []
+node.create_timer(1.0, lambda: fired.append((node.get_clock().now().nanoseconds / 1e9, time.monotonic())))
+end = time.monotonic() + 30
+while time.monotonic() < end and len(fired) < 10:
+    rclpy.spin_once(node, timeout_sec=0.1)
+simulated, real = (after - before for before, after in zip(fired[1], fired[-1]))
+print(fired[-1][0], simulated / real)
+"""
+
+
+def test_a_node_follows_simulated_time(ros: dict[str, str], build: Build) -> None:
+    command = [str(build("jiwy")), "--pace", "4", "--quiet"]
+    with subprocess.Popen(command, env=ros, stderr=subprocess.PIPE, text=True) as robot:
+        try:
+            done = subprocess.run(
+                [sys.executable, "-c", SIMULATED], env=ros, capture_output=True, text=True, timeout=60
+            )
+            told = ask(ros, "topic", "info", "--verbose", "/clock", "--no-daemon", "--spin-time", "4")
+        finally:
+            robot.send_signal(signal.SIGINT)
+    if "No module named 'rclpy'" in done.stderr:
+        pytest.skip("ROS 2 is not sourced for this Python: run the tests with the system's")
+    now, pace = map(float, done.stdout.split())
+    assert now < 1000.0, "not since 1970"
+    assert 1.0 < pace < 8.0
+    assert type_hash("rosgraph_msgs/msg/Clock") in told and "BEST_EFFORT" in told
