@@ -269,3 +269,60 @@ def test_requests_of_the_other_rmw_are_counted(agent: RealAgent, build: Build) -
     assert isinstance(told, dict)
     assert told["answers"] == [None] * 4
     assert (told["malformed"], told["reconnects"]) == ("4", "0")
+
+
+TUNED = """
+from rcl_interfaces.msg import ParameterEvent
+from rclpy.parameter import Parameter
+from rclpy.parameter_client import AsyncParameterClient
+events = []
+node.create_subscription(ParameterEvent, "/parameter_events", events.append, 1000)
+client = AsyncParameterClient(node, "/robot_1/JIWY_node")
+assert wait(lambda: here(1) and client.services_are_ready() and node.count_publishers("/parameter_events") >= 2, 20)
+
+def result(future):
+    "The response of a service, and the seconds that it took."
+    waited = wait(future.done, 10)
+    assert waited is not None, "no response"
+    return future.result(), waited
+
+listed, *times = result(client.list_parameters())
+names = list(listed.result.names)
+read, seconds = result(client.get_parameters(names))
+times.append(seconds)
+wanted = [Parameter(name, value=value.double_value + 0.5) for name, value in zip(names, read.values)]
+changed, seconds = result(client.set_parameters_atomically(wanted))
+times.append(seconds)
+again, seconds = result(client.get_parameters(names))
+same = [value.double_value for value in again.values] == [parameter.value for parameter in wanted]
+described, seconds = result(client.describe_parameters(names))
+times.append(seconds)
+refused, _ = result(client.set_parameters([Parameter("Pan.PID.kp", value=3)]))
+own = lambda: [name.name for event in events if event.node == "/robot_1/JIWY_node" for name in event.changed_parameters]
+wait(lambda: len(own()) >= len(names), 10)
+print(json.dumps({
+    "count": len(names),
+    "described": [descriptor.name for descriptor in described.descriptors] == names,
+    "changed": changed.result.successful,
+    "same": same,
+    "refused": [each.successful for each in refused.results],
+    "events": sorted(own()) == sorted(names),
+    "times": [round(1000 * each) for each in times],
+}))
+"""
+
+
+def test_parameters_are_those_of_a_ros_node(agent: RealAgent, build: Build) -> None:
+    """All parameters in each request, by rclpy."""
+    with boards(build("agent_jiwy"), agent, 1):
+        told = ask(agent, "rmw_fastrtps_cpp", TUNED)
+    assert isinstance(told, dict)
+    print(f"{agent.agent}: list, get, set, describe after {told.pop('times')} ms")
+    assert told == {
+        "count": 30,
+        "described": True,
+        "changed": True,
+        "same": True,
+        "refused": [False],
+        "events": True,
+    }
