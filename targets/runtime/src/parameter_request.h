@@ -12,7 +12,7 @@
 /** The types of parameters: rcl_interfaces/msg/ParameterType. */
 enum { EPG_PARAMETER_TYPE_DOUBLE = 3, EPG_PARAMETER_TYPES = 10 };
 
-/** An element of a request: a name, or a name with a value.  `name` lies in the request. */
+/** An element of a request: a name, or a name with a value.  `name` points into the request. */
 typedef struct epg_parameter_entry {
     const char *name;
     size_t index; /**< index of the parameter; SIZE_MAX: there is none with this name */

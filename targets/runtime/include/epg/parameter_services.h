@@ -40,7 +40,7 @@ extern const epg_service_kind_t epg_service_set_parameters_atomically;
 extern const epg_service_kind_t epg_service_store_parameters;
 
 /**
- * rcl_interfaces/msg/ParameterEvent: the parameters that have changed, whoever has changed them.  If they do not fit
+ * rcl_interfaces/msg/ParameterEvent: the parameters that any program has changed.  If they do not fit
  * into one message, others follow.
  */
 extern const epg_message_t epg_message_parameter_event;
