@@ -112,6 +112,17 @@ def test_best_effort_drops_what_is_old() -> None:
     ]  # fmt: skip
 
 
+def test_all_fragments_of_a_message_are_sent_at_once() -> None:
+    """Also if the window does not have room for them; the next message waits."""
+    output = ReliableOutput(0x81, b"", 0x81)
+    sent = output.push(bytes(range(200)) * 20, 100)
+    assert sent is not None and len(sent) == -(-4000 // 92)
+    assert output.push(b"x", 100) is None
+    pieces, fragments = [part for message in sent for part in submessages(split(message)[1])], Fragments()
+    assert {Id(piece.id) for piece in pieces} == {Id.FRAGMENT}
+    assert [fragments.add(piece) for piece in pieces] == [None] * (len(pieces) - 1) + [bytes(range(200)) * 20]
+
+
 def string(text: str) -> bytes:
     return struct.pack("<I", len(text) + 1) + text.encode() + b"\0"
 
@@ -135,6 +146,14 @@ def string(text: str) -> bytes:
             )
             + b"\x00\x14",
             Description(Kind.READER, b"\x00\x14", "rt/x", "T", qos=Qos(True), form=2),
+        ),
+        (
+            b"\x08\x03\0\0"
+            + struct.pack("<I", 8 + 8 + 8 + 4 + 12 + 4 + 12)
+            + (string("abc") + string("Req") + string("Rep") + b"\1\0\0\0" + string("rq/abcd") + b"\1\0\0\0")
+            + string("rr/abcd")
+            + b"\x00\x11",
+            Description(Kind.REPLIER, b"\x00\x11", "rq/abcd", "Req", replies=("rr/abcd", "Rep")),
         ),
     ],
 )

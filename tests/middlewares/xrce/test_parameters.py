@@ -23,13 +23,13 @@ LOUD = "an empty output of the sanitizers"
 
 
 @contextmanager
-def node(jiwy: Path, agent: Agent) -> Iterator[Parameters]:
+def node(jiwy: Path, agent: Agent, *options: str, name: str = NODE) -> Iterator[Parameters]:
     """A running JIWY; its sanitizers must report nothing."""
-    command = [str(jiwy), "--realtime", "--quiet", "--agent", agent.address]
+    command = [str(jiwy), "--realtime", "--quiet", "--agent", agent.address, *options]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     try:
-        serving(agent)
-        yield Parameters(agent.topics.call, NODE)
+        agent.topics.wait_for_service(f"{name}/set_parameters_atomically")
+        yield Parameters(agent.topics.call, name)
         process.terminate()
         assert process.communicate(timeout=20) == ("", ""), LOUD
         assert agent.malformed == 0
@@ -45,6 +45,7 @@ def serving(agent: Agent) -> None:
 
 def test_all_services(jiwy: Path, agent: Agent) -> None:
     with node(jiwy, agent) as parameters:
+        serving(agent)
         found = parameters.list()
         assert len(found) == 30 and KP in found
         assert parameters.types([KP, "Tilt.PID.kp"]) == [DOUBLE, DOUBLE]
@@ -60,6 +61,7 @@ def test_all_services(jiwy: Path, agent: Agent) -> None:
 def test_all_parameters_at_once_in_fragments(small_jiwy: Path, agent: Agent) -> None:
     """As `ros2 param dump` and `load` do.  Values are published meanwhile."""
     with node(small_jiwy, agent) as parameters:
+        serving(agent)
         found = parameters.list()
         began = time.monotonic()
         turn = 0
@@ -78,6 +80,7 @@ def test_all_parameters_at_once_in_fragments(small_jiwy: Path, agent: Agent) -> 
 
 def test_fragments_on_a_bad_line(small_jiwy: Path, agent: Agent) -> None:
     with node(small_jiwy, agent) as parameters:
+        serving(agent)
         found = parameters.list()
         wanted = {name: 0.001 * index + 1 for index, name in enumerate(found)}
         for faults in (agent.to_board, agent.from_board):
@@ -107,6 +110,7 @@ def test_an_agent_fails_in_the_middle_of_a_reply(
     small_jiwy: Path, agent: Agent, fault: Callable[[Agent], None]
 ) -> None:
     with node(small_jiwy, agent) as parameters:
+        serving(agent)
         found = parameters.list()
         for _ in range(2):
             agent.to_board.delay = (0.1, 0.1)  # each acknowledgement takes this long
@@ -123,3 +127,16 @@ def test_an_agent_fails_in_the_middle_of_a_reply(
             assert agent.topics.answers(f"{NODE}/describe_parameters", lost) == []
         agent.mute.clear()
         agent.malformed = 0  # the agent has counted the unfinished replies
+
+
+def test_the_longest_names(small_jiwy: Path, agent: Agent) -> None:
+    """The request for a replier is larger than a frame then."""
+    space, name = "/" + "s" * 62, "n" * 63
+    options = ("--ros-args", "-r", f"__ns:={space}", "-r", f"__node:={name}")
+    with node(small_jiwy, agent, *options, name=f"{space}/{name}") as parameters:
+        repliers = [board.objects[each] for board in agent.clients.values() for each in board.reply_ends]
+        assert max(len(replier.name) for replier in repliers) == len(
+            f"rq{space}/{name}/set_parameters_atomicallyRequest"
+        )
+        agent.topics.wait_for_sample(f"rt{space}/pan_publisher")
+        assert len(parameters.list()) == 30
