@@ -23,7 +23,7 @@ from types import MappingProxyType
 
 from epg.catalog.layout import Layout, make_layout
 from epg.catalog.platform import Platform
-from epg.documents.items import flag_of, integer_range, map_of, pin_names, text_map_of, text_of, texts_of
+from epg.documents.items import flag_of, integer_range, map_of, pin_names, text_map_of, text_of, texts_of, values_of
 from epg.quantity import parse_quantity
 from epg.source import Span, YamlNode
 
@@ -235,28 +235,20 @@ def make_soc(node: YamlNode, folder: Path) -> Soc:
 
 def make_board(node: YamlNode, folder: Path) -> Board:
     """The board that a checked ``board.yaml`` describes."""
-    onboard = {
-        pin: OnboardPin(text_of(child, "title"), texts_of(child, "classes"))
-        for pin, child in map_of(node, "onboard").items()
+    onboard = {pin: OnboardPin(**values_of(child, OnboardPin)) for pin, child in map_of(node, "onboard").items()}
+    nodes = map_of(node, "devicetree", "nodes")
+    pins = pin_names(node.get("pins"))
+    stated = {
+        **values_of(node, Board),
+        "name": text_of(node, "board"),
+        "pins": pins,
+        "console": text_of(node["devicetree"], "console") if "devicetree" in node else "",
     }
-    devicetree = node.get("devicetree")
-    nodes = map_of(devicetree, "nodes") if devicetree is not None else {}
     return Board(
-        name=text_of(node, "board"),
-        summary=text_of(node, "summary"),
-        soc=text_of(node, "soc"),
-        pins=pin_names(node.get("pins")),
-        prefixes=texts_of(node, "prefixes"),
-        names=text_map_of(node, "names"),
+        **stated,
         onboard=MappingProxyType(onboard),
-        reserved=text_map_of(node, "reserved"),
-        sdks=text_map_of(node, "sdks"),
-        lacks=text_map_of(node, "lacks"),
-        devicetree=MappingProxyType(
-            {label: tuple(str(pin.value) for pin in pins.elements()) for label, pins in nodes.items()}
-        ),
-        console=text_of(devicetree, "console") if devicetree is not None else "",
-        layout=make_layout(node, pin_names(node.get("pins"))),
+        devicetree=MappingProxyType({label: texts_of(node, "devicetree", "nodes", label) for label in nodes}),
+        layout=make_layout(node, pins),
         node=node,
         files=_files(node, folder / "board.yaml"),
         span=node["board"].span,
@@ -317,7 +309,7 @@ def _resource_class(name: str, node: YamlNode, soc: YamlNode) -> ResourceClass:
         counter=integer_range(counter) if counter else None,
         unsupported=MappingProxyType(
             {
-                (attribute, value): Unsupported(text_of(reason, "because"), text_of(reason, "instead"))
+                (attribute, value): Unsupported(**values_of(reason, Unsupported))
                 for attribute, values in map_of(node, "unsupported").items()
                 for value, reason in map_of(values).items()
             }

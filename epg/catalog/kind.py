@@ -10,7 +10,7 @@ from types import MappingProxyType
 from typing import Any
 from zlib import crc32
 
-from epg.documents.items import flag_of, map_of, text_map_of, text_of, texts_of
+from epg.documents.items import flag_of, map_of, text_map_of, text_of, texts_of, values_of
 from epg.source import Span, YamlNode
 
 TEMPLATE = "code.c.j2"
@@ -227,7 +227,7 @@ def make_kind(node: YamlNode, folder: Path) -> Kind:
         at_least_one=alternatives["at_least_one"],
         at_most_one=alternatives["at_most_one"],
         only_with=tuple((text_of(rule, "key"), text_of(rule, "needs")) for rule in with_others),
-        needs_bound=tuple(NeedsBound(*(text_of(rule, key) for key in ("key", "use", "port"))) for rule in bound),
+        needs_bound=tuple(NeedsBound(**values_of(rule, NeedsBound)) for rule in bound),
         ports=tuple(_port(name, child) for name, child in map_of(node, "ports").items()),
         claims=tuple(_claim(name, child, node) for name, child in map_of(node, "claims").items()),
         faults=tuple(_fault(name, child, node) for name, child in map_of(node, "faults").items()),
@@ -270,33 +270,12 @@ def make_parameter(name: str, node: YamlNode, span: Span) -> KindParameter:
 
 
 def _port(name: str, node: YamlNode) -> KindPort:
-    return KindPort(
-        name=name,
-        direction=text_of(node, "direction"),
-        type=text_of(node, "type"),
-        unit=text_of(node, "unit"),
-        default=flag_of(node, "default"),
-        actuator=flag_of(node, "actuator"),
-        drive=flag_of(node, "drive"),
-        description=text_of(node, "description"),
-        each=text_of(node, "each"),
-        part=name,
-        boolean_with=text_map_of(node, "boolean_with"),
-        integer_with=text_map_of(node, "integer_with"),
-    )
+    return KindPort(**values_of(node, KindPort) | {"name": name, "part": name})
 
 
 def _use(name: str, node: YamlNode) -> KindUse:
-    return KindUse(
-        name=name,
-        direction=text_of(node, "direction"),
-        unit=text_of(node, "unit"),
-        drive=flag_of(node, "drive"),
-        topic=flag_of(node, "topic"),
-        required=flag_of(node, "required"),
-        description=text_of(node, "description"),
-        examples=tuple(element.plain() for element in node["examples"].elements()) if "examples" in node else (),
-    )
+    examples = tuple(element.plain() for element in node["examples"].elements()) if "examples" in node else ()
+    return KindUse(**values_of(node, KindUse) | {"name": name, "examples": examples})
 
 
 def _claim(name: str, node: YamlNode, kind: YamlNode) -> KindClaim:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from epg.documents.items import map_of, text_of, texts_of
+from epg.documents.items import map_of, text_of, texts_of, values_of
 from epg.source import YamlNode
 
 
@@ -57,10 +57,7 @@ def make_layout(node: YamlNode, pins: tuple[str, ...]) -> Layout | None:
     if layout is None:
         return None
     rows = tuple(_row(child, pins) for child in layout["rows"].elements())
-    supplies = {
-        name: Supply(text_of(child, "role"), text_of(child, "title"))
-        for name, child in map_of(layout, "supplies").items()
-    }
+    supplies = {name: Supply(**values_of(child, Supply)) for name, child in map_of(layout, "supplies").items()}
     return Layout(text_of(layout, "top"), rows, MappingProxyType(supplies), texts_of(layout, "notes"))
 
 

@@ -14,7 +14,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from epg.documents.items import flag_of, map_of, text_of, texts_of
+from epg.documents.items import flag_of, map_of, text_of, texts_of, values_of
 from epg.source import Span, YamlNode
 
 
@@ -111,21 +111,16 @@ class Family(PortLayer):
     platforms: tuple[str, ...]
 
 
-def _port_layer(node: YamlNode, folder: Path, category: str) -> dict[str, Any]:
-    """The attributes of :class:`PortLayer`."""
+def _values(node: YamlNode, folder: Path, category: str, layer: type[PortLayer]) -> dict[str, Any]:
+    """The attributes of a platform or family that are keys of its file, and all those of :class:`PortLayer`."""
     offered = map_of(node, "middlewares")
     products = node["products"].elements() if "products" in node else ()
     return {
+        **values_of(node, layer),
         "name": text_of(node, category),
-        "summary": text_of(node, "summary"),
-        "classes": texts_of(node, "classes"),
         "middlewares": MappingProxyType({name: texts_of(node, "middlewares", name) for name in offered}),
         "has_usb_names": flag_of(node, "usb_names"),
-        "templates": texts_of(node, "templates"),
-        "sdk": text_of(node, "sdk"),
-        "headers": texts_of(node, "headers"),
-        "needs": texts_of(node, "needs"),
-        "products": tuple(Product(text_of(product, "file"), text_of(product, "what")) for product in products),
+        "products": tuple(Product(**values_of(product, Product)) for product in products),
         "node": node,
         "folder": folder,
         "span": node[category].span,
@@ -135,26 +130,19 @@ def _port_layer(node: YamlNode, folder: Path, category: str) -> dict[str, Any]:
 def make_platform(node: YamlNode, folder: Path) -> Platform:
     """The platform that a checked ``platform.yaml`` describes."""
     tick = node.get("tick", "class")
-    return Platform(
-        **_port_layer(node, folder, "platform"),
-        families=texts_of(node, "families"),
-        board=text_of(node, "board") or None,
-        simulates_plant=flag_of(node, "simulates_plant"),
-        tick=str(tick.value) if tick is not None else None,
-        tick_is_optional=tick is not None and flag_of(node["tick"], "optional"),
-        has_nodes=flag_of(node, "nodes"),
-        builds=flag_of(node, "builds"),
-        shared=texts_of(node, "shared"),
-        built_by=text_of(node, "built_by") or "cmake",
-        program=text_of(node, "program"),
-        by_family=flag_of(node, "by_family"),
-        family=None,
-    )
+    values = _values(node, folder, "platform", Platform) | {
+        "board": text_of(node, "board") or None,
+        "tick": str(tick.value) if tick is not None else None,
+        "tick_is_optional": tick is not None and flag_of(node["tick"], "optional"),
+        "has_nodes": flag_of(node, "nodes"),
+        "built_by": text_of(node, "built_by") or "cmake",
+    }
+    return Platform(**values, family=None)
 
 
 def make_family(node: YamlNode, folder: Path) -> Family:
     """The family that a checked ``family.yaml`` describes."""
-    return Family(**_port_layer(node, folder, "family"), platforms=texts_of(node, "platforms"))
+    return Family(**_values(node, folder, "family", Family))
 
 
 def platform_for(platform: Platform, family: Family) -> Platform:

@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import fields
 from types import MappingProxyType
+from typing import Any
 
 from epg.source import YamlNode
 
@@ -39,6 +41,22 @@ def map_of(node: YamlNode, *path: str) -> dict[str, YamlNode]:
 def text_map_of(node: YamlNode, *path: str) -> Mapping[str, str]:
     """The entries of the map at ``path`` as text; empty if it is missing."""
     return MappingProxyType({key: str(value.value) for key, value in map_of(node, *path).items()})
+
+
+_READERS: Mapping[object, Callable[[YamlNode, str], object]] = {
+    "str": text_of,
+    "bool": flag_of,
+    "tuple[str, ...]": texts_of,
+    "Mapping[str, str]": text_map_of,
+}
+
+
+def values_of(node: YamlNode, into: type) -> dict[str, Any]:
+    """The values for the fields of the dataclass ``into`` that are keys of ``node``, for fields of these types.
+
+    A field of another type, or of another name than its key, is left out or empty: the caller must replace it.
+    """
+    return {field.name: _READERS[field.type](node, field.name) for field in fields(into) if field.type in _READERS}
 
 
 def pin_names(node: YamlNode | None) -> tuple[str, ...]:
