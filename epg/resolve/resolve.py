@@ -19,7 +19,7 @@ from epg.resolve.application import Application, Plant, ResolvedComponent, Wire
 from epg.resolve.claims import TICK, component_claims, tick_claims
 from epg.resolve.parameters import parameter_settings, parameter_values, ros_parameters
 from epg.resolve.topics import publications_of, subscriptions_of, value_indices_of
-from epg.resolve.wires import input_wires, output_wires
+from epg.resolve.wires import Wiring
 
 _SHORTEST, _LONGEST = Fraction(1, 1_000_000), Fraction(3600)
 """The limits of control periods in seconds.  The timer of a target can have narrower limits."""
@@ -48,8 +48,8 @@ def resolve(
     assignments = allocate_hardware(configuration, period, diagnostics)
     indices = value_indices_of(configuration.components, bindings)
     components = _components(configuration, assignments or {}, indices)
-    inputs = input_wires(bindings, model, configuration.components, components, diagnostics)
-    outputs = output_wires(bindings, model, configuration.components, components, diagnostics)
+    wiring = Wiring(bindings, model, configuration.components, components, diagnostics)
+    inputs, outputs = wiring.inputs(), wiring.outputs()
     settings = parameter_settings(bindings, model, diagnostics)
     served = ros_parameters(configuration.communication, model, diagnostics)
     simulated = _plant(plant, configuration, components, period, diagnostics) if plant else None
@@ -227,8 +227,8 @@ def _plant(
         hint = "export the plant with a longer step"
         diagnostics.error("step-not-multiple", bindings.model_span, message, hint=hint)
     physical = {name: c for name, c in configuration.components.items() if not c.kind.communication}
-    inputs = input_wires(bindings, model, physical, components, diagnostics, direction="sink")
-    outputs = output_wires(bindings, model, physical, components, diagnostics, direction="source")
+    wiring = Wiring(bindings, model, physical, components, diagnostics, plant=True)
+    inputs, outputs = wiring.inputs(), wiring.outputs()
     parameters = parameter_values(parameter_settings(bindings, model, diagnostics))
     return Plant(model, inputs, outputs, parameters, max(1, ratio.numerator // ratio.denominator))
 
