@@ -9,17 +9,7 @@ from __future__ import annotations
 import os
 import re
 
-_C11 = """auto break case char const continue default do double else enum extern float for goto if inline int long
-register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while""".split()
-_CPP = """alignas alignof and and_eq asm bitand bitor bool catch char16_t char32_t char8_t class compl concept
-const_cast consteval constexpr constinit co_await co_return co_yield decltype delete dynamic_cast explicit export
-false friend mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected public
-reinterpret_cast requires static_assert static_cast template this thread_local throw true try typeid typename
-using virtual wchar_t xor xor_eq""".split()
-_C_LIBRARY = "main errno stdin stdout stderr NULL EOF assert unix linux".split()
-
-RESERVED = frozenset(_C11) | frozenset(_CPP) | frozenset(_C_LIBRARY)
-"""Keywords of C11 and C++20, and macros of the C library and common compilers."""
+from epg.documents.source_file import RESERVED
 
 STANDARD_HEADERS = frozenset(
     """assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdalign stdarg stdatomic
@@ -60,7 +50,7 @@ def identifier_problem(name: str) -> str | None:
     """The reason why ``name`` cannot be a C identifier of a user, or None."""
     if not _IDENTIFIER.fullmatch(name):
         return "is not a C identifier: use at most 63 letters, digits and '_', and do not begin with a digit"
-    if name in RESERVED:
+    if name in RESERVED or name == "main":
         return "is a reserved word of C or C++"
     if name.startswith("__") or re.match("_[A-Z]", name):
         return "is reserved for the compiler: begin with a letter"

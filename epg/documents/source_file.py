@@ -33,6 +33,22 @@ _LONGEST_SHOWN = 1000
 _NOT_NEWLINE = re.compile(r"[^\n]")
 
 
+C11 = frozenset(
+    """auto break case char const continue default do double else enum extern float for goto if inline int long register
+    restrict return short signed sizeof static struct switch typedef union unsigned void volatile while""".split()
+)
+"""The keywords of C11."""
+RESERVED = C11.union(
+    """alignas alignof and and_eq asm bitand bitor bool catch char16_t char32_t char8_t class compl concept
+    const_cast consteval constexpr constinit co_await co_return co_yield decltype delete dynamic_cast explicit export
+    false friend mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected public
+    reinterpret_cast requires static_assert static_cast template this thread_local throw true try typeid typename
+    using virtual wchar_t xor xor_eq NULL EOF errno stdin stdout stderr assert unix linux i386 INFINITY NAN HUGE_VAL
+    RAND_MAX""".split()
+)
+"""Keywords of C11 and C++20, and macros of C libraries and compilers."""
+
+
 @dataclass(frozen=True)
 class SourceFile:
     """One file of C or C++.

@@ -15,14 +15,12 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from epg.documents.source_file import SourceFile
+from epg.documents.source_file import C11, SourceFile
 from epg.models.identifiers import words
 from epg.source import Span
 
-KEYWORDS = words(
+KEYWORDS = C11 | words(
     """
-    auto break case char const continue default do double else enum extern float for goto if inline int long
-    register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while
     bool catch class delete explicit false friend mutable namespace new nullptr operator private protected
     public template this throw true try typename using virtual
     """

@@ -10,31 +10,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
+from epg.documents.source_file import RESERVED
+
 
 def words(text: str) -> frozenset[str]:
     """The set of words in ``text``: a readable way to write a large set."""
     return frozenset(text.split())
 
-
-_C11 = words(
-    """
-    auto break case char const continue default do double else enum extern float for goto if inline int long
-    register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while
-    """
-)
-_CPP = words(
-    """
-    alignas alignof and and_eq asm bitand bitor bool catch char16_t char32_t char8_t class compl concept
-    const_cast consteval constexpr constinit co_await co_return co_yield decltype delete dynamic_cast explicit
-    export false friend mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected
-    public reinterpret_cast requires static_assert static_cast template this thread_local throw true try typeid
-    typename using virtual wchar_t xor xor_eq
-    """
-)
-_MACROS = words("NULL EOF errno stdin stdout stderr assert unix linux i386 INFINITY NAN HUGE_VAL RAND_MAX")
-
-RESERVED = _C11 | _CPP | _MACROS
-"""Words that cannot name a member of a struct: keywords of C11 and C++20, macros of C libraries and compilers."""
 
 _LIMITS = re.compile(
     r"(?:U?INT(?:_LEAST|_FAST)?(?:8|16|32|64|PTR|MAX)|PTRDIFF|SIZE|SIG_ATOMIC|WCHAR|WINT|(?:S?CHAR|U?SHRT|U?INT|U?LONG|U?LLONG))"
