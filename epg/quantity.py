@@ -69,11 +69,15 @@ _RATIO = re.compile(rf"({_NUMBER})\s*/\s*({_NUMBER})")
 
 
 class QuantityError(ValueError):
-    """The text is not a quantity of the expected dimension.  ``hint`` says what the user must write instead."""
+    """The text is not a quantity of the expected dimension.
 
-    def __init__(self, message: str, hint: str = "") -> None:
+    ``hint`` says what the user must write instead.  ``id`` is the id of the diagnostic.
+    """
+
+    def __init__(self, message: str, hint: str = "", id: str = "wrong-quantity") -> None:
         super().__init__(message)
         self.hint = hint
+        self.id = id
 
 
 def decimal_comma(text: str) -> str:
@@ -188,7 +192,7 @@ def parse_quantity(value: object, dimension: str) -> Fraction | float:
             raise QuantityError(f"{value} is not {wanted}", hint)
         written = int(value) if value == int(value) and abs(value) < 1e15 else value
         example = f"write for example '{written} {base_unit(dimension)}'; units: {', '.join(units)}"
-        raise QuantityError(f"this {dimension} has no unit", example)
+        raise QuantityError(f"this {dimension} has no unit", example, "wrong-unit")
     if not isinstance(value, str):
         raise QuantityError(f"this is not {wanted}", hint)
     if decimal_comma(value):
@@ -200,11 +204,11 @@ def parse_quantity(value: object, dimension: str) -> Fraction | float:
     unit = normal_unit(match[2] or "")
     if unit not in UNITS or (not unit and dimension != "ratio"):
         if not unit:
-            raise QuantityError(f"this {dimension} has no unit", hint)
-        raise QuantityError(f"unknown unit '{unit}'", _unit_hint(unit, units))
+            raise QuantityError(f"this {dimension} has no unit", hint, "wrong-unit")
+        raise QuantityError(f"unknown unit '{unit}'", _unit_hint(unit, units), "wrong-unit")
     found, factor = UNITS[unit]
     if found != dimension:
-        raise QuantityError(f"'{unit}' is a unit of {found}, not of {dimension}", hint)
+        raise QuantityError(f"'{unit}' is a unit of {found}, not of {dimension}", hint, "wrong-unit")
     number = Fraction(match[1])
     return number * factor if isinstance(factor, Fraction) else float(number) * factor
 

@@ -145,8 +145,7 @@ def typed_value(parameter: KindParameter, node: YamlNode | None, diagnostics: Di
     try:
         value = _value(parameter, stated.value)
     except QuantityError as problem:
-        id = "wrong-unit" if "unit" in str(problem) else "wrong-quantity"
-        diagnostics.error(id, stated.span, str(problem), hint=problem.hint, notes=extended_from(stated))
+        diagnostics.error(problem.id, stated.span, str(problem), hint=problem.hint, notes=extended_from(stated))
         return None
     if isinstance(value, float) and not math.isfinite(value):
         diagnostics.error("wrong-value", stated.span, "this number must be finite", notes=extended_from(stated))

@@ -72,12 +72,8 @@ def quantity_of(node: YamlNode, dimension: str, diagnostics: Diagnostics) -> Fra
     try:
         return parse_quantity(node.value, dimension)
     except QuantityError as problem:
-        diagnostics.error(_quantity_id(problem), node.span, str(problem), hint=problem.hint)
+        diagnostics.error(problem.id, node.span, str(problem), hint=problem.hint)
         return None
-
-
-def _quantity_id(problem: QuantityError) -> str:
-    return "wrong-unit" if "unit" in str(problem) else "wrong-quantity"
 
 
 def extended_from(node: YamlNode) -> list[Note]:
@@ -145,7 +141,7 @@ def _explain(keyword: str, error: Any, schema: Mapping[str, Any]) -> tuple[str, 
     if "x-quantity" in schema and keyword in ("type", "pattern", "anyOf", "oneOf"):
         problem = _quantity_problem(value, schema["x-quantity"])
         if problem is not None:
-            return _quantity_id(problem), str(problem), problem.hint
+            return problem.id, str(problem), problem.hint
         if keyword == "pattern":
             return "out-of-range", f"{_shown(value)} must not have a sign", "write the number without a sign"
     if "x-message" in schema and keyword in ("pattern", "anyOf", "oneOf", "not"):
