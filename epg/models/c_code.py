@@ -11,6 +11,7 @@ Conditional compilation is not evaluated: a definition inside ``#ifdef`` counts 
 
 from __future__ import annotations
 
+import ast
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -241,46 +242,30 @@ def integer_value(expression: str, macros: Mapping[str, str]) -> int | None:
         if replaced == expression:
             break
         expression = replaced
-    if not re.fullmatch(r"[0-9\s()+*-]+", expression) or "**" in expression.replace(" ", ""):
+    if not re.fullmatch(r"[0-9\s()+*-]+", expression):
         return None
     try:
-        value = _sum(re.findall(r"[0-9]+|[()+*-]", expression))
-    except (ValueError, IndexError, RecursionError):
+        # Python's grammar has the same integers and operators, except for numbers that begin with 0.
+        value = _sum(ast.parse(re.sub(r"\b0+(?=[0-9])", "", " ".join(expression.split())), mode="eval").body)
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
         return None
     return value if -(1 << 31) <= value < 1 << 31 else None
 
 
-def _sum(tokens: list[str]) -> int:
-    """The value of integers with ``+``, ``-``, ``*`` and parentheses.  Raises ValueError or IndexError for others."""
-
-    def atom() -> int:
-        token = tokens.pop(0)
-        if token == "(":
-            value = total()
-            if tokens.pop(0) != ")":
-                raise ValueError("unbalanced")
+def _sum(node: ast.expr) -> int:
+    """The value of integers with ``+``, ``-`` and ``*``.  Raises ValueError for other expressions."""
+    match node:
+        case ast.Constant(int(value)):
             return value
-        if token in "+-":
-            return atom() if token == "+" else -atom()
-        return int(token)
-
-    def product() -> int:
-        value = atom()
-        while tokens and tokens[0] == "*":
-            tokens.pop(0)
-            value *= atom()
-        return value
-
-    def total() -> int:
-        value = product()
-        while tokens and tokens[0] in "+-":
-            value += product() if tokens.pop(0) == "+" else -product()
-        return value
-
-    value = total()
-    if tokens:
-        raise ValueError("rest")
-    return value
+        case ast.UnaryOp(ast.UAdd() | ast.USub() as sign, operand):
+            return _sum(operand) if isinstance(sign, ast.UAdd) else -_sum(operand)
+        case ast.BinOp(left, ast.Add(), right):
+            return _sum(left) + _sum(right)
+        case ast.BinOp(left, ast.Sub(), right):
+            return _sum(left) - _sum(right)
+        case ast.BinOp(left, ast.Mult(), right):
+            return _sum(left) * _sum(right)
+    raise ValueError("another expression")
 
 
 def _includes(file: SourceFile) -> Iterator[Include]:
