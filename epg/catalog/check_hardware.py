@@ -105,21 +105,16 @@ def check_target(target: Target, diagnostics: Diagnostics) -> None:
     """
     board, soc = target.board, target.soc
     node = board.node
-    for section in ("onboard", "reserved"):
-        for name in map_of(node, section):
-            if name not in soc.pins:
-                _no_pin(name, node[section].key_span(name), target, diagnostics)
-    for written in map_of(node, "names").values():
-        if str(written.value) not in soc.pins:
-            _no_pin(str(written.value), written.span, target, diagnostics)
-    devicetree = node.get("devicetree")
-    for pins in map_of(devicetree, "nodes").values() if devicetree is not None else ():
-        for pin in pins.elements():
-            if str(pin.value) not in soc.numbers:
-                _no_pin(str(pin.value), pin.span, target, diagnostics)
-    for name in board.pins:
+    named = [(name, node[key].key_span(name)) for key in ("onboard", "reserved") for name in map_of(node, key)]
+    named += [(str(pin.value), pin.span) for pin in map_of(node, "names").values()]
+    devices = map_of(node, "devicetree", "nodes").values()
+    named += [(str(pin.value), pin.span) for device in devices for pin in device.elements()]
+    named += [(name, node["pins"].span) for name in board.pins]
+    for name, span in named:
         if name not in soc.numbers:
-            _no_pin(name, node["pins"].span, target, diagnostics)
+            hint = f"it has the pins {pin_list(soc.pins)}"
+            notes = [Note("the chip", soc.span)]
+            diagnostics.error("unknown-name", span, f"{soc.title} has no pin '{name}'", hint=hint, notes=notes)
     for child in map_of(node, "onboard").values():
         for element in child["classes"].elements():
             if element.value not in soc.classes:
@@ -241,12 +236,6 @@ def _range(node: YamlNode | None, diagnostics: Diagnostics) -> None:
     if not 1 <= first <= last <= 0x1_0000:
         message = f"'{node.value}' is not a range within 1-65536"
         diagnostics.error("out-of-range", node.span, message, hint="write the lower end first, such as 2-65536")
-
-
-def _no_pin(name: str, span: Span, target: Target, diagnostics: Diagnostics) -> None:
-    hint = f"it has the pins {pin_list(target.soc.pins)}"
-    notes = [Note("the chip", target.soc.span)]
-    diagnostics.error("unknown-name", span, f"{target.soc.title} has no pin '{name}'", hint=hint, notes=notes)
 
 
 def _unknown(what: str, node: YamlNode, known: Iterable[str], diagnostics: Diagnostics) -> None:

@@ -7,27 +7,18 @@ The input must be a boolean one, and it should be off if its wire breaks.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Protocol
+from typing import TYPE_CHECKING
 
-from epg.catalog.kind import Kind
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.documents.schema import extended_from
 from epg.source import YamlNode
 
-
-class Input(Protocol):
-    """A component with typed ``parameters``; ``node`` is its part of the ``.tcf``."""
-
-    @property
-    def kind(self) -> Kind: ...
-    @property
-    def parameters(self) -> Mapping[str, object]: ...
-    @property
-    def node(self) -> YamlNode: ...
+if TYPE_CHECKING:
+    from epg.check.configuration import Component
 
 
 def check_fail_safe(
-    node: YamlNode, section: YamlNode, components: Mapping[str, Input], diagnostics: Diagnostics
+    node: YamlNode, section: YamlNode, components: Mapping[str, Component], diagnostics: Diagnostics
 ) -> None:
     """Reports a ``node`` that does not name a component with a boolean source, or that names a topic.
 
@@ -50,7 +41,7 @@ def check_fail_safe(
         diagnostics.error("unknown-component", node.span, f"there is no component '{name}'", hint=hint)
 
 
-def _check_open_wire(name: str, component: Input, diagnostics: Diagnostics) -> None:
+def _check_open_wire(name: str, component: Component, diagnostics: Diagnostics) -> None:
     """Warns if the input is on, or can be on, while its pin is not connected."""
     pull, invert = component.parameters.get("pull"), bool(component.parameters.get("invert", False))
     if "pins" not in component.node or pull is None or pull == ("up" if invert else "down"):

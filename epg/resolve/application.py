@@ -8,11 +8,10 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
 
-from epg.catalog.catalog import Kind, KindPort, Target
+from epg.catalog.catalog import KindPort, Target
 from epg.check.bindings import ParameterSetting
 from epg.check.communication import Communication
-from epg.check.configuration import Control
-from epg.check.uses import Used
+from epg.check.configuration import Component, Control
 from epg.models.model import Model, Port
 from epg.resolve.allocation import Assignment
 from epg.resolve.parameters import RosParameters
@@ -33,20 +32,15 @@ class Step:
 
 
 @dataclass(frozen=True)
-class ResolvedComponent:
+class ResolvedComponent(Component):
     """A component with its hardware.
 
     For topics, ``value_index`` maps ports to the value indices in the exchange, counted per direction; ``first_index``
     is the smallest one, or None.
     """
 
-    name: str
-    kind: Kind
-    parameters: Mapping[str, object]
     claims: Mapping[str, Assignment]
-    uses: Mapping[str, Used]
     value_index: Mapping[str, int]
-    span: Span
 
     @property
     def first_index(self) -> int | None:

@@ -48,7 +48,7 @@ def resolve(
     assignments = allocate_hardware(configuration, period, diagnostics)
     indices = value_indices_of(configuration.components, bindings)
     components = _components(configuration, assignments or {}, indices)
-    wiring = Wiring(bindings, model, configuration.components, components, diagnostics)
+    wiring = Wiring(bindings, model, components, diagnostics)
     inputs, outputs = wiring.inputs(), wiring.outputs()
     settings = parameter_settings(bindings, model, diagnostics)
     served = ros_parameters(configuration.communication, model, diagnostics)
@@ -178,21 +178,13 @@ def _components(
     assignments: Mapping[tuple[str, str], Assignment],
     indices: Mapping[str, Mapping[str, int]],
 ) -> dict[str, ResolvedComponent]:
-    result: dict[str, ResolvedComponent] = {}
     claims: dict[str, dict[str, Assignment]] = {}
     for (owner, claim), found in assignments.items():
         claims.setdefault(owner, {})[claim] = found
-    for component in configuration.components.values():
-        result[component.name] = ResolvedComponent(
-            name=component.name,
-            kind=component.kind,
-            parameters=component.parameters,
-            claims=claims.get(component.name, {}),
-            uses=component.uses,
-            value_index=indices.get(component.name, {}),
-            span=component.span,
-        )
-    return result
+    return {
+        name: ResolvedComponent(**vars(component), claims=claims.get(name, {}), value_index=indices.get(name, {}))
+        for name, component in configuration.components.items()
+    }
 
 
 def _plant(
@@ -226,8 +218,8 @@ def _plant(
         message = f"the plant would make {float(ratio):g} steps in every control period"
         hint = "export the plant with a longer step"
         diagnostics.error("step-not-multiple", bindings.model_span, message, hint=hint)
-    physical = {name: c for name, c in configuration.components.items() if not c.kind.communication}
-    wiring = Wiring(bindings, model, physical, components, diagnostics, plant=True)
+    physical = {name: component for name, component in components.items() if not component.kind.communication}
+    wiring = Wiring(bindings, model, physical, diagnostics, plant=True)
     inputs, outputs = wiring.inputs(), wiring.outputs()
     parameters = parameter_values(parameter_settings(bindings, model, diagnostics))
     return Plant(model, inputs, outputs, parameters, max(1, ratio.numerator // ratio.denominator))

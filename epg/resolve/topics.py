@@ -73,9 +73,9 @@ def subscriptions_of(
     result = []
     for component in components.values():
         if component.kind.communication == "subscribe":
-            topic, written = _topic_name(component, "topic"), configuration.components[component.name]
+            topic = _topic_name(component, "topic")
             values = tuple(
-                TopicValue(_value_name(topic, port, component), port, index, _setpoint(written, port, units))
+                TopicValue(_value_name(topic, port, component), port, index, _setpoint(component, port, units))
                 for port, index in component.value_index.items()
             )
             result.append(

@@ -29,8 +29,7 @@ class Wiring:
         self,
         bindings: Bindings,
         model: Model,
-        components: Mapping[str, Component],
-        resolved: Mapping[str, ResolvedComponent],
+        components: Mapping[str, ResolvedComponent],
         diagnostics: Diagnostics,
         *,
         plant: bool = False,
@@ -38,7 +37,6 @@ class Wiring:
         self.bindings = bindings
         self.model = model
         self.components = components
-        self.resolved = resolved
         self.diagnostics = diagnostics
         self.plant = plant
 
@@ -72,7 +70,7 @@ class Wiring:
                     stated = ", ".join(f"{key}: {value}" for key, value in wanted.items())
                     hint = f"set '{stated}' in '{component.name}', or {hint}"
                 self.diagnostics.error("wrong-port-type", binding.span, message, hint=hint)
-            wires.append(Wire(port, self.resolved[component.name], component_port, steps, binding.span))
+            wires.append(Wire(port, component, component_port, steps, binding.span))
         return tuple(wires)
 
     def outputs(self) -> tuple[Wire, ...]:
@@ -102,7 +100,7 @@ class Wiring:
                     notes, hint = [Note("bound here", first[1])], "remove one of the two"
                     self.diagnostics.error("bound-twice", binding.span, message, hint=hint, notes=notes)
                 steps = self._steps(port, binding, component, component_port)
-                wires.append(Wire(port, self.resolved[component.name], component_port, steps, binding.span))
+                wires.append(Wire(port, component, component_port, steps, binding.span))
         return tuple(wires)
 
     def _section(self, key: str) -> Span:
@@ -142,7 +140,7 @@ class Wiring:
             if port.direction == direction
         ]
 
-    def _end(self, binding: Binding, direction: str) -> tuple[Component, KindPort] | None:
+    def _end(self, binding: Binding, direction: str) -> tuple[ResolvedComponent, KindPort] | None:
         """The component port that a binding names.
 
         None after reporting that it does not exist or has another direction.
