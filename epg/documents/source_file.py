@@ -85,6 +85,11 @@ class SourceFile:
             shown = self.text[at : at + _LONGEST_SHOWN].split("\n", 1)[0]
         return Span(str(self.path), line, column, column + length, shown)
 
+    def word_span(self, start: int) -> Span:
+        """The position of the word in the code that begins at offset ``start``."""
+        word = re.compile(r"\w*").match(self.code, start)
+        return self.span(start, word.end() if word and word[0] else start + 1)
+
 
 def read_source(path: Path, diagnostics: Diagnostics, wanted_by: Span | None = None) -> SourceFile | None:
     """The file at ``path``, or None after reporting why it cannot be read."""

@@ -92,7 +92,7 @@ class _Importer(ExportReader):
         roots = [*self.entries.values(), *self._static(), *([initialize] if initialize else [])]
         step = self._step()
         method, method_code, method_at = self._method()
-        check_method(method, self.diagnostics, method_code, method_at)
+        check_method(method, method_code.file.word_span(method_at), self.diagnostics)
         check_features(self.linked, roots, self.diagnostics)
         check_variables(self.linked, self._prefix(), self.diagnostics)
         inputs_lines, outputs_lines = self._port_lines(roots)
@@ -177,6 +177,8 @@ class _Importer(ExportReader):
     ) -> details.CFunctionExport:
         """The details of the export that the emitter needs."""
         terminate, static = self.entries.get("Terminate"), self._static()
+        header = self._instance_header()
+        names = {name for code in self.linked.units for name in code.global_names()}
         arrays = {letter: name if self._exists(name := self._array(letter)) else "" for letter in "PsR"}
         return details.CFunctionExport(
             linked=self.linked,
@@ -198,10 +200,10 @@ class _Importer(ExportReader):
             variables=self._globals(),
             places=places,
             instance_type=self.instance_type,
-            instance_header=self._instance_header(),
+            instance_header=header.file.path.name if header else "",
             memory=self._memory(),
-            declared=self._declared(),
-            renames=self._renames(),
+            declared=header is not None and self.entries["Calculate"].name in header.identifiers,
+            renames=tuple(sorted(names - self.linked.macro_names())),
         )
 
     # names ----------------------------------------------------------------------------------------------------------
@@ -274,16 +276,11 @@ class _Importer(ExportReader):
                 arguments.append("step" if sets_step else "time")
         return details.EntryPoint(function.name, tuple(arguments), self._base_type(function.result) or "void")
 
-    def _instance_header(self) -> str:
-        for code in self.linked.headers:
-            if self.instance_type and re.search(rf"\}}\s{{0,80}}{self.instance_type}\s*;", code.file.code):
-                return code.file.path.name
-        return ""
-
-    def _declared(self) -> bool:
-        header = self._instance_header()
-        found = [code for code in self.linked.headers if header and code.file.path.name == header]
-        return any(self.entries["Calculate"].name in code.identifiers for code in found)
+    def _instance_header(self) -> Code | None:
+        """The header that declares the type of the model's memory, if it has one."""
+        declaration = re.compile(rf"\}}\s{{0,80}}{self.instance_type}\s*;")
+        headers = self.linked.headers if self.instance_type else ()
+        return next((code for code in headers if declaration.search(code.file.code)), None)
 
     def _member(self, array: str) -> str:
         """The member of the instance for an array: ``V`` for ``xx_V``, which is a macro for ``model_instance->V``."""
@@ -381,10 +378,6 @@ class _Importer(ExportReader):
         if self.instance_type:
             return ()
         return global_variables((variable for _, variable in self.variables.values()), self.types, self.macros)
-
-    def _renames(self) -> tuple[str, ...]:
-        names = {f.name for code in self.linked.units for f in code.functions if not f.static and not f.owner}
-        return tuple(sorted((names | set(self.variables)) - self.linked.macro_names()))
 
     # ports ----------------------------------------------------------------------------------------------------------
 

@@ -66,7 +66,7 @@ class _Importer(ExportReader):
         before = self.diagnostics.error_count
         step = self._step()
         method, method_code, method_at = self._method()
-        check_method(method, self.diagnostics, method_code, method_at)
+        check_method(method, method_code.file.word_span(method_at), self.diagnostics)
         roots = list(self.methods.values())
         roots += [f for _, f in self.linked.functions() if f.owner == method and f.name in ("Initialize", "Step")]
         check_features(self.linked, roots, self.diagnostics)

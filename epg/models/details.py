@@ -164,9 +164,8 @@ class FmuParameter:
 class FmuExport:
     """A source-code FMU of FMI 2.0 or 3.0.
 
-    For an archive, ``packed`` holds its files with their texts.  Their names, and those in ``packed_units`` and
-    ``packed_include_dirs``, begin with ``sources``.  For a folder, these three are empty; the files are those of
-    ``units`` and ``include_dirs``.
+    The names of files and folders are relative to ``root``, the folder or the archive.  For an archive, ``packed``
+    holds its files with their texts; for a folder, it is empty.
     """
 
     standard: int  # 2 or 3
@@ -174,11 +173,10 @@ class FmuExport:
     guid: str  # in FMI 3.0, the instantiation token
     instance_name: str
     linked: Linked
-    units: tuple[Path, ...]
-    include_dirs: tuple[Path, ...]
+    root: Path
+    units: tuple[str, ...]
+    include_dirs: tuple[str, ...]
     packed: tuple[tuple[str, str], ...]
-    packed_units: tuple[str, ...]
-    packed_include_dirs: tuple[str, ...]
     headers: tuple[str, ...]  # the headers of the standard that the FMU does not contain
     definitions: tuple[tuple[str, str], ...]  # macros with their values
     renames: tuple[str, ...]  # the global symbols; those that are functions of FMI get a prefix instead

@@ -67,18 +67,14 @@ _LIBRARY_ALL = _LIBRARY | {f"{name}f" for name in _LIBRARY} | HEAP | _FILES | _P
 _LIBRARY_ALL_CPP = _LIBRARY_ALL | words("min max swap move forward clamp fill copy begin end size")
 
 
-def check_method(method: str, diagnostics: Diagnostics, code: Code, start: int) -> None:
+def check_method(method: str, span: Span, diagnostics: Diagnostics) -> None:
     """Reports an integration method that has no fixed step, or that EPG does not know."""
-    if method in FIXED_STEP_METHODS:
-        return
-    word = re.compile(r"\w*").match(code.file.code, start)
-    span = code.file.span(start, word.end() if word and word[0] else start + 1)
-    diagnostics.error(
-        "model-variable-step",
-        span,
-        f"integration method '{method}' has no fixed step" if method else "the model has no integration method",
-        hint="choose Discrete, Euler, Runge Kutta 2 or Runge Kutta 4 in 20-sim and export again",
-    )
+    if method not in FIXED_STEP_METHODS:
+        message = (
+            f"integration method '{method}' has no fixed step" if method else "the model has no integration method"
+        )
+        hint = "choose Discrete, Euler, Runge Kutta 2 or Runge Kutta 4 in 20-sim and export again"
+        diagnostics.error("model-variable-step", span, message, hint=hint)
 
 
 def check_tokens(tokens: Tokens, diagnostics: Diagnostics) -> None:

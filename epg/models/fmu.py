@@ -22,7 +22,7 @@ from epg.models.details import FmuExport, FmuParameter, FmuPorts, GlobalVariable
 from epg.models.features import FIXED_STEP_METHODS
 from epg.models.fmu_description import Description, read_description
 from epg.models.fmu_features import check_fmu, check_guid, uses_heap
-from epg.models.fmu_files import DESCRIPTION, FmuFiles, read_fmu_files
+from epg.models.fmu_files import DESCRIPTION, read_fmu_files
 from epg.models.fmu_sources import FMI_HEADERS, FmuSources, find_sources
 from epg.models.fmu_variables import TYPES_2, TYPES_3, FmuVariable
 from epg.models.global_variables import global_variables
@@ -85,7 +85,8 @@ def load_fmu(
     variables = _global_memory(sources.linked) if own_step is not None else ()
     states = {variable.reference: variable.count for variable in description.variables if variable.state}
     needed = uses_heap(sources.codes.values())
-    read = {files.path(name) for name in (*sources.units, *sources.headers)} if not files.archive else set()
+    names = sorted({*sources.units, *sources.headers})
+    read = {files.path(name) for name in names} if not files.archive else set()
     return Model(
         name=description.name,
         origin=f"FMI {description.version} FMU",
@@ -105,12 +106,11 @@ def load_fmu(
             guid=description.guid,
             instance_name=_ascii(description.name),
             linked=sources.linked,
-            units=tuple(files.path(name) for name in sources.units),
-            include_dirs=tuple(files.path(name) for name in sources.include_dirs),
-            packed=_packed(files, sources),
-            packed_units=sources.units if files.archive else (),
-            packed_include_dirs=sources.include_dirs if files.archive else (),
-            headers=_lacking(description.standard, sources),
+            root=files.root,
+            units=sources.units,
+            include_dirs=sources.include_dirs,
+            packed=tuple((name, sources.codes[name].file.text) for name in names) if files.archive else (),
+            headers=tuple(name for name in FMI_HEADERS[description.standard] if name not in sources.own_headers),
             definitions=tuple({**dict(sources.definitions), **dict(definitions)}.items()),
             renames=_renames(sources.linked),
             prefixes=_prefixes(sources.linked, description.identifier),
@@ -292,19 +292,6 @@ def _values_of_sources(
 
 
 # sources -------------------------------------------------------------------------------------------------------------
-
-
-def _packed(files: FmuFiles, sources: FmuSources) -> tuple[tuple[str, str], ...]:
-    """The source files in an archive with their texts, which the emitter writes.  Empty for a folder."""
-    if not files.archive:
-        return ()
-    names = sorted({*sources.units, *sources.headers})
-    return tuple((name, sources.codes[name].file.text) for name in names)
-
-
-def _lacking(standard: int, sources: FmuSources) -> tuple[str, ...]:
-    """The headers of the standard that the FMU does not contain, so that the importer must supply them."""
-    return tuple(name for name in FMI_HEADERS[standard] if name not in sources.own_headers)
 
 
 def _prefixes(linked: Linked, identifier: str) -> tuple[str, ...]:

@@ -103,26 +103,8 @@ def cross_check(model: Model, prefix: str, metadata: Metadata, diagnostics: Diag
 
     Returns True if the tokens belong to this export of the model: names of ports and parameters, method and step agree.
     """
-    same = True
     tokens, configuration = metadata.tokens, metadata.configuration
-    if tokens:
-        same = _check_names(model, tokens, diagnostics)
-        method = tokens.trimmed("INTEGRATION_METHOD_NAME")
-        if method and method != model.method:
-            text = f"integration method '{method}', but the sources have '{model.method}'"
-            same &= _differs(tokens.path, tokens.span("INTEGRATION_METHOD_NAME"), text, model.span, diagnostics)
-        step = tokens.trimmed("TIME_STEP_SIZE")
-        if step and exact_number(step) != model.step:
-            text = f"step size {step} s, but the sources have {float(model.step)!r} s"
-            same &= _differs(tokens.path, tokens.span("TIME_STEP_SIZE"), text, model.span, diagnostics)
-        if same:
-            _check_values(model, tokens, diagnostics)
-        if "VARPREFIX" in tokens.values and tokens.trimmed("VARPREFIX") != prefix:
-            text = f"prefix '{tokens.trimmed('VARPREFIX')}', but the sources have '{prefix}'"
-            _differs(tokens.path, tokens.span("VARPREFIX"), text, model.span, diagnostics)
-        if tokens.trimmed("SUBMODEL_NAME") not in ("", model.name):
-            text = f"submodel '{tokens.trimmed('SUBMODEL_NAME')}', but the sources have '{model.name}'"
-            _differs(tokens.path, tokens.span("SUBMODEL_NAME"), text, model.span, diagnostics)
+    same = tokens is None or _check_tokens(model, prefix, tokens, diagnostics)
     if configuration:
         if exact_number(configuration.step) not in (None, model.step):
             text = f"step size {configuration.step} s, but the sources have {float(model.step)!r} s"
@@ -132,32 +114,39 @@ def cross_check(model: Model, prefix: str, metadata: Metadata, diagnostics: Diag
     return same
 
 
-def _check_names(model: Model, tokens: Tokens, diagnostics: Diagnostics) -> bool:
-    """Warns of names of ports and parameters that differ in the tokens.  Returns True if all agree."""
+def _check_tokens(model: Model, prefix: str, tokens: Tokens, diagnostics: Diagnostics) -> bool:
+    """Warns of each difference between ``model`` and its tokens.  Returns True if the tokens belong to this export."""
+
+    def differs(token: str, text: str) -> bool:
+        return _differs(tokens.path, tokens.span(token), text, model.span, diagnostics)
+
     same = True
-    for kind, names in (
-        ("INPUT", [port.name for port in model.inputs]),
-        ("OUTPUT", [port.name for port in model.outputs]),
-    ):
-        if f"{kind}_NAMES3" not in tokens.values and f"{kind}_NAMES" not in tokens.values:
-            continue
-        told = [name for name in tokens.names(kind) if name]
-        if told == names:
-            continue
-        word = f"{kind.lower()}s"
-        if sorted(told) == sorted(names):
-            text = f"{word} in the order {_listed(told)}, but the sources have the order {_listed(names)}"
-        else:
-            text = f"{word} {_listed(told)}, but the sources have {_listed(names)}"
+    for kind, ports in (("INPUT", model.inputs), ("OUTPUT", model.outputs)):
+        names = [port.name for port in ports]
         token = f"{kind}_NAMES3" if f"{kind}_NAMES3" in tokens.values else f"{kind}_NAMES"
-        same &= _differs(tokens.path, tokens.span(token), text, model.span, diagnostics)
-    told = [name for name in tokens.names("PARAMETER") if name]
-    known = [parameter.name for parameter in model.parameters]
-    listed = set(told)
-    missing = [name for name in known if name not in listed]
-    if told and missing:
-        text = f"no parameter '{missing[0]}', which the sources have"
-        same &= _differs(tokens.path, tokens.span("PARAMETER_NAMES3"), text, model.span, diagnostics)
+        told = [name for name in tokens.names(kind) if name]
+        if token in tokens.values and told != names:
+            order = ("in the order ", "the order ") if sorted(told) == sorted(names) else ("", "")
+            text = f"{kind.lower()}s {order[0]}{_listed(told)}, but the sources have {order[1]}{_listed(names)}"
+            same &= differs(token, text)
+    listed = {name for name in tokens.names("PARAMETER") if name}
+    missing = [parameter.name for parameter in model.parameters if parameter.name not in listed]
+    if listed and missing:
+        same &= differs("PARAMETER_NAMES3", f"no parameter '{missing[0]}', which the sources have")
+    method, step = tokens.trimmed("INTEGRATION_METHOD_NAME"), tokens.trimmed("TIME_STEP_SIZE")
+    if method and method != model.method:
+        text = f"integration method '{method}', but the sources have '{model.method}'"
+        same &= differs("INTEGRATION_METHOD_NAME", text)
+    if step and exact_number(step) != model.step:
+        same &= differs("TIME_STEP_SIZE", f"step size {step} s, but the sources have {float(model.step)!r} s")
+    if same:
+        _check_values(model, tokens, diagnostics)
+    stated = tokens.trimmed("VARPREFIX")
+    if "VARPREFIX" in tokens.values and stated != prefix:
+        differs("VARPREFIX", f"prefix '{stated}', but the sources have '{prefix}'")
+    name = tokens.trimmed("SUBMODEL_NAME")
+    if name not in ("", model.name):
+        differs("SUBMODEL_NAME", f"submodel '{name}', but the sources have '{model.name}'")
     return same
 
 

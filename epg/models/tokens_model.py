@@ -13,7 +13,7 @@ from epg.documents.text_file import one_line
 from epg.models import details
 from epg.models.assignments import assignments, exact_number, is_step, port_lines
 from epg.models.c_code import KEYWORDS
-from epg.models.features import FIXED_STEP_METHODS, STUBS, check_tokens
+from epg.models.features import STUBS, check_method, check_tokens
 from epg.models.identifiers import words
 from epg.models.model import Model
 from epg.models.ports import check_identifiers, make_parameters, make_ports
@@ -91,7 +91,7 @@ def load_tokens_model(tokens: Tokens, diagnostics: Diagnostics) -> Model | None:
     if not _is_complete(tokens, diagnostics):
         return None
     check_tokens(tokens, diagnostics)
-    _check_method(tokens, diagnostics)
+    check_method(tokens.trimmed("INTEGRATION_METHOD_NAME"), tokens.span("INTEGRATION_METHOD_NAME"), diagnostics)
     helpers = _check_calls(tokens, diagnostics)
     if tokens.count("NUMBER_MATRICES"):
         message = "the model uses matrices, which EPG does not support in tokens"
@@ -168,17 +168,6 @@ def _is_complete(tokens: Tokens, diagnostics: Diagnostics) -> bool:
                 diagnostics.error("model-tokens", span, message, hint=hint, notes=[note])
                 break
     return diagnostics.error_count == before
-
-
-def _check_method(tokens: Tokens, diagnostics: Diagnostics) -> None:
-    method = tokens.trimmed("INTEGRATION_METHOD_NAME")
-    if method not in FIXED_STEP_METHODS:
-        diagnostics.error(
-            "model-variable-step",
-            tokens.span("INTEGRATION_METHOD_NAME"),
-            f"integration method '{method}' has no fixed step",
-            hint="choose Discrete, Euler, Runge Kutta 2 or Runge Kutta 4 in 20-sim and export again",
-        )
 
 
 def _balanced(code: str) -> bool:

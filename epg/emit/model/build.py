@@ -45,10 +45,12 @@ def model_build(model: Model, name: str, parameters: Mapping[str, float] | None 
     details = model.details
     if isinstance(details, FmuExport):
         folder = fmu_folder(name)
-        own += [f"{folder}/{unit}" for unit in details.packed_units]
-        generated_directories = tuple(f"{folder}/{place}" for place in details.packed_include_dirs)
-        if not details.packed:
-            exported, directories = details.units, details.include_dirs
+        if details.packed:
+            own += [f"{folder}/{unit}" for unit in details.units]
+            generated_directories = tuple(f"{folder}/{place}" for place in details.include_dirs)
+        else:
+            exported = tuple(details.root / unit for unit in details.units)
+            directories = tuple(details.root / place for place in details.include_dirs)
         forced = f"{name}_names.h"
     elif isinstance(details, CFunctionExport):
         units = [code.file.path for code in details.linked.units]
