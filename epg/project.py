@@ -132,16 +132,15 @@ def load_parts(request: Request, diagnostics: Diagnostics, read_model: ModelRead
     model = read_model(request.model, diagnostics)
     bindings = load_bindings(request.bindings, diagnostics, request.caller, request.drafts)
     parts = Parts(configuration, model, bindings)
-    plant_model: Model | None = None
-    plant_bindings: Bindings | None = None
+    plant: PlantFiles | None = None
     if request.plant is not None and request.plant_bindings is not None:
         plant_model = read_model(request.plant, diagnostics)
         plant_bindings = load_bindings(request.plant_bindings, diagnostics, request.caller)
         if plant_model is None or plant_bindings is None:
             return parts
+        plant = PlantFiles(plant_model, plant_bindings)
     if configuration is None or model is None or bindings is None:
         return parts
-    plant = PlantFiles(plant_model, plant_bindings) if plant_model and plant_bindings else None
     check_model_names(model, f"{request.name}_model", diagnostics)
     if plant is not None:
         check_model_names(plant.model, f"{request.name}_plant", diagnostics)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Sequence
 
-from epg.catalog.hardware import Target
+from epg.catalog.hardware import Target, names_of
 from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.documents.items import integer_range, map_of, pin_list, pin_names, texts_of
 from epg.quantity import QuantityError, parse_quantity
@@ -136,8 +136,8 @@ def check_target(target: Target, diagnostics: Diagnostics) -> None:
 
 def _peripheral(name: str, node: YamlNode, pins: Sequence[str], diagnostics: Diagnostics) -> None:
     """Checks a peripheral of a chip with these ``pins``."""
-    instances = _listed(node["instances"])
-    slots = [""]
+    instances = names_of(node["instances"])
+    slots: tuple[str, ...] = ("",)
     if "slots" in node:
         count, names = node.get("slots", "count"), node.get("slots", "names")
         stated = [part for part in (count, names) if part is not None]
@@ -145,7 +145,7 @@ def _peripheral(name: str, node: YamlNode, pins: Sequence[str], diagnostics: Dia
             message = f"slots of '{name}' must set either 'count' or 'names'"
             diagnostics.error("exactly-one", node.key_span("slots"), message)
             return
-        slots = _listed(stated[0])
+        slots = names_of(stated[0])
     for key in ("prescaler", "counter"):
         _range(node.get("divider", key), diagnostics)
     if "divider" in node and "clock" in node["divider"]:
@@ -163,7 +163,7 @@ def _peripheral(name: str, node: YamlNode, pins: Sequence[str], diagnostics: Dia
                 if str(pin.value) not in pins:
                     hint = f"it has the pins {pin_list(pins)}" if pins else ""
                     diagnostics.error("unknown-name", pin.span, f"this chip has no pin '{pin.value}'", hint=hint)
-    if "frequency" in _listed(node.get("agree")) and "divider" not in node:
+    if "frequency" in names_of(node.get("agree")) and "divider" not in node:
         diagnostics.error("unknown-name", node.key_span("agree"), f"'{name}' has no divider that sets a frequency")
 
 
@@ -175,8 +175,8 @@ def _resource_class(name: str, node: YamlNode, peripherals: dict[str, YamlNode],
         _unknown("peripheral", stated, peripherals, diagnostics)
         return
     peripheral = peripherals[str(stated.value)] if stated is not None else None
-    slots = _listed(peripheral.get("slots", "names")) if peripheral else []
-    instances = _listed(peripheral["instances"]) if peripheral else []
+    slots = names_of(peripheral.get("slots", "names")) if peripheral else ()
+    instances = names_of(peripheral["instances"]) if peripheral else ()
     whole = node.get("takes") is not None and node["takes"].value == "instance"
     for element in node["instances"].elements() if "instances" in node else ():
         if str(element.value) not in instances:
@@ -218,15 +218,6 @@ def _pins(node: YamlNode | None, diagnostics: Diagnostics) -> tuple[str, ...]:
     if double is not None and node is not None:
         diagnostics.error("wrong-value", node.span, f"pin {double} is listed twice")
     return names
-
-
-def _listed(node: YamlNode | None) -> list[str]:
-    """The names in a list, or the numbers from 0 as text for a number; empty if ``node`` is None."""
-    if node is None:
-        return []
-    if isinstance(node.value, int):
-        return [str(number) for number in range(node.value)]
-    return [str(element.value) for element in node.elements()]
 
 
 def _range(node: YamlNode | None, diagnostics: Diagnostics) -> None:

@@ -114,14 +114,11 @@ def _ports(node: YamlNode, parameters: Mapping[str, YamlNode], diagnostics: Diag
                 hint = did_you_mean(key, parameters, "parameters")
                 key_span = values.key_span(key)
                 diagnostics.error("unknown-name", key_span, f"this kind has no parameter '{key}'", hint=hint)
-        if "actuator" in port and port["actuator"].value is True and direction != "sink":
-            diagnostics.error(
-                "wrong-value", port["actuator"].span, "an actuator must be a sink", hint="write 'direction: sink'"
-            )
-        if "drive" in port and port["drive"].value is True and direction != "sink":
-            message = "a port that drives a motor must be a sink"
-            diagnostics.error("wrong-value", port["drive"].span, message, hint="write 'direction: sink'")
-        if "default" in port and port["default"].value is True:
+        for key, what in (("actuator", "an actuator"), ("drive", "a port that drives a motor")):
+            if flag_of(port, key) and direction != "sink":
+                message = f"{what} must be a sink"
+                diagnostics.error("wrong-value", port[key].span, message, hint="write 'direction: sink'")
+        if flag_of(port, "default"):
             other, other_span = defaults.setdefault(direction, (name, span))
             if other != name:
                 message = f"'{other}' is already the default {direction}"

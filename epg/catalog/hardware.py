@@ -267,11 +267,11 @@ def _files(node: YamlNode, own: Path) -> tuple[Path, ...]:
 
 
 def _peripheral(name: str, node: YamlNode, soc: YamlNode) -> Peripheral:
-    instances = _names(node["instances"])
+    instances = names_of(node["instances"])
     slots: tuple[str, ...] = ("",)
     if "slots" in node:
         count, names = node.get("slots", "count"), node.get("slots", "names")
-        slots = _names(names if names is not None else count)
+        slots = names_of(names if names is not None else count)
     divider = node.get("divider")
     pins: dict[tuple[int, int], tuple[str, ...]] = {}
     for instance, reached in map_of(node, "pins").items():
@@ -322,10 +322,10 @@ def _clock(node: YamlNode) -> Fraction:
     return Fraction(parse_quantity(node.value, "frequency"))
 
 
-def _names(node: YamlNode | None) -> tuple[str, ...]:
-    """The names in a list; "0" to "7" for the number 8; one empty name if ``node`` is None."""
+def names_of(node: YamlNode | None) -> tuple[str, ...]:
+    """The names in a list; "0" to "7" for the number 8; empty if ``node`` is None."""
     if node is None:
-        return ("",)
+        return ()
     if isinstance(node.value, int):
         return tuple(str(number) for number in range(node.value))
     return tuple(str(element.value) for element in node.elements())

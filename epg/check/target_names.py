@@ -58,15 +58,13 @@ def _generated_headers(name: str) -> set[str]:
 def check_driver_headers(name: str, configuration: Configuration, diagnostics: Diagnostics) -> None:
     """Reports a generated header that has the name of a driver's header in the same target."""
     generated = _generated_headers(name)
-    for component in configuration.components.values():
-        for header in sorted(generated.intersection(component.kind.headers)):
-            message = f"component '{component.name}' needs a header '{header}', which target '{name}' also generates"
-            diagnostics.error("invalid-name", component.span, message, hint="choose another name for the target")
     communication = configuration.communication
-    for middleware in communication.middlewares:
-        for header in sorted(generated.intersection(middleware.headers)):
-            message = f"middleware '{middleware.name}' needs a header '{header}', which target '{name}' also generates"
-            diagnostics.error("invalid-name", communication.span, message, hint="choose another name for the target")
+    parts = [(f"component '{c.name}'", c.kind.headers, c.span) for c in configuration.components.values()]
+    parts += [(f"middleware '{m.name}'", m.headers, communication.span) for m in communication.middlewares]
+    for part, headers, span in parts:
+        for header in sorted(generated.intersection(headers)):
+            message = f"{part} needs a header '{header}', which target '{name}' also generates"
+            diagnostics.error("invalid-name", span, message, hint="choose another name for the target")
 
 
 def check_paths(paths: Iterable[Path], diagnostics: Diagnostics) -> None:

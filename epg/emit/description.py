@@ -8,6 +8,7 @@ that is compiled.
 from __future__ import annotations
 
 import json
+from pathlib import Path
 from typing import Any
 
 from epg import __version__
@@ -168,6 +169,4 @@ def _step(step: Step) -> dict[str, Any]:
 
 
 def _span(span: Span, names: PathNames) -> str:
-    from pathlib import Path
-
     return f"{names.shown(Path(span.file))}:{span.line}:{span.column}"

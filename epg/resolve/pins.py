@@ -118,17 +118,14 @@ class Pins:
     def _exists(self, pin: str, stated: Stated) -> bool:
         """True if components can use the pin.  Reports a pin that the board does not have, or reserves for itself."""
         board, soc = self.target.board, self.target.soc
-        if pin in board.reserved:
-            message = f"pin {pin} of {board.name} is reserved: {board.reserved[pin]}"
-            hint = f"pins of {board.name}: {pin_list(board.pins)}"
-            self.diagnostics.error("pin-reserved", stated.span, message, hint=hint, notes=stated.notes)
-            return False
-        if pin in self.usable_pins:
-            return True
-        what = "is not broken out" if pin in soc.numbers else "does not exist"
-        message = f"pin {stated.value} {what} on {board.name}"
+        id, message = "pin-reserved", f"pin {pin} of {board.name} is reserved: {board.reserved.get(pin)}"
+        if pin not in board.reserved:
+            if pin in self.usable_pins:
+                return True
+            what = "is not broken out" if pin in soc.numbers else "does not exist"
+            id, message = "pin-unknown", f"pin {stated.value} {what} on {board.name}"
         hint = f"pins of {board.name}: {pin_list(board.pins)}"
-        self.diagnostics.error("pin-unknown", stated.span, message, hint=hint, notes=stated.notes)
+        self.diagnostics.error(id, stated.span, message, hint=hint, notes=stated.notes)
         return False
 
     def _is_free(self, pin: str, stated: Stated, claim: Claim, signal: str, resource_class: ResourceClass) -> bool:
@@ -160,10 +157,6 @@ class Pins:
             return f"no pin is free for {resource_class.a_title}"
         return f"free pins for {resource_class.a_title}: {pin_list(free)}"
 
-    def _peripheral(self, resource_class: ResourceClass) -> Peripheral | None:
-        name = resource_class.peripheral
-        return None if name is None else self.target.soc.peripherals[name]
-
     def _reached(
         self, resource_class: ResourceClass, peripheral: Peripheral, signal: str, place: Place
     ) -> Sequence[str]:
@@ -175,7 +168,7 @@ class Pins:
         return peripheral.pins.get((place[0], slot), ())
 
     def _can_reach(self, resource_class: ResourceClass, signal: str, pin: str) -> bool:
-        peripheral = self._peripheral(resource_class)
+        peripheral = self.target.soc.peripherals.get(resource_class.peripheral or "")
         return peripheral is None or bool(self.reachable(resource_class, peripheral, {signal: pin}))
 
     def _are_neighbours(self, one: str, other: str) -> bool:

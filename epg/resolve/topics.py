@@ -9,9 +9,9 @@ message have consecutive indices.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
+from dataclasses import replace
 from fractions import Fraction
 
-from epg.catalog.kind import Kind
 from epg.check.bindings import Binding, Bindings
 from epg.check.configuration import DIAGNOSTICS_TOPIC, Component, Configuration
 from epg.quantity import dimension_of
@@ -52,15 +52,11 @@ def _bound_ports(components: Mapping[str, Component], bindings: Bindings) -> dic
     ends += [(binding, "sink") for _, several in bindings.outputs.values() for binding in several]
     for binding, direction in ends:
         kind = components[binding.component].kind if binding.component in components else None
-        port = binding.port or (_main_port(kind, direction) if kind else None)
+        main = kind.main_port(direction) if kind else None
+        port = binding.port or (main.name if main else None)
         if port is not None:
             result.setdefault(binding.component, set()).add(port)
     return result
-
-
-def _main_port(kind: Kind, direction: str) -> str | None:
-    port = kind.main_port(direction)
-    return port.name if port else None
 
 
 def subscriptions_of(
@@ -73,18 +69,12 @@ def subscriptions_of(
     result = []
     for component in components.values():
         if component.kind.communication == "subscribe":
-            topic = _topic_name(component, "topic")
-            values = tuple(
-                TopicValue(_value_name(topic, port, component), port, index, _setpoint(component, port, units))
-                for port, index in component.value_index.items()
-            )
-            result.append(
-                _topic(component, topic, "values", values, index=min(component.value_index.values()), depth=1)
-            )
+            values = _values(component, units)
+            result.append(_topic(component, "topic", "values", values, index=values[0].index, depth=1))
     echoes = [c for c in components.values() if c.kind.communication == "echo"]
     first = sum(c.kind.communication == "publish" for c in components.values())
     for number, component in enumerate(echoes, first):
-        result.append(_topic(component, _topic_name(component, "from"), "echo", (), index=number, qos="qos_from"))
+        result.append(_topic(component, "from", "echo", (), index=number, qos="qos_from"))
     enable = configuration.control.enable_topic
     if enable is not None:
         result.append(Topic(enable, "control.enable_topic", "enable", "reliable", 1, None, (), 0))
@@ -102,27 +92,16 @@ def publications_of(
     result = []
     for component in components.values():
         if component.kind.communication == "publish":
-            topic = _topic_name(component, "topic")
-            values = tuple(
-                TopicValue(_value_name(topic, port, component), port, index)
-                for port, index in component.value_index.items()
-            )
+            values = _values(component, None)
             cycles = component.parameters.get("every")
-            result.append(
-                _topic(
-                    component,
-                    topic,
-                    "values",
-                    values,
-                    index=min(component.value_index.values()),
-                    trigger=_trigger(component.parameters),
-                    cycles=cycles if isinstance(cycles, int) else 0,
-                    period=communication.period,
-                )
-            )
+            on_change = component.parameters.get("on_change") is True
+            topic = _topic(component, "topic", "values", values, index=values[0].index)
+            trigger = "cycles" if cycles is not None else "change" if on_change else "period"
+            cycles = cycles if isinstance(cycles, int) else 0
+            result.append(replace(topic, trigger=trigger, cycles=cycles, period=communication.period))
     for component in components.values():
         if component.kind.communication == "echo":
-            result.append(_topic(component, _topic_name(component, "to"), "echo", (), index=0, qos="qos_to"))
+            result.append(_topic(component, "to", "echo", (), index=0, qos="qos_to"))
     every = communication.diagnostics
     if every:
         key = "communication.diagnostics"
@@ -146,20 +125,18 @@ def publications_of(
 
 def _topic(
     component: ResolvedComponent,
-    name: str,
+    parameter: str,
     role: str,
     values: tuple[TopicValue, ...],
     *,
     index: int,
     depth: int = HISTORY,
     qos: str = "qos",
-    trigger: str = "period",
-    cycles: int = 0,
-    period: Fraction = Fraction(0),
 ) -> Topic:
+    """The topic whose name is in ``parameter``."""
     stated = component.parameters.get("depth")
     return Topic(
-        name=name,
+        name=str(component.parameters[parameter]),
         key=f"components.{component.name}",
         role=role,
         qos=str(component.parameters.get(qos) or component.parameters["qos"]),
@@ -167,29 +144,27 @@ def _topic(
         component=component,
         values=values,
         index=index,
-        trigger=trigger,
-        cycles=cycles,
-        period=period,
     )
 
 
-def _topic_name(component: ResolvedComponent, parameter: str) -> str:
-    return str(component.parameters[parameter])
+def _values(
+    component: ResolvedComponent, units: Mapping[tuple[str, str], Collection[str]] | None
+) -> tuple[TopicValue, ...]:
+    """The values of a component's topic.  With ``units``, as for :func:`_setpoint`, they are setpoints.
 
-
-def _value_name(topic: str, port: str, component: ResolvedComponent) -> str:
-    """The name of a value in messages: the topic's name, or ``joint_states/pan.position`` for one of several values."""
-    return (
-        topic
-        if len(component.kind.topic_ports) == 1 and not component.kind.topic_ports[0].element
-        else f"{topic}/{port}"
+    A value has the name of the topic in messages, or ``joint_states/pan.position`` if it is one of several values.
+    """
+    topic, ports = str(component.parameters["topic"]), component.kind.topic_ports
+    alone = len(ports) == 1 and not ports[0].element
+    return tuple(
+        TopicValue(
+            topic if alone else f"{topic}/{port}",
+            port,
+            index,
+            None if units is None else _setpoint(component, port, units),
+        )
+        for port, index in component.value_index.items()
     )
-
-
-def _trigger(parameters: Mapping[str, object]) -> str:
-    if parameters.get("every") is not None:
-        return "cycles"
-    return "change" if parameters.get("on_change") is True else "period"
 
 
 def _setpoint(component: Component, port: str, units: Mapping[tuple[str, str], Collection[str]]) -> Setpoint:

@@ -111,21 +111,19 @@ typedef void (*fmi3UnlockPreemptionCallback)(void);
 
 # Each line: result, names without the prefix "fmi2" or "fmi3", arguments.  Short forms: "." is the status, "I" the
 # instance, "V" an array of value references and its length, "R" a real number, "B" a Boolean, "S" a string.
-_FUNCTIONS_2 = """
+_TYPES_OF_VALUES_2 = "Real Integer Boolean String".split()
+_FUNCTIONS_2 = (
+    """
 const char * GetTypesPlatform, GetVersion(void)
 . SetDebugLogging(I, B, size_t, const S[])
 fmi2Component Instantiate(S, fmi2Type, S, S, const fmi2CallbackFunctions *, B, B)
 void FreeInstance(I)
 . SetupExperiment(I, B, R, R, B, R)
 . EnterInitializationMode, ExitInitializationMode, EnterEventMode, EnterContinuousTimeMode, Terminate, Reset(I)
-. GetReal(I, V, R[])
-. GetInteger(I, V, fmi2Integer[])
-. GetBoolean(I, V, B[])
-. GetString(I, V, S[])
-. SetReal(I, V, const R[])
-. SetInteger(I, V, const fmi2Integer[])
-. SetBoolean(I, V, const B[])
-. SetString(I, V, const S[])
+"""
+    + "".join(f". Get{kind}(I, V, fmi2{kind}[])\n" for kind in _TYPES_OF_VALUES_2)
+    + "".join(f". Set{kind}(I, V, const fmi2{kind}[])\n" for kind in _TYPES_OF_VALUES_2)
+    + """
 . GetFMUstate, FreeFMUstate(I, fmi2FMUstate *)
 . SetFMUstate(I, fmi2FMUstate)
 . SerializedFMUstateSize(I, fmi2FMUstate, size_t *)
@@ -147,8 +145,9 @@ void FreeInstance(I)
 . GetBooleanStatus(I, const fmi2StatusKind, B *)
 . GetStringStatus(I, const fmi2StatusKind, S *)
 """
+)
 
-_NUMBERS_3 = "Float32 Float64 Int8 UInt8 Int16 UInt16 Int32 UInt32 Int64 UInt64 Boolean String".split()
+_TYPES_OF_VALUES_3 = "Float32 Float64 Int8 UInt8 Int16 UInt16 Int32 UInt32 Int64 UInt64 Boolean String".split()
 _FUNCTIONS_3 = (
     """
 const char * GetVersion(void)
@@ -163,8 +162,8 @@ void FreeInstance(I)
 . ExitInitializationMode, EnterEventMode, EnterConfigurationMode, ExitConfigurationMode, EnterStepMode(I)
 . EnterContinuousTimeMode, EvaluateDiscreteStates, Terminate, Reset(I)
 """
-    + "".join(f". Get{kind}(I, V, fmi3{kind}[], size_t)\n" for kind in _NUMBERS_3)
-    + "".join(f". Set{kind}(I, V, const fmi3{kind}[], size_t)\n" for kind in _NUMBERS_3)
+    + "".join(f". Get{kind}(I, V, fmi3{kind}[], size_t)\n" for kind in _TYPES_OF_VALUES_3)
+    + "".join(f". Set{kind}(I, V, const fmi3{kind}[], size_t)\n" for kind in _TYPES_OF_VALUES_3)
     + """
 . GetBinary(I, V, size_t[], fmi3Binary[], size_t)
 . SetBinary(I, V, const size_t[], const fmi3Binary[], size_t)
