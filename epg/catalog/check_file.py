@@ -17,6 +17,14 @@ from epg.documents.text_file import is_file
 from epg.documents.yaml_file import newer_version
 from epg.source import Span, YamlNode
 
+_CHECKS = {
+    "soc": check_soc,
+    "board": check_board,
+    "platform": check_platform,
+    "middleware": check_middleware,
+    "component": check_kind,
+}
+
 
 def check_file(category: str, node: YamlNode, name: str, platforms: Sequence[str], diagnostics: Diagnostics) -> bool:
     """True if the file of the item ``name`` has no mistakes.  Reports them otherwise.
@@ -37,21 +45,13 @@ def check_file(category: str, node: YamlNode, name: str, platforms: Sequence[str
         message = f"{key} '{node[key].value}' is in a folder called '{name}'"
         hint = f"write '{key}: {name}', or rename the folder"
         diagnostics.error("wrong-folder", node[key].span, message, hint=hint)
-    if category == "soc":
-        check_soc(node, diagnostics)
-    elif category == "board":
-        check_board(node, diagnostics)
-    elif category == "platform":
-        check_platform(node, diagnostics)
-        if node["builds"].value is True:
-            _beside(node["builds"], "platform.cmake", "docs/adding-a-platform.md", diagnostics)
-    elif category == "family":
+    if category == "family":
         check_family(node, platforms, diagnostics)
         _beside(node["family"], "family.cmake", "docs/adding-a-family.md", diagnostics)
-    elif category == "middleware":
-        check_middleware(node, diagnostics)
     else:
-        check_kind(node, diagnostics)
+        _CHECKS[category](node, diagnostics)
+    if category == "platform" and node["builds"].value is True:
+        _beside(node["builds"], "platform.cmake", "docs/adding-a-platform.md", diagnostics)
     if category in ("platform", "family"):
         _files_exist(node, ("templates",), _names_in(node, ("templates",)), diagnostics)
         _check_templates(_names_in(node, ("templates",)), diagnostics)

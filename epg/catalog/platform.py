@@ -147,15 +147,11 @@ def make_family(node: YamlNode, folder: Path) -> Family:
 
 def platform_for(platform: Platform, family: Family) -> Platform:
     """A platform ``by_family`` with the parts that ``family`` adds."""
+    own = ("classes", "middlewares", "has_usb_names", "templates", "sdk", "products")
     return replace(
         platform,
-        classes=family.classes,
-        middlewares=family.middlewares,
-        has_usb_names=family.has_usb_names,
-        templates=family.templates,
-        sdk=family.sdk,
+        **{name: getattr(family, name) for name in own},
         headers=(*family.headers, *platform.headers),
         needs=(*platform.needs, *family.needs),
-        products=family.products,
         family=family,
     )

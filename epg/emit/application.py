@@ -128,7 +128,7 @@ class Emitter:
         details = plant.model.details if plant else None
         return {
             "plant_starts_by_step": isinstance(details, HandWritten) and not details.init,
-            "plant_inputs": [self._plant_input(wire) for wire in plant.inputs] if plant else [],
+            "plant_inputs": [self._input(wire, "plant_read", counted=False) for wire in plant.inputs] if plant else [],
             "plant_outputs": [self._plant_output(wire) for wire in plant.outputs] if plant else [],
         }
 
@@ -183,10 +183,10 @@ class Emitter:
                     result.append(Arrival(component.name, index, statement))
         return sorted(result, key=lambda arrival: arrival.index)
 
-    def _input(self, wire: Wire) -> InputView:
-        value = self.macros.expression(wire.component, "read", wire.component_port.name)
+    def _input(self, wire: Wire, macro: str = "read", *, counted: bool = True) -> InputView:
+        value = self.macros.expression(wire.component, macro, wire.component_port.name)
         member = identifier(wire.port.identifier)
-        return InputView(wire.port.name, _reference(wire), member, self._converted(value, wire.steps))
+        return InputView(wire.port.name, _reference(wire), member, self._converted(value, wire.steps, counted=counted))
 
     def _output(self, wire: Wire) -> OutputView:
         value = Code(f"{self.prefix}_outputs.{identifier(wire.port.identifier)}")
@@ -198,11 +198,6 @@ class Emitter:
         prepare = self.macros.macro(component, "prepare", port, value)
         write = (self.macros.macro if prepare else self.macros.statement)(component, "write", port, value)
         return _indented(prepare), _indented(write)
-
-    def _plant_input(self, wire: Wire) -> InputView:
-        value = self.macros.expression(wire.component, "plant_read", wire.component_port.name)
-        member = identifier(wire.port.identifier)
-        return InputView(wire.port.name, _reference(wire), member, self._converted(value, wire.steps, counted=False))
 
     def _plant_output(self, wire: Wire) -> OutputView:
         value = Code(f"outputs.{identifier(wire.port.identifier)}")

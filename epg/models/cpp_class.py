@@ -150,11 +150,7 @@ class _Importer(ExportReader):
     def _ports(self, direction: str) -> tuple[Port, ...]:
         lines = self.port_lines(((self.main, method) for method in self.methods.values()), direction)
         tokens = self.metadata.tokens
-        names = (
-            [(name, tokens.span(f"{direction.upper()}_NAMES3")) for name in tokens.names(direction.upper())]
-            if tokens
-            else []
-        )
+        names = tokens.named(direction.upper()) if tokens else []
         stated = self._place_of(f"number_of_{direction}s") or self._place_of(f"number_{direction}s")
         count = integer_value(stated[1], {}) if stated else None
         ports = make_ports(lines, direction, names, self.metadata.configuration, self.diagnostics, self.whole, count)

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from epg.diagnostics import Diagnostics
 from epg.documents.xml_file import Element, load_xml
+from epg.models.folders import entries
 from epg.source import Span
 
 _INDEX = re.compile(r"[0-9]{1,9}")
@@ -57,12 +58,9 @@ def find_configuration(directory: Path) -> Path | None:
     It is called ``ModelConfiguration.xml``, ``*.mcf`` or ``*.xxsim``.
     """
     for folder in (directory, directory / "config"):
-        try:
-            files = sorted(entry for entry in folder.iterdir() if entry.is_file())
-        except OSError:
-            continue
-        for file in files:
-            if file.name.lower() == "modelconfiguration.xml" or file.suffix.lower() in (".mcf", ".xxsim"):
+        for file in entries(folder):
+            named = file.name.lower() == "modelconfiguration.xml" or file.suffix.lower() in (".mcf", ".xxsim")
+            if named and file.is_file():
                 return file
     return None
 

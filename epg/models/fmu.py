@@ -187,16 +187,13 @@ def _step(
         diagnostics.error("fmu-step", description.step_span, message, hint=hint)
         return None
     base = description.internal_step or own_step
+    message = ""
     if base is not None and (step / base).denominator != 1:
         message = f"the step {float(step):g} s is not a multiple of the FMU's internal step, {float(base):g} s"
-        span = wanted_span or description.step_span
-        diagnostics.error("fmu-step", span, message, hint="export the FMU with the step of the target")
-        return None
-    if own_step is not None and step / own_step > _MOST_CALLS:
-        message = (
-            f"the step {float(step):g} s needs more than {_MOST_CALLS} internal steps of the FMU, "
-            f"{float(own_step):g} s each"
-        )
+    elif own_step is not None and step / own_step > _MOST_CALLS:
+        needs = f"the step {float(step):g} s needs more than {_MOST_CALLS} internal steps of the FMU"
+        message = f"{needs}, {float(own_step):g} s each"
+    if message:
         span = wanted_span or description.step_span
         diagnostics.error("fmu-step", span, message, hint="export the FMU with the step of the target")
         return None

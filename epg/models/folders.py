@@ -12,20 +12,23 @@ _SKIPPED = frozenset(("project", "build", "cmakefiles", "binaries"))
 _BUILD_MARKS = ("CMakeCache.txt", ".epg-outputs.json")
 
 
+def entries(folder: Path) -> list[Path]:
+    """The entries of ``folder``, sorted; empty if it cannot be read."""
+    try:
+        return sorted(folder.iterdir())
+    except OSError:
+        return []
+
+
 def searched_folders(directory: Path, depth: int = DEPTH) -> list[Path]:
     """``directory`` and the folders up to ``depth`` levels below it that can hold sources of a model.
 
     Links, hidden folders, folders of IDEs and build folders are not searched.
     """
     found = [directory]
-    if depth:
-        try:
-            entries = sorted(directory.iterdir())
-        except OSError:
-            return found
-        for entry in entries:
-            if may_hold_sources(entry):
-                found.extend(searched_folders(entry, depth - 1))
+    for entry in entries(directory) if depth else ():
+        if may_hold_sources(entry):
+            found.extend(searched_folders(entry, depth - 1))
     return found
 
 
@@ -34,11 +37,7 @@ def source_files(directory: Path, suffixes: Iterable[str], depth: int = DEPTH) -
     wanted = {suffix.lower() for suffix in suffixes}
     found: list[Path] = []
     for folder in searched_folders(directory, depth):
-        try:
-            entries = sorted(folder.iterdir())
-        except OSError:
-            continue
-        found.extend(entry for entry in entries if entry.suffix.lower() in wanted and entry.is_file())
+        found.extend(entry for entry in entries(folder) if entry.suffix.lower() in wanted and entry.is_file())
     return found
 
 

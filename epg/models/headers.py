@@ -13,6 +13,7 @@ from epg.diagnostics import Diagnostics, Note
 from epg.documents.source_file import SourceFile, read_source
 from epg.documents.text_file import is_file
 from epg.models.c_code import Code, Include, parse_code
+from epg.models.folders import entries
 from epg.models.neighbours import Neighbours, all_alike
 from epg.source import Span
 
@@ -183,10 +184,7 @@ def _other_case(name: str, search: Sequence[Path]) -> Path | None:
             if path is None or part in ("", ".", ".."):
                 path = None
                 break
-            try:
-                path = next((e for e in sorted(path.iterdir()) if e.name.casefold() == part.casefold()), None)
-            except OSError:
-                path = None
+            path = next((entry for entry in entries(path) if entry.name.casefold() == part.casefold()), None)
         if path is not None and path.is_file():
             return path
     return None

@@ -19,7 +19,7 @@ from epg.diagnostics import Diagnostics, Note
 from epg.documents.source_file import SourceFile, read_source
 from epg.models.c_code import Code, Function, parse_code
 from epg.models.declarations import declared_names, open_classes
-from epg.models.folders import searched_folders, source_files
+from epg.models.folders import entries, searched_folders, source_files
 from epg.models.headers import Headers, Shim
 from epg.models.neighbours import SOURCE_FOLDERS, Neighbours, all_alike, report_taken
 from epg.models.whole import is_whole
@@ -303,10 +303,7 @@ def _include_directories(directory: Path) -> list[Path]:
     for parent in (directory, directory.parent if directory.name.lower() in SOURCE_FOLDERS else None):
         if parent is None:
             continue
-        try:
-            below = sorted(entry for entry in parent.iterdir() if entry.is_dir() and not entry.name.startswith("."))
-        except OSError:
-            continue
+        below = [entry for entry in entries(parent) if entry.is_dir() and not entry.name.startswith(".")]
         wanted = below if parent is directory else [entry for entry in below if entry.name.lower() in _INCLUDE_FOLDERS]
         result.extend(entry for entry in wanted if entry.name.lower() not in ("project", "build", "binaries"))
     return list(dict.fromkeys([*result, *searched_folders(directory)]))

@@ -20,6 +20,7 @@ from epg.models.export_configuration import (
     load_model_description,
 )
 from epg.models.fmu_files import DESCRIPTION
+from epg.models.folders import entries
 from epg.models.model import Model, Port
 from epg.models.neighbours import SOURCE_FOLDERS
 from epg.models.ports import make_parameters
@@ -83,19 +84,12 @@ def find_metadata(main: Path, name: str, diagnostics: Diagnostics) -> Metadata:
 
 def _find_tokens(folder: Path, main: Path, name: str, diagnostics: Diagnostics) -> Tokens | None:
     """The tokens in a folder: those with the name of the source file, else those of the model ``name``, else any."""
-    files = [entry for entry in _entries(folder) if is_tokens_file(entry)]
+    files = [entry for entry in entries(folder) if is_tokens_file(entry) and entry.is_file()]
     own = [file for file in files if file.stem.casefold() == f"{main.stem}_tokens".casefold()]
     candidates = own or [file for file in files if file.stem.casefold() == "tokens"] or files
     loaded = [load_tokens(file, diagnostics, required=False) for file in candidates]
     good = [item for item in loaded if item is not None]
     return next((item for item in good if item.trimmed("SUBMODEL_NAME") == name), good[0] if good else None)
-
-
-def _entries(folder: Path) -> list[Path]:
-    try:
-        return sorted(entry for entry in folder.iterdir() if entry.is_file())
-    except OSError:
-        return []
 
 
 def cross_check(model: Model, prefix: str, metadata: Metadata, diagnostics: Diagnostics) -> bool:

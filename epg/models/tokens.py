@@ -56,6 +56,10 @@ class Tokens:
             return [name.strip() for name in self._lines(f"{kind}_NAMES3")]
         return [re.sub(r"\\(.)", r"\1", match[1]) for match in STRING.finditer(self.get(f"{kind}_NAMES"))]
 
+    def named(self, kind: str) -> list[tuple[str, Span]]:
+        """The names of ``kind``, each with the position of the list."""
+        return [(name, self.span(f"{kind}_NAMES3")) for name in self.names(kind)]
+
     def units(self, kind: str, count: int) -> list[str]:
         """The units of ``kind``, always ``count`` of them.  A missing unit is empty."""
         units = [unit.strip() for unit in self._lines(f"{kind}_UNITS")]

@@ -108,7 +108,7 @@ def load_tokens_model(tokens: Tokens, diagnostics: Diagnostics) -> Model | None:
         ("input", "INPUT_TO_VARIABLE_EQUATIONS", "u"),
         ("output", "VARIABLE_TO_OUTPUT_EQUATIONS", "y"),
     ):
-        names = [(name, tokens.span(f"{kind.upper()}_NAMES3")) for name in tokens.names(kind.upper())]
+        names = tokens.named(kind.upper())
         count = tokens.count(f"NUMBER_{kind.upper()}S")
         lines = port_lines(tokens.code(token), kind, vector)
         group = make_ports(lines, kind, names, None, diagnostics, tokens.span(token), count)
