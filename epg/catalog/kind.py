@@ -16,6 +16,7 @@ from epg.source import Span, YamlNode
 TEMPLATE = "code.c.j2"
 """The template of the code that a kind adds to generated files.  Middlewares can have such a template, too."""
 
+
 _BOUNDS = ("minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum")
 
 

@@ -11,19 +11,13 @@ from typing import Any
 from epg.catalog.kind import KindParameter, make_parameter
 from epg.diagnostics import Diagnostics, did_you_mean
 from epg.documents.items import map_of, texts_of
-from epg.documents.schema import extended_from, validate
+from epg.documents.schema import BOUND_WORDS, extended_from, validate
 from epg.quantity import QuantityError, number_hint, parse_quantity, parse_ratio
 from epg.source import Span, YamlNode
 
 COMMON_PARAMETERS = ("kind", "node", "scale", "offset", "unit", "limits")
 """Keys that every component can have, in addition to ``pins`` and the parameters of its kind."""
 
-_BOUND_WORDS = {
-    "minimum": "at least",
-    "exclusiveMinimum": "more than",
-    "maximum": "at most",
-    "exclusiveMaximum": "less than",
-}
 _NAME = {
     "type": "string",
     "pattern": "^[A-Za-z_][A-Za-z0-9_]*$",
@@ -123,7 +117,7 @@ def parameter_schema(parameter: KindParameter) -> dict[str, Any]:
 
 
 def _description(parameter: KindParameter) -> str:
-    bounds = [f"{_BOUND_WORDS[key]} {bound.value}" for key, bound in parameter.bounds.items()]
+    bounds = [f"{BOUND_WORDS[key]} {bound.value}" for key, bound in parameter.bounds.items()]
     return f"{parameter.description} ({', '.join(bounds)})" if bounds else parameter.description
 
 
@@ -187,5 +181,5 @@ def _check_bounds(parameter: KindParameter, value: object, node: YamlNode, diagn
             "exclusiveMaximum": value < limit,
         }
         if not within[key]:
-            message = f"'{node.value}' is out of range: must be {_BOUND_WORDS[key]} {bound.value}"
+            message = f"'{node.value}' is out of range: must be {BOUND_WORDS[key]} {bound.value}"
             diagnostics.error("out-of-range", node.span, message, notes=extended_from(node))

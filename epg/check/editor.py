@@ -114,17 +114,11 @@ def _if_kind(kind: Kind, definition: str) -> Schema:
 
 def _relations(kind: Kind) -> Schema:
     """The relations between the keys of a kind: keys that exclude each other, and keys that need another one."""
-    relations: Schema = {}
-    if kind.exactly_one:
-        relations["allOf"] = [{"oneOf": [{"required": [name]} for name in names]} for names in kind.exactly_one]
-    if kind.at_least_one:
-        several = [{"anyOf": [{"required": [name]} for name in names]} for names in kind.at_least_one]
-        relations["allOf"] = [*relations.get("allOf", []), *several]
-    if kind.at_most_one:
-        excluded = [
-            {"not": {"required": list(pair)}} for names in kind.at_most_one for pair in itertools.combinations(names, 2)
-        ]
-        relations["allOf"] = [*relations.get("allOf", []), *excluded]
+    rules: list[Schema] = [{"oneOf": [{"required": [name]} for name in names]} for names in kind.exactly_one]
+    rules += [{"anyOf": [{"required": [name]} for name in names]} for names in kind.at_least_one]
+    pairs = [pair for names in kind.at_most_one for pair in itertools.combinations(names, 2)]
+    rules += [{"not": {"required": list(pair)}} for pair in pairs]
+    relations: Schema = {"allOf": rules} if rules else {}
     if kind.only_with:
         needs: dict[str, list[str]] = {}
         for key, needed in kind.only_with:

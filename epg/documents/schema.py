@@ -127,7 +127,7 @@ def _report(error: Any, root: YamlNode, diagnostics: Diagnostics) -> None:
     diagnostics.error(id, node.span, message, hint=hint, notes=notes)
 
 
-_BOUNDS = {
+BOUND_WORDS = {
     "minimum": "at least",
     "exclusiveMinimum": "more than",
     "maximum": "at most",
@@ -176,8 +176,8 @@ def _explain_limit(keyword: str, value: object, limit: Any) -> tuple[str, str, s
         return "wrong-value", f"{_shown(value)} is not possible here", did_you_mean(str(value), map(str, limit))
     if keyword == "const":
         return "wrong-value", f"expected {_shown(limit)}, found {_shown(value)}", ""
-    if keyword in _BOUNDS:
-        return "out-of-range", f"{_shown(value)} is out of range: must be {_BOUNDS[keyword]} {limit}", ""
+    if keyword in BOUND_WORDS:
+        return "out-of-range", f"{_shown(value)} is out of range: must be {BOUND_WORDS[keyword]} {limit}", ""
     if keyword == "uniqueItems":
         return "wrong-value", "this list has the same value twice", "remove one of the two"
     if keyword in ("minItems", "maxItems") and isinstance(value, list) and value:

@@ -9,10 +9,9 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from epg import __version__
-from epg.emit.application import Emitter
 from epg.emit.cmake import PathNames
 from epg.emit.topics import TopicView
 from epg.messages.layout import MessageType
@@ -20,6 +19,9 @@ from epg.models.model import Model
 from epg.resolve.allocation import Assignment
 from epg.resolve.application import Application, ResolvedComponent, Step, Wire
 from epg.source import Span
+
+if TYPE_CHECKING:
+    from epg.emit.application import Emitter
 
 
 def describe(emitter: Emitter, names: PathNames, hash: str = "") -> str:
