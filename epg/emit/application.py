@@ -55,12 +55,8 @@ class Emitter:
         """The text of each generated file of the application and its platform, by file name."""
         context = self._context()
         name = str(self.prefix)
-        result = {
-            f"{name}.h": self.env.get_template("app.h.j2").render(context),
-            f"{name}_version.c": self.env.get_template("version.c.j2").render(context),
-            f"{name}_version.h": self.env.get_template("version.h.j2").render(context),
-            f"{name}_app.c": self.env.get_template("app.c.j2").render(context),
-        }
+        frames = {".h": "app.h.j2", "_version.c": "version.c.j2", "_version.h": "version.h.j2", "_app.c": "app.c.j2"}
+        result = {f"{name}{end}": self.env.get_template(frame).render(context) for end, frame in frames.items()}
         platform = self.app.target.platform
         for file, template in platform_files(self.app).items():
             env = self._environment(file)

@@ -78,18 +78,7 @@ def board_nodes(app: Application) -> list[str]:
 
 def _view(app: Application, component: str, name: str, resource_class: str, label: str, found: Assignment) -> ClaimView:
     names = app.target.soc.pins if found.pins_are_real else ()
-    return ClaimView(
-        component=component,
-        name=name,
-        resource_class=resource_class,
-        label=label,
-        instance=found.instance,
-        slot=found.slot,
-        instance_name=found.instance_name,
-        slot_name=found.slot_name,
-        pins={signal: PinView(names[pin] if names else str(pin), pin) for signal, pin in found.pins.items()},
-        settings=found.settings,
-        frequency=found.frequency,
-        attributes=found.attributes,
-        node=found.node,
-    )
+    pins = {signal: PinView(names[pin] if names else str(pin), pin) for signal, pin in found.pins.items()}
+    same = ("instance", "slot", "instance_name", "slot_name", "settings", "frequency", "attributes", "node")
+    stated = {member: getattr(found, member) for member in same}
+    return ClaimView(component, name, resource_class, label, pins=pins, **stated)

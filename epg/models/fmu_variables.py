@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from epg.diagnostics import Diagnostics
@@ -64,7 +64,11 @@ class FmuVariable:
 
 def read_variables(root: Element, standard: int, diagnostics: Diagnostics) -> tuple[FmuVariable, ...]:
     """All variables that are numbers.  Reports inputs and outputs that cannot be ports."""
-    return _variables_2(root, diagnostics) if standard == 2 else _variables_3(root, diagnostics)
+    units, limits = _types(root, standard)
+    elements = _listed(root, diagnostics)
+    candidates = _candidates_2(elements) if standard == 2 else _candidates_3(elements, diagnostics)
+    found = (_variable(*candidate, units, limits, diagnostics) for candidate in candidates)
+    return tuple(variable for variable in found if variable is not None)
 
 
 def _types(root: Element, standard: int) -> tuple[dict[str, str], dict[str, tuple[int, int]]]:
@@ -85,40 +89,29 @@ def _types(root: Element, standard: int) -> tuple[dict[str, str], dict[str, tupl
     return units, limits
 
 
-def _variables_2(root: Element, diagnostics: Diagnostics) -> tuple[FmuVariable, ...]:
-    units, limits = _types(root, 2)
-    elements = _listed(root, diagnostics)
+def _candidates_2(elements: list[Element]) -> Iterator[tuple[Element, Element | None, tuple[int, ...], bool]]:
+    """Each variable of FMI 2.0: its element, the one with its type, its dimensions, and True if it is a state."""
     states: set[int] = set()  # positions in the list, from 0
     for element in elements:
         real = element.find("Real")
         derivative = real.attributes.get("derivative", "") if real is not None else ""
         if derivative.isdecimal():
             states.add(int(derivative) - 1)
-    found = []
     for position, element in enumerate(elements):
         typed = next((child for child in element.children if child.name in (*TYPES_2, *_NO_NUMBERS)), None)
-        variable = _variable(element, typed, (), units, limits, position in states, diagnostics)
-        if variable is not None:
-            found.append(variable)
-    return tuple(found)
+        yield element, typed, (), position in states
 
 
-def _variables_3(root: Element, diagnostics: Diagnostics) -> tuple[FmuVariable, ...]:
-    units, limits = _types(root, 3)
-    elements = _listed(root, diagnostics)
+def _candidates_3(
+    elements: list[Element], diagnostics: Diagnostics
+) -> Iterator[tuple[Element, Element | None, tuple[int, ...], bool]]:
+    """The same for FMI 3.0, in which the element of a variable has its type."""
     states = {element.attributes["derivative"] for element in elements if "derivative" in element.attributes}
     sizes = _sizes(elements)
-    found = []
     for element in elements:
-        if element.name not in (*TYPES_3, *_NO_NUMBERS):
-            continue
-        dimensions = _dimensions(element, sizes, diagnostics)
-        state = element.attributes.get("valueReference") in states
+        dimensions = _dimensions(element, sizes, diagnostics) if element.name in (*TYPES_3, *_NO_NUMBERS) else None
         if dimensions is not None:
-            variable = _variable(element, element, dimensions, units, limits, state, diagnostics)
-            if variable is not None:
-                found.append(variable)
-    return tuple(found)
+            yield element, element, dimensions, element.attributes.get("valueReference") in states
 
 
 def _listed(root: Element, diagnostics: Diagnostics) -> list[Element]:
@@ -171,9 +164,9 @@ def _variable(
     element: Element,
     typed: Element | None,
     dimensions: tuple[int, ...],
+    state: bool,
     units: Mapping[str, str],
     limits: Mapping[str, tuple[int, int]],
-    state: bool,
     diagnostics: Diagnostics,
 ) -> FmuVariable | None:
     """A variable that is a number.  None for other variables; if they are inputs or outputs, this is reported."""

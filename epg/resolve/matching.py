@@ -72,11 +72,10 @@ def _ends(components: Mapping[str, Component], direction: str) -> dict[str, tupl
     """Reference -> (its words, all words of its component, port and kind), for the ports of a direction."""
     result = {}
     for component in components.values():
-        main = component.kind.main_port(direction)
         for port in component.kind.ports:
             if port.direction != direction:
                 continue
-            reference = component.name if port is main else f"{component.name}.{port.name}"
+            reference = component.kind.reference(component.name, port)
             more = _words(component.name) | _words(port.name) | _words(component.kind.name)
             result[reference] = (_words(reference), more)
     return result
