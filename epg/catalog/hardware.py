@@ -23,7 +23,7 @@ from types import MappingProxyType
 
 from epg.catalog.layout import Layout, make_layout
 from epg.catalog.platform import Platform
-from epg.documents.items import flag_of, integer_range, map_of, pin_names, text_map_of, text_of, texts_of, values_of
+from epg.documents.items import flag_of, integer_range, map_of, pin_names, text_of, texts_of, values_of
 from epg.quantity import parse_quantity
 from epg.source import Span, YamlNode
 
@@ -295,17 +295,16 @@ def _peripheral(name: str, node: YamlNode, soc: YamlNode) -> Peripheral:
 def _resource_class(name: str, node: YamlNode, soc: YamlNode) -> ResourceClass:
     peripheral, counter = node.get("peripheral"), node.get("divider", "counter")
     divider = node.get("divider")
+    stated = values_of(node, ResourceClass) | {
+        "name": name,
+        "whole": text_of(node, "takes") == "instance",
+        "exact": divider is not None and flag_of(divider, "exact"),
+    }
     return ResourceClass(
-        name=name,
-        title=text_of(node, "title"),
+        **stated,
         peripheral=str(peripheral.value) if peripheral else None,
-        whole=text_of(node, "takes") == "instance",
-        instances=texts_of(node, "instances"),
-        signals=text_map_of(node, "signals"),
-        neighbours=texts_of(node, "neighbours"),
         fixed=MappingProxyType({key: value.value for key, value in map_of(node, "fixed").items()}),
         divider_from=text_of(divider, "from") if divider else None,
-        exact=divider is not None and flag_of(divider, "exact"),
         counter=integer_range(counter) if counter else None,
         unsupported=MappingProxyType(
             {

@@ -112,15 +112,10 @@ class _Importer(ExportReader):
             name=self._name(),
             origin="20-sim C function",
             language="c",
-            version=self.version(),
+            **self.common(ports),
             method=method,
             step=step,
-            inputs=ports[0],
-            outputs=ports[1],
             parameters=parameters,
-            directory=self.file.path.parent,
-            files=tuple(sorted({code.file.path for code in self.linked.all} | set(self.metadata.files))),
-            span=self.whole,
             details=self._details(
                 initialize,
                 self._elements(inputs_lines),
@@ -130,8 +125,6 @@ class _Importer(ExportReader):
                     for group in places
                 ),
             ),
-            searched=self.linked.searched,
-            twins=self.linked.twins,
         )
         return model if self.agrees(model, self._prefix()) else None
 

@@ -85,15 +85,10 @@ class _Importer(ExportReader):
             name=self.class_name,
             origin="20-sim C++ class",
             language="c++",
-            version=self.version(),
+            **self.common(ports),
             method=method,
             step=step,
-            inputs=ports[0],
-            outputs=ports[1],
             parameters=parameters,
-            directory=self.file.path.parent,
-            files=tuple(sorted({code.file.path for code in self.linked.all} | set(self.metadata.files))),
-            span=self.whole,
             details=details.CppClassExport(
                 linked=self.linked,
                 class_name=self.class_name,
@@ -106,8 +101,6 @@ class _Importer(ExportReader):
                 rates=self._prefix() + "R",
                 places=tuple(tuple(self._place(line) for line in group) for group in places),
             ),
-            searched=self.linked.searched,
-            twins=self.linked.twins,
         )
         return model if self.agrees(model, self._prefix()) else None
 

@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
+from typing import Any
 
 from epg.diagnostics import Diagnostics
 from epg.models.assignments import PortLine, exact_number, is_step, port_lines
@@ -13,7 +14,7 @@ from epg.models.c_code import Code, Function
 from epg.models.features import check_tokens
 from epg.models.link import Linked
 from epg.models.metadata import Metadata, cross_check
-from epg.models.model import Model
+from epg.models.model import Model, Port
 from epg.source import Span
 
 _MOST_PARAMETERS = 16  # parameters of a function that are parsed; functions of exports have four
@@ -66,6 +67,19 @@ class ExportReader:
             for vector in _vectors(function)
             for line in port_lines(code.file, direction, vector, function.body_start, function.body_end)
         ]
+
+    def common(self, ports: Sequence[tuple[Port, ...]]) -> dict[str, Any]:
+        """The attributes of :class:`Model` that are found in the same way in C and in C++."""
+        return {
+            "version": self.version(),
+            "inputs": ports[0],
+            "outputs": ports[1],
+            "directory": self.file.path.parent,
+            "files": tuple(sorted({code.file.path for code in self.linked.all} | set(self.metadata.files))),
+            "span": self.whole,
+            "searched": self.linked.searched,
+            "twins": self.linked.twins,
+        }
 
     def agrees(self, model: Model, prefix: str) -> bool:
         """Compares ``model`` with its metadata.  False, after an error, if a target cannot run it."""

@@ -124,17 +124,20 @@ class Headers:
         return path
 
     def _report_ambiguous(self, include: Include, file: SourceFile, candidates: list[Path]) -> None:
+        message = f"'{include.name}' is not in the model's folder, but {len(candidates)} different ones are beside it"
+        notes = [Note("one of them", Span(str(path))) for path in candidates[:8]]
+        hint = "copy the right one into the model's folder"
+        self._refuse("model-ambiguous-definition", include, file, message, hint, notes)
+
+    def _refuse(
+        self, id: str, include: Include, file: SourceFile, message: str, hint: str, notes: Sequence[Note]
+    ) -> None:
+        """Reports an error about a header, only once."""
         self.good = False
-        if include.name in self._told:
-            return
-        self._told.add(include.name)
-        self.diagnostics.error(
-            "model-ambiguous-definition",
-            file.span(include.start, include.start + len(include.name)),
-            f"'{include.name}' is not in the model's folder, but {len(candidates)} different ones are beside it",
-            hint="copy the right one into the model's folder",
-            notes=[Note("one of them", Span(str(path))) for path in candidates[:8]],
-        )
+        if include.name not in self._told:
+            self._told.add(include.name)
+            span = file.span(include.start, include.start + len(include.name))
+            self.diagnostics.error(id, span, message, hint=hint, notes=notes)
 
     def _report_missing(self, include: Include, file: SourceFile) -> None:
         """Reports a header that does not exist, only once.  For an optional header, this is a warning."""
@@ -147,19 +150,10 @@ class Headers:
                 hint="the file is needed only if the model uses its functions; to get it, export the model again",
             )
             return
-        self.good = False
-        if include.name in self._told:
-            return
-        self._told.add(include.name)
         notes = self.near.notes(_base(include.name))
         mend = "copy the right one into the model's folder" if notes else "copy all files that 20-sim exported"
-        self.diagnostics.error(
-            "model-file-missing",
-            span,
-            f"'{include.name}' is not in the model's folder, nor beside it",
-            hint=f"{self.near.description()}; {mend}",
-            notes=notes,
-        )
+        message, hint = f"'{include.name}' is not in the model's folder, nor beside it", self.near.description()
+        self._refuse("model-file-missing", include, file, message, f"{hint}; {mend}", notes)
 
 
 def _is_optional(name: str) -> bool:
