@@ -171,11 +171,12 @@ class _Importer(ExportReader):
         """The details of the export that the emitter needs."""
         terminate, static = self.entries.get("Terminate"), self._static()
         header = self._instance_header()
+        variables = [variable for _, variable in self.variables.values()]
         names = {name for code in self.linked.units for name in code.global_names()}
         arrays = {letter: name if self._exists(name := self._array(letter)) else "" for letter in "PsR"}
         return details.CFunctionExport(
             linked=self.linked,
-            real=self._base_type("XXDouble") or "double",
+            real=base_type("XXDouble", self.types) or "double",
             initialize=self._entry(self.entries["Initialize"]),
             calculate=self._entry(self.entries["Calculate"]),
             terminate=self._entry(terminate) if terminate else details.EntryPoint("", ()),
@@ -190,7 +191,7 @@ class _Importer(ExportReader):
             pointers=tuple(sorted(name for name, (_, variable) in self.variables.items() if variable.pointer)),
             time=self._variable_name("time"),
             stop=self._variable_name("stop_simulation"),
-            variables=self._globals(),
+            variables=() if self.instance_type else global_variables(variables, self.types, self.macros),
             places=places,
             instance_type=self.instance_type,
             instance_header=header.file.path.name if header else "",
@@ -267,7 +268,7 @@ class _Importer(ExportReader):
             else:
                 sets_step = re.search(rf"\b{re.escape(self._step_name())}\s*=\s*{re.escape(name)}\s*;", body)
                 arguments.append("step" if sets_step else "time")
-        return details.EntryPoint(function.name, tuple(arguments), self._base_type(function.result) or "void")
+        return details.EntryPoint(function.name, tuple(arguments), base_type(function.result, self.types) or "void")
 
     def _instance_header(self) -> Code | None:
         """The header that declares the type of the model's memory, if it has one."""
@@ -363,14 +364,6 @@ class _Importer(ExportReader):
                 if name in macro and "dep" not in macro:
                     return integer_value(value, self.macros) or 0
         return self.metadata.tokens.count("NUMBER_STATES") if self.metadata.tokens else 0
-
-    def _base_type(self, word: str) -> str:
-        return base_type(word, self.types)
-
-    def _globals(self) -> tuple[details.GlobalVariable, ...]:
-        if self.instance_type:
-            return ()
-        return global_variables((variable for _, variable in self.variables.values()), self.types, self.macros)
 
     # ports ----------------------------------------------------------------------------------------------------------
 

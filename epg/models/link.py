@@ -64,9 +64,7 @@ class Linked:
         return {macro.name for code in self.all for macro in code.macros}
 
     def functions(self) -> Iterator[tuple[Code, Function]]:
-        for code in self.all:
-            for function in code.functions:
-                yield code, function
+        return ((code, function) for code in self.all for function in code.functions)
 
     def reachable(self, roots: Iterable[Function]) -> list[tuple[Code, Function]]:
         """The functions that can run when the functions ``roots`` are called, in the order of the files."""
