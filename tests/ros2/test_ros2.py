@@ -29,6 +29,8 @@ if shutil.which("ros2") is None:
     pytest.skip("ROS 2 is not sourced: source /opt/ros/jazzy/setup.bash", allow_module_level=True)
 
 NODE = "/robot_7/JIWY_node"
+DIRECT = ("--no-daemon", "--spin-time", "2")
+"""Without the daemon, which could remember the nodes of another test."""
 IMPLEMENTATIONS = ["rmw_cyclonedds_cpp", "rmw_fastrtps_cpp"]
 
 
@@ -75,6 +77,16 @@ def test_ros2_lists_the_node_and_its_topics(robot: Path, ros: dict[str, str]) ->
     told = ask(ros, "topic", "info", "--verbose", "/robot_7/pan_publisher", "--no-daemon", "--spin-time", "4")
     assert "Node name: JIWY_node" in told and "Node namespace: /robot_7" in told
     assert type_hash("std_msgs/msg/Float64") in told and "RELIABLE" in told
+
+
+@pytest.mark.parametrize("ros", ["rmw_cyclonedds_cpp"], indirect=True)
+def test_ros2_sets_parameters_and_calls_services(robot: Path, ros: dict[str, str]) -> None:
+    assert ask(ros, "param", "set", NODE, "Pan.PID.kp", "3.5", *DIRECT) == "Set parameter successful\n"
+    assert ask(ros, "param", "get", NODE, "Pan.PID.kp", *DIRECT) == "Double value is: 3.5\n"
+    described = ask(ros, "param", "describe", NODE, "Pan.PID.kp", *DIRECT)
+    assert "Description: gain of the pan axis" in described and "Max value: 20.0" in described
+    called = ask(ros, "service", "call", f"{NODE}/enable", "std_srvs/srv/SetBool", "{data: false}")
+    assert "SetBool_Response(success=True, message='disabled')" in called
 
 
 def test_ros2_echoes_positions_and_publishes_setpoints(robot: Path, ros: dict[str, str]) -> None:
