@@ -15,6 +15,9 @@ from epg.source import Span, YamlNode
 STACK = 2048
 """The size of the stack in bytes for middlewares that do not state it."""
 
+POLICIES = ("durability", "deadline", "lifespan")
+"""The policies of quality of service that only some middlewares have."""
+
 
 @dataclass(frozen=True)
 class Middleware:
@@ -23,6 +26,8 @@ class Middleware:
     ``platforms`` maps platforms on which the middleware runs, although their own files do not name it, to transports.
     ``connection`` is "stream" (bytes, carried by a transport of the platform), "own" or "none".  ``uses`` names the
     parts that the generator must add to a target: "node", "services", "signals", "parameters", "capture", "jog".
+    ``quality`` are the policies that it has in addition to reliability and history: "durability", "deadline",
+    "lifespan".
     ``needs`` are names of tools, in addition to those of the platform.  ``symbol`` is the name of its
     ``epg_middleware_t`` in C, empty if no code runs.  ``headers`` and ``sources`` are files in ``folder``.  ``stack``
     is a size in bytes.  ``builds`` is False if targets with it can be checked but not built.
@@ -33,6 +38,7 @@ class Middleware:
     connection: str
     platforms: Mapping[str, tuple[str, ...]]
     uses: tuple[str, ...]
+    quality: tuple[str, ...]
     needs: tuple[str, ...]
     options: tuple[KindParameter, ...]
     symbol: str
@@ -68,6 +74,7 @@ def make_middleware(node: YamlNode, folder: Path) -> Middleware:
         connection=text_of(node, "connection"),
         platforms=MappingProxyType({name: texts_of(node, "platforms", name) for name in map_of(node, "platforms")}),
         uses=texts_of(node, "uses"),
+        quality=texts_of(node, "quality"),
         needs=texts_of(node, "needs"),
         options=make_parameters(node.get("options")),
         symbol=text_of(node["driver"], "symbol") if "driver" in node else "",

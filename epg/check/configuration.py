@@ -18,7 +18,7 @@ from epg.check.fail_safe import check_fail_safe
 from epg.check.merge import apply_settings, merge_chain
 from epg.check.messages import message_files, with_messages
 from epg.check.names import identifier_problem, normal_namespace
-from epg.check.topics import Use, check_names
+from epg.check.topics import Use, check_names, check_quality
 from epg.check.uses import Used, used_components
 from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.documents.schema import extended_from, load_schema, validate
@@ -109,6 +109,9 @@ def check_configuration(
     communication = check_communication(
         root, target, {c.name: c.kind.transport for c in components.values()}, catalog, diagnostics
     )
+    if communication is not None:
+        topics = [c.name for c in components.values() if c.kind.communication]
+        check_quality(root["components"], topics, communication.middleware, diagnostics)
     control = _control(root, components, communication, diagnostics)
     check_names(root["node"], root.get("namespace"), _topics(components, control, communication), diagnostics)
     if target is None or communication is None or diagnostics.error_count > errors:

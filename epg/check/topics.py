@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks the names of the node, its namespace and its topics.  No topic may have two users."""
+"""Checks the names of the node, its namespace and its topics, and the quality of service of the topics."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
+from epg.catalog.middleware import POLICIES, Middleware
 from epg.check.names import absolute_topic, namespace_problem, node_name_problem, topic_problem
 from epg.diagnostics import Diagnostics, Note
 from epg.documents.schema import extended_from
@@ -34,6 +35,21 @@ def check_names(node: YamlNode, namespace: YamlNode | None, topics: Iterable[Use
             notes = [Note("used here", other[1])]
             hint = "give each its own topic; one component can be bound to several model ports"
             diagnostics.error("duplicate-topic", span, message, hint=hint, notes=notes)
+
+
+def check_quality(
+    section: YamlNode, components: Iterable[str], middleware: Middleware, diagnostics: Diagnostics
+) -> None:
+    """Reports policies of ``components`` that a ROS 2 middleware does not have.  Other middlewares ignore them all."""
+    for component in components if middleware.is_node else ():
+        for policy in POLICIES:
+            node = section.get(component, policy)
+            if node is not None and policy not in middleware.quality and node.value != "volatile":
+                message = f"the middleware '{middleware.name}' has no '{policy}'"
+                hint = f"remove it, or use a middleware that has it; '{middleware.name}' has " + (
+                    ", ".join(middleware.quality) or "none of these policies"
+                )
+                diagnostics.error("policy-not-offered", node.span, message, hint=hint, notes=extended_from(node))
 
 
 def _report(node: YamlNode, problem: str | None, diagnostics: Diagnostics) -> None:

@@ -88,6 +88,7 @@ class TopicValue:
 class Topic:
     """One topic.  ``key`` is the key of the ``.tcf`` that makes it: ``components.pan_publisher``.
 
+    ``durability`` is "volatile" or "transient_local"; ``deadline`` and ``lifespan`` are in seconds, 0 for none.
     ``role`` is "values", "enable", "diagnostics", "parameters" or "echo".  ``index`` is the index of the first value;
     for the subscription of an echo, it is the number of the publication that answers.  ``trigger`` is "period"
     (``period`` in seconds), "cycles" (every ``cycles`` control cycles) or "change".
@@ -104,6 +105,9 @@ class Topic:
     trigger: str = "period"
     cycles: int = 0
     period: Fraction = Fraction(0)
+    durability: str = "volatile"
+    deadline: Fraction = Fraction(0)
+    lifespan: Fraction = Fraction(0)
 
 
 @dataclass(frozen=True)

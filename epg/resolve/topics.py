@@ -144,7 +144,15 @@ def _topic(
         component=component,
         values=values,
         index=index,
+        durability=str(component.parameters.get("durability") or "volatile"),
+        deadline=_time(component.parameters.get("deadline")),
+        lifespan=_time(component.parameters.get("lifespan")),
     )
+
+
+def _time(value: object) -> Fraction:
+    """A time in seconds; 0 if it is not stated."""
+    return Fraction(value) if isinstance(value, (int, Fraction)) else Fraction(0)
 
 
 def _values(

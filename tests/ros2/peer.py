@@ -281,10 +281,12 @@ class Peer:
         *,
         reliable: bool = True,
         depth: int = 10,
+        transient_local: bool = False,
         callback: Callable[[Any], None] | None = None,
     ) -> Subscription:
         entity = Topic(self._participant, f"rt{topic}", type_)
-        reader = DataReader(self._participant, entity, qos=ros_qos(type_, reliable=reliable, depth=depth))
+        qos = ros_qos(type_, reliable=reliable, depth=depth, transient_local=transient_local)
+        reader = DataReader(self._participant, entity, qos=qos)
         reader.set_status_mask(DDSStatus.DataAvailable)
         self._subscriptions.append(Subscription(reader, callback))
         self._attach(reader)

@@ -23,6 +23,9 @@ import pytest
 
 pytest.importorskip("tests.ros2.packages", exc_type=ImportError)
 
+from cyclonedds.core import Policy
+from cyclonedds.util import duration
+
 from tests.ros2.build import Build
 from tests.ros2.definitions import type_hash
 from tests.ros2.messages import (
@@ -396,7 +399,7 @@ def test_a_console_beside_it(jiwy: Path, net: Network) -> None:
 def test_messages_of_several_values(build_checked: Build, net: Network, tmp_path: Path) -> None:
     """CycloneDDS for Python reads and writes the messages by ROS 2's definitions, not by EPG's code."""
     with robot(net, build_checked("joints"), tmp_path) as jiwy_robot, Peer(net.domain, "rviz") as peer:
-        states = peer.subscription("/robot_7/joint_states", JointState_)
+        states = peer.subscription("/robot_7/joint_states", JointState_, transient_local=True)
         setpoints = peer.publisher("/robot_7/setpoints", Float64MultiArray_)
         assert meet_and_wait(peer, lambda: setpoints.matched == 1 and len(states.received) > 20)
         dimension = MultiArrayDimension_("axis", 2, 2)
@@ -407,6 +410,13 @@ def test_messages_of_several_values(build_checked: Build, net: Network, tmp_path
         own = [e for e in [*peer.graph.publications(), *peer.graph.subscriptions()] if e.node == NODE]
         assert {e.topic for e in own} >= {"/robot_7/joint_states", "/robot_7/setpoints", "/diagnostics"}
         assert [e.hash for e in own] == [type_hash(e.type) for e in own]
+        [policies] = [w.qos for w in peer.graph.writers.values() if w.topic_name == "rt/robot_7/joint_states"]
+        stated = (
+            Policy.Durability.TransientLocal,
+            Policy.Deadline(duration(milliseconds=100)),
+            Policy.Lifespan(duration(seconds=1)),
+        )
+        assert all(policy in policies for policy in stated), policies
         jiwy_robot.end()
     last = states.messages[-1]
     assert (last.header.frame_id, last.name, last.velocity, last.effort) == ("base_link", ["pan", "tilt"], [], [])

@@ -68,7 +68,7 @@ import json, os, signal, sys, time
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from std_msgs.msg import Bool, Float64
-from rclpy.qos import qos_profile_sensor_data
+from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
 
 rclpy.init()
 node = rclpy.create_node("watch")
@@ -199,7 +199,9 @@ def test_a_message_of_any_type(agent: RealAgent, build: Build, implementation: s
 
 
 DISABLED = """
-heard, told = [], []
+heard, told, kept = [], [], []
+durable = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+node.create_subscription(Float64, "/robot_1/tilt_publisher", kept.append, durable)
 node.create_subscription(Float64, "/robot_1/pan_publisher", heard.append, qos_profile_sensor_data)
 node.create_subscription(DiagnosticArray, "/diagnostics", told.append, 10)
 setpoint = node.create_publisher(Float64, "/robot_1/pan_subscriber", qos_profile_sensor_data)
@@ -213,7 +215,7 @@ def follow():
 moved = wait(follow, 20)
 enable.publish(Bool(data=False))
 disabled = wait(lambda: told and told[-1].status[0].message == "disabled", 10)
-print(json.dumps({"moved": moved, "disabled": disabled, "level": told[-1].status[0].level[0]}))
+print(json.dumps({"moved": moved, "kept": len(kept), "disabled": disabled, "level": told[-1].status[0].level[0]}))
 """
 
 
@@ -223,7 +225,7 @@ def test_a_node_moves_and_disables_a_board(agent: RealAgent, build: Build, imple
         told = ask(agent, implementation, DISABLED)
     assert isinstance(told, dict)
     assert told["moved"] is not None and told["disabled"] is not None
-    assert told["level"] == 1
+    assert told["level"] == 1 and told["kept"] > 0
 
 
 SERVED = """

@@ -63,7 +63,15 @@ static dds_qos_t *qos_of(const epg_topic_t *topic)
     const bool reliable = topic->qos == EPG_QOS_RELIABLE;
     dds_qset_reliability(qos, reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT, 0);
     dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, topic->depth);
-    dds_qset_durability(qos, DDS_DURABILITY_VOLATILE);
+    dds_qset_durability(qos, topic->transient_local ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
+    dds_qset_durability_service(qos, 0, DDS_HISTORY_KEEP_LAST, topic->depth, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED,
+                                DDS_LENGTH_UNLIMITED);
+    if (topic->deadline_ns > 0) {
+        dds_qset_deadline(qos, (dds_duration_t)topic->deadline_ns);
+    }
+    if (topic->lifespan_ns > 0) {
+        dds_qset_lifespan(qos, (dds_duration_t)topic->lifespan_ns);
+    }
     dds_qset_writer_data_lifecycle(qos, false);
     epg_dds_set_user_data(qos, topic->message->hash, "");
     return qos;

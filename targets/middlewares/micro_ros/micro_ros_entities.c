@@ -91,6 +91,8 @@ static rmw_qos_profile_t qos_of(const epg_topic_t *topic)
 {
     rmw_qos_profile_t qos = rmw_qos_profile_default;
     qos.depth = topic->depth;
+    qos.durability =
+        topic->transient_local ? RMW_QOS_POLICY_DURABILITY_TRANSIENT_LOCAL : RMW_QOS_POLICY_DURABILITY_VOLATILE;
     qos.reliability =
         topic->qos == EPG_QOS_RELIABLE ? RMW_QOS_POLICY_RELIABILITY_RELIABLE : RMW_QOS_POLICY_RELIABILITY_BEST_EFFORT;
     return qos;

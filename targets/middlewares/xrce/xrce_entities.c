@@ -73,7 +73,7 @@ static uint16_t create_endpoint(const epg_xrce_entities_t *entities, size_t inde
     const size_t publications = entities->node->target->publication_count;
     const epg_topic_t *topic = topic_at(entities->node, index);
     const uxrQoS_t qos = {
-        .durability = UXR_DURABILITY_VOLATILE,
+        .durability = topic->transient_local ? UXR_DURABILITY_TRANSIENT_LOCAL : UXR_DURABILITY_VOLATILE,
         .reliability = topic->qos == EPG_QOS_RELIABLE ? UXR_RELIABILITY_RELIABLE : UXR_RELIABILITY_BEST_EFFORT,
         .history = UXR_HISTORY_KEEP_LAST,
         .depth = topic->depth,

@@ -43,7 +43,10 @@ typedef struct epg_topic {
     const void *layout; /**< data for the functions of `message`, such as the names of joints; may be NULL */
     size_t size;        /**< size of the largest message in bytes */
     epg_qos_t qos;
-    uint16_t depth; /**< number of messages that the history keeps at most ("keep last"); at least 1 */
+    uint16_t depth;       /**< number of messages that the history keeps at most ("keep last"); at least 1 */
+    bool transient_local; /**< the history is kept for subscribers that come later */
+    uint64_t deadline_ns; /**< longest time between two messages; 0: none */
+    uint64_t lifespan_ns; /**< age from which a message is no longer delivered; 0: none */
     epg_topic_role_t role;
     size_t index; /**< index of the first setpoint (subscription) or monitoring value (publication) */
     size_t count; /**< number of values in a message; 0: none (diagnostics, echo) */
