@@ -292,7 +292,7 @@ def test_a_kind_of_a_user_shares_parameters_with_those_of_epg(tmp_path: Path) ->
     problems = Diagnostics()
     found = load_catalog(targets_roots([tmp_path]), problems).find_kind("speed")
     assert found is not None and not list(problems)
-    assert [p.name for p in found.parameters] == ["topic", "qos", "depth", "every"]
+    assert [p.name for p in found.parameters] == ["topic", "qos", "depth", "durability", "deadline", "every"]
     assert {p.name: p.description for p in found.parameters if p.name in ("qos", "every")} == {
         "qos": "mine",
         "every": "mine",
