@@ -23,7 +23,7 @@ from tests.platforms.pico.images import skip_unless_emulated
 from tests.platforms.pico.xrce.agent import BoardAgent
 from tests.platforms.pico.xrce.board import AGENT_PORT, Jiwy
 from tests.platforms.pico.xrce.checks import assert_undisturbed
-from tests.ros2.test_ros2_agent import GRAPH_AGENT, graph_agent, node_script
+from tests.ros2.test_ros2_agent import GRAPH_AGENT, environment, graph_agent, node_script
 from tests.xrce_agent.real_agent import RealAgent, free_domain
 
 STEP = 1.0  # ms of the emulated chip between two exchanges of bytes
@@ -120,3 +120,21 @@ def test_ros_moves_the_image(live: tuple[LiveJiwy, RealAgent], implementation: s
     assert jiwy.angle("pan") == pytest.approx(0.5, abs=0.05)
     stats = assert_undisturbed(jiwy)
     assert (stats["malformed"], GRAPH_AGENT) == ("0", agent.agent.name if agent.agent else "")
+
+
+def ros2(jiwy: LiveJiwy, agent: RealAgent, *arguments: str) -> str:
+    """The output of `ros2` with the RMW that crosses agents, without its daemon."""
+    command = ["ros2", *arguments, "--no-daemon", "--spin-time", "5"]
+    told = environment(agent, "rmw_fastrtps_cpp")
+    return finish(jiwy, subprocess.Popen(command, env=told, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True))
+
+
+def test_ros_tunes_the_image(live: tuple[LiveJiwy, RealAgent]) -> None:
+    jiwy, agent = live
+    jiwy.home()
+    jiwy.begin()
+    assert "Pan.PID.kp" in ros2(jiwy, agent, "param", "list", "/JIWY_node")
+    assert "successful" in ros2(jiwy, agent, "param", "set", "/JIWY_node", "Pan.PID.kp", "3.5")
+    assert "3.5" in ros2(jiwy, agent, "param", "get", "/JIWY_node", "Pan.PID.kp")
+    stats = assert_undisturbed(jiwy)
+    assert (stats["malformed"], stats["reconnects"]) == ("0", "0")

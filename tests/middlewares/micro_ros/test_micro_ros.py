@@ -56,7 +56,7 @@ def test_the_enable_topic(robot: Path, agent: Agent) -> None:
         board.running()
         assert board.diagnostics().state == "enabled"
         board.enable(False)
-        agent.wait_until(lambda: board.diagnostics().level == "WARN")
+        agent.wait_until(lambda: board.diagnostics().state == "disabled")
         board.enable(True)
         agent.wait_until(lambda: board.diagnostics().state == "enabled")
         assert board.stop() == ""

@@ -50,7 +50,7 @@ def test_the_agent_is_restarted(robot: Path, agent: Agent, pause: float) -> None
         check_alive(board, 0.75)
         diagnostics = board.diagnostics()
         assert diagnostics.values["reconnects"] == "1"
-        assert (diagnostics.level, diagnostics.values["faults"]) == ("OK", "0")
+        assert (diagnostics.state, diagnostics.values["faults"]) == ("enabled", "0")
         assert board.stop() == ""
 
 

@@ -105,7 +105,7 @@ def test_the_enable_topic(robot: Path, agent: Agent) -> None:
         board.running()
         assert board.diagnostics().state == "enabled"
         board.enable(False)
-        agent.wait_until(lambda: board.diagnostics().level == "WARN")
+        agent.wait_until(lambda: board.diagnostics().state == "disabled")
         assert board.diagnostics().message == "disabled"
         cycles = board.next("cycles")
         board.enable(True)
