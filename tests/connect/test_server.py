@@ -296,7 +296,7 @@ def test_a_page_waits_for_the_next_state(page: Page) -> None:
 class Broken(Session):
     """A session with a bug in EPG, to test the server's reaction."""
 
-    def log(self, start: int) -> dict[str, object]:
+    def source(self, file: str, line: int) -> dict[str, object]:
         raise ZeroDivisionError("a mistake")
 
 
@@ -306,7 +306,7 @@ def test_a_bug_ends_one_request_only(project: Path, capfd: pytest.CaptureFixture
 
     with serving(Broken(find_jobs(project, Diagnostics()))) as page:
         with pytest.raises(Denied, match="a bug in EPG") as refusal:
-            page.json("api/log?from=0")
+            page.json("api/source?file=any")
         assert refusal.value.status == 500
         assert page.state()["phase"] == "connect"
     said = capfd.readouterr().err

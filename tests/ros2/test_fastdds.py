@@ -74,4 +74,5 @@ def test_fast_dds_hears_positions_sends_setpoints_and_sees_the_node(
     assert f"discovered reader rt/robot_7/JIWY_node/enable {BOOL}" in lines
     info = bytes.fromhex(lines[-1].removeprefix("discovery_info "))
     assert b"/robot_7\0" in info and b"JIWY_node\0" in info
-    assert info.count(info[:12]) == 1 + 3 + 3  # the identifiers of endpoints begin with the participant's
+    topics_and_services = (3 + 3) + 1 + 2 * (6 + 3)  # /parameter_events; six services of parameters, three of the node
+    assert info.count(info[:12]) == 1 + topics_and_services  # the identifiers of endpoints begin with the participant's

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -15,7 +16,8 @@ def compile_motor(output: Path, *defines: str) -> Path:
     compiler = shutil.which("gcc") or shutil.which("cc")
     assert compiler is not None, "a C compiler is needed"
     host, runtime = ROOT / "targets" / "platforms" / "host", ROOT / "targets" / "runtime"
-    sources = [*sorted((runtime / "src").glob("*.c")), *sorted((host / "src").glob("*.c"))]
+    folders = (runtime / "src", host / "src", host / "src" / ("linux" if sys.platform == "linux" else "elsewhere"))
+    sources = [source for folder in folders for source in sorted(folder.glob("*.c"))]
     sources.append(ROOT / "tests" / "platforms" / "host" / "programs" / "motor.c")
     command = [compiler, "-std=c11", "-O1", "-DEPG_HOST_TARGET=epg_host_application"]
     command += [f"-D{define}" for define in defines]

@@ -115,7 +115,7 @@ def test_it_needs_no_heap(client: tuple[Path, list[str]], tmp_path: Path) -> Non
             letter, name = line.split()[-2:]
             (undefined if letter == "U" else defined).add(name)
     text = {"memcpy", "memmove", "memset", "memchr", "memcmp", "strchr", "strcmp", "strcspn", "strlen", "strncmp"}
-    text |= {"strspn", "strstr"}
+    text |= {"strrchr", "strspn", "strstr"}
     needed = {name for name in undefined - defined if not name.startswith("epg_port_")}
     assert needed <= {*text, "_GLOBAL_OFFSET_TABLE_"}
 
