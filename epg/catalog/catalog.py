@@ -10,18 +10,21 @@ An item is read and checked when it is used for the first time.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TypeVar
 
 from epg.catalog.check_file import check_file
 from epg.catalog.check_hardware import check_target
 from epg.catalog.check_middleware import check_offers
+from epg.catalog.clocks import with_frequencies
 from epg.catalog.hardware import Board, Soc, Target, make_board, make_soc
 from epg.catalog.kind import Kind, KindPort, make_kind
 from epg.catalog.middleware import Middleware, make_middleware
 from epg.catalog.platform import Family, Platform, make_family, make_platform, platform_for
 from epg.catalog.shared_parameters import with_shared_parameters
 from epg.diagnostics import Diagnostics, did_you_mean
+from epg.documents.items import map_of
 from epg.documents.merge import merge, without_nulls
 from epg.documents.yaml_file import load_yaml
 from epg.source import Span, YamlNode
@@ -128,15 +131,25 @@ class Catalog:
                     return None, True
                 continue
             target = Target(name, board, soc, on_chip)
-            return (target if self._check_target(target) else None), True
+            if not self._check_target(target):
+                return None, True
+            return replace(target, clocks=with_frequencies(soc.clocks, map_of(board.node, "clocks"))), True
         return None, False
 
     def _check_target(self, target: Target) -> bool:
         """True if board, chip, platform and middlewares fit together.  Reports the mistakes otherwise."""
-        errors = self._diagnostics.error_count
-        check_offers(target, self.names("middleware"), self._diagnostics)
-        check_target(target, self._diagnostics)
-        return self._diagnostics.error_count == errors
+        mistakes = Diagnostics()
+        check_offers(target, self.names("middleware"), mistakes)
+        check_target(target, mistakes)
+        return self._report(mistakes)
+
+    def _report(self, mistakes: Diagnostics) -> bool:
+        """Reports the mistakes of one item or target; True if there are no errors.
+
+        Items that extend the same file have the same mistakes, which are reported once, and none of them is right.
+        """
+        self._diagnostics.add_all(mistakes)
+        return not mistakes.has_errors
 
     def _on(self, platform: Platform, soc: Soc) -> Platform | None:
         """The platform with the parts that the family of a chip adds, or None if it does not support the family."""
@@ -188,7 +201,10 @@ class Catalog:
             node = with_shared_parameters(node, self.roots, self._diagnostics)
         elif node is not None and category in ("board", "soc"):
             node = self._with_extended(category, node)
-        if node is None or not check_file(category, node, name, self.names("platform"), self._diagnostics):
+        mistakes = Diagnostics()
+        if node is not None:
+            check_file(category, node, name, self.names("platform"), mistakes)
+        if not self._report(mistakes) or node is None:
             return None
         if len(paths) > 1:
             message = f"{category} '{name}' is in {len(paths)} folders of targets: EPG uses this one"

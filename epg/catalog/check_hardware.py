@@ -7,21 +7,23 @@ A schema cannot check this.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 
+from epg.catalog.clocks import check_clocks, check_stated
 from epg.catalog.hardware import Target, names_of
 from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.documents.items import integer_range, map_of, pin_list, pin_names, texts_of
-from epg.quantity import QuantityError, parse_quantity
 from epg.source import Span, YamlNode
 
 
 def check_soc(node: YamlNode, diagnostics: Diagnostics) -> None:
     """Checks a chip alone: all pins, slots, instances and dividers that it names must exist."""
-    _clock(node["clock"], diagnostics)
+    check_clocks(node, diagnostics)
     pins = _pins(node.get("pins"), diagnostics)
     for name, peripheral in map_of(node, "peripherals").items():
         _peripheral(name, peripheral, pins, diagnostics)
+        if "divider" in peripheral:
+            _divider(peripheral["divider"], map_of(node, "clocks"), names_of(peripheral["instances"]), diagnostics)
     peripherals = map_of(node, "peripherals")
     for name, resource_class in map_of(node, "classes").items():
         _resource_class(name, resource_class, peripherals, diagnostics)
@@ -115,6 +117,7 @@ def check_target(target: Target, diagnostics: Diagnostics) -> None:
             hint = f"it has the pins {pin_list(soc.pins)}"
             notes = [Note("the chip", soc.span)]
             diagnostics.error("unknown-name", span, f"{soc.title} has no pin '{name}'", hint=hint, notes=notes)
+    check_stated(node.get("clocks"), soc.clocks, soc.title, diagnostics)
     for child in map_of(node, "onboard").values():
         for element in child["classes"].elements():
             if element.value not in soc.classes:
@@ -146,10 +149,6 @@ def _peripheral(name: str, node: YamlNode, pins: Sequence[str], diagnostics: Dia
             diagnostics.error("exactly-one", node.key_span("slots"), message)
             return
         slots = names_of(stated[0])
-    for key in ("prescaler", "counter"):
-        _range(node.get("divider", key), diagnostics)
-    if "divider" in node and "clock" in node["divider"]:
-        _clock(node["divider"]["clock"], diagnostics)
     for instance, reached in map_of(node, "pins").items():
         if instance not in instances:
             span = node["pins"].key_span(instance)
@@ -165,6 +164,27 @@ def _peripheral(name: str, node: YamlNode, pins: Sequence[str], diagnostics: Dia
                     diagnostics.error("unknown-name", pin.span, f"this chip has no pin '{pin.value}'", hint=hint)
     if "frequency" in names_of(node.get("agree")) and "divider" not in node:
         diagnostics.error("unknown-name", node.key_span("agree"), f"'{name}' has no divider that sets a frequency")
+
+
+def _divider(node: YamlNode, clocks: Collection[str], instances: Sequence[str], diagnostics: Diagnostics) -> None:
+    """Checks the divider of a peripheral: its ranges, and the clocks of its instances."""
+    for key in ("prescaler", "counter"):
+        _range(node.get(key), diagnostics)
+    if str(node["clock"].value) not in clocks:
+        _unknown("clock", node["clock"], clocks, diagnostics)
+    seen: dict[str, Span] = {}
+    for name, listed in map_of(node, "others").items():
+        if name not in clocks:
+            hint = did_you_mean(name, clocks, "known")
+            diagnostics.error("unknown-name", node["others"].key_span(name), f"unknown clock '{name}'", hint=hint)
+        for element in listed.elements():
+            instance = str(element.value)
+            if instance not in instances:
+                _unknown("instance", element, instances, diagnostics)
+            elif instance in seen:
+                first = Note("first written here", seen[instance])
+                diagnostics.error("wrong-value", element.span, f"'{instance}' has two clocks", notes=[first])
+            seen.setdefault(instance, element.span)
 
 
 # One function, because it is a list of independent checks of one node.
@@ -195,14 +215,6 @@ def _resource_class(name: str, node: YamlNode, peripherals: dict[str, YamlNode],
         _range(node.get("divider", "counter"), diagnostics)
         if peripheral is None or "divider" not in peripheral:
             diagnostics.error("wrong-value", node.key_span("divider"), f"the peripheral of '{name}' has no divider")
-
-
-def _clock(node: YamlNode, diagnostics: Diagnostics) -> None:
-    try:
-        if parse_quantity(node.value, "frequency") <= 0:
-            diagnostics.error("out-of-range", node.span, "a clock must be more than 0 Hz")
-    except QuantityError as problem:
-        diagnostics.error("wrong-unit", node.span, str(problem), hint=problem.hint)
 
 
 def _pins(node: YamlNode | None, diagnostics: Diagnostics) -> tuple[str, ...]:

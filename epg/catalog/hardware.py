@@ -6,7 +6,7 @@ A chip's file can describe these relations between claims and peripherals, and n
 - an instance has one user, or it has *slots* for several users;
 - the users of an instance must *agree* on attributes;
 - a signal can have certain *pins*, any pin, or must have a pin next to another one (*neighbours*);
-- a *divider* makes the frequency of an instance from a clock;
+- a *divider* makes the frequency of an instance from a clock, which can differ between instances;
 - single values of attributes can be *unsupported*.
 
 A chip with another relation needs new Python code in :mod:`epg.resolve`.  Any other new chip is a new folder.
@@ -15,16 +15,15 @@ A chip with another relation needs new Python code in :mod:`epg.resolve`.  Any o
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from fractions import Fraction
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
 
+from epg.catalog.clocks import Clock, make_clocks
 from epg.catalog.layout import Layout, make_layout
 from epg.catalog.platform import Platform
 from epg.documents.items import flag_of, integer_range, map_of, pin_names, text_of, texts_of, values_of
-from epg.quantity import parse_quantity
 from epg.source import Span, YamlNode
 
 
@@ -40,10 +39,19 @@ class Divider:
 
 
 @dataclass(frozen=True)
+class Source:
+    """The input of a divider: ``factor`` times the frequency of a clock."""
+
+    clock: str
+    factor: int
+
+
+@dataclass(frozen=True)
 class Peripheral:
     """One kind of hardware in a chip, with all its instances.
 
-    ``pins`` holds the pins that each slot can reach: (instance, slot) -> pins, both counted from 0.
+    ``sources`` holds the input of the divider of each instance; it is empty without a divider.  ``pins`` holds the pins
+    that each slot can reach: (instance, slot) -> pins, both counted from 0.
     """
 
     name: str
@@ -53,7 +61,7 @@ class Peripheral:
     slot_title: str
     agree: tuple[str, ...]  # attributes that must be the same for all users of an instance
     divider: Divider | None
-    clock: Fraction  # Hz, the input of the divider
+    sources: tuple[Source, ...]
     pins: Mapping[tuple[int, int], tuple[str, ...]]
     span: Span
 
@@ -112,14 +120,14 @@ class ResourceClass:
 class Soc:
     """A chip.  The number of a pin in C is its index in ``pins``.
 
-    A chip with ``automatic_pins`` has no real pins: EPG numbers the signals, up to this number.  ``clock`` in Hz is the
-    clock of all dividers that do not name another one.
+    A chip with ``automatic_pins`` has no real pins: EPG numbers the signals, up to this number.  ``clocks`` have the
+    frequencies of the chip's file.
     """
 
     name: str
     title: str
     family: str
-    clock: Fraction
+    clocks: Mapping[str, Clock]
     pins: tuple[str, ...]
     automatic_pins: int
     peripherals: Mapping[str, Peripheral]
@@ -180,12 +188,16 @@ class Board:
 
 @dataclass(frozen=True)
 class Target:
-    """A board with a platform, which the key ``target`` of a ``.tcf`` names."""
+    """A board with a platform, which the key ``target`` of a ``.tcf`` names.
+
+    ``clocks`` have the frequencies of the chip and the board; those of a ``.tcf`` replace them in its configuration.
+    """
 
     name: str
     board: Board
     soc: Soc
     platform: Platform
+    clocks: Mapping[str, Clock] = field(default_factory=dict)
 
     @property
     def files(self) -> tuple[Path, ...]:
@@ -223,7 +235,7 @@ def make_soc(node: YamlNode, folder: Path) -> Soc:
         name=text_of(node, "soc"),
         title=text_of(node, "title"),
         family=text_of(node, "family"),
-        clock=_clock(node["clock"]),
+        clocks=make_clocks(node),
         pins=pin_names(node.get("pins")),
         automatic_pins=count,
         peripherals=MappingProxyType(peripherals),
@@ -286,7 +298,7 @@ def _peripheral(name: str, node: YamlNode, soc: YamlNode) -> Peripheral:
         slot_title=text_of(node["slots"], "title") if "slots" in node else "",
         agree=texts_of(node, "agree"),
         divider=Divider(integer_range(divider["prescaler"]), integer_range(divider["counter"])) if divider else None,
-        clock=_clock((divider.get("clock") if divider else None) or soc["clock"]),
+        sources=_sources(divider, instances) if divider else (),
         pins=MappingProxyType(pins),
         span=soc["peripherals"].key_span(name),
     )
@@ -317,8 +329,11 @@ def _resource_class(name: str, node: YamlNode, soc: YamlNode) -> ResourceClass:
     )
 
 
-def _clock(node: YamlNode) -> Fraction:
-    return Fraction(parse_quantity(node.value, "frequency"))
+def _sources(divider: YamlNode, instances: tuple[str, ...]) -> tuple[Source, ...]:
+    factor = divider.get("factor")
+    times = factor.value if factor is not None and isinstance(factor.value, int) else 1
+    others = {name: clock for clock in map_of(divider, "others") for name in texts_of(divider, "others", clock)}
+    return tuple(Source(others.get(name, text_of(divider, "clock")), times) for name in instances)
 
 
 def names_of(node: YamlNode | None) -> tuple[str, ...]:

@@ -10,6 +10,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from epg.catalog.catalog import Catalog, Kind, Target
+from epg.catalog.clocks import check_stated, with_frequencies
 from epg.check.bindings import Conversion, conversion_of
 from epg.check.communication import Communication, check_communication, time_of
 from epg.check.compose import component_schema, typed_parameters
@@ -21,6 +22,7 @@ from epg.check.names import identifier_problem, normal_namespace
 from epg.check.topics import Use, check_names, check_quality
 from epg.check.uses import Used, used_components
 from epg.diagnostics import Diagnostics, Note, did_you_mean
+from epg.documents.items import map_of
 from epg.documents.schema import extended_from, load_schema, validate
 from epg.documents.tcf import TcfFile
 from epg.documents.yaml_file import newer_version
@@ -105,6 +107,8 @@ def check_configuration(
         return None
     target_node = root["target"]
     target = catalog.target(str(target_node.value), target_node.span, diagnostics)
+    if target is not None:
+        target = _with_clocks(target, root, diagnostics)
     components = _components(root, target, catalog, diagnostics)
     communication = check_communication(
         root, target, {c.name: c.kind.transport for c in components.values()}, catalog, diagnostics
@@ -128,6 +132,23 @@ def check_configuration(
         absent=tuple(path for file in chain for path in file.absent),
         root=root,
     )
+
+
+def _with_clocks(target: Target, root: YamlNode, diagnostics: Diagnostics) -> Target:
+    """The target with the frequencies of clocks in the ``.tcf``.  Reports the mistakes in them.
+
+    A target that simulates the robot ignores clocks that it does not have, as it ignores pins: the ``.tcf`` can be for
+    a board.
+    """
+    node = root.get("clocks")
+    stated = map_of(root, "clocks")
+    if node is not None and target.platform.simulates_plant:
+        stated = {name: value for name, value in stated.items() if name in target.clocks}
+        node = replace(node, value=MappingProxyType(stated))
+    if not check_stated(node, target.clocks, target.soc.title, diagnostics):
+        return target
+    of_board = map_of(target.board.node, "clocks")
+    return replace(target, clocks=with_frequencies(target.soc.clocks, {**of_board, **stated}))
 
 
 def _components(

@@ -69,6 +69,7 @@ def _tcf(schema: Schema, catalog: Catalog) -> Schema:
     schema["allOf"] = [
         {"if": _COMPLETE, "then": needed},
         {"if": {"allOf": [_COMPLETE, pins]}, "then": wired},
+        *_clocks(targets),
         *_middlewares(targets, catalog, any(kind.transport for kind in kinds)),
         *_options(middlewares),
     ]
@@ -132,6 +133,21 @@ def _pins_needed(kind: Kind) -> Schema:
         return {}
     wired: Schema = {"required": ["pins"], "properties": {"pins": {"required": list(kind.pins)}}}
     return {"oneOf": [wired, {"required": ["node"]}]} if len(kind.claims) == 1 else wired
+
+
+def _clocks(targets: Iterable[Target]) -> list[Schema]:
+    """The names of the clocks of each chip, for files that name a target with it.  Simulations ignore other clocks."""
+    names: dict[tuple[str, ...], list[str]] = {}
+    for target in targets:
+        if not target.platform.simulates_plant:
+            names.setdefault(tuple(sorted(target.clocks)), []).append(target.name)
+    return [
+        {
+            "if": {"properties": {"target": {"enum": chosen}}, "required": ["target"]},
+            "then": {"properties": {"clocks": {"propertyNames": {"enum": list(clocks)}}}},
+        }
+        for clocks, chosen in names.items()
+    ]
 
 
 def _middlewares(targets: Iterable[Target], catalog: Catalog, named: bool) -> list[Schema]:

@@ -42,6 +42,7 @@ class ClaimView:
     slot_name: str
     pins: Mapping[str, PinView]
     settings: Mapping[str, int]
+    clock: Fraction | None
     frequency: Fraction | None
     attributes: Mapping[str, object] = field(default_factory=dict)
     node: str = ""
@@ -79,6 +80,6 @@ def board_nodes(app: Application) -> list[str]:
 def _view(app: Application, component: str, name: str, resource_class: str, label: str, found: Assignment) -> ClaimView:
     names = app.target.soc.pins if found.pins_are_real else ()
     pins = {signal: PinView(names[pin] if names else str(pin), pin) for signal, pin in found.pins.items()}
-    same = ("instance", "slot", "instance_name", "slot_name", "settings", "frequency", "attributes", "node")
+    same = ("instance", "slot", "instance_name", "slot_name", "settings", "clock", "frequency", "attributes", "node")
     stated = {member: getattr(found, member) for member in same}
     return ClaimView(component, name, resource_class, label, pins=pins, **stated)

@@ -16,12 +16,11 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from types import MappingProxyType
 
-from epg.catalog.hardware import Divider, Peripheral, ResourceClass, Target
+from epg.catalog.hardware import Peripheral, ResourceClass, Target
 from epg.diagnostics import Diagnostics, Note, did_you_mean
-from epg.quantity import show
 from epg.resolve.claims import Claim, ClaimKey
 from epg.resolve.conflict import Candidate, report_conflicts
-from epg.resolve.divider import Division, clock_range, divide, neighbours
+from epg.resolve.divisions import Dividers, Divisions, asked_frequency, input_frequency
 from epg.resolve.pins import Pins
 from epg.resolve.search import WHOLE, Demand, Place, find_places
 
@@ -33,8 +32,6 @@ NODES = 255
 NODE_STEPS = 0xFFFF
 """The steps of a duty cycle for a PWM that a devicetree node describes.  EPG does not know its clock."""
 
-_MANY = 12  # digits in messages, so that values that are close to each other look different
-
 
 @dataclass(frozen=True)
 class Assignment:
@@ -43,8 +40,9 @@ class Assignment:
     ``pins`` maps signals to the numbers of pins in C.  ``instance`` and ``slot`` are numbers in C, too; ``slot`` is 0
     if the claim takes the whole instance.  ``settings`` holds ``prescaler`` and ``top`` if there is a divider.
     ``resource`` is the name in messages: "PWM slice 1, channel A".  ``instance_name`` and ``slot_name`` are the names
-    in the chip's data.  ``frequency`` is the actual frequency of the divider in Hz, and ``asked`` the wanted one; both
-    are None without a divider.  ``attributes`` are those of the claim, in base units.
+    in the chip's data.  ``clock`` is the frequency that the divider divides, ``frequency`` its actual frequency, and
+    ``asked`` the wanted one, all in Hz; they are None without a divider.  ``attributes`` are those of the claim, in
+    base units.
     """
 
     pins: Mapping[str, int]
@@ -52,6 +50,7 @@ class Assignment:
     slot: int
     settings: Mapping[str, int]
     resource: str
+    clock: Fraction | None = None
     frequency: Fraction | None = None
     asked: Fraction | None = None
     pins_are_real: bool = True
@@ -67,12 +66,15 @@ class Assignment:
 
 @dataclass(frozen=True)
 class _Placed:
-    """A claim without mistakes, with the places that it can have."""
+    """A claim without mistakes, with the places that it can have.
+
+    ``divisions`` is empty if the claim sets no divider.
+    """
 
     claim: Claim
     resource_class: ResourceClass
     pins: Mapping[str, int]
-    division: Division | None
+    divisions: Divisions
     places: frozenset[Place]
 
 
@@ -138,6 +140,7 @@ def _nodes(claims: Sequence[Claim], target: Target, diagnostics: Diagnostics) ->
 def _check(claims: Sequence[Claim], pins: Pins, target: Target, diagnostics: Diagnostics) -> list[_Placed]:
     """The claims without mistakes.  Reports the mistakes of the others."""
     result: list[_Placed] = []
+    dividers = Dividers(target, diagnostics)
     for claim in claims:
         resource_class = _class(claim, target, diagnostics)
         if resource_class is None:
@@ -149,12 +152,15 @@ def _check(claims: Sequence[Claim], pins: Pins, target: Target, diagnostics: Dia
             places = pins.places(claim, resource_class, peripheral, found)
         errors = diagnostics.error_count
         _check_support(claim, resource_class, target, diagnostics)
-        division = _division(claim, resource_class, peripheral, target, diagnostics)
+        divisions = dividers.divisions(claim, resource_class, peripheral, places)
+        if peripheral is not None and divisions:
+            places = frozenset(place for place in places if peripheral.sources[place[0]] in divisions)
         if found is None or (peripheral is not None and not places) or diagnostics.error_count > errors:
             continue
         numbers = pins.numbers(claim, resource_class, found)
         if numbers is not None:
-            result.append(_Placed(claim, resource_class, numbers, division, places))
+            result.append(_Placed(claim, resource_class, numbers, divisions, places))
+    dividers.report_missing_clocks()
     return result
 
 
@@ -192,63 +198,6 @@ def _check_support(claim: Claim, resource_class: ResourceClass, target: Target, 
             diagnostics.error("unsupported-value", stated.span, message, hint=hint, notes=notes)
 
 
-def _incomplete(claim: Claim, resource_class: ResourceClass, diagnostics: Diagnostics) -> None:
-    attribute = resource_class.divider_from
-    message = f"the claim '{claim.name}' has no '{attribute}', which {resource_class.a_title} needs"
-    hint = f"add 'attributes: {{{attribute}: ...}}' with a parameter that has a value"
-    notes = [Note("the class", resource_class.span)]
-    diagnostics.error("incomplete-claim", claim.stated_in, message, hint=hint, notes=notes)
-
-
-def _division(
-    claim: Claim,
-    resource_class: ResourceClass,
-    peripheral: Peripheral | None,
-    target: Target,
-    diagnostics: Diagnostics,
-) -> Division | None:
-    """The setting of the divider; None without a divider, and after reporting a value that the divider cannot make."""
-    attribute = resource_class.divider_from
-    if peripheral is None or peripheral.divider is None or attribute is None:
-        return None
-    if attribute not in claim.attributes:
-        if claim.component:
-            _incomplete(claim, resource_class, diagnostics)
-        return None  # The period of the control loop can be unknown while there is no model yet.
-    stated, clock = claim.attributes[attribute], peripheral.clock
-    assert isinstance(stated.value, (int, float, Fraction))
-    value = Fraction(stated.value)
-    divider = Divider(peripheral.divider.prescaler, resource_class.counter or peripheral.divider.counter)
-    dimension = "frequency" if attribute == "frequency" else "time"
-    first, last = clock_range(divider)
-    clocks = (clock / value if attribute == "frequency" else clock * value) if value > 0 else Fraction(0)
-    what = f"{attribute} {show(value, dimension)} of {claim.user}"
-    speed = show(clock, "frequency")
-    if not first <= clocks <= last:
-        low, high = sorted(_written(n, attribute, clock) for n in (first, last))
-        if value > high and attribute == "period":
-            message = f"{what} is out of range: the longest possible on {target.name} is {show(high, dimension, -1)}"
-        else:
-            possible = f"{show(low, dimension, 1)} to {show(high, dimension, -1)}"
-            message = f"{what} is out of range: {resource_class.a_title} on {target.name} can have {possible}"
-        hint = f"{peripheral.a_title} counts at most {divider.prescaler[1]} x {divider.counter[1]} periods of {speed}"
-        diagnostics.error(f"{attribute}-out-of-range", stated.span, message, hint=hint, notes=stated.notes)
-        return None
-    found = divide(clocks, divider, resource_class.exact)
-    if found is None:
-        near = sorted(_written(n, attribute, clock) for n in neighbours(clocks, divider, resource_class.exact))
-        what = f"{attribute} {show(value, dimension, digits=_MANY)} of {claim.user}"
-        message = f"{what} is not possible: the clock of {speed} cannot be divided to it"
-        hint = f"nearest possible: {' and '.join(show(nearest, dimension, digits=_MANY) for nearest in near)}"
-        diagnostics.error(f"{attribute}-not-possible", stated.span, message, hint=hint, notes=stated.notes)
-    return found
-
-
-def _written(clocks: int, attribute: str, clock: Fraction) -> Fraction:
-    """A number of clocks in the unit of the attribute: Hz or s."""
-    return clock / clocks if attribute == "frequency" else clocks / clock
-
-
 def _candidate(placed: _Placed, peripheral: Peripheral) -> Candidate:
     agreed = tuple(_agreed(placed, attribute) for attribute in peripheral.agree)
     return Candidate(placed.claim, placed.resource_class, Demand(placed.places, agreed))
@@ -256,8 +205,8 @@ def _candidate(placed: _Placed, peripheral: Peripheral) -> Candidate:
 
 def _agreed(placed: _Placed, attribute: str) -> Hashable:
     """The value of an attribute that must be equal for all users of an instance."""
-    if attribute in ("frequency", "period") and placed.division is not None:
-        return placed.division
+    if attribute in ("frequency", "period") and placed.divisions:
+        return tuple(placed.divisions.items())
     if attribute in placed.resource_class.fixed:
         fixed = placed.resource_class.fixed[attribute]
         assert isinstance(fixed, Hashable)
@@ -281,11 +230,14 @@ def _costs(peripheral: Peripheral) -> list[int]:
 def _assignment(placed: _Placed, peripheral: Peripheral, place: Place, target: Target) -> Assignment:
     instance, slot = place
     settings: dict[str, int] = {}
-    frequency = asked = None
-    if placed.division is not None:
-        settings = {"prescaler": placed.division.prescaler, "top": placed.division.counter - 1}
-        frequency = peripheral.clock / placed.division.clocks
-        asked = _asked(placed)
+    clock = frequency = asked = None
+    if placed.divisions:
+        source = peripheral.sources[instance]
+        clock, division = input_frequency(target, source), placed.divisions[source]
+        assert clock is not None
+        settings = {"prescaler": division.prescaler, "top": division.counter - 1}
+        frequency = clock / division.clocks
+        asked = asked_frequency(placed.claim, placed.resource_class)
     whole = slot == WHOLE
     return Assignment(
         pins=placed.pins,
@@ -293,6 +245,7 @@ def _assignment(placed: _Placed, peripheral: Peripheral, place: Place, target: T
         slot=0 if whole else slot,
         settings=MappingProxyType(settings),
         resource=peripheral.instance_title(instance) if whole else peripheral.slot_name(instance, slot),
+        clock=clock,
         frequency=frequency,
         asked=asked,
         pins_are_real=target.has_pins,
@@ -305,15 +258,6 @@ def _assignment(placed: _Placed, peripheral: Peripheral, place: Place, target: T
 
 def _attributes(claim: Claim) -> Mapping[str, object]:
     return MappingProxyType({name: stated.value for name, stated in claim.attributes.items()})
-
-
-def _asked(placed: _Placed) -> Fraction:
-    """The frequency in Hz that a claim wants of a divider."""
-    attribute = placed.resource_class.divider_from
-    assert attribute is not None
-    value = placed.claim.attributes[attribute].value
-    assert isinstance(value, (int, float, Fraction))
-    return Fraction(value) if attribute == "frequency" else 1 / Fraction(value)
 
 
 def _pin_names(placed: _Placed, target: Target) -> Mapping[str, int | str]:

@@ -117,7 +117,11 @@ def test_numbers_of_the_data_sheets(name: str, slices: int, blocks: int, clock: 
     target = builtin()[0].find_target(f"{name}_bare_metal")
     soc = target.soc
     pwm, pio = soc.peripherals["pwm"], soc.peripherals["pio"]
-    assert soc.clock == clock * 1_000_000
+    assert {clock.title: clock.frequency for clock in target.clocks.values()} == {
+        "clk_sys": clock * 1_000_000,
+        "clk_peri": clock * 1_000_000,
+    }
+    assert [(source.clock, source.factor) for source in soc.peripherals["uart"].sources] == [("peri", 4)] * 2
     assert (len(pwm.instances), pwm.slots, len(pio.instances), len(pio.slots)) == (slices, ("A", "B"), blocks, 4)
     assert soc.pins == tuple(str(pin) for pin in range(30))
     reached = {pin: place for place, pins in pwm.pins.items() for pin in pins}
@@ -334,3 +338,25 @@ def test_safe_states_of_bridges_are_those_that_their_test_tries(kind: str, name:
     assert written is not None
     values = [dict(re.findall(r"\.(low|high) = (\d)", one)) for one in written[1].split("}")[:-1]]
     assert [(int(v.get("low", 0)), int(v.get("high", 0))) for v in values] == [masks(s) for s in found.safe_states]
+
+
+def test_a_mistake_in_a_file_that_others_extend_concerns_each_of_them(tmp_path: Path) -> None:
+    """It is reported once, but no chip, board or target with this file can be used."""
+    for category, name in (("socs", "rp2040"), ("boards", "rpi_pico")):
+        (tmp_path / category / name).mkdir(parents=True)
+    chip = (TARGETS / "socs" / "rp2040" / "soc.yaml").read_text(encoding="utf-8")
+    wrong = chip.replace("signals: {tx: TX, rx: RX}", "signals: {tx: TXD, rx: RX}")
+    (tmp_path / "socs" / "rp2040" / "soc.yaml").write_text(wrong, encoding="utf-8")
+    problems = Diagnostics()
+    catalog = load_catalog(targets_roots([tmp_path]), problems)
+    assert [catalog.find_target(f"{board}_zephyr") for board in BOARDS] == [None, None]
+    assert [p.id for p in problems] == ["unknown-name"]
+
+    (tmp_path / "socs" / "rp2040" / "soc.yaml").unlink()
+    board = (TARGETS / "boards" / "rpi_pico" / "board.yaml").read_text(encoding="utf-8")
+    (tmp_path / "boards" / "rpi_pico" / "board.yaml").write_text(f"{board}clocks: {{sys: 130 Mhz}}\n", encoding="utf-8")
+    problems = Diagnostics()
+    catalog = load_catalog(targets_roots([tmp_path]), problems)
+    targets = [f"{board}_{platform}" for board in ("rpi_pico", "rpi_pico_w") for platform in PLATFORMS]
+    assert [catalog.find_target(name) for name in targets] == [None] * 6
+    assert [p.id for p in problems if p.severity == "error"] == ["wrong-unit"]
