@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Sequence
 
 from epg.catalog.clocks import check_clocks, check_stated
-from epg.catalog.hardware import Target, names_of
+from epg.catalog.hardware import Target, listed_pins, names_of
 from epg.diagnostics import Diagnostics, Note, did_you_mean
 from epg.documents.items import integer_range, map_of, pin_list, pin_names, texts_of
 from epg.source import Span, YamlNode
@@ -158,10 +158,10 @@ def _peripheral(name: str, node: YamlNode, pins: Sequence[str], diagnostics: Dia
             if slot not in slots:
                 hint = did_you_mean(slot, slots, "slots")
                 diagnostics.error("unknown-name", reached.key_span(slot), f"'{name}' has no slot '{slot}'", hint=hint)
-            for pin in listed.elements():
-                if str(pin.value) not in pins:
+            for pin, span in listed_pins(listed):
+                if pin not in pins:
                     hint = f"it has the pins {pin_list(pins)}" if pins else ""
-                    diagnostics.error("unknown-name", pin.span, f"this chip has no pin '{pin.value}'", hint=hint)
+                    diagnostics.error("unknown-name", span, f"this chip has no pin '{pin}'", hint=hint)
     if "frequency" in names_of(node.get("agree")) and "divider" not in node:
         diagnostics.error("unknown-name", node.key_span("agree"), f"'{name}' has no divider that sets a frequency")
 

@@ -51,7 +51,8 @@ class Peripheral:
     """One kind of hardware in a chip, with all its instances.
 
     ``sources`` holds the input of the divider of each instance; it is empty without a divider.  ``pins`` holds the pins
-    that each slot can reach: (instance, slot) -> pins, both counted from 0.
+    that each slot can reach: (instance, slot) -> pins, both counted from 0.  ``functions`` holds the numbers of their
+    alternate functions, if the chip has them: (instance, slot) -> pin -> number.
     """
 
     name: str
@@ -63,6 +64,7 @@ class Peripheral:
     divider: Divider | None
     sources: tuple[Source, ...]
     pins: Mapping[tuple[int, int], tuple[str, ...]]
+    functions: Mapping[tuple[int, int], Mapping[str, int]]
     span: Span
 
     @property
@@ -286,10 +288,13 @@ def _peripheral(name: str, node: YamlNode, soc: YamlNode) -> Peripheral:
         slots = names_of(names if names is not None else count)
     divider = node.get("divider")
     pins: dict[tuple[int, int], tuple[str, ...]] = {}
+    functions: dict[tuple[int, int], Mapping[str, int]] = {}
     for instance, reached in map_of(node, "pins").items():
         for slot, listed in reached.items():
             key = instances.index(instance), slots.index(slot)
-            pins[key] = tuple(str(pin.value) for pin in listed.elements())
+            pins[key] = tuple(name for name, _ in listed_pins(listed))
+            numbers = {name: number.value for name, number in listed.items() if isinstance(number.value, int)}
+            functions[key] = MappingProxyType(numbers)
     return Peripheral(
         name=name,
         title=text_of(node, "title"),
@@ -300,6 +305,7 @@ def _peripheral(name: str, node: YamlNode, soc: YamlNode) -> Peripheral:
         divider=Divider(integer_range(divider["prescaler"]), integer_range(divider["counter"])) if divider else None,
         sources=_sources(divider, instances) if divider else (),
         pins=MappingProxyType(pins),
+        functions=MappingProxyType(functions),
         span=soc["peripherals"].key_span(name),
     )
 
@@ -343,6 +349,13 @@ def names_of(node: YamlNode | None) -> tuple[str, ...]:
     if isinstance(node.value, int):
         return tuple(str(number) for number in range(node.value))
     return tuple(str(element.value) for element in node.elements())
+
+
+def listed_pins(node: YamlNode) -> list[tuple[str, Span]]:
+    """The pins of a slot with their positions: the elements of a list, or the keys of a map."""
+    if node.is_mapping:
+        return [(name, node.key_span(name)) for name, _ in node.items()]
+    return [(str(pin.value), pin.span) for pin in node.elements()]
 
 
 def _with_article(noun: str) -> str:

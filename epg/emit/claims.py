@@ -18,10 +18,14 @@ from epg.resolve.claims import TICK
 
 @dataclass(frozen=True)
 class PinView:
-    """A pin: its name in the data of the SoC, and its number in C."""
+    """A pin: its name in the data of the SoC, and its number in C.
+
+    ``function`` is the number of its alternate function; None for a plain pin, and for chips without such numbers.
+    """
 
     name: str
     number: int
+    function: int | None
 
 
 @dataclass(frozen=True)
@@ -79,7 +83,10 @@ def board_nodes(app: Application) -> list[str]:
 
 def _view(app: Application, component: str, name: str, resource_class: str, label: str, found: Assignment) -> ClaimView:
     names = app.target.soc.pins if found.pins_are_real else ()
-    pins = {signal: PinView(names[pin] if names else str(pin), pin) for signal, pin in found.pins.items()}
+    pins = {
+        signal: PinView(names[pin] if names else str(pin), pin, found.functions.get(signal))
+        for signal, pin in found.pins.items()
+    }
     same = ("instance", "slot", "instance_name", "slot_name", "settings", "clock", "frequency", "attributes", "node")
     stated = {member: getattr(found, member) for member in same}
     return ClaimView(component, name, resource_class, label, pins=pins, **stated)

@@ -60,6 +60,8 @@ class Assignment:
     attributes: Mapping[str, object] = field(default_factory=dict)
     pin_names: Mapping[str, int | str] = field(default_factory=dict)
     """Signal -> the chip's name of its pin: a number (GPIO 10) or a text (PD12).  Empty without real pins."""
+    functions: Mapping[str, int] = field(default_factory=dict)
+    """Signal -> the number of its pin's alternate function, for chips that have such numbers."""
     node: str = ""
     """The devicetree node that is used instead of pins and a peripheral."""
 
@@ -253,7 +255,20 @@ def _assignment(placed: _Placed, peripheral: Peripheral, place: Place, target: T
         instance_name=peripheral.instances[instance],
         slot_name="" if whole else peripheral.slots[slot],
         attributes=_attributes(placed.claim),
+        functions=_functions(placed, peripheral, place, target),
     )
+
+
+def _functions(placed: _Placed, peripheral: Peripheral, place: Place, target: Target) -> Mapping[str, int]:
+    """The alternate functions of the pins of a claim in its ``place``."""
+    found: dict[str, int] = {}
+    for signal, number in placed.pins.items() if target.has_pins else ():
+        how = placed.resource_class.signals[signal]
+        slot = peripheral.slots.index(how) if how in peripheral.slots else place[1]
+        functions = peripheral.functions.get((place[0], slot), {})
+        if how != "any" and target.soc.pins[number] in functions:
+            found[signal] = functions[target.soc.pins[number]]
+    return MappingProxyType(found)
 
 
 def _attributes(claim: Claim) -> Mapping[str, object]:
