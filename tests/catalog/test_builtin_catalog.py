@@ -47,7 +47,7 @@ def test_everything_is_right() -> None:
 
 def test_the_targets_of_the_thesis_and_those_without_a_board() -> None:
     catalog, _ = builtin()
-    others = ["host", "native_sim", "nucleo_h743zi_zephyr", "mps2_an385_zephyr"]
+    others = ["firmware", "host", "native_sim", "nucleo_h743zi_zephyr", "mps2_an385_zephyr"]
     assert catalog.target_names() == sorted(
         [*others, *(f"{board}_{name}" for board in (*BOARDS, *WIRELESS) for name in PLATFORMS)]
     )
@@ -192,6 +192,7 @@ def test_parameters_are_typed_and_have_their_defaults() -> None:
         "invert": False,
         "preset": 0,
         "pull_up": False,
+        "counter_bits": 32,
     }
     values, _ = typed("pwm_h_bridge", "{kind: pwm_h_bridge, pins: {value: 1, direction_a: 2, direction_b: GP3}}")
     assert values == {

@@ -34,6 +34,7 @@ typedef enum epg_fault {
     EPG_FAULT_WATCHDOG = 11,    /**< the watchdog reset the processor, because one of the two sides had stopped */
     EPG_FAULT_PROCESSOR,        /**< a hard fault, failed assertion, panic or stack overflow caused the last reset */
     EPG_FAULT_OUTPUT,           /**< the driver of an output refused a write */
+    EPG_FAULT_TICK,             /**< the timer of the control cycle has a period that is not the control period */
     EPG_FAULT_LARGEST = 0xFFFF  /**< the largest possible number, so that the type has room for it */
 } epg_fault_t;
 
