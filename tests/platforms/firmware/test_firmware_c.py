@@ -7,7 +7,15 @@ from pathlib import Path
 
 import pytest
 
-from tests.runtime.program import ROOT, SOURCES, compile_program, component_sources, names_in, run_program, runtime_sources
+from tests.runtime.program import (
+    ROOT,
+    SOURCES,
+    compile_program,
+    component_sources,
+    names_in,
+    run_program,
+    runtime_sources,
+)
 
 TESTS = Path(__file__).resolve().parent / "c" / "firmware_tests.c"
 PLATFORM = ROOT / "targets" / "platforms" / "firmware"
