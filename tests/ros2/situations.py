@@ -173,6 +173,10 @@ def _meet(monitoring: Peer, heard: object, publishers: Mapping[str, Publisher], 
         return matched and all(subscription.received for subscription in heard)  # type: ignore[attr-defined]
 
     assert monitoring.spin_until(all_here, 30.0), "the robots have not been found"
+    # The robots' services follow.  Reading their QoS keeps this process busy for up to a quarter of a second.
+    known = -1
+    while known < (known := len(monitoring.graph.writers) + len(monitoring.graph.readers)):
+        monitoring.spin(0.3)
 
 
 def _publish(
