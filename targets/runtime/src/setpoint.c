@@ -30,10 +30,8 @@ bool epg_setpoints_take(const epg_application_t *application)
         const epg_setpoint_sample_t *sample = &application->samples[i];
         epg_setpoint_state_t *state = &application->setpoint_states[i];
         if (sample->count != state->count) {
-            state->target = sample->value;
-            state->fresh_ns = sample->received_ns;
             state->count = sample->count;
-            state->timed_out = false;
+            epg_setpoint_put(state, sample);
             taken = true;
         }
     }
@@ -57,7 +55,7 @@ void epg_setpoints_enable(const epg_application_t *application, uint64_t now_ns)
 static bool too_old(const epg_setpoint_t *setpoint, const epg_setpoint_state_t *state, uint64_t now_ns)
 {
     /* `fresh_ns` can be after `now_ns`: the sample was then received after the start of this cycle. */
-    return state->count > 0 && now_ns > state->fresh_ns && now_ns - state->fresh_ns > setpoint->timeout_ns;
+    return state->received && now_ns > state->fresh_ns && now_ns - state->fresh_ns > setpoint->timeout_ns;
 }
 
 /** Returns `target`, or the nearest value to it that the rate limit allows in one control period. */

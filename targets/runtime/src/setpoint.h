@@ -14,6 +14,15 @@
  */
 bool epg_setpoints_start(const epg_application_t *application);
 
+/** Makes `sample` the newest sample of a setpoint. */
+static inline void epg_setpoint_put(epg_setpoint_state_t *state, const epg_setpoint_sample_t *sample)
+{
+    state->target = sample->value;
+    state->fresh_ns = sample->received_ns;
+    state->received = true;
+    state->timed_out = false;
+}
+
 /** Takes the samples that were read from the exchange.  Returns false if none of them is new. */
 bool epg_setpoints_take(const epg_application_t *application);
 

@@ -83,7 +83,8 @@ typedef struct epg_setpoint_state {
     double value;      /**< value for the model, after timeout and rate limit */
     double target;     /**< newest sample, or the value that its timeout has put in its place */
     uint64_t fresh_ns; /**< start of its age: the reception, or the enabling if that was later */
-    uint32_t count;    /**< `count` of the newest sample; 0: none yet */
+    uint32_t count;    /**< `count` of the newest sample of the communication side; 0: none yet */
+    bool received;     /**< a sample has been received: the value has an age */
     bool timed_out;    /**< true from a timeout to the next sample or enabling */
 } epg_setpoint_state_t;
 
@@ -131,11 +132,32 @@ typedef struct epg_application {
     epg_jog_t *jog;               /**< actuators that can be moved by hand; NULL: none */
 } epg_application_t;
 
+typedef struct epg_control epg_control_t;
+
+/** The points at which the user's program takes part in a target (epg/access.h). */
+typedef enum epg_access_point {
+    EPG_ACCESS_SETPOINTS, /**< after the setpoints of the communication side; the result is true if there are new ones */
+    EPG_ACCESS_PARAMETERS, /**< after the changes of the communication side */
+    EPG_ACCESS_RESTORE,    /**< the model was initialised: its parameters have their generated values */
+    EPG_ACCESS_VALUES,     /**< outputs were written in a cycle in which the model was stepped */
+    EPG_ACCESS_STATISTICS, /**< before the status is published */
+    EPG_ACCESS_TURN        /**< on the communication side: once in each turn of its loop */
+} epg_access_point_t;
+
+/** An access of the user's program: an element of a list. */
+typedef struct epg_access {
+    struct epg_access *next;
+    /** Lets this access and all after it act.  Not part of the cycle's code, so that a program without access lacks it. */
+    bool (*reach)(struct epg_access *self, epg_control_t *control, epg_access_point_t point);
+    /** Lets this access act.  The result has a meaning only at EPG_ACCESS_SETPOINTS. */
+    bool (*act)(struct epg_access *self, epg_control_t *control, epg_access_point_t point);
+} epg_access_t;
+
 /**
  * The state of one target.  Only the runtime writes its members; other code calls the functions below.  Code on the
  * control side may read the status.
  */
-typedef struct epg_control {
+struct epg_control {
     const epg_application_t *application;
     /* The status, which each cycle publishes at its end.  The union gives its members short names. */
     union {
@@ -168,9 +190,10 @@ typedef struct epg_control {
     epg_status_t status_buffers[4];
     epg_exchange_t observer_exchange; /**< for epg_control_observe() */
     epg_status_t observer_buffers[4];
-    atomic_bool observed; /**< epg_control_observe() has been called */
-    atomic_bool reset;    /**< epg_control_reset() was called; the next cycle clears it */
-} epg_control_t;
+    atomic_bool observed;           /**< epg_control_observe() has been called */
+    atomic_bool reset;              /**< epg_control_reset() was called; the next cycle clears it */
+    epg_access_t *_Atomic accesses; /**< the first access of the user's program; NULL: none is used */
+};
 
 #define EPG_STATUS_MEMBER(member)                                                                                      \
     static_assert(offsetof(epg_control_t, member) - offsetof(epg_control_t, status) == offsetof(epg_status_t, member), \
