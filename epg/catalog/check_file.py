@@ -100,7 +100,7 @@ _TAKEN = {
     f"NAME_{part}.j2"
     for of in ("model", "plant")
     for part in (f"{of}.h", f"{of}.c", f"{of}_names.h", *(f"{of}_export.{suffix}" for suffix in ("h", "c", "cpp")))
-} | {"NAME_app.c.j2", "NAME.h.j2", "NAME.cmake.j2", "NAME.json.j2"}
+} | {"NAME_app.c.j2", "NAME_access.c.j2", "NAME.h.j2", "NAME.cmake.j2", "NAME.json.j2"}
 """The templates of files that every target has."""
 
 

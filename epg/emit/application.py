@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The C files of an application: ``<name>.h``, ``<name>_version.c``, ``<name>_version.h``, ``<name>_app.c``.
+"""The C files of an application: ``<name>.h``, ``<name>_app.c``, ``<name>_access.c``, ``<name>_version.c`` and ``.h``.
 
 The templates of the platform can add files, for example a devicetree overlay.
 
@@ -17,6 +17,7 @@ from typing import Any
 from jinja2 import Environment
 
 from epg import __version__
+from epg.emit.access import access_of
 from epg.emit.claims import board_nodes, claims_of, tick_of
 from epg.emit.cmake import platform_files
 from epg.emit.fingerprint import LITERAL, model_hash
@@ -55,7 +56,13 @@ class Emitter:
         """The text of each generated file of the application and its platform, by file name."""
         context = self._context()
         name = str(self.prefix)
-        frames = {".h": "app.h.j2", "_version.c": "version.c.j2", "_version.h": "version.h.j2", "_app.c": "app.c.j2"}
+        frames = {
+            ".h": "app.h.j2",
+            "_version.c": "version.c.j2",
+            "_version.h": "version.h.j2",
+            "_app.c": "app.c.j2",
+            "_access.c": "access.c.j2",
+        }
         result = {f"{name}{end}": self.env.get_template(frame).render(context) for end, frame in frames.items()}
         platform = self.app.target.platform
         for file, template in platform_files(self.app).items():
@@ -103,6 +110,7 @@ class Emitter:
             "tick": tick_of(app),
             "board_nodes": board_nodes(app),
             "service": service,
+            "access": access_of(app, bool(service.parameters)),
             "ros_services": ros_services_of(app),
             "transport": self._transport(),
             "middleware_code": self._middleware_code(service.middleware),

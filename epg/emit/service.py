@@ -139,7 +139,7 @@ def service_of(app: Application, macro: Macro, symbols: Mapping[str, Code]) -> S
         monitor_count=monitor_count,
         node=node,
         store=node or "parameters" in uses,
-        parameters=tuple(_parameters(app)) if "parameters" in uses or app.ros_parameters else (),
+        parameters=tuple(parameter_views(app)) if "parameters" in uses or app.ros_parameters else (),
         has_limits=any(is_limited(setting) for setting in app.parameter_settings.values()),
         capture=max((size for size in captures if isinstance(size, int)), default=0),
         actuators=tuple(a for c in app.components for a in _actuators(c, macro, symbols[c.name])) if jog else (),
@@ -181,7 +181,8 @@ def _signals(app: Application, first: int) -> Iterable[SignalView]:
             index += 1
 
 
-def _parameters(app: Application) -> Iterable[ParameterView]:
+def parameter_views(app: Application) -> Iterable[ParameterView]:
+    """The parameters of the model that can change after the start, in the order of their C enumeration."""
     names: set[str] = set()
     for parameter in app.model.parameters:
         if not parameter.tunable:  # these come last, so that the index of a parameter is that of the C enumeration

@@ -27,8 +27,8 @@ def component_symbols(app: Application, env: Environment) -> dict[str, Code]:
     result = {}
     for component in app.components:
         symbol = component.name
-        if f"{symbol}_".casefold().startswith(("model_", "plant_")):  # the library of the model or of the plant
-            symbol += "_component"
+        if f"{symbol}_".casefold().startswith(("model_", "plant_", "get_", "set_")):
+            symbol += "_component"  # the library of the model or of the plant; the functions for the user's program
         while symbol in beginnings or f"{app.name}_{symbol}" in taken:
             symbol += "_component"
         result[component.name] = identifier(f"{app.name}_{symbol}")

@@ -13,10 +13,16 @@ int main(void)
     struct timespec delay = {.tv_nsec = 200000000};
     nanosleep(&delay, NULL);
     left_enable(true);
+    (void)left_set_setpoint(0.25);
+    left_values_t values;
+    (void)left_get(&values); /* requests them */
     nanosleep(&delay, NULL);
     epg_status_t status;
-    if (!left_status(&status)) {
+    if (!left_status(&status) || !left_get(&values)) {
         return 2;
+    }
+    if (values.inputs.setpoint < 0.25 || values.inputs.setpoint > 0.25) {
+        return 4;
     }
     left_stop();
     printf("cycles %u enabled %d\n", (unsigned)status.statistics.cycles, status.enabled);
