@@ -24,7 +24,7 @@ ODD_NAMES = (
     "u", "y", "i", "index", "self", "samples", "signals", "setpoints", "application", "monitor", "fail_safe",
     "control", "target", "uint8", "size", "string", "stdio", "math", "pid", "time", "none", "made", "count", "robot",
     "robot_h", "ROBOT_H", "in", "out", "I", "NAN_", "a1", "start_", "xEPG_x", "_1", "_a", "x" * 63, "MODEL_x",
-    "x_component", "write", "safe", "pwm", "constant",
+    "x_component", "get", "set", "get_x", "set_x", "write", "safe", "pwm", "constant",
 )  # fmt: skip
 
 
