@@ -122,7 +122,8 @@ class ResourceClass:
 class Soc:
     """A chip.  The number of a pin in C is its index in ``pins``.
 
-    A chip with ``automatic_pins`` has no real pins: EPG numbers the signals, up to this number.  ``clocks`` have the
+    A chip with ``automatic_pins`` has no real pins: EPG numbers the signals, up to this number.  With ``free_names``,
+    users may give them any names.  ``clocks`` have the
     frequencies of the chip's file.
     """
 
@@ -132,6 +133,7 @@ class Soc:
     clocks: Mapping[str, Clock]
     pins: tuple[str, ...]
     automatic_pins: int
+    free_names: bool
     peripherals: Mapping[str, Peripheral]
     classes: Mapping[str, ResourceClass]
     files: tuple[Path, ...]  # its own, and those of the chips that it extends
@@ -240,6 +242,7 @@ def make_soc(node: YamlNode, folder: Path) -> Soc:
         clocks=make_clocks(node),
         pins=pin_names(node.get("pins")),
         automatic_pins=count,
+        free_names=flag_of(node["pins"], "names_are_free") if automatic is not None else False,
         peripherals=MappingProxyType(peripherals),
         classes=MappingProxyType(classes),
         files=_files(node, folder / "soc.yaml"),

@@ -18,14 +18,15 @@ from epg.resolve.claims import TICK
 
 @dataclass(frozen=True)
 class PinView:
-    """A pin: its name in the data of the SoC, and its number in C.
+    """A pin: its name in the data of the SoC or in the ``.tcf``, and its number in C.
 
-    ``function`` is the number of its alternate function; None for a plain pin, and for chips without such numbers.
+    A pin that is not ``named`` has its number as its name.  ``function`` is the number of its alternate function; None for a plain pin, and for chips without such numbers.
     """
 
     name: str
     number: int
     function: int | None
+    named: bool
 
 
 @dataclass(frozen=True)
@@ -82,9 +83,10 @@ def board_nodes(app: Application) -> list[str]:
 
 
 def _view(app: Application, component: str, name: str, resource_class: str, label: str, found: Assignment) -> ClaimView:
-    names = app.target.soc.pins if found.pins_are_real else ()
     pins = {
-        signal: PinView(names[pin] if names else str(pin), pin, found.functions.get(signal))
+        signal: PinView(
+            str(found.pin_names.get(signal, pin)), pin, found.functions.get(signal), signal in found.pin_names
+        )
         for signal, pin in found.pins.items()
     }
     same = ("instance", "slot", "instance_name", "slot_name", "settings", "clock", "frequency", "attributes", "node")

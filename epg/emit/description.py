@@ -97,7 +97,7 @@ def _component(component: ResolvedComponent, symbol: str, names: PathNames) -> d
             pin: component.claims[claim.name].pin_names[signal]
             for claim in component.kind.claims
             for signal, pin in sorted(claim.signals.items())
-            if component.claims[claim.name].pins_are_real
+            if signal in component.claims[claim.name].pin_names
         },
         "dividers": {
             claim: divider for claim, found in component.claims.items() if (divider := describe_divider(found))

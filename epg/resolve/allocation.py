@@ -59,7 +59,9 @@ class Assignment:
     slot_name: str = ""
     attributes: Mapping[str, object] = field(default_factory=dict)
     pin_names: Mapping[str, int | str] = field(default_factory=dict)
-    """Signal -> the chip's name of its pin: a number (GPIO 10) or a text (PD12).  Empty without real pins."""
+    """Signal -> the chip's name of its pin: a number (GPIO 10) or a text (PD12).
+
+    Without real pins, only the names that users have given."""
     functions: Mapping[str, int] = field(default_factory=dict)
     """Signal -> the number of its pin's alternate function, for chips that have such numbers."""
     node: str = ""
@@ -276,9 +278,10 @@ def _attributes(claim: Claim) -> Mapping[str, object]:
 
 
 def _pin_names(placed: _Placed, target: Target) -> Mapping[str, int | str]:
-    if not target.has_pins:
-        return MappingProxyType({})
-    names = {signal: target.soc.pins[number] for signal, number in placed.pins.items()}
+    if target.has_pins:
+        names = {signal: target.soc.pins[number] for signal, number in placed.pins.items()}
+    else:
+        names = {signal: str(stated.value) for signal, stated in placed.claim.signals.items()}
     return MappingProxyType({signal: int(name) if name.isdigit() else name for signal, name in names.items()})
 
 

@@ -38,7 +38,8 @@ class Stated:
 class Claim:
     """One use of a resource class: of a peripheral with its pins, or of pins only.
 
-    ``signals`` maps the signals of the class to pins as they are written.  It is empty if EPG numbers the signals.
+    ``signals`` maps the signals of the class to pins as they are written.  If EPG numbers the signals, it has only the
+    names that users have given to them.
     ``attributes`` are in base units (Hz, s).  ``component`` is empty for the control loop.
     """
 
@@ -66,7 +67,8 @@ class Claim:
 def component_claims(configuration: Configuration) -> tuple[Claim, ...]:
     """The claims of all components, in the order of the ``.tcf``."""
     target = configuration.target
-    return tuple(_claims(configuration.components.values(), target.has_pins, target.platform.has_nodes))
+    with_pins = target.has_pins or target.soc.free_names
+    return tuple(_claims(configuration.components.values(), with_pins, target.platform.has_nodes))
 
 
 def tick_claims(target: Target, period: Fraction | None, span: Span) -> tuple[Claim, ...]:
@@ -86,7 +88,8 @@ def _claims(components: Iterable[Component], with_pins: bool, with_nodes: bool) 
         for claim in component.kind.claims:
             node = component.node.get("node") if with_nodes else None
             written = with_pins and node is None
-            signals = {signal: _pin(component, pin) for signal, pin in claim.signals.items()} if written else {}
+            pins = _pins(component) if written else {}
+            signals = {signal: pins[pin] for signal, pin in claim.signals.items() if pin in pins}
             yield Claim(
                 component=component.name,
                 name=claim.name,
@@ -99,9 +102,10 @@ def _claims(components: Iterable[Component], with_pins: bool, with_nodes: bool) 
             )
 
 
-def _pin(component: Component, pin: str) -> Stated:
-    node = component.node["pins"][pin]
-    return Stated(node.value, node.span, node.origins)
+def _pins(component: Component) -> dict[str, Stated]:
+    """The pins of a component that the ``.tcf`` states; all of its kind's, unless their names are free."""
+    pins = component.node.get("pins")
+    return {name: Stated(node.value, node.span, node.origins) for name, node in pins.items()} if pins else {}
 
 
 def _attributes(component: Component, claim: KindClaim) -> dict[str, Stated]:
