@@ -20,7 +20,8 @@ from epg.resolve.claims import TICK
 class PinView:
     """A pin: its name in the data of the SoC or in the ``.tcf``, and its number in C.
 
-    A pin that is not ``named`` has its number as its name.  ``function`` is the number of its alternate function; None for a plain pin, and for chips without such numbers.
+    A pin that is not ``named`` has its number as its name.  ``function`` is the number of its alternate function; None
+    for a plain pin, and for chips without such numbers.
     """
 
     name: str
