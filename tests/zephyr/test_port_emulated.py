@@ -21,6 +21,10 @@ from .workspace import build, c_library, workspace
 STOP, START, PANIC, HANG, LOCK_INTERRUPTS, DISABLE_SPARE_IRQ, SUSPEND, RESUME = range(1, 9)
 NO_FAULT, WATCHDOG, PROCESSOR = 0, 11, 12
 """Values of epg/fault.h."""
+WRONG_TICK = 3
+"""The value of EPG_ZEPHYR_ERROR_TICK."""
+TICK_CLOCK = 8
+"""The offset of `tick.clock` in epg_zephyr_target_t."""
 MOTOR, FORWARD = 2, 3
 """Numbers of pins."""
 MOTOR_SLICE = 1
@@ -118,6 +122,19 @@ def test_the_motor_runs_until_the_target_is_stopped_and_again(board: Board) -> N
     assert board.forward()
     assert 30 < board.status()["cycles"] < 60, "counted anew"
     assert board.status()["missed"] == 0
+
+
+def test_a_target_for_another_clock_is_refused(board: Board) -> None:
+    board.ask(STOP)
+    clock = board.pico.word("zephyr", offset=TICK_CLOCK)
+    assert clock == 125_000_000
+    board.pico.write_word("zephyr", 133_000_000, offset=TICK_CLOCK)
+    board.ask(START)
+    assert (board.pico.word("started"), board.pico.word("error")) == (0, WRONG_TICK)
+    assert not board.forward()
+    board.pico.write_word("zephyr", clock, offset=TICK_CLOCK)
+    board.ask(START)
+    assert (board.pico.word("started"), board.pico.word("error")) == (1, 0)
 
 
 def test_a_target_that_runs_does_not_start_again(board: Board) -> None:

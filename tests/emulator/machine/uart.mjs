@@ -67,10 +67,13 @@ export class Uart extends BasePeripheral {
         return (this.registers[CR] & 1) !== 0;
     }
 
-    /** The number of cycles in one bit. */
+    /** The number of cycles in one bit, at the present frequency of clk_peri. */
     get bit() {
-        return (16 * this.divider) / 64;
+        return ((16 * this.divider) / 64) * (this.clock.frequency / this.chip.clkPeri);
     }
+
+    /** The chip calls it when clk_peri has another frequency, which applies from the next character on. */
+    clkPeriChanged() {}
 
     get baudRate() {
         return this.divider === 0 ? 0 : this.clock.frequency / this.bit;

@@ -259,9 +259,6 @@ epg_pico_error_t epg_family_control_start(const epg_pico_target_t *pico, epg_fau
     if (atomic_load(&state) != STATE_OFF) {
         return EPG_PICO_ERROR_RUNNING;
     }
-    if (clock_get_hz(clk_sys) != pico->clock) {
-        return EPG_PICO_ERROR_CLOCK;
-    }
     const epg_application_t *application = pico->target->application;
     if (!placed_in_ram(application)) {
         return EPG_PICO_ERROR_PLACEMENT;

@@ -22,12 +22,6 @@ bool epg_pico_core1_taken(void)
     return taken;
 }
 
-epg_mcu_error_t epg_family_check_start(const epg_family_target_t *target)
-{
-    (void)target;
-    return taken ? EPG_MCU_ERROR_CORE_TAKEN : EPG_MCU_OK;
-}
-
 /** True if the program may use core 1 now. */
 static bool granted(void)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The functions that programs call on a Pico, and the limits of core 0's stack.
+ * The functions that programs call on a Pico, the conditions of a start, and the limits of core 0's stack.
  */
 #include "parts.h"
 
@@ -10,6 +10,17 @@ extern uint32_t __StackBottom;
 extern uint32_t __StackTop;
 
 const epg_mcu_stack_t epg_family_main_stack = {.bottom = &__StackBottom, .top = &__StackTop};
+
+epg_mcu_error_t epg_family_check_start(const epg_family_target_t *pico)
+{
+    if (epg_pico_core1_taken()) {
+        return EPG_MCU_ERROR_CORE_TAKEN;
+    }
+    const bool right =
+        epg_mcu_check_clock("clk_sys", pico->clock, clock_get_hz(clk_sys)) &&
+        (pico->uart_clock == 0U || epg_mcu_check_clock("clk_peri", pico->uart_clock, clock_get_hz(clk_peri)));
+    return right ? EPG_MCU_OK : EPG_MCU_ERROR_CLOCK;
+}
 
 bool epg_pico_start(const epg_pico_target_t *pico)
 {

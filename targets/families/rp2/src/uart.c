@@ -93,9 +93,6 @@ bool epg_port_uart_start(const epg_port_uart_t *port)
     if (!mine && (uart_is_enabled(uart) || irq_get_exclusive_handler(irq) != NULL || irq_has_shared_handler(irq))) {
         return false;
     }
-    if (clock_get_hz(clk_peri) != clock_get_hz(clk_sys)) {
-        return false;
-    }
     irq_set_enabled(irq, false);
     empty(&port->lines->received);
     empty(&port->lines->sent);

@@ -18,6 +18,7 @@
 
 static const epg_family_target_t *running;
 static epg_mcu_error_t error;
+static epg_mcu_clock_t wrong_clock;
 static epg_fault_t fault;
 
 /** Runs before main(), once per reset: later code may change the registers that hold the cause of the reset. */
@@ -108,8 +109,18 @@ void epg_mcu_report(epg_mcu_error_t problem)
     error = problem;
 }
 
+bool epg_mcu_check_clock(const char *name, uint32_t expected_hz, uint32_t found_hz)
+{
+    if (found_hz != expected_hz) {
+        wrong_clock = (epg_mcu_clock_t){.name = name, .expected_hz = expected_hz, .found_hz = found_hz};
+        return false;
+    }
+    return true;
+}
+
 bool epg_mcu_start(const epg_family_target_t *chip)
 {
+    wrong_clock = (epg_mcu_clock_t){0};
     error = start(chip);
     return error == EPG_MCU_OK;
 }
@@ -134,6 +145,7 @@ void epg_mcu_status(epg_mcu_status_t *status)
     const epg_mcu_stack_t *main_stack = &epg_family_main_stack;
     *status = (epg_mcu_status_t){
         .error = error,
+        .wrong_clock = wrong_clock,
         .after_watchdog = fault != EPG_FAULT_NONE,
         .control_stack_size = (uint32_t)((uintptr_t)control->top - (uintptr_t)control->bottom),
         .control_stack_used = epg_mcu_stack_used(control, 0),

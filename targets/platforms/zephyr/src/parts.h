@@ -66,6 +66,14 @@ void epg_zephyr_tick_stop(void);
  */
 uint64_t epg_zephyr_tick_newest_ns(uint64_t *now_ns);
 
+/* start.c -------------------------------------------------------------------------------------------------------- */
+
+/**
+ * True if a clock has the frequency, in Hz, for which the generator computed its divisions.  If not, a message with
+ * `name` and both frequencies is written to the log.
+ */
+bool epg_zephyr_check_clock(const char *name, uint32_t expected_hz, uint32_t found_hz);
+
 /* control.c ------------------------------------------------------------------------------------------------------ */
 
 /** Starts the control thread.  `fault`, the fault that ended the run before the last reset, is latched. */

@@ -51,6 +51,16 @@ static void stop_middleware(const epg_middleware_t *middleware, const epg_transp
     }
 }
 
+bool epg_zephyr_check_clock(const char *name, uint32_t expected_hz, uint32_t found_hz)
+{
+    if (found_hz != expected_hz) {
+        LOG_ERR("%s has %u Hz, but the target was generated for %u Hz ('clocks' in its .tcf)", name, found_hz,
+                expected_hz);
+        return false;
+    }
+    return true;
+}
+
 static epg_zephyr_error_t start(const epg_zephyr_target_t *zephyr)
 {
     const epg_target_t *target = zephyr->target;
@@ -67,10 +77,9 @@ static epg_zephyr_error_t start(const epg_zephyr_target_t *zephyr)
     }
     const epg_zephyr_error_t failed = epg_zephyr_control_start(zephyr, epg_zephyr_fault_before_reset());
     if (failed != EPG_ZEPHYR_OK) {
-        LOG_ERR("the control loop cannot be started: %s",
-                failed == EPG_ZEPHYR_ERROR_TICK
-                    ? "its tick has another clock than the one that the target was generated for"
-                    : "a device refuses its settings");
+        LOG_ERR("the control loop cannot be started: %s", failed == EPG_ZEPHYR_ERROR_TICK
+                                                              ? "its tick would have another period"
+                                                              : "a device refuses its settings");
         return failed;
     }
     running = zephyr;

@@ -33,7 +33,9 @@ epg_zephyr_error_t epg_zephyr_tick_start(const epg_zephyr_tick_t *tick, uint64_t
     if (tick->device == NULL || !epg_zephyr_ready(tick->device)) {
         return EPG_ZEPHYR_ERROR_DEVICE;
     }
-    if (tick->prescaler == 0U || counter_get_frequency(tick->device) != tick->clock / tick->prescaler) {
+    if (tick->prescaler == 0U ||
+        !epg_zephyr_check_clock("the timer of the tick, after its prescaler,", tick->clock / tick->prescaler,
+                                counter_get_frequency(tick->device))) {
         return EPG_ZEPHYR_ERROR_TICK;
     }
     /* In two steps: the product of 2^24 and the nanoseconds of a large prescaler needs more than 64 bits. */

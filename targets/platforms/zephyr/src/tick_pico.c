@@ -78,7 +78,7 @@ epg_zephyr_error_t epg_zephyr_tick_start(const epg_zephyr_tick_t *tick, uint64_t
     if (!epg_zephyr_ready(DEVICE_DT_GET(PWM_NODE))) {
         return EPG_ZEPHYR_ERROR_DEVICE;
     }
-    if (clock_rate() != tick->clock) {
+    if (!epg_zephyr_check_clock("clk_sys", tick->clock, clock_rate())) {
         return EPG_ZEPHYR_ERROR_TICK;
     }
     const uint32_t bit = 1U << tick->instance;

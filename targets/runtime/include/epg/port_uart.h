@@ -30,8 +30,9 @@ typedef struct epg_port_uart {
 
 /**
  * Starts the UART with empty rings.  From then on the interrupt handler puts received bytes into `lines->received` and
- * wakes the platform's communication side.  Returns false if other code already uses the UART, or if its clock is not
- * the one that `divider` was computed for.  Called before the control loop starts; a second call starts the UART again.
+ * wakes the platform's communication side.  Returns false if other code already uses the UART.  The port layer has
+ * verified the clock for which `divider` was computed.  Called before the control loop starts; a second call starts the
+ * UART again.
  */
 bool epg_port_uart_start(const epg_port_uart_t *uart);
 

@@ -202,7 +202,7 @@ static const epg_target_t target = {
 	.hash = "0",
 	.middleware = &echo,
 };
-static const epg_zephyr_target_t zephyr = {
+epg_zephyr_target_t zephyr = { /* the test changes the clock of its tick */
 	.target = &target,
 	.tick = {.clock = CLOCK, .prescaler = PRESCALER, .top = TOP, .instance = TICK_SLICE},
 	.transport = &epg_zephyr_usb,

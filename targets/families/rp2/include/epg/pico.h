@@ -33,6 +33,10 @@
  *         epg_pico_status_t status;
  *         epg_pico_status(&status);
  *         printf("not started: error %d\n", (int)status.error);
+ *         if (status.error == EPG_PICO_ERROR_CLOCK) {
+ *             const epg_mcu_clock_t *clock = &status.wrong_clock;
+ *             printf("%s has %lu Hz\n", clock->name, (unsigned long)clock->found_hz);
+ *         }
  *     }
  *
  * This header includes no header of the Pico SDK, because generated code includes it.
@@ -79,7 +83,8 @@ typedef struct epg_pico_tick {
 /** A target with its tick and transports; generated. */
 typedef struct epg_pico_target {
     const epg_target_t *target;
-    uint32_t clock; /**< Hz of clk_sys for which the generator computed all dividers */
+    uint32_t clock;      /**< Hz of clk_sys for which the generator computed the dividers of the PWM slices */
+    uint32_t uart_clock; /**< Hz of clk_peri for which it computed the dividers of UARTs; 0 without a UART */
     epg_pico_tick_t tick;
     const epg_transport_t *transport;         /**< of the target's middleware; NULL if it needs none */
     const char *transport_title;              /**< name of the transport for the user, for example "EPG ROS 2" */
@@ -91,7 +96,7 @@ typedef epg_mcu_error_t epg_pico_error_t;
 
 #define EPG_PICO_OK EPG_MCU_OK
 #define EPG_PICO_ERROR_RUNNING EPG_MCU_ERROR_RUNNING       /**< a target is running already */
-#define EPG_PICO_ERROR_CLOCK EPG_MCU_ERROR_CLOCK           /**< clk_sys is not epg_pico_target_t::clock */
+#define EPG_PICO_ERROR_CLOCK EPG_MCU_ERROR_CLOCK           /**< a clock is wrong: `wrong_clock` of the status */
 #define EPG_PICO_ERROR_PLACEMENT EPG_MCU_ERROR_PLACEMENT   /**< the control cycle is in flash, not in RAM */
 #define EPG_PICO_ERROR_RESOURCE EPG_MCU_ERROR_RESOURCE     /**< a PIO block, alarm, UART or interrupt is in use */
 #define EPG_PICO_ERROR_CORE EPG_MCU_ERROR_CORE             /**< core 1 did not answer */

@@ -55,7 +55,7 @@ typedef struct epg_mcu_stack {
 
 /**
  * Called first at each start, before anything has been started.  Returns EPG_MCU_OK if a start is possible now, else
- * the reason why not.  A family can check its clocks and priorities here.
+ * the reason why not.  A family must check its clocks here, by epg_mcu_check_clock(), and can check priorities.
  */
 epg_mcu_error_t epg_family_check_start(const epg_family_target_t *target);
 
@@ -132,6 +132,13 @@ void epg_mcu_status(epg_mcu_status_t *status);         /**< reads all stacks; no
 
 /** Stores `problem` as the error that epg_mcu_status() reports. */
 void epg_mcu_report(epg_mcu_error_t problem);
+
+/**
+ * Compares the frequency of a clock, in Hz, with that for which the generator computed the dividers.  Returns true if
+ * they are equal; otherwise epg_mcu_status() reports both with `name`, which must be a constant.  For
+ * epg_family_check_start(), which then returns EPG_MCU_ERROR_CLOCK.
+ */
+bool epg_mcu_check_clock(const char *name, uint32_t expected_hz, uint32_t found_hz);
 
 /**
  * Runs the communication side as soon as possible.  For the interrupt of a transport, on the communication side's

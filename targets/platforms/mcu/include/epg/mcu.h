@@ -20,7 +20,7 @@ extern "C" {
 typedef enum epg_mcu_error {
     EPG_MCU_OK = 0,
     EPG_MCU_ERROR_RUNNING,   /**< a target is running already */
-    EPG_MCU_ERROR_CLOCK,     /**< a clock has not the frequency for which the generator computed the dividers */
+    EPG_MCU_ERROR_CLOCK,     /**< a clock has another frequency than the target was generated for: epg_mcu_clock_t */
     EPG_MCU_ERROR_PLACEMENT, /**< code or tables of the control cycle are in the wrong memory: another linker script? */
     EPG_MCU_ERROR_RESOURCE,  /**< other code uses a peripheral or an interrupt that the target needs */
     EPG_MCU_ERROR_CORE,      /**< the control side's core did not answer */
@@ -29,9 +29,17 @@ typedef enum epg_mcu_error {
                                   to use that core while the target runs */
 } epg_mcu_error_t;
 
+/** The clock with which a start failed.  Its frequency is a key in `clocks` of the `.tcf`. */
+typedef struct epg_mcu_clock {
+    const char *name;     /**< in the data sheet, for example "clk_sys"; NULL if no clock was wrong */
+    uint32_t expected_hz; /**< the frequency from which the generator computed the dividers */
+    uint32_t found_hz;    /**< the frequency that the clock has */
+} epg_mcu_clock_t;
+
 /** Measurements of the port layer.  The statistics of the control cycle are reported elsewhere (`epg/statistics.h`). */
 typedef struct epg_mcu_status {
     epg_mcu_error_t error;       /**< the newest error; EPG_MCU_OK after a successful start */
+    epg_mcu_clock_t wrong_clock; /**< the reason for EPG_MCU_ERROR_CLOCK */
     bool after_watchdog;         /**< the watchdog or a processor fault ended the run before the last reset */
     uint32_t control_stack_size; /**< bytes of the stack on which the control cycle runs */
     uint32_t control_stack_used; /**< the largest number of its bytes in use so far */

@@ -133,7 +133,7 @@ typedef enum epg_zephyr_error {
     EPG_ZEPHYR_OK = 0,
     EPG_ZEPHYR_ERROR_RUNNING, /**< a target is running already */
     EPG_ZEPHYR_ERROR_DEVICE,  /**< a device is not ready, or its driver returned an error */
-    EPG_ZEPHYR_ERROR_TICK,    /**< the tick's clock has not the frequency for which the generator computed the period */
+    EPG_ZEPHYR_ERROR_TICK,    /**< the tick's clock has another frequency than `clocks` of the `.tcf`: see the log */
     EPG_ZEPHYR_ERROR_CALLER   /**< epg_zephyr_stop() was called where it cannot wait */
 } epg_zephyr_error_t;
 
