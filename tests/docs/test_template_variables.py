@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Templates of platforms have the variables that ``docs/adding-a-platform.md`` lists."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import pytest
+
+from epg.diagnostics import Diagnostics
+from epg.emit.application import Emitter
+from epg.project import Request, load_application
+from epg.source import Span
+from tests.errors.test_errors import HERE as CASES
+
+PAGE = CASES.parent.parent / "docs" / "adding-a-platform.md"
+
+
+@pytest.fixture(scope="module")
+def variables() -> dict[str, Any]:
+    """The variables of a target with one of each: a tick, claims with alternate functions, outputs."""
+    common = CASES / "common"
+    wiring = {
+        "target": "nucleo_h743zi_zephyr",
+        "components.encoder.pins": "{a: PD12, b: PD13}",
+        "components.motor.pins": "{value: PE9, direction_a: PE2, direction_b: PE3}",
+        "components.button.pins": "{value: PE4}",
+    }
+    settings = [(f"{key}={value}", Span("test")) for key, value in wiring.items()]
+    files = {"model": common / "model", "bindings": common / "bindings.yaml", "beside": common}
+    request = Request("robot", "robot.tcf", settings=settings, **files)
+    problems = Diagnostics()
+    app = load_application(request, problems)
+    assert app is not None, [problem.message for problem in problems]
+    context = Emitter(app, request.roots)._context()
+    claims = {claim.resource_class: claim for claim in context["claims"]}
+    context["claim"] = claims["quadrature"]
+    context["pwm"] = claims["pwm"]
+    context["output"] = context["output_pins"][0]
+    context["group"] = context["output_groups"][0]
+    context["state"] = context["group"].states[0]
+    return context
+
+
+def expressions() -> list[str]:
+    """The expressions in the first column of the tables, and in the text behind them."""
+    section = re.search(r"### What templates can print\n(.*?)\n## ", PAGE.read_text(encoding="utf-8"), re.DOTALL)
+    assert section is not None
+    first = [line.split(" | ")[0] for line in section[1].splitlines() if line.startswith("| `")]
+    text = " ".join([*first, *re.findall(r"`(?:output|group|state)\.[a-z.]+`", section[1])])
+    return list(dict.fromkeys(re.findall(r"`([^`]+)`", text)))
+
+
+def test_the_page_lists_variables() -> None:
+    assert len(expressions()) > 30
+
+
+@pytest.mark.parametrize("expression", expressions())
+def test_a_template_can_use_it(expression: str, variables: dict[str, Any]) -> None:
+    names = {"claim.settings": "pwm.settings", "claim.clock": "pwm.clock", "claim.frequency": "pwm.frequency"}
+    for claimed, pwm in names.items():
+        expression = expression.replace(claimed, pwm)
+    expression = expression.replace('clocks["timers"]', 'clocks["apb1_timers"]')
+    value = eval(expression, {}, variables)
+    assert value is not None
