@@ -263,4 +263,5 @@ def test_a_host_target_in_a_project_for_a_microcontroller(robot: Project, system
         in text
     )
     assert f"(CMAKE_SYSTEM_NAME is {system})" in text
+    assert "write 'target: firmware' in the .tcf" in text
     assert "epg_add_model(robot MODEL <folder>)" in text

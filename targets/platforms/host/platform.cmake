@@ -31,7 +31,7 @@ function(_epg_host_target name)
   if(CMAKE_SYSTEM_NAME STREQUAL "PICO" OR NOT (UNIX OR WIN32)) # the Pico SDK includes Platform/UnixPaths, which sets UNIX
     set_property(TARGET ${name} PROPERTY EPG_FAILED TRUE) # its executables need not report the same error again
     message(SEND_ERROR "epg_add_target(${name}): its target is 'host', a program for a computer, and this project is compiled for a microcontroller (CMAKE_SYSTEM_NAME is ${CMAKE_SYSTEM_NAME}).
-Choose the .tcf of a target for the board: 'epg targets' lists them. If there is none, add the controller alone, without pins and topics, and call it from your code (docs/models.md, \"The library\"):
+Choose the .tcf of a target for the board: 'epg targets' lists them. If there is none, write 'target: firmware' in the .tcf: your program then calls the control cycle and has the drivers (docs/any-firmware.md). For the controller alone, without pins and topics:
   epg_add_model(${name} MODEL <folder>)")
     return()
   endif()
