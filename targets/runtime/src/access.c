@@ -74,10 +74,10 @@ static void inform_of_setpoints(epg_setpoint_access_t *self, const epg_applicati
 static bool act_on_setpoints(epg_access_t *access, epg_control_t *control, epg_access_point_t point)
 {
     epg_setpoint_access_t *self = (epg_setpoint_access_t *)access;
-    if (point == EPG_ACCESS_SETPOINTS) {
+    if (point == EPG_ACCESS_BEGIN) {
         return take_setpoints(self, control->application);
     }
-    if (point == EPG_ACCESS_STATISTICS) {
+    if (point == EPG_ACCESS_STEPPED || point == EPG_ACCESS_RESTED) {
         control->statistics.setpoints_dropped += atomic_load(&self->dropped);
     } else if (point == EPG_ACCESS_TURN) {
         inform_of_setpoints(self, control->application);
@@ -127,7 +127,7 @@ bool epg_access_set(epg_setpoint_access_t *self, epg_control_t *control, size_t 
 static bool act_on_values(epg_access_t *access, epg_control_t *control, epg_access_point_t point)
 {
     epg_value_access_t *self = (epg_value_access_t *)access;
-    if (point == EPG_ACCESS_VALUES) {
+    if (point == EPG_ACCESS_STEPPED) {
         self->collect(self->given, control->time_ns);
         epg_exchange_write(&self->exchange, self->given);
     }

@@ -4,7 +4,7 @@
  * Access of the user's program to parameters.
  *
  * The communication side may change the same parameters (epg/parameters.h).  The control side makes the changes of both,
- * and gives the result to both.  The communication side must not take a result that is older than its own last
+ * first those of the program, and gives the result to both.  The communication side must not take a result that is older than its own last
  * request; each result therefore has the number of requests that it contains.
  */
 #include "epg/access.h"
@@ -15,26 +15,30 @@ static bool is_shared(const epg_parameter_access_t *self)
     return self->own == NULL;
 }
 
-/** Publishes the values of all parameters. */
+/** Publishes the values of all parameters, if the program or the communication side has changed one. */
 static void publish(epg_parameter_access_t *self)
 {
-    const epg_parameters_t *parameters = self->parameters;
+    epg_parameters_t *parameters = self->parameters;
+    const unsigned int seen = atomic_load(&parameters->handover.returned);
+    if (self->published && seen == self->seen) {
+        return;
+    }
+    self->published = true;
+    self->seen = seen;
     for (size_t i = 0; i < parameters->count; i++) {
         self->applied[i] = parameters->changed[i] ? parameters->applied[i] : parameters->table[i].value;
     }
-    self->applied[parameters->count] = (double)self->seen;
+    self->applied[parameters->count] = (double)seen;
     epg_exchange_write(&self->program, self->applied);
     if (is_shared(self)) {
         epg_exchange_write(&self->communication, self->applied);
     }
-    self->published = true;
 }
 
 /** Makes the requested changes.  `running` is true if the model is initialised. */
 static void change(epg_parameter_access_t *self, bool running)
 {
     epg_parameters_t *parameters = self->parameters;
-    const unsigned int seen = atomic_load(&parameters->handover.returned);
     /* After a restart of the target, the model has the generated values again. */
     const bool again = !self->published && !is_shared(self);
     const bool asked = epg_exchange_take(&self->requests, self->taken);
@@ -52,10 +56,7 @@ static void change(epg_parameter_access_t *self, bool running)
     if (any && running) {
         parameters->set(parameters->applied, self->which);
     }
-    if (any || !self->published || seen != self->seen) {
-        self->seen = seen;
-        publish(self);
-    }
+    self->published = self->published && !any;
 }
 
 /** Communication side: takes the results. */
@@ -81,12 +82,14 @@ static void inform(epg_parameter_access_t *self)
 static bool act(epg_access_t *access, epg_control_t *control, epg_access_point_t point)
 {
     epg_parameter_access_t *self = (epg_parameter_access_t *)access;
-    if (point == EPG_ACCESS_PARAMETERS) {
+    const bool shared = is_shared(self);
+    if (point == EPG_ACCESS_BEGIN) {
         change(self, control->model_valid);
-    } else if (point == EPG_ACCESS_RESTORE &&
-               !is_shared(self)) { /* the cycle itself restores those of the application */
+    } else if (point == EPG_ACCESS_RESTORE && !shared) { /* the cycle itself restores those of the application */
         epg_parameters_restore(self->parameters);
-    } else if (point == EPG_ACCESS_TURN && is_shared(self)) {
+    } else if (point == EPG_ACCESS_STEPPED || point == EPG_ACCESS_RESTED) {
+        publish(self);
+    } else if (point == EPG_ACCESS_TURN && shared) {
         inform(self);
     }
     return false;

@@ -18,6 +18,7 @@ void epg_control_start(epg_control_t *control, const epg_application_t *applicat
         .status_exchange = {.buffers = control->status_buffers, .size = sizeof control->status_buffers[0]},
         .observer_exchange = {.buffers = control->observer_buffers, .size = sizeof control->observer_buffers[0]},
     };
+    control->statistics.computation_min = UINT32_MAX; /* no cycle can take longer */
     control->setpoints_move = epg_setpoints_start(application);
     for (size_t i = 0; i < application->monitor_count; i++) {
         application->monitor_values[i] = 0.0;
@@ -36,8 +37,9 @@ void epg_control_start(epg_control_t *control, const epg_application_t *applicat
 }
 
 /** Lets the accesses of the user's program act at a point.  Returns true if one of them returns true. */
-static inline bool reach(epg_control_t *control, epg_access_t *accesses, epg_access_point_t point)
+static inline bool reach(epg_control_t *control, epg_access_point_t point)
 {
+    epg_access_t *const accesses = atomic_load(&control->accesses);
     return accesses != NULL && accesses->reach(accesses, control, point);
 }
 
@@ -97,13 +99,12 @@ static void handle_request(epg_control_t *control, bool permitted, uint64_t now_
 }
 
 /** Takes new setpoints and requests, and does all checks that can disable the target before a sensor is read. */
-static void command(epg_control_t *control, epg_access_t *accesses, uint64_t now_ns)
+static void command(epg_control_t *control, const epg_application_t *application, uint64_t now_ns)
 {
-    const epg_application_t *application = control->application;
-    bool taken = application->setpoint_exchange != NULL &&
+    bool taken = application->setpoint_exchange != NULL && epg_exchange_has_news(application->setpoint_exchange) &&
                  epg_exchange_take(application->setpoint_exchange, application->samples) &&
                  epg_setpoints_take(application);
-    if (reach(control, accesses, EPG_ACCESS_SETPOINTS)) {
+    if (reach(control, EPG_ACCESS_BEGIN)) {
         taken = true;
     }
     const bool refused = application->fail_safe != NULL && !application->fail_safe();
@@ -124,7 +125,7 @@ static void command(epg_control_t *control, epg_access_t *accesses, uint64_t now
 }
 
 /** Steps the model if its step is due.  Returns true if it was stepped and all its values are finite. */
-static bool run_model(epg_control_t *control, epg_access_t *accesses)
+static bool run_model(epg_control_t *control)
 {
     const epg_application_t *application = control->application;
     if (!application->inputs_finite()) {
@@ -138,7 +139,7 @@ static bool run_model(epg_control_t *control, epg_access_t *accesses)
         if (application->parameters != NULL) {
             epg_parameters_restore(application->parameters);
         }
-        reach(control, accesses, EPG_ACCESS_RESTORE);
+        reach(control, EPG_ACCESS_RESTORE);
         control->initialise = false;
         control->model_valid = true;
         control->until_step = 0;
@@ -216,7 +217,7 @@ static bool count_cycle(epg_control_t *control, uint64_t next_ns, uint64_t begin
 
     statistics->cycles++;
     statistics->missed += missed;
-    if (computation < statistics->computation_min || statistics->cycles == 1) {
+    if (computation < statistics->computation_min) {
         statistics->computation_min = computation;
     }
     if (computation > statistics->computation_max) {
@@ -248,11 +249,9 @@ static void count_silence(epg_control_t *control)
     }
 }
 
-static void publish_status(epg_control_t *control, epg_access_t *accesses)
+static void publish_status(epg_control_t *control)
 {
-    control->statistics.setpoints_dropped = atomic_load(&control->dropped);
     control->statistics.reconnects = atomic_load(&control->reconnects);
-    reach(control, accesses, EPG_ACCESS_STATISTICS);
     epg_exchange_write(&control->status_exchange, &control->status);
     if (atomic_load(&control->observed)) {
         epg_exchange_write(&control->observer_exchange, &control->status);
@@ -262,20 +261,18 @@ static void publish_status(epg_control_t *control, epg_access_t *accesses)
 void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed)
 {
     const epg_application_t *application = control->application;
-    epg_access_t *const accesses = atomic_load(&control->accesses);
     uint64_t begin_ns = epg_port_time_ns();
 
     application->sample();
     count_lateness(control, tick_ns, begin_ns);
     control->time_ns = tick_ns;
-    command(control, accesses, begin_ns);
+    command(control, application, begin_ns);
     application->read();
     if (application->parameters != NULL) {
         epg_parameters_apply(application->parameters, control->model_valid);
     }
-    reach(control, accesses, EPG_ACCESS_PARAMETERS);
     const bool jogging = move_by_hand(control, application->jog);
-    const bool stepped = !jogging && run_model(control, accesses);
+    const bool stepped = !jogging && run_model(control);
     if (jogging) {
         /* Only the actuator that is moved by hand is driven.  The others are safe, because the target is disabled. */
     } else if (!control->enabled) {
@@ -293,9 +290,8 @@ void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed
         application->monitor(application->monitor_values);
         epg_exchange_write(application->monitor_exchange, application->monitor_values);
     }
-    if (stepped) {
-        reach(control, accesses, EPG_ACCESS_VALUES);
-    }
+    control->statistics.setpoints_dropped = atomic_load(&control->dropped);
+    reach(control, stepped ? EPG_ACCESS_STEPPED : EPG_ACCESS_RESTED);
     if (application->capture != NULL) {
         epg_capture_cycle(application->capture, tick_ns, control->fault != EPG_FAULT_NONE);
     }
@@ -309,7 +305,7 @@ void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed
         application->safe();
     }
     count_silence(control);
-    publish_status(control, accesses);
+    publish_status(control);
 }
 
 void epg_control_count_clamped(epg_control_t *control)
@@ -357,7 +353,7 @@ void epg_control_alive(epg_control_t *control)
 {
     const unsigned int alive = atomic_load(&control->alive) + 1U;
     atomic_store(&control->alive, alive == 0U ? 1U : alive); /* 0 means never */
-    reach(control, atomic_load(&control->accesses), EPG_ACCESS_TURN);
+    reach(control, EPG_ACCESS_TURN);
 }
 
 void epg_control_report_stack(epg_control_t *control, unsigned int stack, uint32_t used, uint32_t size)

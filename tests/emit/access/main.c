@@ -100,6 +100,7 @@ static void use_one_by_one(void)
 {
     double value;
     epg_status_t status;
+    run_cycles(1); /* makes the last changes of the other threads */
     CHECK(robot_set_x_input(7.0));
     CHECK(robot_set_speed(0.5));
     CHECK(robot_set_gain(4.0));

@@ -447,16 +447,17 @@ TEST(program_and_communication_see_each_others_changes)
     CHECK_EQUAL(model[1], 6.0);
 }
 
-TEST(of_a_change_of_the_program_and_one_of_communication_in_one_cycle_the_programs_counts)
+TEST(of_a_change_of_the_program_and_one_of_communication_in_one_cycle_that_of_communication_counts)
 {
     begin_with_parameters(true);
     fake_cycle();
     CHECK(set_parameter(0, 4.0));
     CHECK(communication_changes(0, 3.0));
     fake_cycle();
-    CHECK_EQUAL(model[0], 4.0);
+    CHECK_EQUAL(model[0], 3.0);
+    CHECK_EQUAL(parameter(0), 3.0);
     epg_control_alive(&fake.control);
-    CHECK_EQUAL(epg_parameters_value(&parameters, 0), 4.0);
+    CHECK_EQUAL(epg_parameters_value(&parameters, 0), 3.0);
 }
 
 TEST(communication_does_not_take_a_result_that_is_older_than_its_request)
@@ -485,5 +486,5 @@ RUN(ENTRY(nothing_is_set_before_the_first_start), ENTRY(a_value_acts_in_the_next
     ENTRY(a_change_before_the_first_cycle_is_made_after_the_initialisation),
     ENTRY(changes_are_made_again_when_the_program_uses_parameters_after_a_start),
     ENTRY(program_and_communication_see_each_others_changes),
-    ENTRY(of_a_change_of_the_program_and_one_of_communication_in_one_cycle_the_programs_counts),
+    ENTRY(of_a_change_of_the_program_and_one_of_communication_in_one_cycle_that_of_communication_counts),
     ENTRY(communication_does_not_take_a_result_that_is_older_than_its_request))

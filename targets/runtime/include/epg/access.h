@@ -91,7 +91,7 @@ bool epg_access_values(epg_value_access_t *self, epg_control_t *control);
 
 /**
  * Requests to change parameter `index`; takes effect in the next cycle.  Requests before the same cycle take effect
- * together.  Of two for the same parameter the newer one counts, and the communication side's is made first.  Returns
+ * together.  Of two for the same parameter the newer one counts; a change by the communication side is made after them.  Returns
  * false before the first epg_control_start(), and if the parameter cannot have the value (epg_parameters_can_be()).
  */
 bool epg_access_set_parameter(epg_parameter_access_t *self, epg_control_t *control, size_t index, double value);

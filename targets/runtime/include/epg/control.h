@@ -136,12 +136,11 @@ typedef struct epg_control epg_control_t;
 
 /** The points at which the user's program takes part in a target (epg/access.h). */
 typedef enum epg_access_point {
-    EPG_ACCESS_SETPOINTS, /**< after the setpoints of the communication side; the result is true if there are new ones */
-    EPG_ACCESS_PARAMETERS, /**< after the changes of the communication side */
-    EPG_ACCESS_RESTORE,    /**< the model was initialised: its parameters have their generated values */
-    EPG_ACCESS_VALUES,     /**< outputs were written in a cycle in which the model was stepped */
-    EPG_ACCESS_STATISTICS, /**< before the status is published */
-    EPG_ACCESS_TURN        /**< on the communication side: once in each turn of its loop */
+    EPG_ACCESS_BEGIN,   /**< after the setpoints of the communication side; the result is true if there are new ones */
+    EPG_ACCESS_RESTORE, /**< the model was initialised: its parameters have their generated values */
+    EPG_ACCESS_STEPPED, /**< the model was stepped, and its outputs were written */
+    EPG_ACCESS_RESTED,  /**< instead of that point: the model was not stepped in this cycle */
+    EPG_ACCESS_TURN     /**< on the communication side: once in each turn of its loop */
 } epg_access_point_t;
 
 /** An access of the user's program: an element of a list. */
@@ -149,7 +148,7 @@ typedef struct epg_access {
     struct epg_access *next;
     /** Lets this access and all after it act.  Not part of the cycle's code, so that a program without access lacks it. */
     bool (*reach)(struct epg_access *self, epg_control_t *control, epg_access_point_t point);
-    /** Lets this access act.  The result has a meaning only at EPG_ACCESS_SETPOINTS. */
+    /** Lets this access act.  The result has a meaning only at EPG_ACCESS_BEGIN. */
     bool (*act)(struct epg_access *self, epg_control_t *control, epg_access_point_t point);
 } epg_access_t;
 
