@@ -84,7 +84,10 @@ def _kinds(app: Application) -> list[Kind]:
 
 
 def _target(app: Application, names: PathNames) -> list[str]:
-    """The variables about the platform, the tools that it needs, the board and the middlewares."""
+    """The variables about the platform, the tools that it needs, the board, its clocks and the middlewares.
+
+    ``EPG_CLOCKS`` are the frequencies in Hz that the board or the ``.tcf`` sets; without any, it is not defined.
+    """
     lines = _set("EPG_PLATFORM", [str(cmake(app.target.platform.name))])
     lines += _set("EPG_PLATFORM_CMAKE", [names.cmake(app.target.platform.folder / "platform.cmake")])
     family = app.target.platform.family
@@ -94,6 +97,9 @@ def _target(app: Application, names: PathNames) -> list[str]:
     lines += _set("EPG_NEEDS", [str(cmake(name)) for name in needed_tools(app)])
     for sdk, board in sorted(app.target.board.sdks.items()):
         lines += _set(f"EPG_BOARD_{sdk}", [str(cmake(board))])
+    clocks = sorted(clock.name for clock in app.target.clocks.values() if clock.stated is not None)
+    if clocks:
+        lines += _set("EPG_CLOCKS", [str(cmake(f"{name}={app.target.clocks[name].frequency}")) for name in clocks])
     lines += _set("EPG_MIDDLEWARES", [str(cmake(middleware.name)) for middleware in app.communication.middlewares])
     for middleware in app.communication.middlewares:
         sources = names.in_order(middleware.folder / name for name in middleware.sources)

@@ -59,6 +59,11 @@ function(_epg_rp2_target name)
   endif()
   # Deferred to the end of the top directory: the user may set properties of executables after epg_add_target().
   cmake_language(EVAL CODE "cmake_language(DEFER DIRECTORY [[${CMAKE_SOURCE_DIR}]] CALL _epg_rp2_check_executables [[${name}]] [[${ports}]] [[${CMAKE_SOURCE_DIR}]])")
+  foreach(clock IN LISTS EPG_CLOCKS)
+    if(clock MATCHES "^sys=([0-9]+)$")
+      set_target_properties(${name} PROPERTIES EPG_RP2_CLK_SYS "${CMAKE_MATCH_1}")
+    endif()
+  endforeach()
   _epg_rp2_binary_info("${name}" info)
   target_sources(${name}_port INTERFACE "${info}")
 endfunction()
@@ -189,9 +194,14 @@ function(_epg_rp2_usb_library)
   target_link_libraries(epg_pico_usb INTERFACE tinyusb_device_unmarked pico_usb_reset_interface_headers)
 endfunction()
 
-# Makes an <executable> with EPG's main() run from RAM, and adds its output files for flashing (.uf2, .hex, .bin).
-function(_epg_rp2_executable executable)
+# Makes an <executable> with EPG's main() run from RAM, and adds its output files for flashing (.uf2, .hex, .bin).  The
+# SDK sets the frequency of clk_sys that the board or the .tcf of target <name> has.
+function(_epg_rp2_executable executable name)
   _epg_find_picotool()
+  get_target_property(clk_sys ${name} EPG_RP2_CLK_SYS)
+  if(clk_sys)
+    target_compile_definitions(${executable} PRIVATE SYS_CLK_HZ=${clk_sys})
+  endif()
   pico_set_binary_type(${executable} copy_to_ram)
   pico_enable_stdio_uart(${executable} 0)
   pico_enable_stdio_usb(${executable} 0)
