@@ -7,6 +7,7 @@ import json
 import os
 import re
 import shutil
+import struct
 import subprocess
 import sys
 from pathlib import Path
@@ -117,15 +118,58 @@ def test_careless_exported_code_fails_no_build(tmp_path: Path) -> None:
     run(repository, "cmake", "--build", "--preset", "host", "--target", "turntable")
 
 
-def test_the_board(tmp_path: Path) -> None:
+@pytest.fixture(scope="module")
+def board(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The example, built for the board: its CMakeLists.txt makes warnings errors, also in EPG's code."""
     if shutil.which("arm-none-eabi-gcc") is None:
         pytest.skip("no arm-none-eabi-gcc: apt install gcc-arm-none-eabi libnewlib-arm-none-eabi")
-    repository = copy(tmp_path)
+    repository = copy(tmp_path_factory.mktemp("board"))
     configure(repository, "nucleo_h743zi")
     run(repository, "cmake", "--build", "--preset", "nucleo_h743zi")
-    program = repository / "build/nucleo_h743zi/selftest/selftest.elf"
-    text = run(tmp_path, "arm-none-eabi-readelf", "-hA", str(program))
+    return repository / "build/nucleo_h743zi"
+
+
+@pytest.mark.parametrize("name", ["selftest/selftest.elf", "station/nucleo_h743zi/station.elf"])
+def test_the_board(board: Path, name: str) -> None:
+    text = run(board, "arm-none-eabi-readelf", "-hA", name)
     assert "Tag_CPU_arch: v7E-M" in text
     assert "Tag_ABI_VFP_args: VFP registers" in text
-    symbols = run(tmp_path, "arm-none-eabi-nm", str(program))
+    symbols = run(board, "arm-none-eabi-nm", name)
     assert re.search(r"^08000000 . board_vectors$", symbols, re.MULTILINE)
+
+
+def test_the_station_on_the_board(board: Path) -> None:
+    """The vectors lead to the control cycle and to the safe state; there is no heap, and nothing of stdio."""
+    station = "station/nucleo_h743zi/station.elf"
+    symbols = run(board, "arm-none-eabi-nm", station)
+    names = {line.split()[-1] for line in symbols.splitlines()}
+    assert names >= {"turntable_cycle", "turntable_safe", "turntable_model_step"}
+    assert not names & {"malloc", "_malloc_r", "_sbrk", "printf", "_write", "fopen"}
+    addresses = {line.split()[-1]: int(line.split()[0], 16) for line in symbols.splitlines() if len(line.split()) == 3}
+    run(board, "arm-none-eabi-objcopy", "-O", "binary", "-j", ".text", station, "station.bin")
+    vectors = struct.unpack("<71I", (board / "station.bin").read_bytes()[: 71 * 4])
+    for number, handler in {
+        1: "board_reset",
+        3: "HardFault_Handler",
+        55: "USART3_IRQHandler",
+        70: "TIM6_DAC_IRQHandler",
+    }.items():
+        assert vectors[number] == addresses[handler] | 1, handler
+
+
+def test_the_board_s_pins_have_the_timers_of_the_drivers() -> None:
+    """EPG's data of the chip know the same alternate functions."""
+    soc = (ROOT / "targets/socs/stm32h743/soc.yaml").read_text(encoding="utf-8")
+    drivers = (EXAMPLE / "boards/nucleo_h743zi/Core/Src/tim.c").read_text(encoding="utf-8")
+    for pin, function in re.findall(r"pin_function\(GPIO(\w, \d+), (\d+)\)", drivers):
+        assert re.search(rf"\bP{pin.replace(', ', '')}: {function}\b", soc), pin
+
+
+def test_the_board_s_controller_is_added_by_the_same_lines() -> None:
+    added = BLOCK.search((EXAMPLE / "station/nucleo_h743zi/CMakeLists.txt").read_text(encoding="utf-8"))
+    assert added
+    assert len(added[1].splitlines()) == 3
+    readme = (EXAMPLE / "README.md").read_text(encoding="utf-8")
+    drivers = (EXAMPLE / "station/nucleo_h743zi/turntable_drivers.c").read_text(encoding="utf-8")
+    functions = re.findall(r"^\w+ turntable_\w+\(", drivers, re.MULTILINE)
+    assert f"| `turntable_drivers.c` | {len(functions)} functions" in readme

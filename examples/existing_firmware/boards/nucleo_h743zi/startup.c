@@ -15,6 +15,22 @@ static void stop(void)
     }
 }
 
+/* Interrupt handlers. A program defines those that it uses. */
+__attribute__((weak)) void HardFault_Handler(void)
+{
+    stop();
+}
+
+__attribute__((weak)) void USART3_IRQHandler(void)
+{
+    stop();
+}
+
+__attribute__((weak)) void TIM6_DAC_IRQHandler(void)
+{
+    stop();
+}
+
 void board_reset(void)
 {
     /* Full access to coprocessors 10 and 11, the FPU (PM0253, section 4.7.1). */
@@ -37,10 +53,19 @@ typedef union board_vector {
     void (*handler)(void);
 } board_vector_t;
 
-/** The first 16 vectors; no interrupt of a peripheral is enabled. */
-__attribute__((section(".vectors"), used)) static const board_vector_t board_vectors[16] = {
-    {.stack = board_stack_top}, {.handler = board_reset}, {.handler = stop}, {.handler = stop},
-    {.handler = stop},          {.handler = stop},        {.handler = stop}, {.handler = stop},
-    {.handler = stop},          {.handler = stop},        {.handler = stop}, {.handler = stop},
-    {.handler = stop},          {.handler = stop},        {.handler = stop}, {.handler = stop},
+/** The 16 vectors of the processor, and the interrupts up to TIM6_DAC, number 54 (RM0433, section 20.1.2). */
+__attribute__((section(".vectors"), used)) static const board_vector_t board_vectors[16 + 55] = {
+    [0] = {.stack = board_stack_top},
+    [1] = {.handler = board_reset},
+    [2] = {.handler = stop},
+    [3] = {.handler = HardFault_Handler},
+    [4] = {.handler = stop},
+    [5] = {.handler = stop},
+    [6] = {.handler = stop},
+    [11] = {.handler = stop},
+    [12] = {.handler = stop},
+    [14] = {.handler = stop},
+    [15] = {.handler = stop},
+    [16 + 39] = {.handler = USART3_IRQHandler},
+    [16 + 54] = {.handler = TIM6_DAC_IRQHandler},
 };
