@@ -17,9 +17,10 @@ int main(void)
         epg_status_t status;
         if (turntable_status(&status)) {
             gpio_put(PICO_DEFAULT_LED_PIN, status.enabled);
-            if (count % 10 == 0) {
-                printf("%llu cycles, %llu overruns\n", (unsigned long long)status.statistics.cycles,
-                       (unsigned long long)status.statistics.overruns);
+            double position; /* rad, in the newest control cycle */
+            if (turntable_get_position(&position) && count % 10 == 0) {
+                printf("%.3f rad, %llu cycles, %llu overruns\n", position,
+                       (unsigned long long)status.statistics.cycles, (unsigned long long)status.statistics.overruns);
             }
         }
         sleep_ms(100);
