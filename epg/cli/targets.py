@@ -37,6 +37,10 @@ def run(options: argparse.Namespace, diagnostics: Diagnostics) -> int:
                             "board": t.board.name,
                             "platform": t.platform.name,
                             "builds": t.platform.builds,
+                            "clocks": {
+                                clock.name: None if clock.frequency is None else float(clock.frequency)
+                                for clock in t.clocks.values()
+                            },
                             "middlewares": {name: list(transports) for name, transports in offered(t, catalog).items()},
                         }
                         for t in targets

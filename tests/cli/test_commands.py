@@ -97,7 +97,11 @@ def test_check_says_what_was_not_checked(robot: Path, capsys: pytest.CaptureFixt
 
 def test_all_predefined_configurations_are_right(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["targets", "--json"]) == 0
-    names = json.loads(capsys.readouterr().out)["tcf"]
+    data = json.loads(capsys.readouterr().out)
+    clocks = {target["name"]: target["clocks"] for target in data["targets"]}
+    assert clocks["rpi_pico2_zephyr"] == {"sys": 150e6, "peri": 150e6}
+    assert clocks["firmware"] == {"timers": None}, "only the user's program knows it"
+    names = data["tcf"]
     complete = [
         name for name in names if name.startswith(("host_", "rpi_pico2_f", "rpi_pico2_b", "rpi_pico_f", "rpi_pico_b"))
     ]
