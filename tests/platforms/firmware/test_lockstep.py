@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: Apache-2.0
+"""JIWY in closed loop on Cortex-M processors in QEMU: the same bits as the host, in every cycle.
+
+The controller runs on the board, as a library in a program with drivers of its own.  The robot is that of the host
+target.  Its counts travel over a UART, and levels of PWM and pins come back.
+"""
+
+from __future__ import annotations
+
+import shutil
+from fractions import Fraction
+from functools import lru_cache, partial
+from pathlib import Path
+
+import pytest
+
+from epg.diagnostics import Diagnostics
+from epg.simulate.executable import read_trace, run_executable
+from epg.simulate.load_scenario import load_scenario
+from epg.simulate.setpoints import Row, setpoint_rows, write_setpoints
+from tests.emulator.toolchain import ROOT, skip_if_missing, tool
+
+from .builds import HERE, PROCESSORS, build
+from .lockstep import SIGNALS, run
+from .qemu import MACHINES, Board, qemu
+
+DURATION = 6.0
+"""Seconds: homing from the example's first angles, and a third of its motion profile's first motion."""
+
+PORTS = {"m3": "ARM_CM3", "m4f": "ARM_CM4F", "m7": "ARM_CM7/r0p1"}
+"""The port of FreeRTOS for each processor."""
+
+COUNTERS = {"m3": (32, 32), "m4f": (16, 64), "m7": (64, 16)}
+"""Bits of the counters of pan and tilt."""
+
+BEFORE_WRAP = {16: 2**16 - 30, 32: 2**32 - 30, 64: 2**64 - 30}
+"""Where a counter stands at first.  Homing moves it down, and the profile moves it up, through its largest value."""
+
+
+def image(processor: str, program: str) -> Path:
+    """A program of ``mps2`` for one of these processors."""
+    skip_if_missing(
+        qemu,
+        lambda: PROCESSORS[processor].tool("gcc"),
+        *(partial(tool, name) for name in ("freertos_kernel", "micro_xrce_dds_client", "micro_cdr")),
+    )
+    settings = {"FREERTOS": str(tool("freertos_kernel")), "FREERTOS_PORT": PORTS[processor]}
+    settings["COUNTERS"] = ";".join(map(str, COUNTERS[processor]))
+    return build(PROCESSORS[processor], HERE / "mps2", **settings) / program
+
+
+@lru_cache
+def scenario() -> tuple[Row, ...]:
+    """The rows of the example's scenario."""
+    diagnostics = Diagnostics()
+    loaded = load_scenario(ROOT / "examples" / "jiwy" / "tracking.yaml", diagnostics)
+    diagnostics.stop_if_errors()
+    assert loaded is not None
+    return tuple(row for row in setpoint_rows(loaded) if row[0] < DURATION)
+
+
+def setpoints() -> dict[int, tuple[float, float]]:
+    """Setpoints of pan and tilt by the number of the tick."""
+    found: dict[Fraction, dict[str, float]] = {}
+    for time, topic, value in scenario():
+        if not topic.startswith("$"):
+            found.setdefault(time, {})[topic] = float(value)
+    return {round(1000 * time): (row["pan_subscriber"], row["tilt_subscriber"]) for time, row in found.items()}
+
+
+@pytest.fixture(scope="module")
+def host(tmp_path_factory: pytest.TempPathFactory) -> list[tuple[float, ...]]:
+    """The model's ports in each cycle of the host's own run."""
+    skip_if_missing(lambda: PROCESSORS["host"].tool("gcc"))
+    folder = tmp_path_factory.mktemp("host")
+    write_setpoints(list(scenario()), folder / "setpoints.csv")
+    program = build(PROCESSORS["host"], HERE / "robot") / "jiwy_host"
+    run_executable(
+        program, folder, DURATION, folder / "setpoints.csv", realtime=False, progress=lambda message: None
+    )  # fmt: skip
+    trace = read_trace(folder / "trace.csv", SIGNALS)
+    return list(zip(*(trace[name] for name in SIGNALS), strict=True))
+
+
+@pytest.mark.parametrize(("processor", "system"), [("m3", "bare"), ("m4f", "freertos"), ("m7", "bare")])
+def test_every_bit_is_the_hosts(processor: str, system: str, host: list[tuple[float, ...]], tmp_path: Path) -> None:
+    # Each run loads a library of its own, because a plant keeps variables from one run to the next.
+    robot = Path(shutil.copy(build(PROCESSORS["host"], HERE / "robot") / "librobot.so", tmp_path))
+    zero = [BEFORE_WRAP[bits] for bits in COUNTERS[processor]]
+    with Board(MACHINES[processor], image(processor, f"lockstep_{system}"), uarts=1) as board:
+        result = run(board, robot, len(host), setpoints(), zero)
+    for number, rows in enumerate(zip(result.rows, host, strict=True)):
+        assert rows[0] == rows[1], f"cycle {number}: {dict(zip(SIGNALS, zip(*rows)))}"
+    assert (result.cycles, result.missed, result.overruns, result.fault) == (round(1000 * DURATION), 0, 0, 0)
+    columns = dict(zip(SIGNALS, zip(*result.rows)))
+    for axis in ("pan", "tilt"):
+        assert max(columns[f"outputs.encoder_reset_{axis}"]) == 1.0, "homing has ended"
+        positions = columns[f"inputs.position_{axis}"]
+        assert max(positions[5000:]) > 0.25 > 0 > min(positions), "the counters have wrapped both ways"
+        assert len(set(columns[f"outputs.pwm_{axis}"])) > 100, "there was something to compare"
