@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -14,6 +16,7 @@ from tests.catalog.test_how_tos import follow, read, steps
 from tests.emulator.toolchain import arm_gcc, skip_if_missing, tool
 
 HERE = Path(__file__).resolve().parent
+ROOT = HERE.parents[2]
 WARNINGS = ["-std=c11", "-Wall", "-Wextra", "-Wconversion", "-Wdouble-promotion", "-Werror"]
 
 
@@ -43,8 +46,23 @@ def test_the_program_runs(repository: Path) -> None:
     assert done.stderr == "watchdog=fed top=3199 compare=0 largest=960\n"
 
 
+def test_a_build_by_make(repository: Path) -> None:
+    """The page's Makefile with this computer's compiler, from nothing, and again after a change of the target."""
+    if shutil.which("make") is None:
+        pytest.skip("make is missing: apt install make")
+    command = ["make", "CC=cc", "CPU="]
+    environment = os.environ | {"EPG_PATH": str(ROOT), "PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
+    for gain in ("value: 5", "value: 4"):
+        file = repository / "controller" / "model.yaml"
+        file.write_text(file.read_text(encoding="utf-8").replace("value: 5", gain), encoding="utf-8")
+        subprocess.run(command, cwd=repository, env=environment, check=True, capture_output=True)
+        program = [repository / "my_firmware.elf"]
+        done = subprocess.run(program, input="get kp\n", capture_output=True, text=True, timeout=60)
+        assert f"kp={gain[-1]}" in done.stdout
+
+
 def test_the_clock_is_right_in_all_contexts(repository: Path, tmp_path: Path) -> None:
-    runtime = HERE.parents[2] / "targets" / "runtime" / "include"
+    runtime = ROOT / "targets" / "runtime" / "include"
     includes = [f"-I{folder}" for folder in (repository / "src", repository / "build/epg/turntable", runtime)]
     program = tmp_path / "clock"
     sources = [HERE / "c" / "clock_check.c", repository / "src" / "clock.c"]
@@ -56,7 +74,7 @@ def test_the_clock_is_right_in_all_contexts(repository: Path, tmp_path: Path) ->
 
 def test_all_code_is_clean_for_a_microcontroller(repository: Path, tmp_path: Path) -> None:
     skip_if_missing(arm_gcc, lambda: tool("freertos_kernel"))
-    root = HERE.parents[2] / "targets"
+    root = ROOT / "targets"
     kernel = tool("freertos_kernel")
     includes = [repository / "src", repository / "build/epg/turntable", root / "runtime/include"]
     system = [HERE / "c" / "freertos", kernel / "include", kernel / "portable/GCC/ARM_CM4F"]
