@@ -288,12 +288,13 @@ def _pin_names(placed: _Placed, target: Target) -> Mapping[str, int | str]:
 def _pins_only(placed: _Placed, target: Target) -> Assignment:
     numbers = list(placed.pins.values())
     names = ", ".join(target.soc.pins[number] if target.has_pins else str(number) for number in numbers)
+    kind = "pin" if target.has_pins else "digital pin" if target.soc.free_names else "simulated pin"
     return Assignment(
         pins=placed.pins,
         instance=0,
         slot=numbers[0],
         settings=MappingProxyType({}),
-        resource=f"{'pin' if target.has_pins else 'simulated pin'} {names}",
+        resource=f"{kind} {names}",
         pins_are_real=target.has_pins,
         pin_names=_pin_names(placed, target),
         attributes=_attributes(placed.claim),

@@ -46,6 +46,14 @@ def test_the_program_runs(repository: Path) -> None:
     assert done.stderr == "watchdog=fed top=3199 compare=0 largest=960\n"
 
 
+def test_the_stubs_say_which_pulls_the_pins_need(repository: Path) -> None:
+    """The stub of an input returns the level of an open pin: with the stubs, this emergency stop is pressed."""
+    stubs = (repository / "build/epg/turntable/turntable_drivers.stub").read_text(encoding="utf-8")
+    function = stubs[stubs.index("components.emergency_stop") : stubs.index("turntable_console_read")]
+    assert "The pin needs a pull-up resistor" in function
+    assert "bool turntable_emergency_stop_get(void)\n{\n    return true;\n}" in function
+
+
 def test_a_build_by_make(repository: Path) -> None:
     """The page's Makefile with this computer's compiler, from nothing, and again after a change of the target."""
     if shutil.which("make") is None:
