@@ -36,3 +36,8 @@ void epg_pico_status(epg_pico_status_t *status)
 {
     epg_mcu_status(status);
 }
+
+const epg_mcu_clock_t *epg_pico_wrong_clock(void)
+{
+    return epg_mcu_wrong_clock();
+}

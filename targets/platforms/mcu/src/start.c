@@ -118,6 +118,11 @@ bool epg_mcu_check_clock(const char *name, uint32_t expected_hz, uint32_t found_
     return true;
 }
 
+const epg_mcu_clock_t *epg_mcu_wrong_clock(void)
+{
+    return &wrong_clock;
+}
+
 bool epg_mcu_start(const epg_family_target_t *chip)
 {
     wrong_clock = (epg_mcu_clock_t){0};
@@ -145,7 +150,6 @@ void epg_mcu_status(epg_mcu_status_t *status)
     const epg_mcu_stack_t *main_stack = &epg_family_main_stack;
     *status = (epg_mcu_status_t){
         .error = error,
-        .wrong_clock = wrong_clock,
         .after_watchdog = fault != EPG_FAULT_NONE,
         .control_stack_size = (uint32_t)((uintptr_t)control->top - (uintptr_t)control->bottom),
         .control_stack_used = epg_mcu_stack_used(control, 0),

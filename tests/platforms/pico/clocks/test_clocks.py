@@ -43,10 +43,10 @@ def start(pico: Emulator, **variables: int) -> int:
 
 
 def reason(pico: Emulator) -> tuple[int, str, int, int]:
-    """The error of `epg_pico_status_t`, and its wrong clock: name, expected and found frequency in Hz."""
-    error, name, expected, found = (pico.word("status", offset=4 * n) for n in range(4))
+    """The error of the start, and its `epg_mcu_clock_t`: name, expected and found frequency in Hz."""
+    name, expected, found = (pico.word("wrong_clock_found", offset=4 * n) for n in range(3))
     text = pico.read(name, 16).partition(b"\0")[0].decode() if name else ""
-    return error, text, expected, found
+    return pico.word("status"), text, expected, found
 
 
 def periods(pico: Emulator, cycles: int) -> dict[int, set[int]]:

@@ -34,7 +34,7 @@
  *         epg_pico_status(&status);
  *         printf("not started: error %d\n", (int)status.error);
  *         if (status.error == EPG_PICO_ERROR_CLOCK) {
- *             const epg_mcu_clock_t *clock = &status.wrong_clock;
+ *             const epg_mcu_clock_t *clock = epg_pico_wrong_clock();
  *             printf("%s has %lu Hz\n", clock->name, (unsigned long)clock->found_hz);
  *         }
  *     }
@@ -96,7 +96,7 @@ typedef epg_mcu_error_t epg_pico_error_t;
 
 #define EPG_PICO_OK EPG_MCU_OK
 #define EPG_PICO_ERROR_RUNNING EPG_MCU_ERROR_RUNNING       /**< a target is running already */
-#define EPG_PICO_ERROR_CLOCK EPG_MCU_ERROR_CLOCK           /**< a clock is wrong: `wrong_clock` of the status */
+#define EPG_PICO_ERROR_CLOCK EPG_MCU_ERROR_CLOCK           /**< a clock is wrong: epg_pico_wrong_clock() */
 #define EPG_PICO_ERROR_PLACEMENT EPG_MCU_ERROR_PLACEMENT   /**< the control cycle is in flash, not in RAM */
 #define EPG_PICO_ERROR_RESOURCE EPG_MCU_ERROR_RESOURCE     /**< a PIO block, alarm, UART or interrupt is in use */
 #define EPG_PICO_ERROR_CORE EPG_MCU_ERROR_CORE             /**< core 1 did not answer */
@@ -138,6 +138,9 @@ bool epg_pico_stop(void);
  * Fills `status`.  It reads all stacks, which takes too long for an interrupt.  Must be called on core 0.
  */
 void epg_pico_status(epg_pico_status_t *status);
+
+/** The reason for EPG_PICO_ERROR_CLOCK.  Its name is NULL if the newest start has found no wrong clock. */
+const epg_mcu_clock_t *epg_pico_wrong_clock(void);
 
 /**
  * Makes all outputs safe until the next reset.  For fault handlers: it uses registers only, and needs no interrupt

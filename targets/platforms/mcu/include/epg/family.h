@@ -135,10 +135,13 @@ void epg_mcu_report(epg_mcu_error_t problem);
 
 /**
  * Compares the frequency of a clock, in Hz, with that for which the generator computed the dividers.  Returns true if
- * they are equal; otherwise epg_mcu_status() reports both with `name`, which must be a constant.  For
+ * they are equal; otherwise epg_mcu_wrong_clock() has both, with `name`, which must be a constant.  For
  * epg_family_check_start(), which then returns EPG_MCU_ERROR_CLOCK.
  */
 bool epg_mcu_check_clock(const char *name, uint32_t expected_hz, uint32_t found_hz);
+
+/** The clock that was the reason for EPG_MCU_ERROR_CLOCK.  It is not a part of the status, so that small stacks can hold a status. */
+const epg_mcu_clock_t *epg_mcu_wrong_clock(void);
 
 /**
  * Runs the communication side as soon as possible.  For the interrupt of a transport, on the communication side's

@@ -29,7 +29,7 @@ typedef enum epg_mcu_error {
                                   to use that core while the target runs */
 } epg_mcu_error_t;
 
-/** The clock with which a start failed.  Its frequency is a key in `clocks` of the `.tcf`. */
+/** The clock with which the newest start failed.  Its frequency is a key in `clocks` of the `.tcf`. */
 typedef struct epg_mcu_clock {
     const char *name;     /**< in the data sheet, for example "clk_sys"; NULL if no clock was wrong */
     uint32_t expected_hz; /**< the frequency from which the generator computed the dividers */
@@ -39,7 +39,6 @@ typedef struct epg_mcu_clock {
 /** Measurements of the port layer.  The statistics of the control cycle are reported elsewhere (`epg/statistics.h`). */
 typedef struct epg_mcu_status {
     epg_mcu_error_t error;       /**< the newest error; EPG_MCU_OK after a successful start */
-    epg_mcu_clock_t wrong_clock; /**< the reason for EPG_MCU_ERROR_CLOCK */
     bool after_watchdog;         /**< the watchdog or a processor fault ended the run before the last reset */
     uint32_t control_stack_size; /**< bytes of the stack on which the control cycle runs */
     uint32_t control_stack_used; /**< the largest number of its bytes in use so far */

@@ -12,6 +12,7 @@ volatile uint32_t order;
 
 volatile uint32_t started = 2; /* not called yet */
 epg_pico_status_t status;
+epg_mcu_clock_t wrong_clock_found;
 
 int main(void)
 {
@@ -27,5 +28,6 @@ int main(void)
         }
         started = changed_start() ? 1U : 0U;
         epg_pico_status(&status);
+        wrong_clock_found = *epg_pico_wrong_clock();
     }
 }
