@@ -21,6 +21,11 @@
 #define EPG_FIRMWARE_WINDOW 128U
 /** Largest difference between timer and clock: the window divided by this number, 1.6 percent. */
 #define EPG_FIRMWARE_WINDOW_TOLERANCE 64U
+/**
+ * Calls in a row that miss ticks although no cycle is running, after which the timer is too slow.  By default, a
+ * target latches "overrun" after 10, which would hide the cause.
+ */
+#define EPG_FIRMWARE_IDLE_ROW 8U
 
 /** The state of a timer.  It is valid if all members but `period_ns` are zero. */
 typedef struct epg_firmware_tick {
@@ -30,8 +35,9 @@ typedef struct epg_firmware_tick {
     uint64_t window_ns;    /**< time at which the first tick of the present window was due */
     uint32_t window_ticks; /**< ticks since then, with the missed ones */
     uint32_t window_idle;  /**< missed ticks among them before which no cycle was running */
+    uint32_t idle_row;     /**< calls in a row that missed ticks before which no cycle was running */
     bool started;          /**< there was a tick */
-    bool wrong_rate;       /**< the timer's period is not `period_ns`; set at the end of a window */
+    bool wrong_rate;       /**< the timer's period is not `period_ns` */
 } epg_firmware_tick_t;
 
 /**
@@ -49,10 +55,12 @@ static inline uint32_t epg_firmware_tick_pass(epg_firmware_tick_t *tick, uint64_
     const int64_t period_ns = (int64_t)tick->period_ns;
     int64_t late_ns = (int64_t)(now_ns - tick->due_ns) - period_ns;
     uint64_t ticks = 1U;
+    bool idle = false;
     if (late_ns >= period_ns - period_ns / 8) {
         ticks += (uint64_t)((late_ns + period_ns / 8) / period_ns);
         late_ns -= (int64_t)(ticks - 1U) * period_ns;
-        if (tick->ended_ns - tick->due_ns < tick->period_ns) {
+        idle = tick->ended_ns - tick->due_ns < tick->period_ns;
+        if (idle) {
             tick->window_idle += (uint32_t)(ticks - 1U);
         }
     }
@@ -69,6 +77,8 @@ static inline uint32_t epg_firmware_tick_pass(epg_firmware_tick_t *tick, uint64_
         tick->window_ticks = 0U;
         tick->window_idle = 0U;
     }
+    tick->idle_row = idle ? tick->idle_row + 1U : 0U;
+    tick->wrong_rate = tick->wrong_rate || tick->idle_row >= EPG_FIRMWARE_IDLE_ROW;
     return (uint32_t)(ticks - 1U);
 }
 
