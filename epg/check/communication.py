@@ -53,6 +53,7 @@ class Communication:
     domain: int | None  # None: the domain of the agent or of the environment
     diagnostics: Fraction  # seconds between two messages; 0: no messages
     parameters: bool  # the model's parameters are those of a ROS 2 node, if the middleware serves them
+    keep_cycles: int  # control cycles that wait for publications with `every`; 0: only the newest one is published
     parameter_request: int | None  # bytes of the buffer for requests; None: as many as the parameters need
     console: Middleware | None  # the console that runs beside the middleware
     console_options: Mapping[str, object]
@@ -89,7 +90,7 @@ def check_communication(
         return None
     chosen = str(transport.value) if transport else next(iter(possible[name]), None)
     check_lack(target, chosen, transport or middleware or node or root["target"], diagnostics)
-    domain = root.get("communication", "domain")
+    parameters = root.get("communication", "parameters")
     beside, console_options = _console(
         root.get("communication", "console"), found, possible, target, catalog, diagnostics
     )
@@ -97,10 +98,11 @@ def check_communication(
         middleware=found,
         transport=chosen,
         period=period,
-        domain=domain.value if domain is not None and isinstance(domain.value, int) else None,
+        domain=_whole(root.get("communication", "domain")),
         diagnostics=_diagnostics(root.get("communication", "diagnostics"), found, diagnostics),
-        parameters=(parameters := root.get("communication", "parameters")) is None or parameters.value is not False,
-        parameter_request=_request(parameters),
+        parameters=parameters is None or parameters.value is not False,
+        keep_cycles=_whole(root.get("communication", "keep_cycles")) or 0,
+        parameter_request=_whole(root.get("communication", "parameters", "request")),
         console=beside,
         console_options=console_options,
         options=typed_options(found, node, diagnostics),
@@ -167,9 +169,8 @@ def _diagnostics(node: YamlNode | None, middleware: Middleware, diagnostics: Dia
     return seconds if middleware.is_node else Fraction(0)
 
 
-def _request(node: YamlNode | None) -> int | None:
-    request = node.get("request") if node is not None and node.is_mapping else None
-    return request.value if request is not None and isinstance(request.value, int) else None
+def _whole(node: YamlNode | None) -> int | None:
+    return node.value if node is not None and isinstance(node.value, int) else None
 
 
 def _console(

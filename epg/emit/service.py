@@ -98,7 +98,8 @@ class MiddlewareView:
 class Service:
     """All services of an application.  Services that no middleware uses are empty, zero, False or None.
 
-    ``time_index`` is the value index of the cycle's time among the monitoring values.  ``capture`` is the number of
+    ``time_index`` is the value index of the cycle's time among the monitoring values.  ``keep_cycles`` is the number of
+    cycles that wait for publications in each n-th cycle.  ``capture`` is the number of
     values that a recording can hold.
     """
 
@@ -107,6 +108,7 @@ class Service:
     signals: tuple[SignalView, ...]
     time_index: int | None
     monitor_count: int
+    keep_cycles: int
     node: bool
     store: bool
     parameters: tuple[ParameterView, ...]
@@ -137,6 +139,7 @@ def service_of(app: Application, macro: Macro, symbols: Mapping[str, Code]) -> S
         signals=signals,
         time_index=time_index,
         monitor_count=monitor_count,
+        keep_cycles=communication.keep_cycles if node and any(t.cycles for t in app.publications) else 0,
         node=node,
         store=node or "parameters" in uses,
         parameters=tuple(parameter_views(app)) if "parameters" in uses or app.ros_parameters else (),

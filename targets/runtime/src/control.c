@@ -26,6 +26,9 @@ void epg_control_start(epg_control_t *control, const epg_application_t *applicat
     if (application->monitor_exchange != NULL) {
         epg_exchange_clear(application->monitor_exchange);
     }
+    if (application->history != NULL) {
+        epg_history_clear(application->history);
+    }
     if (application->capture != NULL) {
         epg_capture_clear(application->capture);
     }
@@ -289,6 +292,9 @@ void epg_control_cycle(epg_control_t *control, uint64_t tick_ns, uint32_t missed
     if (stepped && application->monitor != NULL) {
         application->monitor(application->monitor_values);
         epg_exchange_write(application->monitor_exchange, application->monitor_values);
+        if (application->history != NULL) {
+            epg_history_add(application->history, application->monitor_values);
+        }
     }
     control->statistics.setpoints_dropped = atomic_load(&control->dropped);
     reach(control, stepped ? EPG_ACCESS_STEPPED : EPG_ACCESS_RESTED);

@@ -14,14 +14,25 @@
 
 #define SECOND_NS 1000000000
 
+/** Remembers that `values` are those of a cycle, and its time. */
+static void accept_values(epg_node_t *node)
+{
+    node->valid = true;
+    memcpy(&node->time_ns, &node->values[node->target->time_index], sizeof node->time_ns);
+}
+
 /** Copies the monitoring values of the newest cycle.  They stay the same until the next call. */
 static void take_values(epg_node_t *node)
 {
-    const epg_target_t *target = node->target;
-    if (epg_control_monitor(target->control, node->values)) {
-        node->valid = true;
-        memcpy(&node->time_ns, &node->values[target->time_index], sizeof node->time_ns);
+    if (epg_control_monitor(node->target->control, node->values)) {
+        accept_values(node);
     }
+}
+
+/** The cycles that wait for publications with EPG_TOPIC_CYCLES; NULL if these publish the newest cycle, too. */
+static epg_history_t *history_of(const epg_node_t *node)
+{
+    return node->target->application->history;
 }
 
 static epg_stamp_t stamp_at(uint64_t time_ns)
@@ -107,6 +118,7 @@ void epg_node_start(epg_node_t *node, const epg_target_t *target,
     node->time_ns = 0;
     node->epoch_ns = 0;
     node->unsent = 0;
+    node->lost_seen = 0;
     node->malformed = 0;
     for (size_t i = 0; i < EPG_NODE_WARNINGS; i++) {
         node->warnings[i] = (epg_node_warning_t){0};
@@ -120,6 +132,10 @@ void epg_node_start(epg_node_t *node, const epg_target_t *target,
 
 void epg_node_connected(epg_node_t *node, uint64_t now_ns)
 {
+    if (history_of(node) != NULL) {
+        epg_history_drop_all(history_of(node));
+        node->lost_seen = (uint32_t)atomic_load(&history_of(node)->lost);
+    }
     take_values(node);
     for (size_t i = 0; i < node->target->publication_count; i++) {
         const bool cycles = node->target->publications[i].trigger == EPG_TOPIC_CYCLES;
@@ -127,17 +143,60 @@ void epg_node_connected(epg_node_t *node, uint64_t now_ns)
     }
 }
 
+/** Sends publication `index` if it is due with the present values, or waits for room. */
+static void publish_if_due(epg_node_t *node, size_t index, uint64_t now_ns)
+{
+    epg_node_publication_t *state = &node->publications[index];
+    const bool due = is_due(node, &node->target->publications[index], state, now_ns);
+    node->unsent += due && state->waiting ? 1U : 0U;
+    if (due || state->waiting) {
+        publish(node, index, now_ns);
+    }
+}
+
+/**
+ * Sends the publications of the oldest cycle in the history.  Returns false if one of them found no room: that cycle
+ * stays in the history.
+ */
+static bool publish_cycle(epg_node_t *node, uint64_t now_ns)
+{
+    bool done = true;
+    for (size_t i = 0; i < node->target->publication_count; i++) {
+        if (node->target->publications[i].trigger == EPG_TOPIC_CYCLES) {
+            publish_if_due(node, i, now_ns);
+            done = done && !node->publications[i].waiting;
+        }
+    }
+    return done;
+}
+
+/** Sends the publications of all cycles in the history, the oldest first, until there is no more room. */
+static void publish_history(epg_node_t *node, epg_history_t *history, uint64_t now_ns)
+{
+    /* Cycles that end meanwhile wait for the next call, so that this one ends. */
+    for (uint32_t left = history->depth; left > 0U && epg_history_peek(history, node->values); left--) {
+        accept_values(node);
+        if (!publish_cycle(node, now_ns)) {
+            break;
+        }
+        epg_history_drop(history);
+    }
+    const uint32_t lost = (uint32_t)atomic_load(&history->lost);
+    node->unsent += lost - node->lost_seen;
+    node->lost_seen = lost;
+}
+
 void epg_node_poll(epg_node_t *node, uint64_t now_ns)
 {
-    const size_t count = node->target->publication_count;
+    epg_history_t *history = history_of(node);
+    if (history != NULL) {
+        publish_history(node, history, now_ns);
+    }
     /* All publications that are due now get values of the same cycle. */
     take_values(node);
-    for (size_t i = 0; i < count; i++) {
-        epg_node_publication_t *state = &node->publications[i];
-        const bool due = is_due(node, &node->target->publications[i], state, now_ns);
-        node->unsent += due && state->waiting ? 1U : 0U;
-        if (due || state->waiting) {
-            publish(node, i, now_ns);
+    for (size_t i = 0; i < node->target->publication_count; i++) {
+        if (history == NULL || node->target->publications[i].trigger != EPG_TOPIC_CYCLES) {
+            publish_if_due(node, i, now_ns);
         }
     }
 }

@@ -54,6 +54,12 @@ def spoken_robot(robot_build: Path) -> Path:
 
 
 @pytest.fixture(scope="session")
+def complete_robot(robot_build: Path) -> Path:
+    """Publishes ``cycles`` in every control cycle, and ``cycles_too`` in every second one; leaves none out."""
+    return robot_build / "complete_host"
+
+
+@pytest.fixture(scope="session")
 def disabling_robot(robot_build: Path) -> Path:
     return robot_build / "disabling_host"
 

@@ -24,6 +24,19 @@ def test_a_period_is_20_ms_and_of_one_control_cycle(robot: Path, agent: Agent) -
         assert board.stop() == ""
 
 
+def test_every_cycle_is_published_once(complete_robot: Path, agent: Agent) -> None:
+    """With ``keep_cycles``: reliable and best effort, although the communication runs less often than the control."""
+    with Board(complete_robot, agent) as board:
+        board.running()
+        agent.wait_until(lambda: len(board.values("cycles")) > 1500)
+        for topic, step in (("cycles", 1), ("cycles_too", 2)):
+            values = board.values(topic)[1:]  # the first one follows the connection at once
+            assert len(values) > 700
+            assert values == [values[0] + step * number for number in range(len(values))]
+        assert board.statistic("unsent") == 0
+        assert board.stop() == ""
+
+
 def test_the_newest_setpoint_counts(robot: Path, agent: Agent) -> None:
     with Board(robot, agent) as board:
         board.running()

@@ -55,6 +55,8 @@ static double last[PUBLICATIONS]; /* value in the last message */
 static size_t last_size;
 static bool room;
 
+static double cycle_values[16]; /* values in the messages of AT_CYCLES */
+
 static double monitor_values[VALUES];
 static double monitor_buffers[4][VALUES];
 static epg_exchange_t monitor_exchange = EPG_EXCHANGE(monitor_buffers);
@@ -75,6 +77,9 @@ static bool send_message(size_t publication, const void *data, size_t size)
     }
     sent[publication]++;
     last[publication] = epg_cdr_read_f64(&reader);
+    if (publication == AT_CYCLES && sent[publication] <= sizeof cycle_values / sizeof cycle_values[0]) {
+        cycle_values[sent[publication] - 1] = last[publication];
+    }
     last_size = size;
     return true;
 }
@@ -404,7 +409,76 @@ TEST(diagnostics_fit_whatever_they_hold)
           EPG_DIAGNOSTICS_SIZE); /* serial number and fault are short here */
 }
 
-RUN(ENTRY(each_publication_has_its_own_time), ENTRY(a_late_poll_makes_nothing_up_and_moves_nothing),
+enum { KEPT = 8 };
+static double history_values[KEPT][VALUES];
+static epg_history_t history = {.values = history_values[0], .count = VALUES, .depth = KEPT};
+
+/** As begin(), with a history, and connected after cycle 0: AT_CYCLES is due in cycles 1, 3, 6, 9, ... */
+static void begin_with_history(void)
+{
+    begin();
+    epg_history_clear(&history);
+    fake.application.history = &history;
+    fake_cycle();
+    epg_node_connected(&node, fake_port.now_ns);
+}
+
+TEST(no_cycle_of_a_history_is_left_out)
+{
+    begin_with_history();
+    for (int i = 0; i < 4; i++) {
+        fake_cycles(6); /* between two calls, two cycles in which the publication is due */
+        epg_node_poll(&node, fake_port.now_ns);
+    }
+    CHECK_EQUAL(sent[AT_CYCLES], 9);
+    CHECK_EQUAL(cycle_values[0], 2);
+    for (int i = 1; i < 9; i++) {
+        CHECK_EQUAL(cycle_values[i], 1 + 3 * i);
+    }
+    CHECK_EQUAL(sent[AT_PERIOD], 4); /* the others publish the newest cycle */
+    CHECK_EQUAL(node.unsent, 0);
+}
+
+TEST(a_cycle_of_a_history_waits_for_room)
+{
+    begin_with_history();
+    room = false;
+    fake_cycles(3);
+    epg_node_poll(&node, fake_port.now_ns);
+    fake_cycles(3);
+    epg_node_poll(&node, fake_port.now_ns);
+    CHECK_EQUAL(sent[AT_CYCLES], 0);
+    room = true;
+    epg_node_poll(&node, fake_port.now_ns);
+    CHECK_EQUAL(sent[AT_CYCLES], 3);
+    CHECK_EQUAL(cycle_values[0], 2); /* its own value, and not that of the newest cycle */
+    CHECK_EQUAL(cycle_values[1], 4);
+    CHECK_EQUAL(cycle_values[2], 7);
+}
+
+TEST(cycles_that_a_history_cannot_hold_are_counted)
+{
+    begin_with_history();
+    fake_cycles(KEPT + 3);
+    epg_node_poll(&node, fake_port.now_ns);
+    CHECK_EQUAL(node.unsent, 3);
+    CHECK_EQUAL(sent[AT_CYCLES], 3); /* of cycles 1, 3 and 6; cycles 9 to 11 are lost */
+    fake_cycles(3);
+    epg_node_poll(&node, fake_port.now_ns);
+    CHECK_EQUAL(node.unsent, 3);
+    CHECK_EQUAL(sent[AT_CYCLES], 4);
+    fake_cycles(2 * KEPT); /* while it is not connected, nothing counts as lost */
+    epg_node_connected(&node, fake_port.now_ns);
+    epg_node_poll(&node, fake_port.now_ns);
+    CHECK_EQUAL(node.unsent, 3);
+    CHECK_EQUAL(sent[AT_CYCLES], 4);
+    fake_cycle();
+    epg_node_poll(&node, fake_port.now_ns);
+    CHECK_EQUAL(sent[AT_CYCLES], 5);
+}
+
+RUN(ENTRY(no_cycle_of_a_history_is_left_out), ENTRY(a_cycle_of_a_history_waits_for_room),
+    ENTRY(cycles_that_a_history_cannot_hold_are_counted), ENTRY(each_publication_has_its_own_time), ENTRY(a_late_poll_makes_nothing_up_and_moves_nothing),
     ENTRY(without_room_the_newest_values_wait), ENTRY(a_connection_begins_with_what_is_new),
     ENTRY(values_of_a_message_arrive_together), ENTRY(a_message_of_another_type_is_counted), ENTRY(enabling_by_a_topic),
     ENTRY(an_echo_goes_out_at_once_and_unchanged), ENTRY(topics_have_full_names),

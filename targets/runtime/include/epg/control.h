@@ -55,6 +55,7 @@
 
 #include "epg/capture.h"
 #include "epg/exchange.h"
+#include "epg/history.h"
 #include "epg/jog.h"
 #include "epg/parameters.h"
 #include "epg/status.h"
@@ -126,6 +127,7 @@ typedef struct epg_application {
     size_t monitor_count;
     double *monitor_values;           /**< `monitor_count` numbers: the copy of the control side */
     epg_exchange_t *monitor_exchange; /**< its value is `monitor_count` doubles; NULL: no monitoring values */
+    epg_history_t *history;           /**< keeps the values of each cycle for publications; NULL: none */
 
     epg_parameters_t *parameters; /**< parameters that can be changed while the model runs; NULL: none */
     epg_capture_t *capture;       /**< recording of signals; NULL: none */

@@ -58,7 +58,8 @@ typedef struct epg_node {
     bool valid;                           /**< `values` are those of a cycle */
     uint64_t time_ns;                     /**< tick of that cycle, in board time */
     int64_t epoch_ns;                     /**< board time + this = nanoseconds since 1970; 0: the clock is not set */
-    uint32_t unsent;                      /**< publications never sent: newer ones came first, or an echo had no room */
+    uint32_t unsent;                      /**< publications never sent: newer ones came first, or there was no room */
+    uint32_t lost_seen;                   /**< number of lost cycles of the history that `unsent` contains */
     uint32_t malformed;                   /**< received messages that did not fit their type */
     epg_node_warning_t warnings[EPG_NODE_WARNINGS];
 } epg_node_t;
