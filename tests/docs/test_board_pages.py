@@ -152,6 +152,15 @@ def test_the_radio_s_pins_are_nobody_s(board: str) -> None:
         assert line is not None and line[0] in page(board.removesuffix("_w")).read_text(encoding="utf-8")
 
 
+@pytest.mark.parametrize("page", [*sorted((ROOT / "docs/boards").glob("*.md")), ROOT / "docs/any-firmware.md"])
+def test_each_page_says_that_nothing_ran_and_what_to_try(page: Path) -> None:
+    """The first owner of a board finds the ten steps at the top of its page."""
+    begin = page.read_text(encoding="utf-8").partition("\n## ")[0]
+    assert "bring-up.md" in begin and re.search(
+        r"[Nn]othing (here|on this page) has\s+(been\s+tried|run)\s+on\s+a\s+board\s+yet", begin
+    )
+
+
 def test_gpios_on_both_boards_have_their_places() -> None:
     places = {gpio: board_pin(gpio) for gpio in (0, 2, 10, 13, 15, 16, 22, 26, 28)}
     assert places == {0: 1, 2: 4, 10: 14, 13: 17, 15: 20, 16: 21, 22: 29, 26: 31, 28: 34}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``docs/console.md`` is true: its sessions work with a real executable, and it names every command and value.
+"""``docs/console.md`` is true, and so is the session of ``docs/bring-up.md``: its sessions work with a real executable, and it names every command and value.
 
 In a ``session`` block, ``> command`` is input; the lines below are the expected output, in that order.  ``...`` in a
 line matches any text, and a line ``...`` matches any lines.
@@ -18,7 +18,8 @@ from .client import PATIENCE, Host
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "console.md").read_text(encoding="utf-8")
 CONSOLE = ROOT / "targets" / "middlewares" / "console"
-SESSIONS = re.findall(r"^```session\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
+BRING_UP = (ROOT / "docs" / "bring-up.md").read_text(encoding="utf-8")
+SESSIONS = re.findall(r"^```session\n(.*?)^```$", PAGE + BRING_UP, re.MULTILINE | re.DOTALL)
 
 
 def pattern(line: str) -> str:
@@ -45,6 +46,17 @@ def test_sessions(jiwy_host: Path, number: int) -> None:
     with Host(jiwy_host) as console:
         console.ask("version")  # after the answer, the loop runs
         hold(console, SESSIONS[number])
+
+
+def test_the_commands_of_the_ten_steps_exist(jiwy_host: Path) -> None:
+    """Each command that a step says to type, in their order, at the simulated robot."""
+    first = r"version|stats|watch|jog|enable|disable"
+    typed = re.findall(rf"`((?:{first})\b[^`=:]*)`", BRING_UP[BRING_UP.index("1. **") : BRING_UP.index("Practise")])
+    assert {command.split()[0] for command in typed} == set(first.split("|"))
+    assert len(re.findall(r"^\d+\. \*\*", BRING_UP, re.MULTILINE)) == 10
+    with Host(jiwy_host) as console:
+        for command in typed:
+            assert command == "jog" or console.ask(command)[-1].startswith("ok "), command
 
 
 def test_a_wrong_session_is_noticed(jiwy_host: Path) -> None:
