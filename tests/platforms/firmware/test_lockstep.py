@@ -34,7 +34,7 @@ COUNTERS = {"m3": (32, 32), "m4f": (16, 64), "m7": (64, 16)}
 """Bits of the counters of pan and tilt."""
 
 BEFORE_WRAP = {16: 2**16 - 30, 32: 2**32 - 30, 64: 2**64 - 30}
-"""Where a counter stands at first.  Homing moves it down, and the profile moves it up, through its largest value."""
+"""The first value of a counter.  Homing moves it down, and the profile moves it up, through its largest value."""
 
 
 def image(processor: str, program: str) -> Path:
