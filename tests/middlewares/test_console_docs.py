@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``docs/console.md`` is true, and so is the session of ``docs/bring-up.md``: its sessions work with a real executable, and it names every command and value.
+"""``docs/console.md`` is true, and so are the commands of ``docs/bring-up.md``.
+
+Their sessions work with a real executable, and ``console.md`` names every command and value.
 
 In a ``session`` block, ``> command`` is input; the lines below are the expected output, in that order.  ``...`` in a
 line matches any text, and a line ``...`` matches any lines.
