@@ -19,8 +19,6 @@ from tests.emulator.toolchain import Missing
 PATIENCE = 60.0
 """Seconds to wait for a byte, on a machine that also runs other programs."""
 
-MACHINES = {"m3": "mps2-an385", "m4f": "mps2-an386", "m7": "mps2-an500"}
-
 
 def qemu() -> str:
     program = shutil.which("qemu-system-arm")

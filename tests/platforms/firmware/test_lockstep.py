@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import shutil
 from fractions import Fraction
-from functools import lru_cache, partial
+from functools import lru_cache
 from pathlib import Path
 
 import pytest
@@ -18,35 +18,18 @@ from epg.diagnostics import Diagnostics
 from epg.simulate.executable import read_trace, run_executable
 from epg.simulate.load_scenario import load_scenario
 from epg.simulate.setpoints import Row, setpoint_rows, write_setpoints
-from tests.emulator.toolchain import ROOT, skip_if_missing, tool
+from tests.emulator.toolchain import ROOT, skip_if_missing
 
 from .builds import HERE, PROCESSORS, build
+from .images import COUNTERS, MACHINES, image
 from .lockstep import SIGNALS, run
-from .qemu import MACHINES, Board, qemu
+from .qemu import Board
 
 DURATION = 6.0
 """Seconds: homing from the example's first angles, and a third of its motion profile's first motion."""
 
-PORTS = {"m3": "ARM_CM3", "m4f": "ARM_CM4F", "m7": "ARM_CM7/r0p1"}
-"""The port of FreeRTOS for each processor."""
-
-COUNTERS = {"m3": (32, 32), "m4f": (16, 64), "m7": (64, 16)}
-"""Bits of the counters of pan and tilt."""
-
 BEFORE_WRAP = {16: 2**16 - 30, 32: 2**32 - 30, 64: 2**64 - 30}
 """The first value of a counter.  Homing moves it down, and the profile moves it up, through its largest value."""
-
-
-def image(processor: str, program: str) -> Path:
-    """A program of ``mps2`` for one of these processors."""
-    skip_if_missing(
-        qemu,
-        lambda: PROCESSORS[processor].tool("gcc"),
-        *(partial(tool, name) for name in ("freertos_kernel", "micro_xrce_dds_client", "micro_cdr")),
-    )
-    settings = {"FREERTOS": str(tool("freertos_kernel")), "FREERTOS_PORT": PORTS[processor]}
-    settings["COUNTERS"] = ";".join(map(str, COUNTERS[processor]))
-    return build(PROCESSORS[processor], HERE / "mps2", **settings) / program
 
 
 @lru_cache

@@ -12,6 +12,8 @@
 #include "line.h"
 #include "program.h"
 
+const bool program_sleeps = true;
+
 static frame_tick_t tick;
 static frame_cycle_t cycle;
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * A program without an operating system: turns in the main loop, which sleeps until the next interrupt.
+ * A program without an operating system: turns in the main loop, which can sleep until the next interrupt.
  */
 #include <stdbool.h>
 
@@ -23,7 +23,7 @@ int main(void)
         received = false;
         program_turn();
         board_mask();
-        if (!received) {
+        if (program_sleeps && !received) {
             board_sleep();
         }
         board_unmask();
