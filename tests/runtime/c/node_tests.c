@@ -478,9 +478,10 @@ TEST(cycles_that_a_history_cannot_hold_are_counted)
 }
 
 RUN(ENTRY(no_cycle_of_a_history_is_left_out), ENTRY(a_cycle_of_a_history_waits_for_room),
-    ENTRY(cycles_that_a_history_cannot_hold_are_counted), ENTRY(each_publication_has_its_own_time), ENTRY(a_late_poll_makes_nothing_up_and_moves_nothing),
-    ENTRY(without_room_the_newest_values_wait), ENTRY(a_connection_begins_with_what_is_new),
-    ENTRY(values_of_a_message_arrive_together), ENTRY(a_message_of_another_type_is_counted), ENTRY(enabling_by_a_topic),
+    ENTRY(cycles_that_a_history_cannot_hold_are_counted), ENTRY(each_publication_has_its_own_time),
+    ENTRY(a_late_poll_makes_nothing_up_and_moves_nothing), ENTRY(without_room_the_newest_values_wait),
+    ENTRY(a_connection_begins_with_what_is_new), ENTRY(values_of_a_message_arrive_together),
+    ENTRY(a_message_of_another_type_is_counted), ENTRY(enabling_by_a_topic),
     ENTRY(an_echo_goes_out_at_once_and_unchanged), ENTRY(topics_have_full_names),
     ENTRY(names_that_the_board_keeps_replace_those_of_the_firmware), ENTRY(stamps_are_of_the_control_cycle),
     ENTRY(diagnostics_tell_state_and_statistics), ENTRY(diagnostics_warn_for_five_seconds),
