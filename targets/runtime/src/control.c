@@ -216,10 +216,8 @@ static bool count_cycle(epg_control_t *control, uint64_t next_ns, uint64_t begin
 {
     epg_statistics_t *statistics = &control->statistics;
     const uint32_t computation = saturated(end_ns - begin_ns);
-    const bool overrun = end_ns > next_ns || missed > 0;
 
     statistics->cycles++;
-    statistics->missed += missed;
     if (computation < statistics->computation_min) {
         statistics->computation_min = computation;
     }
@@ -227,10 +225,12 @@ static bool count_cycle(epg_control_t *control, uint64_t next_ns, uint64_t begin
         statistics->computation_max = computation;
     }
     statistics->computation_total += computation;
-    if (overrun) {
-        statistics->overruns++;
+    if (end_ns <= next_ns && missed == 0U) {
+        return false;
     }
-    return overrun;
+    statistics->overruns++;
+    statistics->missed += missed;
+    return true;
 }
 
 /** Counts the cycles since the communication side was alive.  If it was alive now, copies its report of the stacks. */
