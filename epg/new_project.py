@@ -214,7 +214,7 @@ def _choose_middleware(
     if configuration is not None and configuration.communication.middleware.builds:
         return ""
     good = [name for name in offered if (found := catalog.find_middleware(name)) is not None and found.builds]
-    return next(iter(good), "none")
+    return next((name for name in good if name != "none"), "none")
 
 
 def _model_files(request: ProjectRequest, model: Model, diagnostics: Diagnostics) -> tuple[str, dict[str, bytes]]:

@@ -82,7 +82,27 @@ def test_a_project_for_the_host(target: str, model: Path, port: str, tmp_path: P
     talk(project, second)
 
 
-@pytest.mark.parametrize("target", ["rpi_pico2_freertos_jiwy", "rpi_pico_bare_metal"])
+def test_a_project_for_any_firmware(tmp_path: Path) -> None:
+    """It builds with EPG's stubs, and then with drivers of its own: a copy of the stubs of another robot."""
+    project = new(tmp_path / "my robot", "firmware", ROOT / "examples/existing_firmware/station/model")
+    assert "There are no drivers yet" in configure(project)
+    run(project, "cmake", "--build", "build")
+    assert (project / "build/robot_firmware").is_file()
+    file = project / "robot.tcf"
+    text = file.read_text(encoding="utf-8").replace("  # motor: {", "  motor: {").replace("# clocks: {", "clocks: {")
+    file.write_text(text, encoding="utf-8")
+    file = project / "robot.bindings.yaml"
+    file.write_text(file.read_text(encoding="utf-8").replace("duty: duty", "duty: motor"), encoding="utf-8")
+    (project / "src/robot_drivers.c").write_text("", encoding="utf-8")
+    assert "There are no drivers yet" not in configure(project)
+    stubs = (project / "build/epg/robot/robot_drivers.stub").read_text(encoding="utf-8")
+    assert "void robot_motor_write(uint32_t level)" in stubs
+    (project / "src/robot_drivers.c").write_text(stubs, encoding="utf-8")
+    run(project, "cmake", "--build", "build")
+    assert "#define ROBOT_MOTOR_TOP 4999U" in (project / "build/epg/robot/robot_firmware.h").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("target", ["rpi_pico2_freertos_jiwy", "rpi_pico_bare_metal", "firmware"])
 def test_the_simulation_of_a_project_for_a_board(target: str, tmp_path: Path) -> None:
     project = new(tmp_path / "my robot", target)
     configure(project / "simulation")
