@@ -29,6 +29,9 @@ static const uint8_t pins[] = {5, 6, 8, 9};
 /** Puts the robot to its first position.  Decoders and PWM start as the host's controller starts them. */
 void robot_start(void)
 {
+    static const uint32_t off[2];
+    static const uint8_t low[4];
+    robot_actuate(off, low); /* as the host ends each run: a plant keeps its inputs until its next start */
     epg_plant_start(&run, jiwy_host.plant, jiwy_target.application->period_ns);
     epg_control_start(jiwy_target.control, jiwy_target.application);
     epg_plant_actuate(&run);
