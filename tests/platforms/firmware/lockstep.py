@@ -27,9 +27,11 @@ CYCLE = struct.Struct("<2I4B4I10d")
 
 @dataclass
 class Run:
-    """``rows``: the model's ports in each cycle.  The others are EPG's statistics at the end."""
+    """``rows``: the model's ports in each cycle; ``counts``: of pan and tilt, before they wrap.  The others are EPG's
+    statistics at the end."""
 
     rows: list[tuple[float, ...]]
+    counts: list[tuple[int, ...]]
     cycles: int = 0
     missed: int = 0
     overruns: int = 0
@@ -37,23 +39,24 @@ class Run:
 
 
 def run(
-    board: Board, robot: Path, ticks: int, setpoints: Mapping[int, tuple[float, float]], zero: Sequence[int]
+    board: Board, robot: Path, ticks: int, setpoints: Mapping[int, tuple[float, float]], first: Sequence[int]
 ) -> Run:
     """Runs ``ticks`` cycles; ``setpoints`` of pan and tilt by the tick that takes them.
 
-    ``zero`` are the counts at which the board's counters of pan and tilt stand before the robot moves.
+    ``first``: counts of pan and tilt before the robot moves.
     """
     library = ctypes.CDLL(str(robot))
     counts, levels, directions = (ctypes.c_uint32 * 2)(), (ctypes.c_uint32 * 2)(), (ctypes.c_uint8 * 4)()
     (line,) = board.lines
-    result = Run([])
+    result = Run([], [])
     library.robot_start()
     for tick in range(ticks):
         library.robot_sense(ctypes.c_uint64(tick * PERIOD_NS), counts)
         new = setpoints.get(tick, ())
         flags = (START if tick == 0 else 0) | (SETPOINTS if new else 0)
         signed = (ctypes.c_int32(count).value for count in counts)
-        shown = ((first + count) % 2**64 for first, count in zip(zero, signed, strict=True))
+        result.counts.append(tuple(begin + count for begin, count in zip(first, signed, strict=True)))
+        shown = (count % 2**64 for count in result.counts[-1])
         line.sendall(struct.pack("<3QB", tick * PERIOD_NS, *shown, flags) + struct.pack(f"<{len(new)}d", *new))
         cycle = CYCLE.unpack(receive(line, CYCLE.size))
         levels[:], directions[:] = cycle[:2], cycle[2:6]
