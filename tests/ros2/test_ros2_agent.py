@@ -148,7 +148,7 @@ def test_three_boards_on_one_agent(agent: RealAgent, build: Build, implementatio
     assert told["nodes"] == names
     for serial, name in zip(SERIALS, names):
         topics = ("pan_publisher", "pan_subscriber", "tilt_publisher", "tilt_subscriber")
-        own = {f"/robot_{serial}/{topic}" for topic in topics} | {f"{name}/enable", "/diagnostics"}
+        own = {f"/robot_{serial}/{topic}" for topic in topics} | {f"{name}/enable", "/diagnostics", "/parameter_events"}
         assert set(told["endpoints"][str(serial)]) == own
 
 
