@@ -49,7 +49,7 @@ def test_the_program_runs(repository: Path) -> None:
 def test_the_stubs_say_which_pulls_the_pins_need(repository: Path) -> None:
     """The stub of an input returns the level of an open pin: with the stubs, this emergency stop is pressed."""
     stubs = (repository / "build/epg/turntable/turntable_drivers.stub").read_text(encoding="utf-8")
-    function = stubs[stubs.index("components.emergency_stop") : stubs.index("turntable_console_read")]
+    function = stubs[stubs.index("components.emergency_stop") : stubs.index("turntable_console_receive")]
     assert "The pin needs a pull-up resistor" in function
     assert "bool turntable_emergency_stop_get(void)\n{\n    return true;\n}" in function
 

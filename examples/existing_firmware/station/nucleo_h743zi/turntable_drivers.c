@@ -40,25 +40,25 @@ void turntable_motor_direction_b_set(bool high)
     motor_direction(14, high);
 }
 
-size_t turntable_console_read(void *data, size_t size)
+size_t turntable_console_receive(void *data, size_t size)
 {
     return serial_read(data, size);
 }
 
-size_t turntable_console_write(const void *data, size_t size)
+size_t turntable_console_send(const void *data, size_t size)
 {
     return serial_write(data, size);
 }
 
 /* The station has no memory for settings. */
-size_t turntable_store_read(void *data, size_t size)
+size_t turntable_store_load(void *data, size_t size)
 {
     (void)data;
     (void)size;
     return 0;
 }
 
-bool turntable_store_write(const void *data, size_t size)
+bool turntable_store_save(const void *data, size_t size)
 {
     (void)data;
     (void)size;

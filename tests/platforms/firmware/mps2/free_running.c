@@ -143,34 +143,34 @@ void jiwy_pwm_tilt_direction_b_set(bool high)
 
 /* Streams and store -------------------------------------------------------------------------------------------- */
 
-size_t jiwy_console_read(void *data, size_t size)
+size_t jiwy_console_receive(void *data, size_t size)
 {
     return line_read(CONSOLE, data, size);
 }
 
-size_t jiwy_console_write(const void *data, size_t size)
+size_t jiwy_console_send(const void *data, size_t size)
 {
     return line_write(CONSOLE, data, size);
 }
 
-size_t jiwy_xrce_read(void *data, size_t size)
+size_t jiwy_xrce_receive(void *data, size_t size)
 {
     return line_read(AGENT, data, size);
 }
 
-size_t jiwy_xrce_write(const void *data, size_t size)
+size_t jiwy_xrce_send(const void *data, size_t size)
 {
     return line_write(AGENT, data, size);
 }
 
-size_t jiwy_store_read(void *data, size_t size)
+size_t jiwy_store_load(void *data, size_t size)
 {
     (void)data;
     (void)size;
     return 0;
 }
 
-bool jiwy_store_write(const void *data, size_t size)
+bool jiwy_store_save(const void *data, size_t size)
 {
     (void)data;
     (void)size;

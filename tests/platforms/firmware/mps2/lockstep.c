@@ -64,40 +64,40 @@ void jiwy_pwm_tilt_direction_b_set(bool high)
 
 /* There is no agent and no terminal. */
 
-size_t jiwy_xrce_read(void *data, size_t size)
+size_t jiwy_xrce_receive(void *data, size_t size)
 {
     (void)data;
     (void)size;
     return 0;
 }
 
-size_t jiwy_xrce_write(const void *data, size_t size)
+size_t jiwy_xrce_send(const void *data, size_t size)
 {
     (void)data;
     return size;
 }
 
-size_t jiwy_console_read(void *data, size_t size)
+size_t jiwy_console_receive(void *data, size_t size)
 {
     (void)data;
     (void)size;
     return 0;
 }
 
-size_t jiwy_console_write(const void *data, size_t size)
+size_t jiwy_console_send(const void *data, size_t size)
 {
     (void)data;
     return size;
 }
 
-size_t jiwy_store_read(void *data, size_t size)
+size_t jiwy_store_load(void *data, size_t size)
 {
     (void)data;
     (void)size;
     return 0;
 }
 
-bool jiwy_store_write(const void *data, size_t size)
+bool jiwy_store_save(const void *data, size_t size)
 {
     (void)data;
     (void)size;
