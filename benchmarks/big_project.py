@@ -164,7 +164,7 @@ def _soc(axes: range) -> str:
 soc: big
 title: chip for {len(axes)} axes
 family: big
-clock: 150 MHz
+clocks: {{sys: {{title: clk_sys, frequency: 150 MHz}}}}
 pins: [{_ranges(_first_encoder(axes) + 2 * len(axes) - 1)}]
 peripherals:
   pwm:
@@ -172,7 +172,7 @@ peripherals:
     instances: {slices}
     slots: {{title: channel, names: [A, B]}}
     agree: [frequency]
-    divider: {{prescaler: 1-255, counter: 2-65535}}
+    divider: {{clock: sys, prescaler: 1-255, counter: 2-65535}}
     pins:
 {pins}
   pio:

@@ -123,7 +123,7 @@ class Soc:
     """A chip.  The number of a pin in C is its index in ``pins``.
 
     A chip with ``automatic_pins`` has no real pins: EPG numbers the signals, up to this number.  With ``free_names``,
-    users may give them any names.  ``clocks`` have the
+    users may give them any names.  ``memory`` is the RAM in bytes, None if it is not stated.  ``clocks`` have the
     frequencies of the chip's file.
     """
 
@@ -134,6 +134,7 @@ class Soc:
     pins: tuple[str, ...]
     automatic_pins: int
     free_names: bool
+    memory: int | None
     peripherals: Mapping[str, Peripheral]
     classes: Mapping[str, ResourceClass]
     files: tuple[Path, ...]  # its own, and those of the chips that it extends
@@ -231,7 +232,7 @@ class Target:
 
 def make_soc(node: YamlNode, folder: Path) -> Soc:
     """The chip that a checked ``soc.yaml`` describes."""
-    automatic = node.get("pins", "automatic")
+    automatic, memory = node.get("pins", "automatic"), node.get("memory")
     peripherals = {name: _peripheral(name, child, node) for name, child in map_of(node, "peripherals").items()}
     classes = {name: _resource_class(name, child, node) for name, child in map_of(node, "classes").items()}
     count = automatic.value if automatic is not None and isinstance(automatic.value, int) else 0
@@ -243,6 +244,7 @@ def make_soc(node: YamlNode, folder: Path) -> Soc:
         pins=pin_names(node.get("pins")),
         automatic_pins=count,
         free_names=flag_of(node["pins"], "names_are_free") if automatic is not None else False,
+        memory=memory.value if memory is not None and isinstance(memory.value, int) else None,
         peripherals=MappingProxyType(peripherals),
         classes=MappingProxyType(classes),
         files=_files(node, folder / "soc.yaml"),

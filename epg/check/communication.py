@@ -52,7 +52,7 @@ class Communication:
     period: Fraction
     domain: int | None  # None: the domain of the agent or of the environment
     diagnostics: Fraction  # seconds between two messages; 0: no messages
-    parameters: bool  # the model's parameters are those of a ROS 2 node, if the middleware serves them
+    parameters: bool | None  # the model's parameters are those of a ROS 2 node; None: if memory permits
     keep_cycles: int  # control cycles that wait for publications with `every`; 0: only the newest one is published
     parameter_request: int | None  # bytes of the buffer for requests; None: as many as the parameters need
     console: Middleware | None  # the console that runs beside the middleware
@@ -100,7 +100,7 @@ def check_communication(
         period=period,
         domain=_whole(root.get("communication", "domain")),
         diagnostics=_diagnostics(root.get("communication", "diagnostics"), found, diagnostics),
-        parameters=parameters is None or parameters.value is not False,
+        parameters=None if parameters is None else parameters.value is not False,
         keep_cycles=_whole(root.get("communication", "keep_cycles")) or 0,
         parameter_request=_whole(root.get("communication", "parameters", "request")),
         console=beside,

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from epg.emit.parameter_sizes import names_size, request_size
 from epg.emit.text import Code
 from epg.resolve.application import Application
+from epg.resolve.parameter_sizes import names_size, request_size
 from epg.resolve.parameters import RosParameters
 
 _EMPTY = 8

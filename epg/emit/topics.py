@@ -11,9 +11,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
-from epg.emit.parameter_sizes import event_size
 from epg.emit.text import Code
 from epg.resolve.application import Application, ResolvedComponent, Topic
+from epg.resolve.parameter_sizes import event_size
 from epg.resolve.parameters import RosParameters
 
 Macro = Callable[..., Code]

@@ -65,7 +65,7 @@ def ros_parameters(communication: Communication, model: Model, diagnostics: Diag
     """
     tunable = tuple(parameter for parameter in model.parameters if parameter.tunable)
     serves = {"services", "parameters"}.issubset(communication.middleware.uses)
-    if not communication.parameters or not serves or not tunable:
+    if communication.parameters is False or not serves or not tunable:
         return None
     _report_same_names(tunable, diagnostics)
     return RosParameters(tunable, communication.parameter_request)

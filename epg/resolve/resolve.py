@@ -17,6 +17,7 @@ from epg.quantity import parse_quantity, show
 from epg.resolve.allocation import Assignment, allocate
 from epg.resolve.application import Application, Plant, ResolvedComponent, Wire
 from epg.resolve.claims import TICK, component_claims, tick_claims
+from epg.resolve.parameter_sizes import parameters_fit
 from epg.resolve.parameters import parameter_settings, parameter_values, ros_parameters
 from epg.resolve.topics import publications_of, subscriptions_of, value_indices_of
 from epg.resolve.wires import Wiring
@@ -52,6 +53,8 @@ def resolve(
     inputs, outputs = wiring.inputs(), wiring.outputs()
     settings = parameter_settings(bindings, model, diagnostics)
     served = ros_parameters(configuration.communication, model, diagnostics)
+    if served and not parameters_fit(served, configuration, diagnostics):
+        served = None
     simulated = _plant(plant, configuration, components, period, diagnostics) if plant else None
     _bound_ports(configuration.components, outputs, diagnostics)
     fail_safe = configuration.control.fail_safe

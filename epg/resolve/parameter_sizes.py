@@ -6,14 +6,23 @@ Each number is aligned to its own size, at most 8 bytes.  The sizes here count t
 
 from __future__ import annotations
 
+from fractions import Fraction
+
+from epg.check.configuration import Configuration
 from epg.check.names import ros_parameter_name
+from epg.diagnostics import Diagnostics
 from epg.resolve.parameters import RosParameters
 
 _PREFIXES = 256
 """For a request to list parameters, which can name prefixes."""
+LARGEST_SHARE = Fraction(1, 16)
+"""The largest share of a chip's memory that parameters of a ROS 2 node get without being asked for."""
+
 _COUNT = 4
 _VALUE = 2 + 6 + 8 + 8 + 8 + 5 * 4
 """rcl_interfaces/msg/ParameterValue of a double: type, bool, integer, double, an empty text, five empty sequences."""
+_STATE = 32
+"""What the node and its store keep for each parameter, rounded up from JIWY's."""
 _EVENT = 8 + 4 + 192 + 3 + 3 * _COUNT + 8
 """rcl_interfaces/msg/ParameterEvent without parameters: stamp, longest name of a node, three sequences, padding."""
 
@@ -31,6 +40,27 @@ def names_size(parameters: RosParameters) -> int:
 def event_size(parameters: RosParameters | None) -> int:
     """A message about one changed parameter.  Several changes use the room of the node's largest message."""
     return _EVENT + max((_parameter(name) for name in _names(parameters)), default=0) if parameters else 0
+
+
+def parameters_fit(parameters: RosParameters, configuration: Configuration, diagnostics: Diagnostics) -> bool:
+    """Whether the node of a target serves ``parameters``.
+
+    If the ``.tcf`` does not say so, their memory must not be more than :data:`LARGEST_SHARE` of the chip's.  Reports a
+    warning if it is.
+    """
+    memory = configuration.target.soc.memory
+    needed = request_size(parameters) + names_size(parameters) + _STATE * len(parameters.parameters)
+    communication = configuration.communication
+    if communication.parameters or memory is None or needed <= memory * LARGEST_SHARE:
+        return True
+    diagnostics.warning(
+        "parameters-left-out",
+        communication.span,
+        f"the ROS 2 node does not serve the model's parameters: {len(parameters.parameters)} would take about "
+        f"{needed / 1024:.1f} of {memory / 1024:.0f} KiB of {configuration.target.soc.title}",
+        hint="write 'parameters: true' in 'communication' to serve them all the same, or 'parameters: false'",
+    )
+    return False
 
 
 def _names(parameters: RosParameters) -> list[str]:
