@@ -17,8 +17,9 @@
 #define READS_OF_A_DEAD_CLOCK 100000U
 
 /*
- * `state` has one writer at a time: the communication side while the target is off, then the control side, except for
- * the two requests STOPPING and SAFE.  All accesses are loads and stores of single words, which every processor has.
+ * The communication side writes `state` while the target is off, and to request a stop; the control side writes it to end
+ * a stop.  A fault handler can write SAFE at any time.  All accesses are loads and stores of single words, which every
+ * processor has.
  */
 static atomic_uint state;
 static atomic_bool in_cycle; /* written by the control side */
@@ -113,9 +114,9 @@ void epg_firmware_cycle(void)
     }
     epg_control_cycle(control, run.tick.due_ns, missed);
     run.tick.ended_ns = epg_port_time_ns();
+    /* epg_firmware_safe() may have been called during the cycle, and before the cycle wrote its outputs. */
     if (atomic_load(&state) == EPG_FIRMWARE_SAFE) {
-        application()
-            ->safe(); /* epg_firmware_safe() was called during the cycle, perhaps before it wrote its outputs */
+        application()->safe();
     }
     atomic_store(&in_cycle, false);
 }
