@@ -36,7 +36,7 @@ def test_an_unknown_tier_is_refused() -> None:
 
 
 def test_every_line_of_the_table_names_something_that_exists() -> None:
-    for path in table().tiers:
+    for path in [*table().tiers, *table().alone]:
         file, _, function = path.partition("::")
         assert (ROOT / file).exists(), path
         function = function.partition("[")[0]
@@ -51,6 +51,14 @@ def test_cheap_files_of_a_folder_share_a_test_of_ctest() -> None:
         Group("tests.a", "check", 2.0, ("tests/a/test_1.py", "tests/a/test_2.py")),
         Group("tests.b.all", "check_all", 2.0, ("tests/b/test_4.py",)),
         Group("tests.a.long", "check_long", 1.0, ("tests/a/test_1.py",)),
+    ]
+
+
+def test_a_file_alone_has_a_test_of_its_own() -> None:
+    tiers = read_table("check_all tests/a\nalone tests/a/test_2.py\n")
+    assert groups(["tests/a/test_1.py", "tests/a/test_2.py"], tiers, {}) == [
+        Group("tests.a.2.all", "check_all", 1.0, ("tests/a/test_2.py",), alone=True),
+        Group("tests.a.all", "check_all", 1.0, ("tests/a/test_1.py",)),
     ]
 
 

@@ -28,6 +28,8 @@ class Table:
     """The beginnings of test names, as pytest writes them, each with its tier."""
 
     tiers: Mapping[str, str]
+    alone: frozenset[str] = frozenset()
+    """Files beside which ctest runs no other test."""
 
     def tier(self, test: str) -> str:
         """The tier of a test: the longest matching beginning of its name decides."""
@@ -48,6 +50,8 @@ class Group:
     cost: float
     """Time for all files, in seconds."""
     files: tuple[str, ...]
+    alone: bool = False
+    """Whether ctest runs no other test at the same time."""
 
 
 def begins(test: str, path: str) -> bool:
@@ -56,15 +60,18 @@ def begins(test: str, path: str) -> bool:
 
 
 def read_table(text: str) -> Table:
-    """Reads lines ``tier path``.  Ignores empty lines and lines that begin with ``#``.  Raises :class:`ValueError`."""
-    tiers = {}
+    """Reads lines ``tier path`` and ``alone file``.  Ignores empty lines and lines that begin with ``#``.  Raises :class:`ValueError`."""
+    tiers, alone = {}, set()
     for line in text.splitlines():
         if line and not line.startswith("#"):
             tier, path = line.split(maxsplit=1)
+            if tier == "alone":
+                alone.add(path)
+                continue
             if tier not in TIERS:
                 raise ValueError(f"tests/tiers.txt: there is no tier {tier!r}: {line}")
             tiers[path] = tier
-    return Table(tiers)
+    return Table(tiers, frozenset(alone))
 
 
 def table() -> Table:
@@ -83,24 +90,24 @@ def groups(files: Iterable[str], tiers: Table, costs: Mapping[tuple[str, str], f
     together: dict[tuple[str, str], list[str]] = defaultdict(list)
     for file in sorted(files):
         for tier in sorted(tiers.tiers_in(file)):
-            alone = costs.get((tier, file), 0.0) > ALONE
-            name = file.removesuffix(".py") if alone else str(Path(file).parent.as_posix())
+            own = costs.get((tier, file), 0.0) > ALONE or file in tiers.alone
+            name = file.removesuffix(".py") if own else str(Path(file).parent.as_posix())
             together[name, tier].append(file)
     result = []
     for (name, tier), members in together.items():
         words = [word.removeprefix("test_") for word in name.split("/")]
         suffix = {"check": "", "check_all": ".all", "check_long": ".long"}[tier]
         cost = sum(costs.get((tier, file), 1.0) for file in members)
-        result.append(Group(".".join(words) + suffix, tier, cost, tuple(members)))
+        result.append(Group(".".join(words) + suffix, tier, cost, tuple(members), not tiers.alone.isdisjoint(members)))
     return sorted(result, key=lambda group: (TIERS.index(group.tier), -group.cost, group.name))
 
 
 def main() -> int:
-    """Prints ``name|tier|cost|file,file`` per group, for tests/CMakeLists.txt."""
+    """Prints ``name|tier|cost|alone|file,file`` per group, for tests/CMakeLists.txt."""
     files = [f"tests/{path.relative_to(TESTS).as_posix()}" for path in TESTS.rglob("test_*.py")]
     costs = read_costs((TESTS / "costs.txt").read_text(encoding="utf-8"))
     for group in groups(files, table(), costs):
-        print(f"{group.name}|{group.tier}|{group.cost:.0f}|{','.join(group.files)}")
+        print(f"{group.name}|{group.tier}|{group.cost:.0f}|{group.alone}|{','.join(group.files)}")
     return 0
 
 
