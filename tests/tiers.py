@@ -60,7 +60,10 @@ def begins(test: str, path: str) -> bool:
 
 
 def read_table(text: str) -> Table:
-    """Reads lines ``tier path`` and ``alone file``.  Ignores empty lines and lines that begin with ``#``.  Raises :class:`ValueError`."""
+    """Reads lines ``tier path`` and ``alone file``.  Ignores empty lines and lines that begin with ``#``.
+
+    Raises :class:`ValueError` for another tier.
+    """
     tiers, alone = {}, set()
     for line in text.splitlines():
         if line and not line.startswith("#"):

@@ -33,7 +33,7 @@ def test_every_cycle_is_published_once(complete_robot: Path, agent: Agent) -> No
             values = board.values(topic)[1:]  # the first one follows the connection at once
             steps = [later - earlier for earlier, later in itertools.pairwise(values)]
             assert len(steps) > 700
-            # Periods are of time, and this computer's scheduler may make the program miss a tick: the next cycle is due.
+            # Periods are of time.  If this computer makes the program miss a tick, one step is shorter.
             assert set(steps) <= {1, step}
             assert step == 1 or steps.count(1) <= board.statistic("missed")
         assert board.statistic("unsent") == 0
