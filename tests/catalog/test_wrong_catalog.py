@@ -70,7 +70,7 @@ def test_no_change_of_a_file_raises(path: Path, tmp_path: Path) -> None:
         if beside.is_file() and beside != path:
             (copied / beside.name).write_bytes(beside.read_bytes())
     reported = 0
-    for _ in range(20):
+    for _ in range(8):
         (copied / path.name).write_text(json.dumps(changed(document, chance)), encoding="utf-8")
         problems = Diagnostics()
         roots = targets_roots([tmp_path])
@@ -84,4 +84,4 @@ def test_no_change_of_a_file_raises(path: Path, tmp_path: Path) -> None:
                 ticks = tick_claims(configuration.target, control.period, control.period_span)
                 allocate([*component_claims(configuration), *ticks], configuration.target, problems)
         reported += problems.has_errors
-    assert reported > 5  # the changes do have an effect
+    assert reported > 1  # the changes do have an effect

@@ -8,6 +8,7 @@ import re
 import shutil
 import subprocess
 from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -28,16 +29,42 @@ def compile_program(
     defines: Sequence[str] = (),
     includes: Sequence[Path] = (),
 ) -> Path:
-    """Compiles ``sources`` as C11 with the project's warnings as errors into the executable ``output``."""
+    """Compiles ``sources`` as C11 with the project's warnings as errors into the executable ``output``.
+
+    ``sources`` may contain the objects of :func:`compile_objects`.
+    """
+    command = [*_compiler(options, defines, includes), *(str(source) for source in sources)]
+    _run_compiler([*command, "-pthread", "-lm", "-o", str(output)])
+    return output
+
+
+def compile_objects(
+    folder: Path, sources: Sequence[Path], *, options: Sequence[str] = ("-O1", *ADDRESS_SANITIZER)
+) -> list[Path]:
+    """Compiles each of ``sources``, which have different names, into an object in ``folder``, for several programs."""
+    folder.mkdir()
+    command = [*_compiler(options, (), ()), "-c", "-pthread"]
+
+    def compile_one(source: Path) -> Path:
+        output = folder / f"{source.stem}.o"
+        _run_compiler([*command, str(source), "-o", str(output)])
+        return output
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        return list(pool.map(compile_one, sources))
+
+
+def _compiler(options: Sequence[str], defines: Sequence[str], includes: Sequence[Path]) -> list[str]:
     compiler = shutil.which("gcc") or shutil.which("cc")
     assert compiler is not None, "a C compiler is needed"
     folders = [RUNTIME / "include", SOURCES, *sorted(p for p in COMPONENTS.iterdir() if p.is_dir()), *includes]
     command = [compiler, "-std=c11", "-g", "-ffp-contract=off", *WARNINGS, *options]
-    command += [f"-I{folder}" for folder in folders] + [f"-D{define}" for define in defines]
-    command += [str(source) for source in sources] + ["-pthread", "-lm", "-o", str(output)]
+    return command + [f"-I{folder}" for folder in folders] + [f"-D{define}" for define in defines]
+
+
+def _run_compiler(command: Sequence[str]) -> None:
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
-    return output
 
 
 def runtime_sources() -> list[Path]:

@@ -8,7 +8,15 @@ from pathlib import Path
 
 import pytest
 
-from .program import SOURCES, compile_program, component_sources, names_in, run_program, runtime_sources
+from .program import (
+    SOURCES,
+    compile_objects,
+    compile_program,
+    component_sources,
+    names_in,
+    run_program,
+    runtime_sources,
+)
 
 HELPERS = [SOURCES / "fake_port.c", SOURCES / "fake_application.c", SOURCES / "motor.c"]
 PROGRAMS = sorted(SOURCES.glob("*_tests.c"))
@@ -23,15 +31,14 @@ CASES = [
 
 @pytest.fixture(scope="session")
 def program_of(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Path], Path]:
-    """The program for a C test file; each is compiled once."""
+    """The program for a C test file; each is compiled once, and so are the sources that all of them contain."""
     folder = tmp_path_factory.mktemp("c")
     programs: dict[Path, Path] = {}
+    shared = compile_objects(folder / "shared", [*HELPERS, *runtime_sources(), *component_sources()])
 
     def build(source: Path) -> Path:
         if source not in programs:
-            programs[source] = compile_program(
-                folder / source.stem, [source, *HELPERS, *runtime_sources(), *component_sources()]
-            )
+            programs[source] = compile_program(folder / source.stem, [source, *shared])
         return programs[source]
 
     return build
