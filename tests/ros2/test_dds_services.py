@@ -170,6 +170,12 @@ def test_stored_parameters_are_back_after_a_restart(jiwy: Path, net: Network, tm
 def test_a_target_without_parameters_serves_none(build_checked: Build, net: Network, tmp_path: Path) -> None:
     with robot(net, build_checked("follower"), tmp_path), Peer(net.domain, "monitor") as peer:
         meet(peer)
-        requests = {r.topic_name for r in peer.graph.readers.values() if r.topic_name.startswith("rq/")}
-        assert requests == {f"rq{NODE}/enableRequest", f"rq{NODE}/resetRequest"}
+
+        def requests() -> set[str]:
+            return {r.topic_name for r in peer.graph.readers.values() if r.topic_name.startswith("rq/")}
+
+        wanted = {f"rq{NODE}/enableRequest", f"rq{NODE}/resetRequest"}
+        assert peer.spin_until(lambda: requests() >= wanted)
+        peer.spin(0.5)  # services of parameters would follow
+        assert requests() == wanted
         assert "/parameter_events" not in {endpoint.topic for endpoint in peer.graph.publications()}
