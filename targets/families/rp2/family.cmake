@@ -135,16 +135,7 @@ endfunction()
 # This needs no linker script of EPG, works for all types of binary, and lets the linker remove unused functions.
 # in_ram.ld stops the link with an error if the user's linker script puts the control cycle into flash.
 function(_epg_rp2_in_ram name)
-  foreach(library ${name} epg_runtime ${EPG_MODELS})
-    get_target_property(done ${library} EPG_IN_RAM)
-    if(NOT done)
-      set_target_properties(${library} PROPERTIES OUTPUT_NAME "${library}_libm" EPG_IN_RAM TRUE)
-      target_compile_options(${library} PRIVATE -ffunction-sections -fdata-sections)
-      if(TARGET ${library}_export)
-        target_compile_options(${library}_export PRIVATE -ffunction-sections -fdata-sections)
-      endif()
-    endif()
-  endforeach()
+  _epg_mcu_name_archives(_libm ${name} epg_runtime ${EPG_MODELS})
 endfunction()
 
 # Adds the SDK's libraries, definitions and linker options to <library>, the port layer of all targets.
@@ -189,7 +180,9 @@ function(_epg_rp2_usb_library)
   endif()
   set(folder "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/usb")
   add_library(epg_pico_usb INTERFACE)
-  target_sources(epg_pico_usb INTERFACE "${folder}/descriptors.c" "${folder}/reset.c" "${folder}/serial.c")
+  cmake_path(SET shared NORMALIZE "${folder}/../../../platforms/mcu/usb")
+  target_sources(epg_pico_usb INTERFACE "${folder}/device.c" "${folder}/microsoft.c" "${folder}/reset.c"
+    "${shared}/descriptors.c" "${shared}/serial.c")
   target_include_directories(epg_pico_usb INTERFACE "${folder}/include")
   target_link_libraries(epg_pico_usb INTERFACE tinyusb_device_unmarked pico_usb_reset_interface_headers)
 endfunction()

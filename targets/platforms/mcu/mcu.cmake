@@ -14,6 +14,23 @@ function(_epg_mcu_check name result)
   set(${result} "${good}" PARENT_SCOPE)
 endfunction()
 
+# _epg_mcu_name_archives(<suffix> <library>...)
+#
+# Gives the archives of the control cycle names that end with <suffix>.a, by which a linker script places their code and
+# data.  Functions and variables have sections of their own, so the linker removes unused ones.
+function(_epg_mcu_name_archives suffix)
+  foreach(library IN LISTS ARGN)
+    get_target_property(done ${library} EPG_NAMED)
+    if(NOT done)
+      set_target_properties(${library} PROPERTIES OUTPUT_NAME "${library}${suffix}" EPG_NAMED TRUE)
+      target_compile_options(${library} PRIVATE -ffunction-sections -fdata-sections)
+      if(TARGET ${library}_export)
+        target_compile_options(${library}_export PRIVATE -ffunction-sections -fdata-sections)
+      endif()
+    endif()
+  endforeach()
+endfunction()
+
 # Adds the port layer to target <name>.  SERVICE lists the sources that run the communication side on the platform;
 # LIBRARIES lists the libraries that they need.
 function(_epg_mcu_target name)

@@ -59,6 +59,7 @@ def allocate_components(
     *,
     period: Fraction | str = "1 ms",
     user_roots: Sequence[Path] = (),
+    middleware: str = "",
 ) -> Outcome:
     """The hardware of components that are written as in a ``.tcf``: ``"p: {kind: pwm, pins: {value: 3}}"``."""
     written = period if isinstance(period, str) else f"{period.numerator / period.denominator!r} s"
@@ -68,6 +69,7 @@ def allocate_components(
         "node: robot",
         f"control: {{period: {written}, enable_at_start: false}}",
     ]
+    lines += [f"communication: {{middleware: {middleware}}}"] if middleware else []
     lines += ["components:", *(f"  {component}" for component in components)]
     path = folder / "robot.tcf"
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")

@@ -22,6 +22,11 @@ epg_mcu_error_t epg_family_check_start(const epg_family_target_t *pico)
     return right ? EPG_MCU_OK : EPG_MCU_ERROR_CLOCK;
 }
 
+/** The control cycle has a core of its own, which the program cannot use while the target runs (core1.c). */
+void epg_family_check_running(void)
+{
+}
+
 bool epg_pico_start(const epg_pico_target_t *pico)
 {
     return epg_mcu_start(pico);

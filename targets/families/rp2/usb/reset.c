@@ -5,8 +5,9 @@
  *
  * The outputs are made safe before the reboot.  The reboot does not count as a fault.
  */
+#include "reset.h"
 #include "../src/parts.h"
-#include "usb.h"
+#include "usb_sdk.h"
 
 /** Time in which the answer to the request is sent, before the reboot. */
 #define DELAY_MS 100
@@ -73,7 +74,7 @@ static bool transferred(uint8_t port, uint8_t endpoint, xfer_result_t result, ui
     return true;
 }
 
-const usbd_class_driver_t epg_pico_usb_reset_driver = {
+static const usbd_class_driver_t reset_driver = {
     .name = "reset",
     .init = init,
     .deinit = deinit,
@@ -87,5 +88,5 @@ const usbd_class_driver_t epg_pico_usb_reset_driver = {
 const usbd_class_driver_t *usbd_app_driver_get_cb(uint8_t *count)
 {
     *count = 1;
-    return &epg_pico_usb_reset_driver;
+    return &reset_driver;
 }

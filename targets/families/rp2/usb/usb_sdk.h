@@ -1,18 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The headers of TinyUSB, and those of the Pico SDK for USB, as system headers: their warnings are not reported.
+ * The headers of the Pico SDK for USB, as system headers: their warnings are not reported.
  */
 #ifndef EPG_PICO_USB_SDK_H
 #define EPG_PICO_USB_SDK_H
 
 #pragma GCC system_header
 
-#include "device/usbd_pvt.h"
 #include "pico/bootrom.h"
 #include "pico/unique_id.h"
 #include "pico/usb_reset_interface.h"
-#include "tusb.h"
 
 #if LIB_PICO_STDIO_USB
 #error                                                                                                                 \

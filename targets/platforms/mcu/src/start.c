@@ -15,10 +15,14 @@
 #define IN_USE 128U
 /** Time between two measurements of the stacks. */
 #define STACKS_PERIOD_US 250000U
+/** Time between two calls of epg_family_check_running(). */
+#define CHECK_PERIOD_US 1000000U
 
 static const epg_family_target_t *running;
 static epg_mcu_error_t error;
+static epg_mcu_error_t transport_error;
 static epg_mcu_clock_t wrong_clock;
+static epg_mcu_priority_t wrong_priority;
 static epg_fault_t fault;
 
 /** Runs before main(), once per reset: later code may change the registers that hold the cause of the reset. */
@@ -40,6 +44,7 @@ static void report_stacks(void)
 static void serve(void)
 {
     static uint32_t stacks_us;
+    static uint32_t checked_us;
     static bool reported;
     const epg_family_target_t *chip = running;
     epg_control_alive(chip->target->control);
@@ -50,6 +55,10 @@ static void serve(void)
         reported = true;
         stacks_us = now_us;
         report_stacks();
+    }
+    if (now_us - checked_us >= CHECK_PERIOD_US) {
+        checked_us = now_us;
+        epg_family_check_running();
     }
 }
 
@@ -68,7 +77,8 @@ static void paint_main_stack(void)
 {
     static bool painted;
     if (!painted) {
-        const uint32_t *here = (const uint32_t *)__builtin_frame_address(0);
+        const uint32_t *here; /* in a task of FreeRTOS, the stack pointer in use is not that of the main stack, MSP */
+        __asm volatile("mrs %0, msp" : "=r"(here));
         epg_mcu_stack_paint(epg_family_main_stack.bottom + GUARD / sizeof(uint32_t), here - IN_USE / sizeof(uint32_t));
         painted = true;
     }
@@ -85,9 +95,10 @@ static epg_mcu_error_t start(const epg_family_target_t *chip)
     }
     paint_main_stack();
     epg_family_guard_faults();
+    transport_error = EPG_MCU_ERROR_RESOURCE;
     if (!epg_serve_start_transport(chip->transport, chip->transport_title) ||
         !epg_serve_start_transport(chip->console_transport, "EPG console")) {
-        return EPG_MCU_ERROR_RESOURCE;
+        return transport_error;
     }
     const epg_mcu_error_t failed = epg_family_control_start(chip, fault);
     if (failed != EPG_MCU_OK) {
@@ -109,6 +120,11 @@ void epg_mcu_report(epg_mcu_error_t problem)
     error = problem;
 }
 
+void epg_mcu_refuse(epg_mcu_error_t reason)
+{
+    transport_error = reason;
+}
+
 bool epg_mcu_check_clock(const char *name, uint32_t expected_hz, uint32_t found_hz)
 {
     if (found_hz != expected_hz) {
@@ -123,9 +139,20 @@ const epg_mcu_clock_t *epg_mcu_wrong_clock(void)
     return &wrong_clock;
 }
 
+void epg_mcu_report_priority(epg_mcu_priority_t priority)
+{
+    wrong_priority = priority;
+}
+
+const epg_mcu_priority_t *epg_mcu_wrong_priority(void)
+{
+    return &wrong_priority;
+}
+
 bool epg_mcu_start(const epg_family_target_t *chip)
 {
     wrong_clock = (epg_mcu_clock_t){0};
+    wrong_priority = (epg_mcu_priority_t){0};
     error = start(chip);
     return error == EPG_MCU_OK;
 }

@@ -107,9 +107,11 @@ typedef epg_mcu_error_t epg_pico_error_t;
 typedef epg_mcu_status_t epg_pico_status_t;
 
 /** The transport `usb`: the first serial port of the USB device.  It is linked only if a target uses it. */
-extern const epg_transport_t epg_pico_usb;
+extern const epg_transport_t epg_usb;
+#define epg_pico_usb epg_usb
 /** The second serial port.  A device has it if the first port belongs to a middleware and the target has a console. */
-extern const epg_transport_t epg_pico_usb_second;
+extern const epg_transport_t epg_usb_second;
+#define epg_pico_usb_second epg_usb_second
 
 /** All outputs of the target; generated.  They are made safe before main() and after each fault. */
 extern const epg_pico_outputs_t epg_pico_outputs;

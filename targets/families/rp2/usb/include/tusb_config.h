@@ -1,48 +1,60 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Configuration of TinyUSB: a device with one serial port, or with two if the console has its own port.
+ * Configuration of TinyUSB, and of EPG's USB device (platforms/mcu/usb/usb.h), for RP2040 and RP2350.
+ *
+ * Names and numbers come from definitions of the executable or from the target configuration (`communication: {usb:
+ * ...}`, in epg_pico_target.h).  By default the numbers are those of the Pico SDK's own serial port, by which picotool
+ * and udev rules recognise a board that runs firmware.
  */
 #ifndef EPG_PICO_TUSB_CONFIG_H
 #define EPG_PICO_TUSB_CONFIG_H
 
 #include "epg_pico_target.h"
+#include "pico/usb_reset_interface.h"
 
-#if EPG_PICO_USB_PORTS != 1 && EPG_PICO_USB_PORTS != 2
-#error "EPG_PICO_USB_PORTS must be 1 or 2"
+#define EPG_USB_PORTS EPG_PICO_USB_PORTS
+#define EPG_USB_LARGEST_MESSAGE EPG_PICO_LARGEST_MESSAGE
+
+#if defined(EPG_PICO_USB_VENDOR_ID) != defined(EPG_PICO_USB_PRODUCT_ID)
+#error "define both EPG_PICO_USB_VENDOR_ID and EPG_PICO_USB_PRODUCT_ID: a product id is valid only with its vendor id"
 #endif
-
-/** Bytes that a frame adds to a message. */
-#define EPG_PICO_USB_FRAME 32
-/** Bytes of the largest frame: each byte may need an escape byte before it. */
-#define EPG_PICO_USB_LARGEST_FRAME (2 * (EPG_PICO_LARGEST_MESSAGE + EPG_PICO_USB_FRAME))
-
-/* Bytes of each port's buffers.  A middleware never waits for room, so the largest frame must fit. */
-#ifndef EPG_PICO_USB_RECEIVE_SIZE
-#define EPG_PICO_USB_RECEIVE_SIZE 512
-#endif
-#ifndef EPG_PICO_USB_SEND_SIZE
-#if EPG_PICO_USB_LARGEST_FRAME > 1024
-#define EPG_PICO_USB_SEND_SIZE EPG_PICO_USB_LARGEST_FRAME
+#ifndef EPG_PICO_USB_VENDOR_ID
+#define EPG_PICO_USB_VENDOR_ID 0x2E8A /* Raspberry Pi */
+#if PICO_RP2040
+#define EPG_PICO_USB_PRODUCT_ID 0x000A /* Pico SDK CDC UART */
 #else
-#define EPG_PICO_USB_SEND_SIZE 1024
+#define EPG_PICO_USB_PRODUCT_ID 0x0009
 #endif
 #endif
-#if EPG_PICO_USB_SEND_SIZE < EPG_PICO_USB_LARGEST_FRAME
-#error "EPG_PICO_USB_SEND_SIZE: the target's largest message does not fit"
+#ifndef EPG_PICO_USB_MANUFACTURER
+#define EPG_PICO_USB_MANUFACTURER "Raspberry Pi"
 #endif
-#if EPG_PICO_USB_SEND_SIZE > 32768
-#error "a message of the target is too large for USB's buffers: EPG_PICO_USB_SEND_SIZE is at most 32768"
+#ifndef EPG_PICO_USB_PRODUCT
+#define EPG_PICO_USB_PRODUCT "Pico"
+#endif
+#define EPG_USB_VENDOR_ID EPG_PICO_USB_VENDOR_ID
+#define EPG_USB_PRODUCT_ID EPG_PICO_USB_PRODUCT_ID
+#define EPG_USB_MANUFACTURER EPG_PICO_USB_MANUFACTURER
+#define EPG_USB_PRODUCT EPG_PICO_USB_PRODUCT
+#ifdef EPG_PICO_USB_SERIAL
+#define EPG_USB_SERIAL EPG_PICO_USB_SERIAL
 #endif
 
-#define CFG_TUSB_RHPORT0_MODE OPT_MODE_DEVICE
+#ifdef EPG_PICO_USB_RECEIVE_SIZE
+#define EPG_USB_RECEIVE_SIZE EPG_PICO_USB_RECEIVE_SIZE
+#endif
+#ifdef EPG_PICO_USB_SEND_SIZE
+#define EPG_USB_SEND_SIZE EPG_PICO_USB_SEND_SIZE
+#endif
 
-#define CFG_TUD_CDC EPG_PICO_USB_PORTS
-#define CFG_TUD_CDC_RX_BUFSIZE EPG_PICO_USB_RECEIVE_SIZE
-#define CFG_TUD_CDC_TX_BUFSIZE EPG_PICO_USB_SEND_SIZE
-#define CFG_TUD_CDC_EP_BUFSIZE 64
+/** USB 2.1, the first version with a BOS descriptor. */
+#define EPG_USB_VERSION 0x0210
 
-/* TinyUSB's driver of vendor interfaces is not needed: reset.c has a driver for picotool's interface. */
-#define CFG_TUD_VENDOR 0
+/* The interface by which picotool reboots the board: reset.c. */
+#define EPG_USB_FAMILY_INTERFACE TUSB_CLASS_VENDOR_SPECIFIC, RESET_INTERFACE_SUBCLASS, RESET_INTERFACE_PROTOCOL
+#define EPG_USB_FAMILY_TITLE "Reset"
+
+#include "../../../../platforms/mcu/usb/config.h"
 
 #endif

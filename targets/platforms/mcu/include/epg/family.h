@@ -77,6 +77,12 @@ epg_mcu_error_t epg_family_check_start(const epg_family_target_t *target);
 epg_mcu_error_t epg_family_control_start(const epg_family_target_t *target, epg_fault_t fault);
 
 /**
+ * Called once per second by the communication side while a target runs.  The family checks what the user's program can
+ * have changed since the start, and latches a fault in the next cycle if the target must not go on.
+ */
+void epg_family_check_running(void);
+
+/**
  * Stops the control loop.  When this returns, the outputs are safe, the peripherals are free again, and the watchdog is
  * off.  Does nothing if the loop is not running.
  */
@@ -134,6 +140,12 @@ void epg_mcu_status(epg_mcu_status_t *status);         /**< reads all stacks; no
 void epg_mcu_report(epg_mcu_error_t problem);
 
 /**
+ * The reason why a transport does not start, for epg_mcu_status().  Called by the `start` of a transport that then
+ * returns false.  Without a call the reason is EPG_MCU_ERROR_RESOURCE.
+ */
+void epg_mcu_refuse(epg_mcu_error_t reason);
+
+/**
  * Compares the frequency of a clock, in Hz, with that for which the generator computed the dividers.  Returns true if
  * they are equal; otherwise epg_mcu_wrong_clock() has both, with `name`, which must be a constant.  For
  * epg_family_check_start(), which then returns EPG_MCU_ERROR_CLOCK.
@@ -142,6 +154,12 @@ bool epg_mcu_check_clock(const char *name, uint32_t expected_hz, uint32_t found_
 
 /** The clock that was the reason for EPG_MCU_ERROR_CLOCK.  It is not a part of the status, so that small stacks can hold a status. */
 const epg_mcu_clock_t *epg_mcu_wrong_clock(void);
+
+/** Reports the interrupt that is the reason for EPG_MCU_ERROR_PRIORITY or EPG_FAULT_PRIORITY. */
+void epg_mcu_report_priority(epg_mcu_priority_t priority);
+
+/** The interrupt that was reported; its name is NULL if there was none since the newest start. */
+const epg_mcu_priority_t *epg_mcu_wrong_priority(void);
 
 /**
  * Runs the communication side as soon as possible.  For the interrupt of a transport, on the communication side's

@@ -25,8 +25,9 @@ typedef enum epg_mcu_error {
     EPG_MCU_ERROR_RESOURCE,  /**< other code uses a peripheral or an interrupt that the target needs */
     EPG_MCU_ERROR_CORE,      /**< the control side's core did not answer */
     EPG_MCU_ERROR_CALLER,    /**< stop was called from a context that cannot wait */
-    EPG_MCU_ERROR_CORE_TAKEN /**< at a start: the program uses the control side's core.  Later: the program has tried
-                                  to use that core while the target runs */
+    EPG_MCU_ERROR_CORE_TAKEN, /**< at a start: the program uses the control side's core.  Later: the program has tried
+                                   to use that core while the target runs */
+    EPG_MCU_ERROR_PRIORITY    /**< an enabled interrupt could delay the control cycle: epg_mcu_priority_t */
 } epg_mcu_error_t;
 
 /** The clock with which the newest start failed.  Its frequency is a key in `clocks` of the `.tcf`. */
@@ -35,6 +36,15 @@ typedef struct epg_mcu_clock {
     uint32_t expected_hz; /**< the frequency from which the generator computed the dividers */
     uint32_t found_hz;    /**< the frequency that the clock has */
 } epg_mcu_clock_t;
+
+/**
+ * The enabled interrupt with which the newest start failed, or which caused the fault EPG_FAULT_PRIORITY.  Its priority
+ * must be lower than that of the control cycle, which is 0; a larger number is a lower priority.
+ */
+typedef struct epg_mcu_priority {
+    const char *name;  /**< in the header of the chip, for example "USART3"; NULL if no priority was wrong */
+    int32_t interrupt; /**< its number there; -1 is SysTick, -16 the setting PRIGROUP of all interrupts */
+} epg_mcu_priority_t;
 
 /** Measurements of the port layer.  The statistics of the control cycle are reported elsewhere (`epg/statistics.h`). */
 typedef struct epg_mcu_status {
