@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: Apache-2.0
+# epg_add_system(<name> SYSTEM <file>)
+#
+# Makes the executable <name>, which simulates all targets of a system, their messages and their plants.  Also makes the
+# CMake target <name>_images, which builds the images of all targets whose families have a project for them, each in its
+# own folder below <name>_images.  An ordinary build does not build it.
+#
+#   <name>  name of the executable
+#   SYSTEM  the file of the system; a relative path begins at the current source folder
+#
+# Each target becomes a shared object beside the executable.  Needs Linux.  It stops with an error if an argument is
+# wrong.  A mistake in the files is reported, and the configure run fails at its end.
+function(epg_add_system name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "SYSTEM" "")
+  _epg_require(epg_add_system "SYSTEM <file>" "${name}" "${arg_UNPARSED_ARGUMENTS}" "${arg_KEYWORDS_MISSING_VALUES}" SYSTEM)
+  if(NOT CMAKE_SYSTEM_NAME STREQUAL "Linux")
+    message(FATAL_ERROR "epg_add_system(${name}): systems are simulated on Linux only, and this project is for ${CMAKE_SYSTEM_NAME}")
+  endif()
+  get_filename_component(file "${arg_SYSTEM}" ABSOLUTE BASE_DIR "${CMAKE_CURRENT_SOURCE_DIR}")
+  set(arguments --system "${file}" --source-dir "${CMAKE_SOURCE_DIR}" --caller "${CMAKE_CURRENT_LIST_FILE}")
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${file}")
+  set(output "${CMAKE_BINARY_DIR}/epg/${name}")
+  _epg_generate(good "${name}" "${output}" generate-system "${name}" ${arguments})
+  if(NOT good)
+    message(SEND_ERROR "EPG: system '${name}' was not generated; the messages above say why")
+    _epg_placeholder("${name}")
+    return()
+  endif()
+  _epg_require_language(C "EPG")
+  include("${output}/${name}.cmake")
+  set(targets ${EPG_SYSTEM_TARGETS})
+  add_executable(${name} "${output}/${name}_system.c")
+  foreach(target IN LISTS targets)
+    _epg_system_part("${name}" "${target}" ${arguments})
+  endforeach()
+  _epg_system_images("${name}" "${file}" "${output}/${name}_images.cmake")
+  if(TARGET epg_simulator)
+    target_link_libraries(${name} PRIVATE epg_simulator)
+  endif()
+endfunction()
+
+# _epg_system_part(<name> <target> <argument>...)
+#
+# Makes the shared objects of one target of the system <name>.
+#   <argument>  the arguments of `epg generate-system`
+function(_epg_system_part name target)
+  set(part "${name}_${target}")
+  set(output "${CMAKE_BINARY_DIR}/epg/${part}")
+  _epg_generate(good "${part}" "${output}" generate-system "${part}" --target "${target}" ${ARGN})
+  if(NOT good)
+    message(SEND_ERROR "EPG: target '${target}' of system '${name}' was not generated; the messages above say why")
+    return()
+  endif()
+  include("${output}/${part}.cmake")
+  _epg_build_target("${part}" "${output}")
+  foreach(module ${part}_unit ${part}_plant_unit)
+    if(TARGET ${module})
+      add_dependencies(${name} ${module})
+    endif()
+  endforeach()
+endfunction()
+
+# _epg_system_images(<name> <system> <images>)
+#
+# Makes the CMake target <name>_images.
+#   <system>  the file of the system
+#   <images>  the generated file with the list of images
+function(_epg_system_images name system images)
+  _epg_find_python(python)
+  _epg_environment_command(command)
+  set(here "${CMAKE_CURRENT_FUNCTION_LIST_DIR}")
+  add_custom_target(${name}_images
+    COMMAND ${command} "${CMAKE_COMMAND}" "-DEPG_IMAGES=${images}" "-DEPG_DIR=${here}" "-DEPG_IMAGE_SYSTEM=${system}"
+      "-DEPG_BUILD=${CMAKE_CURRENT_BINARY_DIR}/${name}_images" "-DEPG_PYTHON=${python}"
+      -P "${here}/epg_build_images.cmake"
+    COMMENT "Images of the system ${name}" USES_TERMINAL VERBATIM)
+endfunction()

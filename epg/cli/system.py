@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: Apache-2.0
+"""For commands that take systems: the file of a system, and their output as a table and as data."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from epg.cli.table import table
+from epg.diagnostics import Diagnostics, did_you_mean
+from epg.quantity import show
+
+if TYPE_CHECKING:
+    from epg.source import Span
+    from epg.system.check_system import CheckedSystem, Link, Loop
+    from epg.system.system import System, SystemTarget
+
+SYSTEM_FILES = ".system.yaml"
+"""The end of the names of files that describe a system."""
+
+
+def is_system(path: Path) -> bool:
+    """True if ``path`` has the name of a file that describes a system."""
+    return path.name.endswith(SYSTEM_FILES)
+
+
+def read_system(path: Path, user_roots: Sequence[Path], diagnostics: Diagnostics) -> CheckedSystem | None:
+    """The system in ``path``; None if it is another kind of file, or after reporting mistakes."""
+    if not is_system(path):
+        return None
+    from epg.system.check_system import check_system
+    from epg.system.load_system import load_system
+
+    system = load_system(path, diagnostics)
+    return None if system is None else check_system(system, user_roots, diagnostics)
+
+
+def system_of(options: argparse.Namespace, diagnostics: Diagnostics) -> tuple[System, Span]:
+    """The system that CMake names, and the place of its call.  Stops after reporting mistakes."""
+    from epg.documents.cmake_call import caller_span
+    from epg.source import Span
+    from epg.system.load_system import load_system
+
+    caller = caller_span(options.caller, options.name) if options.caller else Span("command line")
+    return diagnostics.checked(load_system(options.system, diagnostics, caller)), caller
+
+
+def target_of(system: System, name: str, span: Span, diagnostics: Diagnostics) -> SystemTarget:
+    """The target ``name`` of a system.  Stops after reporting, at ``span``, that it does not exist."""
+    target = system.targets.get(name)
+    if target is None:
+        message = f"the system '{system.name}' has no target '{name}'"
+        hint = did_you_mean(name, system.targets, "targets")
+        diagnostics.error("unknown-target", span, message, hint=hint)
+    return diagnostics.checked(target)
+
+
+def system_text(checked: CheckedSystem) -> str:
+    """The targets, the connections and the loops of a system."""
+    targets = [
+        (name, application.target.name, application.communication.middleware.name, show(application.period, "time"))
+        for name, application in checked.applications.items()
+    ]
+    parts = [table(("target", "board and platform", "middleware", "period"), targets)]
+    if checked.links:
+        header = ("from", "to", "message", "unit", "sent", "oldest value")
+        parts.append(table(header, [_row(link) for link in checked.links]))
+    parts += [_loop(loop) for loop in checked.loops]
+    return "\n\n".join([checked.system.name, *parts])
+
+
+def system_data(checked: CheckedSystem) -> dict[str, Any]:
+    """The same as data; times in seconds."""
+    return {
+        "name": checked.system.name,
+        "targets": {
+            name: {
+                "target": application.target.name,
+                "node": f"{application.namespace}/{application.node}",
+                "middleware": application.communication.middleware.name,
+                "period": float(application.period),
+                "serial": checked.system.targets[name].serial,
+            }
+            for name, application in checked.applications.items()
+        },
+        "connections": [
+            {
+                "from": str(link.connection.sender),
+                "to": str(link.connection.receiver),
+                "topic": checked.system.topic(link.connection.sender),
+                "message": link.message,
+                "unit": link.unit,
+                "on_change": link.on_change,
+                "period": float(link.period),
+                "age": float(link.age),
+            }
+            for link in checked.links
+        ],
+        "loops": [{"targets": list(loop.targets), "age": float(loop.age)} for loop in checked.loops],
+    }
+
+
+def _row(link: Link) -> tuple[object, ...]:
+    sent = "on change" if link.on_change else f"every {show(link.period, 'time')}"
+    ends = (link.connection.sender, link.connection.receiver)
+    return (*ends, link.message, link.unit, sent, show(link.age, "time"))
+
+
+def _loop(loop: Loop) -> str:
+    way = " -> ".join((*loop.targets, loop.targets[0]))
+    return f"loop {way}: a value is up to {show(loop.age, 'time')} old when it comes back, and the transport's time"

@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Loads the targets of a system: files that several targets share are read once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+from epg.catalog.catalog import Catalog, load_catalog
+from epg.data import targets_roots
+from epg.diagnostics import Diagnostics
+from epg.models import load_model
+from epg.models.model import Model
+from epg.project import Request, load_parts
+from epg.resolve.application import Application
+
+
+@dataclass
+class Loader:
+    """Has the catalog of the user's folders of targets ``user_roots``, and each model that was read."""
+
+    user_roots: Sequence[Path]
+    diagnostics: Diagnostics
+    _models: dict[Path, Model | None] = field(default_factory=dict)
+
+    @property
+    def roots(self) -> tuple[Path, ...]:
+        return targets_roots(self.user_roots)
+
+    @cached_property
+    def _catalog(self) -> Catalog:
+        return load_catalog(self.roots, self.diagnostics)
+
+    def applications(self, requests: Iterable[tuple[str, Request]]) -> dict[str, Application]:
+        """The applications of requests, by the names that are given with them.
+
+        Reports the mistakes in all files, and leaves out targets that have mistakes.
+        """
+        loaded = {
+            name: load_parts(request, self.diagnostics, self._model, self._catalog).application
+            for name, request in requests
+        }
+        return {name: application for name, application in loaded.items() if application is not None}
+
+    def _model(self, path: Path, diagnostics: Diagnostics) -> Model | None:
+        if path not in self._models:
+            self._models[path] = load_model(path, diagnostics)
+        return self._models[path]

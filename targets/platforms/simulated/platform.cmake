@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: Apache-2.0
+# Targets in the simulation of a system: shared objects that the program of the system loads.
+
+# Makes the library epg_simulator, the main() of the programs that simulate systems, once for all.
+function(_epg_simulator_library)
+  if(TARGET epg_simulator)
+    return()
+  endif()
+  set(here "${CMAKE_CURRENT_FUNCTION_LIST_DIR}")
+  set(host "${here}/../host")
+  file(GLOB sources CONFIGURE_DEPENDS "${here}/simulator/*.c")
+  add_library(epg_simulator STATIC EXCLUDE_FROM_ALL ${sources}
+    "${host}/src/number.c" "${host}/src/setpoints.c" "${host}/src/trace.c")
+  target_include_directories(epg_simulator PUBLIC "${here}/include" "${host}/include")
+  target_link_libraries(epg_simulator PUBLIC epg_runtime ${CMAKE_DL_LIBS} m)
+  target_compile_definitions(epg_simulator PRIVATE _POSIX_C_SOURCE=200809L)
+  set_target_properties(epg_simulator PROPERTIES C_STANDARD 11 C_STANDARD_REQUIRED ON C_EXTENSIONS OFF)
+endfunction()
+
+# _epg_simulated_module(<module> <library> <source>...)
+#
+# Makes a shared object with one visible symbol.  All other symbols are its own, also where another shared object has the
+# same names: the linker hides the symbols of static libraries.
+function(_epg_simulated_module module library)
+  set(here "${CMAKE_CURRENT_FUNCTION_LIST_DIR}")
+  add_library(${module} MODULE EXCLUDE_FROM_ALL ${ARGN})
+  target_include_directories(${module} PRIVATE "${here}/include" "${here}/../host/include")
+  target_link_libraries(${module} PRIVATE ${library} "-Wl,--exclude-libs,ALL,-Bsymbolic,-z,defs")
+  set_target_properties(${module} PROPERTIES PREFIX "" LIBRARY_OUTPUT_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}"
+    C_VISIBILITY_PRESET hidden C_STANDARD 11 C_STANDARD_REQUIRED ON C_EXTENSIONS OFF)
+  target_compile_definitions(${module} PRIVATE _POSIX_C_SOURCE=200809L)
+endfunction()
+
+# Called by epg_add_system() for each target: makes <name>_unit, and <name>_plant_unit if the target has a plant.
+function(_epg_simulated_target name)
+  set(here "${CMAKE_CURRENT_FUNCTION_LIST_DIR}")
+  set(host "${here}/../host/src")
+  _epg_simulator_library()
+  target_include_directories(${name} PUBLIC "${here}/include" "${here}/../host/include")
+  foreach(library epg_runtime ${name} ${EPG_MODELS})
+    foreach(part ${library} ${library}_export)
+      if(TARGET ${part})
+        set_target_properties(${part} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+        # Otherwise static objects of C++ templates would be one for all shared objects.
+        target_compile_options(${part} PRIVATE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-fno-gnu-unique>)
+      endif()
+    endforeach()
+  endforeach()
+  _epg_simulated_module(${name}_unit ${name}
+    "${here}/src/unit.c" "${host}/clock.c" "${host}/monotonic.c" "${host}/port.c")
+  target_compile_definitions(${name}_unit PRIVATE EPG_UNIT_HOST=${name}_host EPG_UNIT_PLANT=${name}_unit_plant)
+  if(TARGET ${name}_plant)
+    _epg_simulated_module(${name}_plant_unit ${name}_plant "${here}/src/plant.c")
+    target_link_libraries(${name}_plant_unit PRIVATE epg_runtime)
+    target_compile_definitions(${name}_plant_unit PRIVATE
+      EPG_PLANT=${name}_plant "EPG_PLANT_HEADER=\"${name}_plant.h\"")
+  endif()
+endfunction()
+
+# Called by epg_add_executable().
+function(_epg_simulated_executable executable name)
+  message(SEND_ERROR "epg_add_executable(${executable}): '${name}' is for the simulation of a system: use epg_add_system()")
+endfunction()

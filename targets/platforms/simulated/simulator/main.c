@@ -1,0 +1,186 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/**
+ * @file
+ * The program that simulates a system: its options and files.
+ */
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../../host/src/number.h"
+#include "failures.h"
+#include "simulate.h"
+
+enum { DONE = 0, FAILED = 1, WRONG_OPTIONS = 2 };
+
+typedef struct options {
+    uint64_t duration_ns;
+    uint64_t seed;
+    const char *trace;  /* folder */
+    const char *topics; /* file */
+    char folder[4096];  /* of the program */
+} options_t;
+
+static int usage(const epg_system_t *system, const char *problem, const char *word)
+{
+    fprintf(stderr, "%s: error: %s%s\n", system->name, problem, word);
+    fprintf(stderr,
+            "usage: %s --duration SECONDS [options]\n"
+            "\n"
+            "Simulates all targets of the system, their messages and plants.\n"
+            "\n"
+            "  --duration SECONDS          duration of the run\n"
+            "  --seed NUMBER               seed of the random numbers (default: 0)\n"
+            "  --setpoints TARGET=FILE     reads setpoints of a target from a CSV file with rows time,topic,value\n"
+            "  --events FILE               reads failures of targets from a CSV file with rows time,target,event\n"
+            "  --trace FOLDER              writes all signals into FOLDER/TARGET.csv, one row per control cycle\n"
+            "  --topics FILE               writes all published values\n",
+            system->name);
+    return WRONG_OPTIONS;
+}
+
+static bool read_setpoints(member_t *member, const char *path)
+{
+    epg_host_free_setpoints(&member->events);
+    if (!epg_host_read_setpoints(path, member->unit->host, false, &member->events)) {
+        return false;
+    }
+    for (size_t i = 0; i < member->events.count; i++) {
+        if (member->events.events[i].kind == EPG_HOST_STALL) {
+            fprintf(stderr, "%s: error: '$stall' is not possible in the simulation of a system\n", path);
+            return false;
+        }
+    }
+    return true;
+}
+
+/** Reads one option with its value.  Returns DONE, or another exit status after a message. */
+static int take(simulation_t *simulation, options_t *options, const char *option, const char *value)
+{
+    if (strcmp(option, "--duration") == 0) {
+        return epg_host_parse_time(value, &options->duration_ns) && options->duration_ns > 0
+                   ? DONE
+                   : usage(simulation->system, "this is not a duration in seconds: ", value);
+    }
+    if (strcmp(option, "--seed") == 0) {
+        char *end = NULL;
+        options->seed = strtoull(value, &end, 10);
+        return *value != '\0' && *end == '\0' ? DONE : usage(simulation->system, "this is not a number: ", value);
+    }
+    if (strcmp(option, "--trace") == 0) {
+        options->trace = value;
+        return DONE;
+    }
+    if (strcmp(option, "--topics") == 0) {
+        options->topics = value;
+        return DONE;
+    }
+    if (strcmp(option, "--setpoints") == 0) {
+        const char *equals = strchr(value, '=');
+        const size_t length = equals == NULL ? 0 : (size_t)(equals - value);
+        const size_t target = simulation_target(simulation->system, value, length);
+        if (target == simulation->system->target_count) {
+            return usage(simulation->system, "this does not name a target: ", value);
+        }
+        return read_setpoints(&simulation->members[target], equals + 1) ? DONE : WRONG_OPTIONS;
+    }
+    if (strcmp(option, "--events") == 0) {
+        return failures_read(simulation, value) ? DONE : WRONG_OPTIONS;
+    }
+    return usage(simulation->system, "there is no option ", option);
+}
+
+static bool open_trace(member_t *member, const options_t *options)
+{
+    char path[4096];
+    snprintf(path, sizeof path, "%s/%s.csv", options->trace, member->facts->name);
+    member->file = fopen(path, "wb");
+    if (member->file == NULL) {
+        fprintf(stderr, "%s: error: cannot write this file\n", path);
+        return false;
+    }
+    const uint64_t cycles = options->duration_ns / member->unit->host->target->application->period_ns + 1U;
+    return epg_host_trace_start(&member->trace, member->unit->host, member->file, false, cycles);
+}
+
+static void print_state(const member_t *member)
+{
+    const epg_target_t *target = member->unit->host->target;
+    const epg_control_t *control = target->control;
+    const char *component = epg_target_component(target, control->fault_component);
+    const bool of_component = control->fault != EPG_FAULT_NONE && component[0] != '\0';
+    printf("%s: %" PRIu32 " cycles, %s, fault: %s%s%s%s\n", member->facts->name, control->statistics.cycles,
+           control->enabled ? "enabled" : "disabled", epg_target_fault(target, control->fault),
+           of_component ? " (" : "", of_component ? component : "", of_component ? ")" : "");
+}
+
+static int run(simulation_t *simulation, options_t *options, int argc, char **argv)
+{
+    const epg_system_t *system = simulation->system;
+    for (size_t i = 0; i < system->target_count; i++) {
+        if (!member_open(&simulation->members[i], &system->targets[i], options->folder)) {
+            return FAILED;
+        }
+    }
+    for (int i = 1; i < argc; i += 2) {
+        const int status = i + 1 < argc ? take(simulation, options, argv[i], argv[i + 1])
+                                        : usage(system, "this option needs a value: ", argv[i]);
+        if (status != DONE) {
+            return status;
+        }
+    }
+    if (options->duration_ns == 0) {
+        return usage(system, "--duration is missing", "");
+    }
+    for (size_t i = 0; options->trace != NULL && i < system->target_count; i++) {
+        if (!open_trace(&simulation->members[i], options)) {
+            return FAILED;
+        }
+    }
+    if (options->topics != NULL) {
+        simulation->topics = fopen(options->topics, "wb");
+        if (simulation->topics == NULL) {
+            fprintf(stderr, "%s: error: cannot write this file\n", options->topics);
+            return FAILED;
+        }
+        fputs("time,topic,value\n", simulation->topics);
+    }
+    simulation->end_ns = options->duration_ns;
+    simulation->seed = options->seed;
+    if (!simulate(simulation)) {
+        return FAILED;
+    }
+    for (size_t i = 0; i < system->target_count; i++) {
+        print_state(&simulation->members[i]);
+    }
+    return DONE;
+}
+
+int epg_system_main(const epg_system_t *system, int argc, char **argv)
+{
+    static options_t options;
+    snprintf(options.folder, sizeof options.folder, "%s", argv[0]);
+    char *slash = strrchr(options.folder, '/');
+    snprintf(slash == NULL ? options.folder : slash, 3, "%s", slash == NULL ? "." : "");
+    simulation_t simulation = {.system = system};
+    simulation.members = calloc(system->target_count, sizeof *simulation.members);
+    simulation.ways = calloc(system->connection_count + 1U, sizeof *simulation.ways);
+    int status = FAILED;
+    if (simulation.members != NULL && simulation.ways != NULL) {
+        status = run(&simulation, &options, argc, argv);
+        for (size_t i = 0; i < system->target_count; i++) {
+            member_close(&simulation.members[i]);
+            if (simulation.members[i].file != NULL && fclose(simulation.members[i].file) != 0) {
+                status = FAILED;
+            }
+        }
+    }
+    if (simulation.topics != NULL && fclose(simulation.topics) != 0) {
+        status = FAILED;
+    }
+    free(simulation.members);
+    free(simulation.ways);
+    free(simulation.failures);
+    return status;
+}

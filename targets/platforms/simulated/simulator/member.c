@@ -1,0 +1,184 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/**
+ * @file
+ * A target of a system while it is simulated, with its plant.
+ */
+#include "member.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define BILLION 1000000000U
+
+/** `value` * `factor` / `divisor`, rounded down, without overflow: `factor` and `divisor` are below 2^31. */
+static uint64_t scaled(uint64_t value, uint64_t factor, uint64_t divisor)
+{
+    return value / divisor * factor + value % divisor * factor / divisor;
+}
+
+static uint64_t rate(const member_t *member)
+{
+    return (uint64_t)((int64_t)BILLION + member->facts->drift_ppb);
+}
+
+uint64_t member_true_ns(const member_t *member, uint64_t clock_ns)
+{
+    return member->started_ns + scaled(clock_ns, BILLION, rate(member));
+}
+
+uint64_t member_clock_ns(const member_t *member, uint64_t time_ns)
+{
+    return time_ns < member->started_ns ? 0U : scaled(time_ns - member->started_ns, rate(member), BILLION);
+}
+
+uint64_t member_tick_ns(const member_t *member, uint64_t number)
+{
+    return member_true_ns(member, number * member->unit->host->target->application->period_ns);
+}
+
+/* The plant ------------------------------------------------------------------------------------------------------ */
+
+static void actuate(member_t *member)
+{
+    const epg_unit_plant_t *ports = member->unit->plant;
+    if (member->plant == NULL) {
+        return;
+    }
+    ports->actuate();
+    for (size_t i = 0; i < ports->driven_count; i++) {
+        const epg_unit_port_t *port = &ports->driven[i];
+        memcpy((char *)member->plant->inputs + port->offset, (const char *)ports->inputs + port->offset, port->size);
+    }
+}
+
+static void sense(const member_t *member)
+{
+    if (member->plant != NULL) {
+        memcpy(member->unit->plant->outputs, member->plant->outputs, member->unit->plant->outputs_size);
+        member->unit->plant->sense();
+    }
+}
+
+/* Start and end -------------------------------------------------------------------------------------------------- */
+
+static bool load(module_t *module, const char *folder, const char *file, const char *symbol)
+{
+    char path[4096];
+    snprintf(path, sizeof path, "%s/%s", folder, file);
+    return module_load(module, path, symbol);
+}
+
+static bool has_version(const member_t *member, uint32_t version)
+{
+    if (version != EPG_UNIT_VERSION) {
+        fprintf(stderr, "%s: error: its files are of another version of EPG: build it again\n", member->facts->name);
+    }
+    return version == EPG_UNIT_VERSION;
+}
+
+static bool load_unit(member_t *member)
+{
+    if (!load(&member->module, member->folder, member->facts->unit, EPG_UNIT_SYMBOL)) {
+        return false;
+    }
+    member->unit = member->module.symbol;
+    return has_version(member, member->unit->version);
+}
+
+/** Loads the plant and sets it to its state at time 0. */
+static bool load_plant(member_t *member)
+{
+    if (!load(&member->plant_module, member->folder, member->facts->plant, EPG_PLANT_SYMBOL)) {
+        return false;
+    }
+    member->plant = member->plant_module.symbol;
+    if (!has_version(member, member->plant->version)) {
+        return false;
+    }
+    member->plant->init();
+    member->plant_model =
+        (epg_plant_t){.steps_per_period = member->unit->plant->steps_per_period, .step = member->plant->step};
+    member->plant_run = (epg_plant_run_t){.plant = &member->plant_model,
+                                          .period_ns = member->unit->host->target->application->period_ns};
+    if (member->unit->plant->starts_by_step) {
+        member->plant->step();
+        member->plant_run.steps = 1;
+    }
+    return true;
+}
+
+/** Starts the application, which reads the sensors. */
+static void start(member_t *member)
+{
+    sense(member);
+    member->unit->start();
+    actuate(member);
+}
+
+void member_die(member_t *member, uint64_t time_ns)
+{
+    epg_plant_advance(&member->plant_run, time_ns);
+    member->unit->host->target->application->safe();
+    actuate(member);
+    member->state = MEMBER_IS_DEAD;
+}
+
+bool member_restart(member_t *member, uint64_t time_ns)
+{
+    member_die(member, time_ns);
+    memset(member->announced, 0, member->unit->host->target->publication_count * sizeof *member->announced);
+    module_unload(&member->module);
+    if (!load_unit(member)) {
+        return false;
+    }
+    member->trace.host = member->unit->host;
+    member->life++;
+    member->started_ns = time_ns;
+    member->state = MEMBER_RUNS;
+    for (size_t i = 0; i < member->events.count && member->events.events[i].time_ns <= time_ns; i++) {
+        const epg_host_event_t *event = &member->events.events[i];
+        if (event->kind == EPG_HOST_INPUT) { /* the wires are as they were */
+            member->unit->force((uint8_t)event->index, (epg_plant_force_t)event->value);
+        }
+    }
+    start(member);
+    return true;
+}
+
+bool member_open(member_t *member, const epg_system_target_t *facts, const char *folder)
+{
+    *member = (member_t){.facts = facts, .folder = folder, .started_ns = facts->start_ns};
+    if (!load_unit(member) || (facts->plant != NULL && !load_plant(member))) {
+        return false;
+    }
+    start(member);
+    const epg_target_t *target = member->unit->host->target;
+    member->monitored = calloc(target->application->monitor_count + 1U, sizeof *member->monitored);
+    member->published = calloc(target->application->monitor_count + 1U, sizeof *member->published);
+    member->received = calloc(target->application->setpoint_count + 1U, sizeof *member->received);
+    member->announced = calloc(target->publication_count + 1U, sizeof *member->announced);
+    return member->monitored != NULL && member->published != NULL && member->received != NULL &&
+           member->announced != NULL;
+}
+
+void member_cycle(member_t *member, uint64_t number)
+{
+    const uint64_t time_ns = member_tick_ns(member, number);
+    epg_plant_advance(&member->plant_run, time_ns);
+    sense(member);
+    member->unit->cycle(number * member->unit->host->target->application->period_ns, 0);
+    actuate(member);
+    epg_host_trace_add(&member->trace, time_ns, 0, 0);
+}
+
+void member_close(member_t *member)
+{
+    epg_host_trace_end(&member->trace);
+    epg_host_free_setpoints(&member->events);
+    free(member->monitored);
+    free(member->published);
+    free(member->received);
+    free(member->announced);
+    module_unload(&member->module);
+    module_unload(&member->plant_module);
+}

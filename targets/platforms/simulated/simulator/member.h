@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/**
+ * @file
+ * A target of a system while it is simulated, with its plant.
+ */
+#ifndef EPG_SYSTEM_MEMBER_H
+#define EPG_SYSTEM_MEMBER_H
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include "../../host/src/setpoints.h"
+#include "../../host/src/trace.h"
+#include "epg/system.h"
+#include "module.h"
+
+typedef enum member_state {
+    MEMBER_RUNS,
+    MEMBER_HANGS,  /**< no cycles, no messages; the outputs keep their levels */
+    MEMBER_IS_DEAD /**< the outputs have their safe levels */
+} member_state_t;
+
+typedef struct member {
+    const epg_system_target_t *facts;
+    member_state_t state;
+    bool offline;        /**< its messages are lost, and those to it */
+    uint32_t life;       /**< number of restarts */
+    uint64_t started_ns; /**< true time of the first tick of this life */
+    const char *folder;  /* of the shared objects */
+    module_t module;
+    module_t plant_module;
+    const epg_unit_t *unit;
+    const epg_plant_module_t *plant; /**< NULL: it has none */
+    epg_plant_t plant_model;         /**< the functions that epg_plant_advance() calls */
+    epg_plant_run_t plant_run;
+    double *monitored; /**< the newest monitoring values */
+    double *published; /**< the values of the newest messages of publications on change */
+    double *received;  /**< room for the values of a message */
+    bool *announced;   /**< for each publication on change: a message was sent */
+    epg_host_events_t events;
+    epg_host_trace_t trace;
+    FILE *file;
+} member_t;
+
+/** Loads target and plant, and starts the target.  Returns false after a message. */
+bool member_open(member_t *member, const epg_system_target_t *facts, const char *folder);
+
+/** Ends a target at the true time `time_ns`, as a loss of its power does.  Its plant goes on. */
+void member_die(member_t *member, uint64_t time_ns);
+
+/**
+ * Loads a new copy of the target and starts it at the true time `time_ns`.  A target that runs dies before.  Returns
+ * false after a message.
+ */
+bool member_restart(member_t *member, uint64_t time_ns);
+
+/** True time of tick `number` of this life.  Computed from the number alone, so that errors do not add up. */
+uint64_t member_tick_ns(const member_t *member, uint64_t number);
+
+/** The time of the target's own clock at the true time `time_ns`. */
+uint64_t member_clock_ns(const member_t *member, uint64_t time_ns);
+
+/** True time at which the target's clock shows `clock_ns`. */
+uint64_t member_true_ns(const member_t *member, uint64_t clock_ns);
+
+/** Runs the control cycle of tick `number`. */
+void member_cycle(member_t *member, uint64_t number);
+
+/** Frees everything. */
+void member_close(member_t *member);
+
+#endif

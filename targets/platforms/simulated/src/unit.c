@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/**
+ * @file
+ * The functions of a unit: a target whose cycles, messages and time come from outside.
+ */
+#include "epg/unit.h"
+
+#include "../../host/src/clock.h"
+
+/* Generated; CMake defines the names. */
+extern const epg_host_target_t EPG_UNIT_HOST;
+extern const epg_unit_plant_t EPG_UNIT_PLANT;
+
+static epg_control_t *control(void)
+{
+    return EPG_UNIT_HOST.target->control;
+}
+
+static void start(void)
+{
+    epg_host_clock_simulate(0);
+    epg_control_start(control(), EPG_UNIT_HOST.target->application);
+}
+
+static void cycle(uint64_t tick_ns, uint32_t missed)
+{
+    epg_host_clock_simulate(tick_ns);
+    epg_control_cycle(control(), tick_ns, missed);
+}
+
+static void receive(size_t setpoint, double value, uint64_t time_ns, bool publish)
+{
+    (void)epg_control_receive(control(), setpoint, value, time_ns, publish);
+}
+
+static void request(bool enable)
+{
+    epg_control_request(control(), enable);
+}
+
+static bool monitor(double *values)
+{
+    return epg_control_monitor(control(), values);
+}
+
+extern const epg_unit_t epg_unit;
+__attribute__((visibility("default"))) const epg_unit_t epg_unit = {
+    .version = EPG_UNIT_VERSION,
+    .host = &EPG_UNIT_HOST,
+    .plant = &EPG_UNIT_PLANT,
+    .start = start,
+    .cycle = cycle,
+    .receive = receive,
+    .request = request,
+    .monitor = monitor,
+    .force = epg_plant_input_force,
+};

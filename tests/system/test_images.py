@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The images of a system: one command builds all of them, and one that cannot be built does not stop the others."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+
+from tests.cmake.project import ROOT, Project
+from tests.emulator.toolchain import arm_gcc, pico_sdk, skip_if_missing, tool
+
+SYSTEM = """version: 1
+system: two
+targets:
+  leader: {tcf: rpi_pico_bare_metal_jiwy, model: model, bindings: jiwy.bindings.yaml}
+  follower: {tcf: nucleo_h743zi_bare_metal_jiwy, model: model, bindings: jiwy.bindings.yaml}
+  watcher: {tcf: host_jiwy, model: model, bindings: jiwy.bindings.yaml, set: {communication: {middleware: xrce}}}
+connections:
+  - {from: leader/pan_publisher, to: [follower/pan_subscriber, watcher/pan_subscriber]}
+  - {from: leader/tilt_publisher, to: [follower/tilt_subscriber, watcher/tilt_subscriber]}
+world: {sends: [leader/pan_subscriber, leader/tilt_subscriber]}
+"""
+LISTS = """cmake_minimum_required(VERSION 3.22)
+project(two LANGUAGES C CXX)
+find_package(EPG REQUIRED)
+epg_add_system(two SYSTEM two.system.yaml)
+"""
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Project:
+    needed = ("micro_xrce_dds_client", "micro_cdr", "cmsis_core", "cmsis_device_h7")
+    skip_if_missing(arm_gcc, pico_sdk, *(lambda name=name: tool(name) for name in needed))
+    made = Project(tmp_path, "two")
+    shutil.copytree(ROOT / "examples/jiwy/model", made.source / "model")
+    shutil.copy(ROOT / "examples/jiwy/jiwy.bindings.yaml", made.source)
+    (made.source / "two.system.yaml").write_text(SYSTEM)
+    (made.source / "CMakeLists.txt").write_text(LISTS)
+    return made
+
+
+def test_one_command_builds_all_images(project: Project) -> None:
+    project.environment["PICO_SDK_PATH"] = str(project.folder / "no SDK")
+    project.configure()
+    output = project.build("--target", "two_images", check=False)
+    assert "these images were not built: leader." in output
+    assert "PICO_SDK_PATH" in output
+    images = project.build_folder / "two_images"
+    assert b"/two/leader/pan_publisher" in (images / "follower/follower_firmware.elf").read_bytes()
+    assert not (images / "watcher").exists(), "epg_add_target() builds programs for this computer"
+
+    del project.environment["PICO_SDK_PATH"]
+    output = project.build("--target", "two_images")
+    assert (images / "leader/leader_firmware.uf2").is_file()
+    assert compiled(output) == {"leader"}, "the other image is up to date"
+    assert compiled(project.build("--target", "two_images")) == set()
+
+
+def compiled(output: str) -> set[str]:
+    """The images for which something was compiled or linked."""
+    found, image = set(), ""
+    for line in output.splitlines():
+        image = line.removeprefix("-- Image of ") if line.startswith("-- Image of ") else image
+        if re.search(r"Building C|Building ASM|Linking", line):
+            found.add(image)
+    return found
